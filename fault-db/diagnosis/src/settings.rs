@@ -49,6 +49,8 @@ pub struct Settings {
     pub replaced_in_vain_factor: f64,
     /// How far back a unit's history counts, days.
     pub history_days: u32,
+    /// Confirmed repairs of all units that weigh as much as the dictionary's own weights of the parts.
+    pub repairs_like_prior: f64,
     /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next two.
     #[serde(default)]
     pub likelihood: LikelihoodSettings,
@@ -188,6 +190,7 @@ impl Settings {
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
             ("replaced_in_vain_factor", self.replaced_in_vain_factor),
+            ("repairs_like_prior", self.repairs_like_prior),
         ];
         for (key, value) in positive {
             if !(value > 0.0 && value.is_finite()) {
@@ -222,6 +225,7 @@ impl Default for Settings {
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,
             history_days: 90,
+            repairs_like_prior: 50.0,
             likelihood: LikelihoodSettings::default(),
             signs: SignSettings::default(),
             log: LogSettings::default(),

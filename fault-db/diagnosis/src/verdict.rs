@@ -94,12 +94,7 @@ impl Diagnosis {
     /// What `seen` comes to.
     pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
         let belief = Belief::after(model, seen);
-        let (pairs, single) = if seen.shows_a_fault() {
-            pairs(&belief, seen)
-        } else {
-            (Vec::new(), 1.0)
-        };
-        let weights = Weights::new(&belief, &pairs, single);
+        let (weights, pairs) = Weights::after(&belief, seen);
         let candidates = weights.candidates(&belief, seen);
         let settings = &model.settings.conclusion;
         let next_check = weights.next_check(&belief, seen);
@@ -123,6 +118,21 @@ impl Diagnosis {
         }
     }
 
+    /// The likeliest fault mode of a part, however unlikely, with what speaks for it and against it; a fault that is not
+    /// in the dictionary only of a part without any mode, as it may act like any. None of a part that is not known.
+    pub fn why_not(model: &Model<'_>, seen: &Observation, part: &LruId) -> Option<Candidate> {
+        let belief = Belief::after(model, seen);
+        let (weights, _) = Weights::after(&belief, seen);
+        let faults = weights.faults.iter();
+        let of_part = faults.filter(|fault| model.lru(fault.hypothesis) == Some(part));
+        let is_known = |fault: &Fault| model.effect(fault.hypothesis).is_some();
+        let likeliest = of_part.max_by(|a, b| {
+            let by_kind = is_known(a).cmp(&is_known(b));
+            by_kind.then(a.probability.total_cmp(&b.probability))
+        })?;
+        candidate(&belief, seen, likeliest)
+    }
+
     /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
     pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
         let mut sum = 0.0;
@@ -138,7 +148,31 @@ impl Diagnosis {
     }
 }
 
+/// A fault of a part with its reasons.
+fn candidate(belief: &Belief<'_, '_>, seen: &Observation, fault: &Fault) -> Option<Candidate> {
+    let why = reasons(belief, fault.hypothesis, seen);
+    let (id, text) = name(belief, fault.hypothesis);
+    Some(Candidate {
+        lru: belief.model.lru(fault.hypothesis)?.clone(),
+        fault: id,
+        text,
+        probability: fault.probability,
+        for_it: why.for_it,
+        against: why.against,
+    })
+}
+
 impl Weights {
+    /// Of all evidence, with the pairs of faults that explain it.
+    fn after(belief: &Belief<'_, '_>, seen: &Observation) -> (Self, Vec<Pair>) {
+        let (pairs, single) = if seen.shows_a_fault() {
+            pairs(belief, seen)
+        } else {
+            (Vec::new(), 1.0)
+        };
+        (Self::new(belief, &pairs, single), pairs)
+    }
+
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
         let model = belief.model;
         let ConclusionSettings {
@@ -162,19 +196,9 @@ impl Weights {
             .enumerate()
             .filter(likely)
             .take(most_shown);
-        let candidate = |(_, fault): (usize, &Fault)| {
-            let why = reasons(belief, fault.hypothesis, seen);
-            let (id, text) = name(belief, fault.hypothesis);
-            Some(Candidate {
-                lru: model.lru(fault.hypothesis)?.clone(),
-                fault: id,
-                text,
-                probability: fault.probability,
-                for_it: why.for_it,
-                against: why.against,
-            })
-        };
-        shown.filter_map(candidate).collect()
+        shown
+            .filter_map(|(_, fault)| candidate(belief, seen, fault))
+            .collect()
     }
 
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {

@@ -201,3 +201,30 @@ fn occurrences_and_times_under_test_are_known() {
     assert!(!known("U-1", 230, "on day 1", Some(at_us)));
     assert!(!known("U-2", 230, "on day 0", Some(at_us)));
 }
+
+/// Goal: one repair of one unit is counted once however many faults it was for, and only when it has been shown to help.
+#[test]
+fn confirmed_repairs_are_counted_by_part_and_those_in_vain_are_not() {
+    let history = History::new();
+    let faults = |day| [naming(RELAY, day), naming(SENSOR, day)];
+    let (_, opened) = history.run(1, run_record("U-1"), &faults(1));
+    for fault in &opened {
+        history.repair(*fault, RELAY, 1);
+    }
+    let count = |day: i64| {
+        let before_us = T0_US + day * DAY_US;
+        let counted = history.store.confirmed_repairs(before_us);
+        counted.expect("counts").get(RELAY).copied().unwrap_or(0)
+    };
+    assert_eq!(count(2), 0, "nobody has verified it");
+    for fault in &opened {
+        let at_us = T0_US + 2 * DAY_US;
+        let verified = history
+            .store
+            .set_state(*fault, FaultState::Verified, "kim", "", at_us);
+        verified.expect("verified");
+    }
+    assert_eq!((count(1), count(3)), (0, 1));
+    history.run(4, run_record("U-1"), &faults(4));
+    assert_eq!(count(5), 0, "it came back");
+}

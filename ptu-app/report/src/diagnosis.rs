@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use diagnosis::Candidate;
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
@@ -16,18 +17,15 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         let of_part = answer.traces.get(lru).into_iter().flatten();
         of_part.map(Id::to_string).collect()
     };
-    let candidates: Vec<_> = d
-        .candidates
-        .iter()
-        .map(|c| {
-            json!({
-                "lru": c.lru, "fault": c.fault, "probability": c.probability,
-                "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(c.lru.as_str()),
-            })
+    let candidate = |c: &Candidate| {
+        json!({
+            "lru": c.lru, "fault": c.fault, "probability": c.probability,
+            "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(c.lru.as_str()),
         })
-        .collect();
+    };
     json!({
-        "candidates": candidates,
+        "candidates": d.candidates.iter().map(candidate).collect::<Vec<_>>(),
+        "why_not": answer.why_not.as_ref().map(candidate),
         "next_check": d.next_check,
         "conclusion": d.conclusion,
         "finding": d.finding,
@@ -55,20 +53,7 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         d.conclusion
     );
     for c in &d.candidates {
-        let _ = writeln!(
-            text,
-            "\n{:5.1} %  {}  ({}: {})",
-            100.0 * c.probability,
-            c.lru,
-            c.fault,
-            c.text
-        );
-        for reason in &c.for_it {
-            let _ = writeln!(text, "         + {reason}");
-        }
-        for reason in &c.against {
-            let _ = writeln!(text, "         - {reason}");
-        }
+        candidate_text(&mut text, c);
     }
     for two in &d.two_faults {
         let _ = writeln!(
@@ -84,6 +69,10 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         100.0 * d.no_fault,
         100.0 * d.unknown_fault
     );
+    if let Some(c) = &answer.why_not {
+        let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
+        candidate_text(&mut text, c);
+    }
     for (lru, ids) in &answer.traces {
         let ids: Vec<_> = ids.iter().map(Id::short).collect();
         if !ids.is_empty() {
@@ -91,4 +80,20 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         }
     }
     text.trim_end().to_owned()
+}
+
+fn candidate_text(text: &mut String, c: &Candidate) {
+    let _ = writeln!(
+        text,
+        "\n{:5.1} %  {}  ({}: {})",
+        100.0 * c.probability,
+        c.lru,
+        c.fault,
+        c.text
+    );
+    for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
+        for reason in reasons {
+            let _ = writeln!(text, "         {sign} {reason}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use protocol::LruId;
 
 use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
 use super::{Database, ScriptsOption, print_json, print_out};
@@ -18,6 +19,7 @@ use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 /// Examples:
 ///   ptu diagnose latest                                        the last run
 ///   ptu diagnose 7ae4aeef --json
+///   ptu diagnose latest --why-not io_board                     what speaks against this part
 ///   ptu diagnose --matrix pump.json                            cheapest order of tests
 ///   ptu diagnose --matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
 ///   ptu diagnose --matrix pump.json --outcomes found.json --json
@@ -32,6 +34,9 @@ pub struct DiagnoseArguments {
     /// Dependency matrix of states and tests; its format is in scripts/README.md
     #[arg(long, value_name = "FILE", conflicts_with = "run")]
     matrix: Option<PathBuf>,
+    /// A part of which to say what speaks for it and against it, however unlikely it is
+    #[arg(long, value_name = "PART", requires = "run")]
+    why_not: Option<LruId>,
     #[command(flatten)]
     matrix_options: MatrixOptions,
     /// Print JSON
@@ -51,7 +56,7 @@ impl DiagnoseArguments {
         }
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(&self.run.unwrap_or_default())?;
-        let answer = diagnose_run(&store, &self.scripts.find()?, id)?;
+        let answer = diagnose_run(&store, &self.scripts.find()?, id, self.why_not.as_ref())?;
         for warning in &answer.warnings {
             stdio::note(warning);
         }

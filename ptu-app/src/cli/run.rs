@@ -334,14 +334,14 @@ impl RunArguments {
         outcome: &Outcome,
     ) -> Result<(), Failure> {
         if self.adaptive {
-            let answer = diagnose_run(store, directory, outcome.id)?;
+            let answer = diagnose_run(store, directory, outcome.id, None)?;
             answer
                 .warnings
                 .iter()
                 .for_each(|warning| stdio::note(warning));
             print_out(&format!("\n{}", diagnosis_text(&answer)))?;
         } else if outcome.exit == Exit::Failed
-            && let Ok(answer) = diagnose_run(store, directory, outcome.id)
+            && let Ok(answer) = diagnose_run(store, directory, outcome.id, None)
             && answer.warnings.is_empty()
         {
             let id = outcome.id.short();

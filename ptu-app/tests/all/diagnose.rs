@@ -207,6 +207,27 @@ fn what_cannot_be_diagnosed_is_refused_with_the_next_move() {
         .explains(&["dictionary.zst"]);
 }
 
+/// Goal: a technician who does not believe an answer is told what speaks against the part that he has in mind.
+#[test]
+fn a_part_that_is_not_the_answer_is_told_with_what_speaks_against_it() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let said = place.json(&["diagnose", "latest", "--why-not", "door_contact", "--json"]);
+    let (asked, answer) = (&said["why_not"], &said["candidates"][0]);
+    assert_eq!(asked["lru"], "door_contact");
+    assert_eq!(answer["lru"], "eb_relay");
+    assert!(number(&asked["probability"]) < 0.01, "{asked}");
+    assert!(!list(&asked["against"]).is_empty(), "{asked}");
+    place
+        .ptu(&["diagnose", "latest", "--why-not", "door_contakt"])
+        .exits(2)
+        .explains(&["door_contakt", "door_contact", "ptu catalog faults"]);
+    let without = place.json(&["diagnose", "latest", "--json"]);
+    assert!(without["why_not"].is_null());
+}
+
 #[test]
 fn a_small_campaign_makes_a_dictionary_and_says_what_it_knows() {
     let place = Place::new();

@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
-use diagnosis::{Diagnosis, Dictionary, Finding, Model, Observation};
+use diagnosis::{Candidate, Diagnosis, Dictionary, Finding, Model, Observation};
 use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
+use protocol::LruId;
 
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
+use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, did_you_mean};
 use crate::process_id;
 use crate::run::{Adaptive, BenchContents, of_run};
 use crate::stdio;
@@ -34,6 +36,8 @@ pub struct Answer {
     pub run: RunDetail,
     /// The diagnosis.
     pub diagnosis: Diagnosis,
+    /// The likeliest fault of the part that was asked about, and why it is not the answer.
+    pub why_not: Option<Candidate>,
     /// Traces that show a part's faults, by part.
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
@@ -44,14 +48,15 @@ pub struct Answer {
     pub dictionary_current: bool,
 }
 
-/// Diagnoses a stored run.
+/// Diagnoses a stored run; `why_not` is a part to say more about.
 ///
 /// # Errors
-/// There is no such run, no dictionary, or a file cannot be read.
+/// There is no such run, part or dictionary, or a file cannot be read.
 pub fn diagnose_run(
     store: &Store,
     directory: &ScriptsDirectory,
     id: Id,
+    why_not: Option<&LruId>,
 ) -> Result<Answer, Failure> {
     let run = store.run(id, &process_id::is_alive)?;
     let occurrences = store.run_occurrences(id)?;
@@ -67,10 +72,16 @@ pub fn diagnose_run(
     if seen.is_empty() {
         warnings.push("the run has no step and no fault that could be diagnosed".into());
     }
-    let history = OwnHistory::before(&run, &occurrences, store, &settings)?;
+    let mut history = OwnHistory::before(&run, &occurrences, store, &settings)?;
+    let repairs = store.confirmed_repairs(run.run.started_at_us)?;
+    history.take_repairs(&repairs, &dictionary, &settings);
     let model = Model::new(&dictionary, &settings, &history.factors);
     let mut diagnosis = Diagnosis::of(&model, &seen);
     history.explain(&mut diagnosis);
+    let why_not = why_not.map(|part| {
+        let fault = Diagnosis::why_not(&model, &seen, part);
+        fault.ok_or_else(|| no_such_part(part, &model))
+    });
     cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
@@ -80,11 +91,20 @@ pub fn diagnose_run(
     Ok(Answer {
         run,
         diagnosis,
+        why_not: why_not.transpose()?,
         traces,
         warnings,
         dictionary_from: from,
         dictionary_current: current,
     })
+}
+
+fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
+    let known = model.parts().iter().map(|part| part.as_str());
+    Failure::usage(format!(
+        "no part \"{part}\"{}; `ptu catalog faults` lists them",
+        did_you_mean(part.as_str(), known)
+    ))
 }
 
 /// How the unit of a run was reached, as a recording of it tells; without one it counts as on a bench.
@@ -146,7 +166,9 @@ pub fn adaptive(
         stdio::note(warning);
     }
     let settings = settings(directory)?;
-    let history = OwnHistory::up_to_now(serial, store, &settings)?;
+    let mut history = OwnHistory::up_to_now(serial, store, &settings)?;
+    let repairs = store.confirmed_repairs(now_us())?;
+    history.take_repairs(&repairs, &chosen.dictionary, &settings);
     Ok(Adaptive {
         dictionary: chosen.dictionary,
         settings,

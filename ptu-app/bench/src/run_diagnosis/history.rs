@@ -1,4 +1,4 @@
-//! Prior probabilities of parts from the history of a unit, with the reasons as text.
+//! Prior probabilities of parts from the history of their unit, with the reasons as text.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +19,7 @@ const DAY_US: i64 = 86_400_000_000;
 pub struct OwnHistory {
     /// Factor on the prior of a part.
     pub factors: BTreeMap<LruId, f64>,
-    for_it: BTreeMap<LruId, String>,
+    for_it: BTreeMap<LruId, Vec<String>>,
     against: BTreeMap<LruId, String>,
 }
 
@@ -70,7 +70,7 @@ impl OwnHistory {
                 history.against.insert(part.clone(), words);
                 settings.replaced_in_vain_factor
             } else if known.runs > 0 {
-                history.for_it.insert(part.clone(), recurred(known));
+                history.add_for(&part, recurred(known));
                 let runs = known.runs.min(MOST_RUNS);
                 settings.recurrence_factor.powi(runs as i32)
             } else {
@@ -81,12 +81,21 @@ impl OwnHistory {
         history
     }
 
+    /// Adds what speaks for a part.
+    pub(super) fn add_for(&mut self, part: &LruId, words: String) {
+        self.for_it.entry(part.clone()).or_default().push(words);
+    }
+
     /// Adds the words to the reasons of a diagnosis.
     pub fn explain(&self, diagnosis: &mut Diagnosis) {
         for candidate in &mut diagnosis.candidates {
-            candidate
-                .for_it
-                .extend(self.for_it.get(&candidate.lru).cloned());
+            candidate.for_it.extend(
+                self.for_it
+                    .get(&candidate.lru)
+                    .into_iter()
+                    .flatten()
+                    .cloned(),
+            );
             candidate
                 .against
                 .extend(self.against.get(&candidate.lru).cloned());

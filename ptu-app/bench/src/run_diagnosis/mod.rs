@@ -4,6 +4,7 @@ mod answer;
 mod basis;
 mod dictionary;
 mod history;
+mod repairs;
 
 pub use answer::{Answer, Bench, adaptive, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};

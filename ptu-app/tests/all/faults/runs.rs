@@ -97,7 +97,7 @@ impl TestBench {
         let detail = store
             .run(outcome.id, &process_id::is_alive)
             .expect("the run");
-        let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
+        let answer = diagnose_run(&store, &self.directory, outcome.id, None).expect("a diagnosis");
         let first = answer.diagnosis.candidates.first();
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         FaultRun {

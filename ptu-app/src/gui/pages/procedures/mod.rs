@@ -272,7 +272,7 @@ impl ProceduresPage {
         self.conclusion = match outcome.exit {
             ptu_bench::failure::Exit::Failed => {
                 Request::Pending(context.queries.run(move |paths| {
-                    let answer = diagnose_run(&paths.read()?, &paths.scripts, id)?;
+                    let answer = diagnose_run(&paths.read()?, &paths.scripts, id, None)?;
                     Ok(answer.diagnosis.conclusion)
                 }))
             }
