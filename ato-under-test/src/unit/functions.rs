@@ -241,17 +241,12 @@ impl Functions {
         !around.barred && self.twc.valid() && given
     }
 
-    /// ATO holds the train, driving or at a station.
-    pub fn ato_holds(&self) -> bool {
-        self.ato_outputs.holding_brake || self.station.waits()
-    }
-
-    /// ATO holds the train; so it stays when ATO has failed, until the driver takes it.
+    /// ATO holds the train, driving or at a station; so it stays when ATO has failed, until the driver takes it.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
             && self.atp.tachometers().standstill()
             && self.inputs.controller == 0;
-        self.ato_holds() || left_alone || self.cabs.holds()
+        self.ato_outputs.holding_brake || self.station.waits() || left_alone || self.cabs.holds()
     }
 
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {

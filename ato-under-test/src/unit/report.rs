@@ -147,10 +147,7 @@ pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
     let mut bits = AtcToTcmsBits::empty();
     bits.set(AtcToTcmsBits::POWER, effort > 0);
     bits.set(AtcToTcmsBits::BRAKE, effort < 0);
-    bits.set(
-        AtcToTcmsBits::HOLDING_BRAKE,
-        train.ato_holds() || train.cabs.holds(),
-    );
+    bits.set(AtcToTcmsBits::HOLDING_BRAKE, train.holds());
     bits.set(AtcToTcmsBits::CHANGE_OF_CABS, train.cabs.asks());
     bits.set(AtcToTcmsBits::PUT_AWAY, train.stabling.asleep());
     bits.set(AtcToTcmsBits::ATO_READY, ato.ready);

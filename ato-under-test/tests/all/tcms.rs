@@ -6,8 +6,8 @@ use crate::journey::Journey;
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
 use protocol::message::{
-    AtoFailure, AtoState, FsbCause, Mode, ModeSwitch, Outputs, Refusals, TcmsToAtc, TcmsToAtcBits,
-    TrainLines,
+    AtcToTcmsBits, AtoFailure, AtoState, FsbCause, Mode, ModeSwitch, Outputs, Refusals, TcmsToAtc,
+    TcmsToAtcBits, TrainLines,
 };
 use protocol::{LruId, SCAN};
 
@@ -106,8 +106,10 @@ fn a_brake_that_is_not_released_on_the_way_stops_the_run() {
         says(&mut journey.bench, TcmsToAtcBits::empty());
         let mut journey = journey.run();
         assert_eq!(journey.bench.status.mode, Mode::Manual);
+        let told = journey.bench.to_tcms.bits;
         assert!(
-            journey.bench.has(Outputs::HOLDING_BRAKE),
+            journey.bench.has(Outputs::HOLDING_BRAKE)
+                && told.contains(AtcToTcmsBits::HOLDING_BRAKE),
             "nobody has it yet"
         );
         let refusals = journey.bench.status.refusals;
