@@ -97,7 +97,7 @@ const TCMS_MODES: Kind = Kind::Enum(&[
     "driverless",
 ]);
 const COMPARED: Kind = Kind::Enum(&["differs", "same", "not_stated"]);
-const TACHO: Kind = Kind::Enum(&["good", "dead", "noisy", "scaled"]);
+const TACHO: Kind = Kind::Enum(&["good", "dead", "noisy", "scaled", "reversed"]);
 
 signals! {
     CarrierHz "carrier_hz" "Hz" UNITY, 0 ..= 65535, Rig, "Carrier in the ATP antenna";
@@ -108,8 +108,8 @@ signals! {
     TrainAccel "train_accel" "m/s²" MILLI, -120 ..= 120, Rig, "True acceleration of the train, mean of 50 ms";
     TrainJerk "train_jerk" "m/s³" CENTI, -1200 ..= 1200, Rig, "Change of the true acceleration in 200 ms, by time";
     ToStop "to_stop" "m" MILLI, -100000 ..= 100000, Rig, "True distance to the stop point of the section laid along the way";
-    Tacho1 "tacho1" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 1";
-    Tacho2 "tacho2" "" TACHO, 0 ..= 3, Rig, "Condition of tachometer channel 2";
+    Tacho1 "tacho1" "" TACHO, 0 ..= 4, Rig, "Condition of tachometer channel 1";
+    Tacho2 "tacho2" "" TACHO, 0 ..= 4, Rig, "Condition of tachometer channel 2";
     MarkerCoil "marker_coil" "" MARKERS, 0 ..= 4, Rig, "Marker whose coil was entered last";
     Wayside "wayside" "" WAYSIDE, 0 ..= 2, Rig, "Condition of the TWC wayside";
     WaysideStation "wayside_station" "" UNITY, 0 ..= 65535, Rig, "Station number the wayside sends";

@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use protocol::event::Event;
 use protocol::message::{Refusals, SelfTest, WordSpec};
 use protocol::signal::{Kind, Sample, Signal};
 
@@ -216,6 +217,20 @@ impl Display for Action {
     }
 }
 
+/// An event's name, and the limits of its parameter where it has any.
+pub(super) fn logged_text(event: Event, [low, high]: [i32; 2]) -> String {
+    let mut text = event.definition().name.to_owned();
+    if (low, high) != (i32::MIN, i32::MAX) {
+        let what = event.definition().parameter;
+        text.push_str(&match (low, high) {
+            (low, i32::MAX) => format!(" ({what}: at least {low})"),
+            (i32::MIN, high) => format!(" ({what}: at most {high})"),
+            (low, high) => format!(" ({what}: {low} to {high})"),
+        });
+    }
+    text
+}
+
 impl Display for Expectation {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
@@ -225,9 +240,15 @@ impl Display for Expectation {
                 duration,
             } => write!(f, "{condition} held for {duration}"),
             Self::Never { condition } => write!(f, "never {condition}"),
-            Self::Logs { event, within } => {
-                write!(f, "log entry {} within {within}", event.definition().name)
-            }
+            Self::Logs {
+                event,
+                parameter,
+                within,
+            } => write!(
+                f,
+                "log entry {} within {within}",
+                logged_text(*event, *parameter)
+            ),
             Self::NeverLogs { event } => write!(f, "no log entry {}", event.definition().name),
         }
     }

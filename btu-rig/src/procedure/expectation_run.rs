@@ -1,11 +1,11 @@
 //! One expectation while its step runs.
 
 use protocol::Instant;
+use protocol::event::Event;
 
 use super::action_run::{Problem, Scan};
 use super::condition::{Answer, MissingData};
-use super::describe::bits_seen;
-use super::event_set::EventSet;
+use super::describe::{bits_seen, logged_text};
 use super::evidence::LogState;
 use super::plan::Expectation;
 use super::{Driver, EventSource};
@@ -26,7 +26,7 @@ impl ExpectationRun {
         expectation: &Expectation,
         scan: Scan<'_>,
         actions_end: Option<Instant>,
-        (logged, log): (EventSet, LogState),
+        (logged, log): (&[(Event, i32)], LogState),
     ) {
         if self.decided {
             return;
@@ -61,24 +61,31 @@ impl ExpectationRun {
                 Answer::NoData(missing_data) => self.missing_data = Some(missing_data),
                 Answer::No => {}
             },
-            Expectation::Logs { event, within } => {
-                let who = EventSource::of(*event).who();
-                let name = event.definition().name;
-                if logged.contains(*event) {
+            Expectation::Logs {
+                event,
+                parameter: [low, high],
+                within,
+            } => {
+                let said = |(of, parameter): &(Event, i32)| {
+                    of == event && (low..=high).contains(&parameter)
+                };
+                if logged.iter().any(said) {
                     self.decided = true;
                 } else if since_end.is_some_and(|waited| waited >= *within)
                     // It may be among those that are not read yet.
                     && log == LogState::Read
                 {
+                    let who = EventSource::of(*event).who();
+                    let entry = logged_text(*event, [*low, *high]);
                     self.fail(Answer::No, || {
-                        format!("{who} did not log {name} within {within}")
+                        format!("{who} did not log {entry} within {within}")
                     });
                 }
             }
             Expectation::NeverLogs { event } => {
                 let who = EventSource::of(*event).who();
                 let name = event.definition().name;
-                if logged.contains(*event) {
+                if logged.iter().any(|(of, _)| of == event) {
                     self.fail(Answer::Yes, || format!("{who} logged {name}"));
                 }
             }

@@ -164,6 +164,8 @@ pub enum Expectation {
     Logs {
         /// Event of the dictionary, of the unit or of TCMS.
         event: Event,
+        /// Least and greatest value of its parameter, in the event's own unit.
+        parameter: [i32; 2],
         /// Time allowed from the end of the actions.
         within: Duration,
     },

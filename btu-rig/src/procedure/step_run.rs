@@ -5,7 +5,6 @@ use protocol::message::SelfTest;
 use protocol::{CYCLE, Duration, Instant, LruId};
 
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
-use super::event_set::EventSet;
 use super::evidence::{Evidence, LogState};
 use super::expectation_run::ExpectationRun;
 use super::measure_run::MeasurementRun;
@@ -32,7 +31,8 @@ pub(super) struct StepRun {
     measurements: Vec<MeasurementRun>,
     /// Each once, with how often it came.
     problems: Vec<(Problem, u32)>,
-    logged: EventSet,
+    /// With their parameters.
+    logged: Vec<(Event, i32)>,
     /// Suspected part of the first event that no step provoked.
     named_part: Option<LruId>,
     /// The step was given up: its remaining expectations are not judged.
@@ -71,7 +71,7 @@ impl StepRun {
             expectations: vec![ExpectationRun::default(); step.expectations.len()],
             measurements: vec![MeasurementRun::default(); step.measures.len()],
             problems: Vec::new(),
-            logged: EventSet::default(),
+            logged: Vec::new(),
             named_part: None,
             given_up: false,
             refused_at: None,
@@ -94,8 +94,8 @@ impl StepRun {
     }
 
     /// Takes note of an event of the unit.
-    pub(super) fn note_event(&mut self, event: Event) {
-        self.logged.insert(event);
+    pub(super) fn note_event(&mut self, event: Event, parameter: i32) {
+        self.logged.push((event, parameter));
     }
 
     /// Holds an event nobody asked for against the step. Whoever logged it saw what happened, so the
@@ -340,7 +340,7 @@ impl StepRun {
 
     fn look(&mut self, step: &Step, scan: Scan<'_>, actions_end: Option<Instant>) {
         for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
-            run.look(expectation, scan, actions_end, (self.logged, self.log));
+            run.look(expectation, scan, actions_end, (&self.logged, self.log));
         }
         let request_last = matches!(step.actions.last(), Some(Action::Settle { .. }));
         for (run, measure) in self.measurements.iter_mut().zip(&step.measures) {

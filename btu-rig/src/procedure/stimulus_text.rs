@@ -67,6 +67,12 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
             let side = if left { "left" } else { "right" };
             format!("obstacle in the doors on the {side} for {times} closings")
         }
+        Stimulus::DoorLine { line, on } => {
+            let says = on.map_or("as the doors have it", |on| {
+                if on { "energised" } else { "dead" }
+            });
+            format!("door line {}: {says}", line.label())
+        }
         Stimulus::Hcr { on } => format!("cab active (HCR) {}", on_off(on)),
         Stimulus::MaintenanceKey { on } => format!("maintenance key {}", on_off(on)),
         Stimulus::ModeSwitch(mode) => format!("mode switch to {}", mode.label()),
@@ -138,6 +144,7 @@ fn tacho_text(condition: TachoCondition) -> String {
         TachoCondition::Dead => "without pulses".into(),
         TachoCondition::Noisy { per_s } => format!("with {} false pulses a second", number(per_s)),
         TachoCondition::Scaled { factor } => format!("with {} times the pulses", number(factor)),
+        TachoCondition::Reversed => "with its direction reversed".into(),
     }
 }
 

@@ -133,6 +133,7 @@ impl Rig {
             }
             Stimulus::DoorsFollow { on } => self.door_gear.follow(on, self.desk.doors),
             Stimulus::DoorObstacle { left, times } => self.door_gear.obstruct(left, times),
+            Stimulus::DoorLine { line, on } => self.desk.line_said[line as usize] = on,
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
             Stimulus::TrainNumber { number } => self.desk.key_in(now, number),
@@ -225,6 +226,7 @@ impl Rig {
         self.antenna.drift(0.0, 0.0);
         self.markers.clear();
         self.desk.set_doors(true);
+        self.desk.line_said = Default::default();
         self.door_gear = DoorGear::default();
         self.tcms_port.reset();
         self.wayside.set_condition(WaysideCondition::Good);
@@ -280,7 +282,7 @@ impl Rig {
             TachoCondition::Scaled { factor } => {
                 in_range("tachometer factor", factor, 0.0, MAX_FACTOR, "")?;
             }
-            TachoCondition::Good | TachoCondition::Dead => {}
+            TachoCondition::Good | TachoCondition::Dead | TachoCondition::Reversed => {}
         }
         let distance_m = self.wheel.axle().distance_m;
         let tacho = usize::from(channel)

@@ -4,7 +4,7 @@ use protocol::message::{CabEntries, ModeSwitch, TrainLines};
 use protocol::{Duration, Instant};
 
 use crate::lever::Lever;
-use crate::stimulus::{CutOut, DoorState, TrainSwitch};
+use crate::stimulus::{CutOut, DoorLine, DoorState, TrainSwitch};
 use crate::tcms::{CabInputs, ControllerInputs, TcmsData};
 use crate::train::CarSet;
 
@@ -21,6 +21,8 @@ const ENTRY_FRAMES: u8 = 6;
 pub struct CabDesk {
     /// Doors on the left and on the right.
     pub doors: [DoorState; 2],
+    /// What each door line says to the unit, whatever the doors are.
+    pub line_said: [Option<bool>; DoorLine::ALL.len()],
     pub hcr: bool,
     pub maintenance_key: bool,
     pub mode_switch: ModeSwitch,
@@ -81,6 +83,7 @@ impl Default for CabDesk {
     fn default() -> Self {
         Self {
             doors: [DoorState::Locked; 2],
+            line_said: [None; DoorLine::ALL.len()],
             hcr: true,
             maintenance_key: false,
             mode_switch: ModeSwitch::Manual,
@@ -200,11 +203,17 @@ impl CabDesk {
     fn door_lines(&self) -> TrainLines {
         let [left, right] = self.side_lines();
         let mut lines = TrainLines::DOORS_BY_SIDE;
-        lines.set(TrainLines::DOORS_CLOSED, left.0 && right.0);
-        lines.set(TrainLines::LEFT_CLOSED, left.0);
-        lines.set(TrainLines::LEFT_LOCKED, left.1);
-        lines.set(TrainLines::RIGHT_CLOSED, right.0);
-        lines.set(TrainLines::RIGHT_LOCKED, right.1);
+        // In the order of `DoorLine`.
+        let by_doors = [
+            (TrainLines::DOORS_CLOSED, left.0 && right.0),
+            (TrainLines::LEFT_CLOSED, left.0),
+            (TrainLines::LEFT_LOCKED, left.1),
+            (TrainLines::RIGHT_CLOSED, right.0),
+            (TrainLines::RIGHT_LOCKED, right.1),
+        ];
+        for ((line, on), said) in by_doors.into_iter().zip(self.line_said) {
+            lines.set(line, said.unwrap_or(on));
+        }
         lines
     }
 
@@ -323,5 +332,21 @@ mod tests {
         desk.faults.side_doors[1] = Some(true);
         assert_eq!(doors(&desk), left | right);
         assert!(!desk.doors_proved());
+    }
+
+    /// What a line says to the unit is no matter of the doors, nor of TCMS.
+    #[test]
+    fn a_line_may_say_what_the_doors_do_not() {
+        let mut desk = CabDesk::default();
+        desk.line_said[DoorLine::All as usize] = Some(false);
+        assert!(desk.doors_proved());
+        let locked = TrainLines::LEFT_LOCKED;
+        assert!(desk.door_lines().contains(locked));
+        assert!(!desk.door_lines().contains(TrainLines::DOORS_CLOSED));
+        desk.doors[0] = DoorState::Open;
+        desk.line_said[DoorLine::LeftLocked as usize] = Some(true);
+        assert!(desk.door_lines().contains(locked));
+        desk.reset(Instant::ZERO);
+        assert!(desk.door_lines().contains(TrainLines::DOORS_CLOSED));
     }
 }

@@ -398,6 +398,7 @@ impl Rig {
     /// What the unit's inputs see at `now`.
     fn io_input(&self, now: Instant) -> IoInput {
         let [one, two] = &self.tachos;
+        let backward = self.wheel.backward();
         IoInput {
             carrier_hz: self.antenna.carrier_hz(),
             code_rate_chz: self.antenna.rate_chz(),
@@ -406,7 +407,8 @@ impl Rig {
             tacho1_edge_us: one.age_us(),
             tacho2_count: two.count(),
             tacho2_edge_us: two.age_us(),
-            tacho_backward: if self.wheel.backward() { 0b11 } else { 0 },
+            tacho_backward: u8::from(one.tells_backward(backward))
+                | u8::from(two.tells_backward(backward)) << 1,
             marker: self.markers.last(),
             marker_edges: self.markers.edges(),
             marker_edge_us: self.markers.age_us(),

@@ -68,6 +68,7 @@ fn condition_index(condition: TachoCondition) -> f64 {
         TachoCondition::Dead => 1.0,
         TachoCondition::Noisy { .. } => 2.0,
         TachoCondition::Scaled { .. } => 3.0,
+        TachoCondition::Reversed => 4.0,
     }
 }
 

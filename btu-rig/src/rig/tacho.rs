@@ -123,6 +123,11 @@ impl Tacho {
         self.condition
     }
 
+    /// Whether it tells of a wheel that turns backward, or does not, that it does.
+    pub fn tells_backward(&self, backward: bool) -> bool {
+        backward != (self.condition == TachoCondition::Reversed)
+    }
+
     /// Makes the pulses of one scan.
     pub fn step(&mut self, motion: &Motion) {
         self.age_us = (self.age_us + SCAN.as_us() as f64).min(MAX_AGE_US);
@@ -285,9 +290,14 @@ mod tests {
         bad.set_condition(TachoCondition::Dead, distance);
         let (_, b, distance) = run(&mut good, &mut bad);
         assert_eq!((b, bad.age_us()), (0.0, u16::MAX));
+        bad.set_condition(TachoCondition::Reversed, distance);
+        let (a, b, distance) = run(&mut good, &mut bad);
+        assert!((a - b).abs() <= 1.0);
+        assert!(bad.tells_backward(false) && !bad.tells_backward(true));
         bad.set_condition(TachoCondition::Good, distance);
         let (a, b, _) = run(&mut good, &mut bad);
         assert!((a - b).abs() <= 1.0);
+        assert!(!bad.tells_backward(false) && bad.tells_backward(true));
     }
 
     /// Goal: uneven teeth move edges and nothing else. Method: at constant speed a whole turn takes its

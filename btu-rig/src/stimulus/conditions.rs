@@ -20,6 +20,8 @@ pub enum TachoCondition {
         /// The factor.
         factor: f64,
     },
+    /// Its direction is told the wrong way round.
+    Reversed,
 }
 
 /// Condition of the TWC wayside.
@@ -45,6 +47,52 @@ pub enum DoorState {
     /// All are closed and locked.
     #[default]
     Locked,
+}
+
+/// A door train line, as it ends at the unit's terminals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DoorLine {
+    /// Through the closed contacts of all doors.
+    All,
+    /// Doors on the left closed.
+    LeftClosed,
+    /// Doors on the left locked.
+    LeftLocked,
+    /// Doors on the right closed.
+    RightClosed,
+    /// Doors on the right locked.
+    RightLocked,
+}
+
+impl DoorLine {
+    /// Names in scripts, in the order of the variants.
+    pub const LABELS: &'static [&'static str] = &[
+        "all",
+        "left_closed",
+        "left_locked",
+        "right_closed",
+        "right_locked",
+    ];
+    /// All, in the same order.
+    pub const ALL: [Self; 5] = [
+        Self::All,
+        Self::LeftClosed,
+        Self::LeftLocked,
+        Self::RightClosed,
+        Self::RightLocked,
+    ];
+
+    /// The line called `label`.
+    pub fn from_label(label: &str) -> Option<Self> {
+        let place = Self::LABELS.iter().position(|known| *known == label)?;
+        Some(Self::ALL[place])
+    }
+
+    /// Its name in scripts.
+    pub const fn label(self) -> &'static str {
+        Self::LABELS[self as usize]
+    }
 }
 
 impl DoorState {

@@ -13,7 +13,8 @@ use crate::lever::Lever;
 use crate::stored::{mode_switch, mps};
 
 pub use conditions::{
-    CarFailure, CutOut, DoorState, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
+    CarFailure, CutOut, DoorLine, DoorState, TachoCondition, TcmsCondition, TrainSwitch,
+    WaysideCondition,
 };
 pub use orders::OrderData;
 pub use station::StationData;
@@ -135,6 +136,13 @@ pub enum Stimulus {
         left: bool,
         /// Closings that it stops; 0 = it is gone.
         times: u8,
+    },
+    /// A door train line says this to the unit, whatever the doors are.
+    DoorLine {
+        /// Which.
+        line: DoorLine,
+        /// Energised; `None` = as the doors have it.
+        on: Option<bool>,
     },
     /// Head control relay.
     Hcr {

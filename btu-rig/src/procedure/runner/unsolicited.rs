@@ -53,7 +53,7 @@ impl Runner {
         for entry in events {
             let known = Event::from_code(entry.code);
             if let (Some(step), Some(event)) = (live.as_mut(), known) {
-                step.note_event(event);
+                step.note_event(event, entry.parameter);
             }
             // An event that is not in the dictionary cannot have been asked for.
             let asked = known.is_some_and(|event| {

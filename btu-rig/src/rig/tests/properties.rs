@@ -21,6 +21,7 @@ fn condition() -> impl Strategy<Value = TachoCondition> {
         Just(TachoCondition::Dead),
         number().prop_map(|per_s| TachoCondition::Noisy { per_s }),
         number().prop_map(|factor| TachoCondition::Scaled { factor }),
+        Just(TachoCondition::Reversed),
     ]
 }
 

@@ -107,6 +107,33 @@ fn an_effect_is_looked_for_in_a_sample_newer_than_its_stimulus() {
     assert_eq!(outcome.steps()[0].verdict, Verdict::Failed);
 }
 
+/// The stand-in logs a parameter of 0.
+#[test]
+fn an_entry_counts_whose_parameter_is_within_its_limits() {
+    let none =
+        |what| format!("the unit did not log rollback (distance, cm: {what}) within 1.000 s");
+    for (limits, missed) in [
+        ("low = 0, high = 0", None),
+        ("low = -1", None),
+        ("low = 1", Some(none("at least 1"))),
+        ("high = -1", Some(none("at most -1"))),
+        ("low = 50, high = 60", Some(none("50 to 60"))),
+    ] {
+        let script = format!("{HEAD}step('a', expect = logs('rollback', within = s(1), {limits}))");
+        let outcome = run(&script, |world| {
+            if world.ms() == 500 {
+                world.log(Event::Rollback);
+            }
+        });
+        let verdict = match missed {
+            None => Verdict::Passed,
+            Some(_) => Verdict::Failed,
+        };
+        let message = missed.unwrap_or_default();
+        assert_eq!(outcome.summary(), [("a", verdict, &*message)], "{limits}");
+    }
+}
+
 #[test]
 fn an_event_nobody_asked_for_fails_the_step() {
     let script = |more: &str| format!("{HEAD}step('a', do = wait(s(1)){more})");

@@ -74,7 +74,7 @@ fn in_cab(stimulus: &Stimulus) -> bool {
 mod tests {
     use btu_rig::lever::Lever;
     use btu_rig::stimulus::{
-        CarFailure, CutOut, StationData, TachoCondition, TcmsCondition, TrainSwitch,
+        CarFailure, CutOut, DoorLine, StationData, TachoCondition, TcmsCondition, TrainSwitch,
         WaysideCondition,
     };
     use protocol::Speed;
@@ -142,6 +142,10 @@ mod tests {
             Stimulus::TrainNumber { number: 0 },
             Stimulus::Wayside(WaysideCondition::Silent),
             Stimulus::Doors { closed: false },
+            Stimulus::DoorLine {
+                line: DoorLine::All,
+                on: None,
+            },
             Stimulus::Hcr { on: false },
             Stimulus::MaintenanceKey { on: true },
             Stimulus::ModeSwitch(ModeSwitch::Yard),
@@ -218,6 +222,7 @@ mod tests {
             | Stimulus::Failure { .. }
             | Stimulus::Gradient { .. }
             | Stimulus::DoorsFollow { .. }
+            | Stimulus::DoorLine { .. }
             | Stimulus::Tcms(_)
             | Stimulus::AtoEnable { .. }
             | Stimulus::Load { .. } => Needs::Harness,
@@ -272,7 +277,7 @@ mod tests {
     fn a_stimulus_is_permitted_when_its_requirements_are_met() {
         let all = one_of_every_kind();
         let kinds: std::collections::HashSet<_> = all.iter().map(std::mem::discriminant).collect();
-        assert_eq!(kinds.len(), 45);
+        assert_eq!(kinds.len(), 46);
         let phases = [
             Phase::Offline,
             Phase::Connecting,

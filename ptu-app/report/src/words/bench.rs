@@ -305,6 +305,7 @@ wordings! {
         tacho_dead: "dead", "무신호";
         tacho_noisy: "noisy", "잡음";
         tacho_scaled: "scaled", "배율 오차";
+        tacho_reversed: "reversed", "방향 반대";
         tcms_stale: "stale", "카운터 정지";
 
         // Causes, as bits.

@@ -84,7 +84,7 @@ pub(super) static VERBS: &[Verb] = &[
             needs("channel", ParamType::Int(1, 2)),
             needs(
                 "condition",
-                ParamType::Choice(&["good", "dead", "noisy", "scaled"])
+                ParamType::Choice(&["good", "dead", "noisy", "scaled", "reversed"])
             ),
             takes("per_s", ParamType::Number),
             takes("factor", ParamType::Number),
@@ -276,6 +276,7 @@ fn channel(args: &Args<'_>) -> Result<Item, String> {
         "scaled" => TachoCondition::Scaled {
             factor: args.number("factor")?,
         },
+        "reversed" => TachoCondition::Reversed,
         _ => TachoCondition::Good,
     };
     at_once(Stimulus::Tacho {

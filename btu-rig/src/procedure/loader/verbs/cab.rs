@@ -7,7 +7,7 @@ use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Param, Verb, needs, takes};
-use crate::stimulus::{DoorState, Stimulus, TcmsCondition};
+use crate::stimulus::{DoorLine, DoorState, Stimulus, TcmsCondition};
 
 /// Sides of a train.
 const SIDES: &[&str] = &["left", "right"];
@@ -32,6 +32,20 @@ pub(super) static VERBS: &[Verb] = &[
         |args| Stimulus::DoorObstacle {
             left: args.text("side") == Some("left"),
             times: u8::try_from(args.int("times")?).map_err(|e| e.to_string())?,
+        }
+    ),
+    stimulus!(
+        "door.line",
+        &[
+            needs("line", ParamType::Choice(DoorLine::LABELS)),
+            takes("on", ParamType::Bool)
+        ],
+        |args| {
+            let line = args.text("line").and_then(DoorLine::from_label);
+            Stimulus::DoorLine {
+                line: line.ok_or("no such line")?,
+                on: args.get("on").map(|_| args.flag("on", false)),
+            }
         }
     ),
     switch!("cab.active", |on| Stimulus::Hcr { on }),

@@ -17,6 +17,8 @@ const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
 const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
+/// A limit of an event's parameter.
+const PARAMETER: ParamType = ParamType::Int(i32::MIN as i64, i32::MAX as i64);
 
 /// Ways to compare, by parameter.
 const COMPARISONS: [(&str, Comparison); 8] = [
@@ -92,10 +94,20 @@ pub(super) static VERBS: &[Verb] = &[
     }),
     verb!(
         "logs",
-        &[needs("event", ParamType::Name), takes("within", TIME)],
+        &[
+            needs("event", ParamType::Name),
+            takes("within", TIME),
+            takes("low", PARAMETER),
+            takes("high", PARAMETER),
+        ],
         |args| {
+            let limit = |name, none| match args.get(name) {
+                None => Ok(none),
+                Some(_) => i32::try_from(args.int(name)?).map_err(|e| e.to_string()),
+            };
             Ok(Item::Expectation(Expectation::Logs {
                 event: event(args.text("event").unwrap_or_default())?,
+                parameter: [limit("low", i32::MIN)?, limit("high", i32::MAX)?],
                 within: args.time_or("within", BECOMES_WITHIN)?,
             }))
         }

@@ -32,6 +32,7 @@ impl Bench {
                     self.tacho_dead,
                     self.tacho_noisy,
                     self.tacho_scaled,
+                    self.tacho_reversed,
                 ]
             }
             Signal::WaysideDoorSide => {

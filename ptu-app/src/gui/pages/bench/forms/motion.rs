@@ -35,11 +35,19 @@ pub enum TachoKind {
     Noisy,
     /// Pulses of another speed.
     Scaled,
+    /// Its direction the wrong way round.
+    Reversed,
 }
 
 impl TachoKind {
     /// All, in the order of the labels of the signals `tacho1` and `tacho2`.
-    pub const ALL: [Self; 4] = [Self::Good, Self::Dead, Self::Noisy, Self::Scaled];
+    pub const ALL: [Self; 5] = [
+        Self::Good,
+        Self::Dead,
+        Self::Noisy,
+        Self::Scaled,
+        Self::Reversed,
+    ];
 }
 
 impl Default for MotionForm {
@@ -85,6 +93,7 @@ impl MotionForm {
             TachoKind::Scaled => TachoCondition::Scaled {
                 factor: self.factor,
             },
+            TachoKind::Reversed => TachoCondition::Reversed,
         };
         Stimulus::Tacho { channel, condition }
     }
@@ -170,6 +179,7 @@ mod tests {
             TachoCondition::Dead,
             TachoCondition::Noisy { per_s: 40.0 },
             TachoCondition::Scaled { factor: 0.5 },
+            TachoCondition::Reversed,
         ];
         assert_eq!(
             conditions,
