@@ -11,7 +11,9 @@ not run: what is asked is whether a bench would find the change.
     ato-under-test/mutants.py --files 'ato-under-test/src/atp/doors.rs'
     ato-under-test/mutants.py --again mutants.jsonl             # those of a list that were missed
 
-Prints one JSON line for each change, and the shares at the end.
+Changes of `mutants_equivalent.toml` are not made: no bench can see them, and each has its reason there.
+
+Prints one JSON line for each change, and at the end the shares, of each file and of all.
 """
 
 import argparse
@@ -21,10 +23,12 @@ import pathlib
 import re
 import subprocess
 import sys
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TREE = ROOT / "target/mutants/tree"
 PTU = ROOT / "target/release/ptu"
+EQUIVALENT = ROOT / "ato-under-test/mutants_equivalent.toml"
 # A unit that loses its time never ends a suite; a sound one takes about six seconds.
 LONGEST_S = 300
 # How `ptu run` ends.
@@ -42,6 +46,23 @@ def proposed(files):
 def identity(name):
     """The change without its line and column, which move with the text around it."""
     return re.sub(r":\d+:\d+:", ":", name)
+
+
+def in_words(change):
+    """The change, and the line that it is made in: neither moves with the text around them."""
+    what = change["name"].split(": ", 1)[1]
+    line = (ROOT / change["file"]).read_text().splitlines()[change["span"]["start"]["line"] - 1]
+    return what, line.strip()
+
+
+def equivalent(changes):
+    """Which of the changes no bench can see. Every entry of the list must be one that is proposed."""
+    listed = {(entry["change"], entry["line"]) for entry in tomllib.loads(EQUIVALENT.read_text())["equivalent"]}
+    functions = {change["function"]["function_name"] for change in changes}
+    stale = [what for what in listed - set(map(in_words, changes)) if what[0].rsplit(" in ", 1)[-1] in functions]
+    if stale:
+        sys.exit(f"{EQUIVALENT.name} lists what is not proposed: {stale}")
+    return [change for change in changes if in_words(change) in listed]
 
 
 def unit_fails(change):
@@ -83,6 +104,8 @@ def main():
     parser.add_argument("--again", help="list of an earlier run: only what it missed")
     asked = parser.parse_args()
     changes = proposed(asked.files)
+    unseen = equivalent(changes)
+    changes = [change for change in changes if change not in unseen]
     if asked.again:
         before = [json.loads(line) for line in open(asked.again) if line.startswith("{")]
         missed = {identity(change["name"]) for change in before if change["ends"] == "missed"}
@@ -92,14 +115,22 @@ def main():
         subprocess.run(["git", "checkout", "-q", "--force", "--detach", head], cwd=TREE, check=True)
     else:
         subprocess.run(["git", "worktree", "add", "-q", "--detach", TREE], cwd=ROOT, check=True)
-    counts = collections.Counter()
+    ends = {}
     for change in changes:
-        ends = unit_fails(change)
-        counts[ends] += 1
-        print(json.dumps({"name": change["name"], "ends": ends}), flush=True)
+        ends[change["name"]] = unit_fails(change)
+        print(json.dumps({"name": change["name"], "ends": ends[change["name"]]}), flush=True)
+    for file in sorted({name.split(":")[0] for name in ends}):
+        tell(file, ends, unseen)
+    tell("", ends, unseen)
+
+
+def tell(file, ends, unseen):
+    """How many changes of a file, or of all, were noticed."""
+    counts = collections.Counter(end for name, end in ends.items() if name.startswith(file))
     made = sum(counts.values()) - counts["unviable"]
     found = made - counts["missed"]
-    print(f"{found} of {made} changes noticed; {dict(counts)}", file=sys.stderr)
+    beside = sum(change["file"].startswith(file) for change in unseen)
+    print(f"{file or 'all'}: {found} of {made} changes noticed, {beside} equivalent; {dict(counts)}", file=sys.stderr)
 
 
 if __name__ == "__main__":
