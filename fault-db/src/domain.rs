@@ -181,12 +181,16 @@ fn json(column: &str, text: &str) -> Result<(), String> {
 
 /// Checks the body of an event of this kind.
 pub(crate) fn check_body(kind: &str, body: &str) -> Result<(), String> {
-    if kind != crate::record::REPAIR {
-        return Ok(());
-    }
-    let read = serde_json::from_str::<crate::record::RepairRecord>(body);
-    read.map(drop)
-        .map_err(|error| format!("body is no repair: {error}"))
+    use crate::record::{CAUSE, CauseRecord, DIAGNOSED, REPAIR, RepairRecord};
+    let (read, what) = match kind {
+        REPAIR => (
+            serde_json::from_str::<RepairRecord>(body).map(drop),
+            "repair",
+        ),
+        CAUSE | DIAGNOSED => (serde_json::from_str::<CauseRecord>(body).map(drop), "cause"),
+        _ => return Ok(()),
+    };
+    read.map_err(|error| format!("body is no {what}: {error}"))
 }
 
 fn bytes(column: &str, length: usize) -> Result<(), String> {
@@ -249,6 +253,7 @@ mod tests {
         assert_eq!(check("seed", Field::Integer(i64::MIN)), Ok(()));
         assert_eq!(check("line", Field::Null), Ok(()));
         assert!(check_body("repair", "{}").is_err());
+        assert!(check_body("diagnosed", "{\"part\":1}").is_err());
         assert!(check_body("note", "{").is_ok());
     }
 }

@@ -6,6 +6,9 @@
 //! the most work stands until a later event names all heads as parents. `opened` and `recurred` are
 //! observations, not decisions: `recurred` yields to an acknowledgement, `opened` to every other event.
 //!
+//! What a fault comes from changes no state: a person's latest `cause` decides it, or else the latest `diagnosed` of a
+//! run, by Lamport number and id. The faults of a unit that are not closed and have one cause are one *case*.
+//!
 //! The columns keep their old names: `follows` holds the parents, `turn` the Lamport number, `seen` the
 //! occurrences known, `disputed` whether the fault is in conflict.
 
@@ -236,5 +239,8 @@ pub(crate) const RECOMPUTE_FAULT: &str = concat!(
     rank!(),
     ") AS integer) FROM ",
     heads!("fault.seq"),
-    " AND e.kind <> 'opened'), 0)"
+    " AND e.kind <> 'opened'), 0),
+        cause = (SELECT nullif(part_of(e.body), '') FROM fault_event e
+            WHERE e.fault = fault.seq AND e.kind IN ('cause', 'diagnosed')
+            ORDER BY e.kind, e.turn DESC, e.id DESC LIMIT 1)"
 );

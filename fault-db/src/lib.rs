@@ -19,6 +19,7 @@
 
 mod atomic_file;
 mod backend;
+mod cases;
 mod compression;
 mod conflicts;
 mod dictionaries;
@@ -59,6 +60,7 @@ mod verify;
 mod views;
 
 pub use atomic_file::AtomicFile;
+pub use cases::ChangedFault;
 pub use conflicts::{ConflictingEvent, StateConflict};
 pub use dictionaries::DictionaryRecord;
 pub use domain::{Refusals, Refused};
@@ -74,8 +76,8 @@ pub use query::{
     TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
 };
 pub use record::{
-    FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord, ScriptRecord,
-    StepRecord, UnitRecord, Verdict,
+    CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,
+    ScriptRecord, StepRecord, UnitRecord, Verdict,
 };
 pub use recording::{Recording, RecordingRecord};
 pub use regular_file::{open_regular_file, read_regular_file};

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use crate::error::StoreError;
-use crate::record::{RepairRecord, RunRecord, StepRecord};
+use crate::record::{CauseRecord, RepairRecord, RunRecord, StepRecord};
 
 /// Longest name, in characters: of a person, a train, a part, a serial number, a step, a data file.
 pub const MOST_NAME: usize = 255;
@@ -96,6 +96,17 @@ impl RepairRecord {
         for serial in [&self.serial_old, &self.serial_new].into_iter().flatten() {
             name("the part's serial number", serial)?;
         }
+        note("the note", &self.note)
+    }
+}
+
+impl CauseRecord {
+    /// Checks the texts of an attribution.
+    ///
+    /// # Errors
+    /// One of them is too long.
+    pub(crate) fn check(&self) -> Result<(), StoreError> {
+        name("the part's name", &self.part)?;
         note("the note", &self.note)
     }
 }

@@ -18,7 +18,7 @@ use crate::backend::{Backend, Row, SqlResult, values};
 /// Faults of a block `p`, as the schema packs them.
 const FAULTS: &str =
     "SELECT packed_rows(f.seq, f.unit, f.code, f.lru, f.line, f.severity, f.state, f.first_at_us,
-        f.last_at_us, f.closed_at_us, f.repairs)
+        f.last_at_us, f.closed_at_us, f.repairs, f.cause)
     FROM fault f WHERE f.seq BETWEEN p.block * 32 AND p.block * 32 + 31";
 
 /// Their occurrences.

@@ -174,6 +174,26 @@ pub(crate) fn part_name(part: &str) -> String {
 /// The kind of an event whose body is a [`RepairRecord`].
 pub(crate) const REPAIR: &str = "repair";
 
+/// The kinds of events whose body is a [`CauseRecord`]: by a person, and by the diagnosis of a run. A person's stands
+/// before any run's. In the SQL of `event_graph`, the first in alphabetical order stands before the other.
+pub(crate) const CAUSE: &str = "cause";
+pub(crate) const DIAGNOSED: &str = "diagnosed";
+
+/// The part that a fault comes from, as a person or the diagnosis of a run says.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CauseRecord {
+    /// The part; empty: the fault is no consequence of another part, and stands alone.
+    pub part: String,
+    /// The run whose diagnosis found it, by its id; `None` of a person's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// Its probability there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// Why.
+    pub note: String,
+}
+
 /// A repair made for a fault.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepairRecord {

@@ -19,8 +19,9 @@ const STEPS: &[&str] = &[
         include_str!("schema/words.sql")
     ),
     include_str!("schema/0005.sql"),
+    include_str!("schema/0006.sql"),
     concat!(
-        include_str!("schema/0006.sql"),
+        include_str!("schema/0007.sql"),
         include_str!("schema/packed.sql")
     ),
 ];

@@ -14,6 +14,7 @@
 mod belief;
 mod cell;
 mod dictionary;
+mod explained;
 mod likelihood;
 pub mod matrix;
 mod model;
@@ -34,6 +35,7 @@ mod weights;
 pub use belief::{Belief, Settled};
 pub use cell::{Cell, StepOutcome, Values};
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
+pub use explained::Cause;
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
 pub use observation::{CheckName, Observation, ObservedStep, Sign, is_observed};

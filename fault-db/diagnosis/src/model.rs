@@ -13,7 +13,7 @@ use super::dictionary::{Column, Dictionary};
 use super::likelihood::{
     Expected, Scale, likelihood_of_anything, likelihood_of_values, likelihood_without_signs,
 };
-use super::observation::ObservedStep;
+use super::observation::{ObservedStep, Sign};
 use super::outlook::{Outlook, outlooks};
 use super::settings::Settings;
 use super::signs::{ShownSign, shown_signs};
@@ -193,6 +193,12 @@ impl<'a> Model<'a> {
     pub fn signs(&self, hypothesis: Hypothesis) -> &[ShownSign<'a>] {
         let effect = self.effect(hypothesis);
         effect.map_or(&[], |effect| &self.signs[effect])
+    }
+
+    /// Share of the runs with an effect in which a sign showed.
+    pub fn share_of_sign(&self, effect: usize, sign: &Sign) -> f64 {
+        let shown = self.signs[effect].iter().find(|shown| shown.sign == sign);
+        shown.map_or(0.0, |shown| shown.share)
     }
 
     /// Counts of a mode's level; a healthy unit's under the other hypotheses.

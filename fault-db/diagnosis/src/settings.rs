@@ -127,6 +127,8 @@ pub struct ConclusionSettings {
     pub least_shown: f64,
     /// Greatest number of candidates shown.
     pub most_shown: usize,
+    /// A sign or failed check is a consequence of a fault that shows it in this share of runs.
+    pub explained_at: f64,
 }
 
 impl Settings {
@@ -168,6 +170,7 @@ impl Settings {
             ("conclusion.unknown_fault_at", conclusion.unknown_fault_at),
             ("conclusion.named_at", conclusion.named_at),
             ("conclusion.least_shown", conclusion.least_shown),
+            ("conclusion.explained_at", conclusion.explained_at),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -277,6 +280,7 @@ impl Default for ConclusionSettings {
             named_at: 0.05,
             least_shown: 0.005,
             most_shown: 10,
+            explained_at: 0.1,
         }
     }
 }

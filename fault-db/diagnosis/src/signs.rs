@@ -86,9 +86,9 @@ impl SignsSeen {
 /// A sign of a mode at one level.
 #[derive(Clone, Debug)]
 pub struct ShownSign<'a> {
-    sign: &'a Sign,
+    pub sign: &'a Sign,
     /// Share of runs in which it showed.
-    share: f64,
+    pub share: f64,
     /// Checks in which it showed, by index.
     places: Vec<usize>,
 }

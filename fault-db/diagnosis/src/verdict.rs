@@ -7,6 +7,7 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
+use super::explained::{Cause, causes};
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
@@ -88,6 +89,9 @@ pub struct Diagnosis {
     pub no_fault: f64,
     /// Probability of a fault that stands in no dictionary.
     pub unknown_fault: f64,
+    /// The parts that were found, each with what it explains.
+    #[serde(skip)]
+    pub causes: Vec<Cause>,
 }
 
 impl Diagnosis {
@@ -101,6 +105,7 @@ impl Diagnosis {
         let (finding, conclusion) = weights.conclusion(model, seen, next_check.as_ref());
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
         let shown = pairs.iter().filter(is_shown);
+        let causes = causes(&belief, &weights, finding, seen);
         Self {
             candidates,
             next_check,
@@ -114,6 +119,7 @@ impl Diagnosis {
                 .collect(),
             no_fault: weights.no_fault,
             unknown_fault: weights.unknown,
+            causes,
             lrus: weights.lrus,
         }
     }

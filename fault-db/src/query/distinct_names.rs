@@ -30,6 +30,12 @@ impl Store {
         self.select("listing parts", sql, &[], |row| row.get(0))
     }
 
+    /// Every part a fault came from: the one told, or else the one it points at. Reads all faults.
+    pub fn known_causes(&self) -> Result<Vec<String>, StoreError> {
+        let sql = "SELECT DISTINCT cause FROM faults ORDER BY cause";
+        self.select("listing parts", sql, &[], |row| row.get(0))
+    }
+
     /// Every part a fault pointed at or a repair was made of, in one of its spellings.
     pub fn known_parts(&self) -> Result<Vec<String>, StoreError> {
         let mut known = self.known_lrus()?;

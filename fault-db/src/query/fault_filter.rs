@@ -27,6 +27,8 @@ pub struct FaultFilter {
     pub code: Option<String>,
     /// The part it points at.
     pub lru: Option<String>,
+    /// The part it comes from: the one that a diagnosis or a person has told, or else the one it points at.
+    pub cause: Option<String>,
     /// Severity.
     pub severity: Option<String>,
     /// States, any of which matches; an empty list does not restrict.
@@ -133,6 +135,7 @@ impl Resolved<'_> {
         let FaultFilter {
             serial,
             train,
+            cause,
             severity,
             states,
             procedure,
@@ -140,7 +143,7 @@ impl Resolved<'_> {
             note,
             ..
         } = self.filter;
-        let texts = [serial, train, severity, procedure, note];
+        let texts = [serial, train, cause, severity, procedure, note];
         let is_plain =
             texts.iter().all(|text| text.is_none()) && states.is_empty() && run.is_none();
         let asked = [
@@ -193,6 +196,10 @@ impl Resolved<'_> {
         all.add(
             &of_fault("lower(f.severity) = lower(?)"),
             filter.severity.clone(),
+        );
+        all.add(
+            &of_fault("lower(coalesce(f.cause, f.lru)) = lower(?)"),
+            filter.cause.clone(),
         );
         if !filter.states.is_empty() {
             let states = filter.states.iter().map(|state| all.place(*state));
@@ -326,6 +333,11 @@ impl Resolved<'_> {
         all.add("r.id = ?", *run);
         let sql = format!("SELECT r.seq FROM run r {}", all.sql());
         Ok(Some(numbers(backend, &sql, all.values())?))
+    }
+
+    /// The conditions without the span of time.
+    pub fn conditions_at_any_time(&self, backend: &Backend, of: FilteredTable) -> Conditions {
+        self.conditions(backend, of, None)
     }
 
     /// The conditions with the span of time, on the time column `at` of `x`.

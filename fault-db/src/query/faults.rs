@@ -5,11 +5,11 @@ use serde::Serialize;
 use super::fault_filter::FaultFilter;
 use super::filter::limit;
 use crate::backend::{Row, SqlError, SqlResult, values};
+use crate::cases::REST_OF_CASE;
 use crate::error::StoreError;
 use crate::fault_state::FaultState;
 use crate::id::Id;
-use crate::record::REPAIR;
-use crate::record::{FreezeSample, RepairRecord};
+use crate::record::{CAUSE, CauseRecord, DIAGNOSED, FreezeSample, REPAIR, RepairRecord};
 use crate::store::Store;
 
 /// A fault in a list: one row per unit, code and part until it is closed.
@@ -25,6 +25,8 @@ pub struct FaultSummary {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
+    /// The part it comes from, where a diagnosis or a person has told.
+    pub cause: Option<String>,
     /// Severity.
     pub severity: String,
     /// Its state.
@@ -39,11 +41,20 @@ pub struct FaultSummary {
     pub trace_id: Option<Id>,
 }
 
+impl FaultSummary {
+    /// The part it counts for: the one it comes from, or else the one it points at.
+    pub fn cause(&self) -> &str {
+        self.cause.as_deref().unwrap_or(&self.lru)
+    }
+}
+
 /// A fault with its occurrences and events.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultDetail {
     /// The fault.
     pub fault: FaultSummary,
+    /// The other faults of its case: of its unit, not closed, and from the same part.
+    pub case: Vec<FaultSummary>,
     /// Its occurrences, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
     pub occurrences: Vec<Occurrence>,
     /// Its events, oldest first.
@@ -81,18 +92,20 @@ pub struct Occurrence {
 pub struct FaultEvent {
     /// The event.
     pub id: Id,
-    /// opened, recurred, acknowledged, repair, repaired, verified, closed, reopened or note.
+    /// opened, recurred, acknowledged, repair, repaired, verified, closed, reopened, note, cause or diagnosed.
     pub kind: String,
     /// When.
     pub at_us: i64,
     /// Who; empty for the program itself.
     pub who: String,
-    /// The text; empty for a repair.
+    /// The text; empty for a repair and for a cause.
     pub note: String,
     /// The fault's state after it; `None` if it did not change.
     pub state: Option<FaultState>,
     /// The repair, if it is one.
     pub repair: Option<RepairRecord>,
+    /// The part it comes from, if it says that.
+    pub cause: Option<CauseRecord>,
 }
 
 const SELECT_FAULT: &str = "
@@ -100,7 +113,7 @@ const SELECT_FAULT: &str = "
         x.last_at_us, x.occurrences,
         (SELECT t.id FROM fault_occurrence o JOIN trace t ON t.seq = o.trace
          WHERE o.fault = x.seq AND o.trace IS NOT NULL ORDER BY o.at_us DESC, o.seq DESC LIMIT 1),
-        x.seq
+        x.seq, x.cause
     FROM fault x JOIN unit u ON u.seq = x.unit";
 
 impl Store {
@@ -122,11 +135,16 @@ impl Store {
         let row = |row: Row<'_>| Ok((summary(row)?, row.get::<i64>(11)?));
         let found = self.first(DOING, &select, &values![id], row)?;
         let (fault, seq) = found.ok_or_else(|| StoreError::not_found("fault", id))?;
+        let case = format!(
+            "{SELECT_FAULT} WHERE x.seq IN (SELECT c.seq FROM {REST_OF_CASE}) ORDER BY x.seq"
+        );
+        let case = self.select(DOING, &case, &values![seq], summary)?;
         let failed = |error| self.failed(DOING, error);
         let occurrences = self.occurrences(seq).map_err(failed)?;
         let events = self.events(seq).map_err(failed)?;
         Ok(FaultDetail {
             fault,
+            case,
             occurrences,
             events,
         })
@@ -162,17 +180,19 @@ impl Store {
             |row| {
                 let kind: String = row.get(1)?;
                 let is_repair = kind == REPAIR;
+                let is_cause = matches!(&*kind, CAUSE | DIAGNOSED);
                 Ok(FaultEvent {
                     id: row.get(0)?,
                     at_us: row.get(2)?,
                     who: row.get(3)?,
-                    note: if is_repair {
+                    note: if is_repair || is_cause {
                         String::new()
                     } else {
                         row.get(4)?
                     },
                     state: row.get(5)?,
                     repair: if is_repair { Some(json(row, 4)?) } else { None },
+                    cause: if is_cause { Some(json(row, 4)?) } else { None },
                     kind,
                 })
             },
@@ -187,6 +207,7 @@ fn summary(row: Row<'_>) -> SqlResult<FaultSummary> {
         code: row.get(2)?,
         code_name: row.get(3)?,
         lru: row.get(4)?,
+        cause: row.get(12)?,
         severity: row.get(5)?,
         state: row.get(6)?,
         first_at_us: row.get(7)?,

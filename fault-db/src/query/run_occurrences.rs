@@ -8,6 +8,8 @@ use crate::store::Store;
 /// An occurrence of a fault in a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunOccurrence {
+    /// The fault.
+    pub fault: Id,
     /// Number of the fault.
     pub code: i64,
     /// Its name.
@@ -27,13 +29,14 @@ impl Store {
     pub fn run_occurrences(&self, run: Id) -> Result<Vec<RunOccurrence>, StoreError> {
         self.select(
             "listing a run's faults",
-            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id
+            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id, f.id
                      FROM run r JOIN fault_occurrence o ON o.run = r.seq
                      JOIN fault f ON f.seq = o.fault LEFT JOIN trace t ON t.seq = o.trace
                      WHERE r.id = ?1 ORDER BY o.seq",
             &values![run],
             |row| {
                 Ok(RunOccurrence {
+                    fault: row.get(6)?,
                     code: row.get(0)?,
                     code_name: row.get(1)?,
                     lru: row.get(2)?,

@@ -123,6 +123,8 @@ pub struct RunFault {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
+    /// The part it comes from, where a diagnosis or a person has told.
+    pub cause: Option<String>,
     /// Severity.
     pub severity: String,
     /// Its state now.
@@ -260,7 +262,8 @@ impl Store {
             "SELECT f.id, f.code, f.code_name, f.lru, f.severity, f.state, min(o.at_us),
                 max(o.at_us), min(o.bench_us), count(*),
                 (SELECT t.id FROM fault_occurrence p JOIN trace t ON t.seq = p.trace
-                 WHERE p.run = ?1 AND p.fault = f.seq ORDER BY p.seq LIMIT 1)
+                 WHERE p.run = ?1 AND p.fault = f.seq ORDER BY p.seq LIMIT 1),
+                f.cause
              FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
              WHERE o.run = ?1 GROUP BY f.seq ORDER BY min(o.bench_us), min(o.seq)",
             &values![run],
@@ -270,6 +273,7 @@ impl Store {
                     code: row.get(1)?,
                     code_name: row.get(2)?,
                     lru: row.get(3)?,
+                    cause: row.get(11)?,
                     severity: row.get(4)?,
                     state: row.get(5)?,
                     first_at_us: row.get(6)?,

@@ -2,7 +2,7 @@
 DELETE FROM packed;
 INSERT INTO packed(block, faults, occurrences, repairs)
   SELECT seq >> 5, packed_rows(seq, unit, code, lru, line, severity, state, first_at_us, last_at_us, closed_at_us,
-    repairs), (SELECT packed_rows(1) WHERE false), (SELECT packed_rows(1) WHERE false)
+    repairs, cause), (SELECT packed_rows(1) WHERE false), (SELECT packed_rows(1) WHERE false)
   FROM fault GROUP BY 1;
 UPDATE packed SET occurrences = known.rows FROM
   (SELECT o.fault >> 5 AS of, packed_rows(o.fault, o.at_us, o.line, s.procedure, o.run) AS rows

@@ -4,7 +4,7 @@
 use crate::backend::{Backend, SqlResult, values};
 use crate::full_text;
 use crate::id::Id;
-use crate::record::{REPAIR, RepairRecord, part_name};
+use crate::record::{CAUSE, DIAGNOSED, REPAIR};
 use crate::sql_functions;
 
 /// PostgreSQL limits a `tsvector` to one megabyte, and positions to 16 383.
@@ -25,11 +25,9 @@ pub(crate) fn note_words(text: &str) -> String {
     full_text::for_server(&text[..end])
 }
 
-/// The part that a repair replaced, in lower case.
+/// The part that an event names, in lower case: a repair the one replaced, an attribution the cause.
 pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
-    let repair = (kind == REPAIR).then(|| serde_json::from_str::<RepairRecord>(body));
-    let part = repair?.ok()?.part;
-    Some(part_name(&part))
+    matches!(kind, REPAIR | CAUSE | DIAGNOSED).then(|| sql_functions::part_of(body))
 }
 
 /// Inserts a note on a run made on the server itself.

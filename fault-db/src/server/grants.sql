@@ -42,7 +42,7 @@ BEGIN
         'seal')
       AND (c.relname, a.attname) NOT IN (('unit', 'seq'), ('run', 'seq'), ('fault', 'seq'),
         ('fault', 'occurrences'), ('fault', 'closed_at_us'), ('fault', 'repairs'), ('fault', 'disputed'),
-        ('channel_set', 'seq'), ('trace', 'seq'), ('fault_occurrence', 'seq'), ('fault_occurrence', 'trace'),
+        ('fault', 'cause'), ('channel_set', 'seq'), ('trace', 'seq'), ('fault_occurrence', 'seq'), ('fault_occurrence', 'trace'),
         ('fault_event', 'seq'), ('run_note', 'seq'))
     GROUP BY c.oid
   LOOP

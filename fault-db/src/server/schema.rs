@@ -11,6 +11,7 @@ const STEPS: &[&str] = &[
     concat!(include_str!("schema.sql"), include_str!("views.sql")),
     include_str!("0002.sql"),
     include_str!("0003.sql"),
+    include_str!("0004.sql"),
 ];
 
 /// The schema this crate reads and writes on a server.

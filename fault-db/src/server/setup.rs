@@ -133,7 +133,9 @@ fn set_up(backend: &Backend, server: &Server, ids: &mut IdSource, laptops: &str)
 fn functions() -> String {
     let moved = MOVE_ROWS.join(";\n    ");
     let moved = moved.replace("?1", "stays").replace("?2", "goes");
-    (include_str!("functions.sql").replace("{settle}", RECOMPUTE_FAULT)).replace("{move}", &moved)
+    // A laptop sends the part that an event names beside its body.
+    let settle = RECOMPUTE_FAULT.replace("part_of(e.body)", "e.part");
+    (include_str!("functions.sql").replace("{settle}", &settle)).replace("{move}", &moved)
 }
 
 /// Creates the laptops' account if need be; whether it did.

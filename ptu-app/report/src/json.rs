@@ -83,6 +83,7 @@ fn run_fault_json(fault: &RunFault) -> Value {
         "code": fault.code,
         "name": fault.code_name,
         "lru": fault.lru,
+        "cause": fault.cause.as_ref().unwrap_or(&fault.lru),
         "severity": fault.severity,
         "first_at": rfc3339(fault.first_at_us),
         "last_at": rfc3339(fault.last_at_us),
@@ -93,12 +94,13 @@ fn run_fault_json(fault: &RunFault) -> Value {
 }
 
 /// Keys of a fault in a list, in their order.
-pub const FAULT_KEYS: [&str; 11] = [
+pub const FAULT_KEYS: [&str; 12] = [
     "id",
     "unit_serial",
     "code",
     "name",
     "lru",
+    "cause",
     "severity",
     "state",
     "first_at",
@@ -115,6 +117,7 @@ pub fn fault_json(fault: &FaultSummary) -> Value {
         "code": fault.code,
         "name": fault.code_name,
         "lru": fault.lru,
+        "cause": fault.cause(),
         "severity": fault.severity,
         "state": fault.state.as_str(),
         "first_at": rfc3339(fault.first_at_us),

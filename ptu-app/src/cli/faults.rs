@@ -39,6 +39,7 @@ enum Verb {
     Trend(trend::TrendArguments),
     State(change::StateArguments),
     Repair(change::RepairArguments),
+    Cause(change::CauseArguments),
     Note(change::NoteArguments),
     Import(import::ImportArguments),
 }
@@ -63,6 +64,7 @@ impl FaultsArguments {
             Verb::Trend(arguments) => arguments.trend(&store),
             Verb::State(arguments) => arguments.change(&store),
             Verb::Repair(arguments) => arguments.record(&store),
+            Verb::Cause(arguments) => arguments.attribute(&store),
             Verb::Note(arguments) => arguments.note(&store),
             Verb::Import(arguments) => arguments.import(store),
         }

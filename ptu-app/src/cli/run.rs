@@ -20,7 +20,7 @@ use ptu_bench::run::{
     self, BenchChoice, BenchSetup, Outcome, RunControl, RunPlan, Suite, Task, check_serial, select,
     software_version,
 };
-use ptu_bench::run_diagnosis::{Bench, adaptive, diagnose_run};
+use ptu_bench::run_diagnosis::{Answer, Bench, adaptive, diagnose_run};
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
 use ptu_report::diagnosis::diagnosis_text;
@@ -313,10 +313,17 @@ impl RunArguments {
         };
         console.finish();
         let (store, outcome) = result?;
+        let answer = self.diagnosis(&store, directory, &outcome);
+        // What the faults come from is stored before they are told of, and whatever a terminal takes.
+        if let Some(Ok(answer)) = &answer
+            && let Err(failure) = answer.attribute(&store)
+        {
+            failure.tell();
+        }
         let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
         // The database and the reports have it: what a terminal does not take changes no verdict.
         let said = print_out(&verdict_table(&detail))
-            .and_then(|_| self.say_diagnosis(&store, directory, &outcome));
+            .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)));
         if let Err(failure) = said {
             failure.tell();
         }
@@ -325,26 +332,31 @@ impl RunArguments {
         Ok(outcome.exit)
     }
 
-    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
-    /// had from a dictionary that is not of these scripts.
-    fn say_diagnosis(
+    /// The diagnosis of an adaptive run, and of any other that failed.
+    fn diagnosis(
         &self,
         store: &Store,
         directory: &ScriptsDirectory,
         outcome: &Outcome,
-    ) -> Result<(), Failure> {
+    ) -> Option<Result<Answer, Failure>> {
+        let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
+        is_wanted.then(|| diagnose_run(store, directory, outcome.id, None))
+    }
+
+    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
+    /// had from a dictionary that is not of these scripts.
+    fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
         if self.adaptive {
-            let answer = diagnose_run(store, directory, outcome.id, None)?;
+            let answer = answer?;
             answer
                 .warnings
                 .iter()
                 .for_each(|warning| stdio::note(warning));
             print_out(&format!("\n{}", diagnosis_text(&answer)))?;
-        } else if outcome.exit == Exit::Failed
-            && let Ok(answer) = diagnose_run(store, directory, outcome.id, None)
+        } else if let Ok(answer) = answer
             && answer.warnings.is_empty()
         {
-            let id = outcome.id.short();
+            let id = answer.run.run.id.short();
             let conclusion = &answer.diagnosis.conclusion;
             print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
         }

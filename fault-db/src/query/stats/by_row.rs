@@ -12,10 +12,7 @@ pub(super) fn count(
     by: StatKey,
     bins: &Bins,
 ) -> SqlResult<CountsByKey> {
-    let mut counted = match backend {
-        Backend::File(_) => seen_in_file(backend, resolved, by, bins)?,
-        Backend::Server(_) => seen_on_server(backend, resolved, by, bins)?,
-    };
+    let mut counted = seen(backend, resolved, by, bins)?;
     let column = by.column();
     let opened = resolved.conditions_at(backend, FilteredTable::Faults, "first_at_us");
     let sql = format!(
@@ -42,6 +39,19 @@ pub(super) fn count(
         Ok(())
     })?;
     Ok(counted)
+}
+
+/// Counts the occurrences that match the filter.
+pub(super) fn seen(
+    backend: &Backend,
+    resolved: &Resolved<'_>,
+    by: StatKey,
+    bins: &Bins,
+) -> SqlResult<CountsByKey> {
+    match backend {
+        Backend::File(_) => seen_in_file(backend, resolved, by, bins),
+        Backend::Server(_) => seen_on_server(backend, resolved, by, bins),
+    }
 }
 
 /// A file returns its rows faster than it groups them.

@@ -100,6 +100,17 @@ impl Counts {
         self.repairs.us += other.repairs.us;
     }
 
+    /// Takes the numbers of cases from those of all causes; the rest stays.
+    pub fn take_cases(&mut self, by_cause: &CountsByKey) {
+        let mut all = Self::default();
+        by_cause.values().for_each(|of_cause| all.add_key(of_cause));
+        self.opened = all.opened;
+        self.not_closed = all.not_closed;
+        self.closed = all.closed;
+        self.closed_without_repair = all.closed_without_repair;
+        self.repairs = all.repairs;
+    }
+
     /// Records an occurrence at this time, for the latest one.
     pub fn seen_at(&mut self, at_us: i64) {
         self.last_at_us = self.last_at_us.max(Some(at_us));

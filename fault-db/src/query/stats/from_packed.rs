@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::super::fault_filter::{FaultFilter, Resolved};
+use super::cases::{Case, CaseRepair, RepairTimes, cases_of};
 use super::counts::{Bins, Counts, CountsByKey, Key};
-use super::repairs::within_us;
 use super::{CountedSpan, StatKey, StatQuery};
 use crate::backend::{Backend, Row, SqlError, SqlResult};
 use crate::packed::{Column, Packed, each_block};
@@ -28,13 +28,17 @@ pub(super) fn count(
         faults: resolved.faults_by_text(backend)?,
         runs: resolved.runs(backend)?,
         by: query.by,
-        within_us: within_us(query),
-        young_us: query.now_us - within_us(query) + 1,
+        times: RepairTimes::of(query),
         spans,
         places: HashMap::new(),
         counts: Vec::new(),
+        attributed: Vec::new(),
     };
     each_block(backend, |row| counting.block(row))?;
+    let attributed = std::mem::take(&mut counting.attributed);
+    cases_of(attributed)
+        .iter()
+        .for_each(|case| counting.case(case));
     Ok(counting.counted())
 }
 
@@ -48,13 +52,14 @@ struct Counting<'a> {
     /// Of the train asked for, or the one run.
     runs: Option<HashSet<i64>>,
     by: StatKey,
-    within_us: i64,
-    young_us: i64,
+    times: RepairTimes,
     spans: Vec<Span>,
     /// Where the counts of each key begin.
     places: HashMap<Key, usize>,
     /// Of each key in each span.
     counts: Vec<Counts>,
+    /// Faults that are attributed to a part, if cases are counted.
+    attributed: Vec<Case>,
 }
 
 struct Span {
@@ -87,18 +92,21 @@ impl Span {
 /// What of a block's texts is asked for, and where the keys among them are counted; by code in their column.
 struct Texts {
     lru: Vec<bool>,
+    /// As `cause_places`.
+    cause: [Vec<bool>; 2],
     severity: Vec<bool>,
     state: Vec<bool>,
-    closed: Vec<bool>,
     fault_line: Vec<bool>,
     line: Vec<bool>,
     procedure: Vec<bool>,
     lru_places: Vec<usize>,
+    /// By the code of the cause; by that of the part where there is none.
+    cause_places: [Vec<usize>; 2],
     fault_line_places: Vec<usize>,
     line_places: Vec<usize>,
 }
 
-type Faults<'a> = Packed<'a, 11>;
+type Faults<'a> = Packed<'a, 12>;
 type Occurrences<'a> = Packed<'a, 5>;
 type Repairs<'a> = Packed<'a, 4>;
 
@@ -132,15 +140,18 @@ impl Counting<'_> {
             let place = self.place(&faults, fault, &texts);
             self.seen(&faults, fault, &occurrences, seen.clone(), &texts, place);
             if texts.fault_line[faults.columns[4].code(fault)] {
-                self.life(&faults, fault, &texts, place);
-                self.repairs(&repairs, repaired.clone(), place);
+                let case = case(&faults, fault, (&repairs, repaired.clone()), place);
+                match self.by == StatKey::Cause && faults.columns[11].code(fault) > 0 {
+                    true => self.attributed.push(case),
+                    false => self.case(&case),
+                }
             }
         }
         Ok(())
     }
 
     fn texts(&mut self, faults: &Faults<'_>, occurrences: &Occurrences<'_>) -> Texts {
-        let [_, _, _, lru, fault_line, severity, state, ..] = &faults.columns;
+        let [_, _, _, lru, fault_line, severity, state, .., cause] = &faults.columns;
         let [_, _, line, procedure, _] = &occurrences.columns;
         let filter = self.filter;
         let in_line = |text: &str| filter.line.as_ref().is_none_or(|line| line == text);
@@ -149,6 +160,12 @@ impl Counting<'_> {
                 self.lrus
                     .is_none_or(|lrus| lrus.iter().any(|lru| lru == text))
             }),
+            cause: [cause, lru].map(|column| {
+                of_texts(column, true, |text| {
+                    let asked = filter.cause.as_ref();
+                    asked.is_none_or(|cause| cause.eq_ignore_ascii_case(text))
+                })
+            }),
             severity: of_texts(severity, true, |text| {
                 let asked = filter.severity.as_ref();
                 asked.is_none_or(|severity| severity.eq_ignore_ascii_case(text))
@@ -156,13 +173,13 @@ impl Counting<'_> {
             state: of_texts(state, true, |text| {
                 filter.states.is_empty() || filter.states.iter().any(|one| one.as_str() == text)
             }),
-            closed: of_texts(state, false, |text| text == "closed"),
             fault_line: of_texts(fault_line, filter.line.is_none(), in_line),
             line: of_texts(line, filter.line.is_none(), in_line),
             procedure: of_texts(procedure, filter.procedure.is_none(), |text| {
                 filter.procedure.as_ref().is_none_or(|one| one == text)
             }),
             lru_places: self.text_places(StatKey::Lru, lru),
+            cause_places: [cause, lru].map(|column| self.text_places(StatKey::Cause, column)),
             fault_line_places: self.text_places(StatKey::Line, fault_line),
             line_places: self.text_places(StatKey::Line, line),
         }
@@ -189,7 +206,11 @@ impl Counting<'_> {
     }
 
     fn is_asked(&self, seq: i64, faults: &Faults<'_>, fault: usize, texts: &Texts) -> bool {
-        let [_, unit, code, lru, _, severity, state, ..] = &faults.columns;
+        let [_, unit, code, lru, _, severity, state, .., cause] = &faults.columns;
+        let has_cause = || match cause.code(fault) {
+            0 => texts.cause[1][lru.code(fault)],
+            cause => texts.cause[0][cause],
+        };
         let has_code = |codes: &[i64]| {
             let code = code.number(fault);
             code.is_some_and(|code| codes.contains(&code))
@@ -197,6 +218,7 @@ impl Counting<'_> {
         texts.severity[severity.code(fault)]
             && texts.state[state.code(fault)]
             && texts.lru[lru.code(fault)]
+            && has_cause()
             && self
                 .unit
                 .is_none_or(|asked| unit.number(fault) == Some(asked))
@@ -216,12 +238,16 @@ impl Counting<'_> {
 
     /// Where the counts of a fault's key begin.
     fn place(&mut self, faults: &Faults<'_>, fault: usize, texts: &Texts) -> usize {
-        let [_, unit, code, lru, line, ..] = &faults.columns;
+        let [_, unit, code, lru, line, .., cause] = &faults.columns;
         let number = |column: &Column<'_>| Key::Number(column.number(fault).unwrap_or_default());
         match self.by {
             StatKey::Code => self.place_of(number(code)),
             StatKey::Unit => self.place_of(number(unit)),
             StatKey::Lru => texts.lru_places[lru.code(fault)],
+            StatKey::Cause => match cause.code(fault) {
+                0 => texts.cause_places[1][lru.code(fault)],
+                cause => texts.cause_places[0][cause],
+            },
             StatKey::Line => texts.fault_line_places[line.code(fault)],
             StatKey::All => self.place_of(Key::Text(String::new())),
         }
@@ -246,7 +272,7 @@ impl Counting<'_> {
             if !texts.line[line] || !self.is_of_run(occurrences, row, texts) {
                 continue;
             }
-            let Some(span) = self.span(at_us) else {
+            let Some(span) = span_of(&self.spans, at_us) else {
                 continue;
             };
             let place = span
@@ -265,47 +291,14 @@ impl Counting<'_> {
         }
     }
 
-    /// Counts a fault's opening and closing, and that it is not closed.
-    fn life(&mut self, faults: &Faults<'_>, fault: usize, texts: &Texts, place: usize) {
-        let [.., state, first, last, closed, repairs] = &faults.columns;
-        let span_of = |column: &Column<'_>| self.span(column.number(fault)?);
-        let (opened, last, closed_in) = (span_of(first), span_of(last), span_of(closed));
-        if let Some(span) = opened {
-            self.counts[place + span].opened += 1;
-        }
-        if let Some(span) = closed_in {
-            let counts = &mut self.counts[place + span];
-            counts.closed += 1;
-            counts.closed_without_repair += u32::from(repairs.number(fault) == Some(0));
-        }
-        if let (Some(span), false) = (last, texts.closed[state.code(fault)]) {
-            self.counts[place + span].not_closed += 1;
-        }
-    }
-
-    /// Counts a fault's repairs.
-    fn repairs(&mut self, repairs: &Repairs<'_>, rows: Range<usize>, place: usize) {
-        let [_, at, opened, back] = &repairs.columns;
-        for row in rows {
-            let at_us = at.number(row).unwrap_or_default();
-            let Some(span) = self.span(at_us) else {
-                continue;
-            };
-            let after_us = back.number(row).map(|back_us| back_us - at_us);
-            let is_back = after_us.is_some_and(|after_us| after_us < self.within_us);
-            let of_key = &mut self.counts[place + span].repairs;
-            of_key.all += 1;
-            of_key.us += at_us - opened.number(row).unwrap_or_default();
-            of_key.back += u32::from(is_back);
-            of_key.young += u32::from(!is_back && at_us >= self.young_us);
-        }
-    }
-
-    /// The span of a time.
-    fn span(&self, at_us: i64) -> Option<usize> {
-        let span = self.spans.partition_point(|span| span.last_us < at_us);
-        let first_us = self.spans.get(span)?.first_us;
-        (at_us >= first_us).then_some(span)
+    /// Counts a fault's or case's opening, end and repairs.
+    fn case(&mut self, case: &Case) {
+        let (spans, all, place) = (&self.spans, &mut self.counts, case.place);
+        case.count(self.times, |at_us, change| {
+            if let Some(span) = span_of(spans, at_us) {
+                change(&mut all[place + span]);
+            }
+        });
     }
 
     /// The counts of each span.
@@ -322,6 +315,38 @@ impl Counting<'_> {
         };
         spans.map(in_span).collect()
     }
+}
+
+/// A fault with its repairs.
+fn case(
+    faults: &Faults<'_>,
+    fault: usize,
+    (repairs, rows): (&Repairs<'_>, Range<usize>),
+    place: usize,
+) -> Case {
+    let [_, unit, .., first, last, closed, repaired, _] = &faults.columns;
+    let [_, at, opened, back] = &repairs.columns;
+    let repair = |row| CaseRepair {
+        at_us: at.number(row).unwrap_or_default(),
+        opened_us: opened.number(row).unwrap_or_default(),
+        back_us: back.number(row),
+    };
+    Case {
+        place,
+        unit: unit.number(fault).unwrap_or_default(),
+        first_us: first.number(fault).unwrap_or_default(),
+        last_us: last.number(fault).unwrap_or_default(),
+        closed_us: closed.number(fault),
+        is_repaired: repaired.number(fault) != Some(0),
+        repairs: rows.map(repair).collect(),
+    }
+}
+
+/// The span of a time.
+fn span_of(spans: &[Span], at_us: i64) -> Option<usize> {
+    let span = spans.partition_point(|span| span.last_us < at_us);
+    let first_us = spans.get(span)?.first_us;
+    (at_us >= first_us).then_some(span)
 }
 
 /// The rows of a fault in a column sorted by fault, from `from` on.

@@ -37,6 +37,7 @@ pub(super) fn part_for(resolved: &Resolved<'_>, by: StatKey) -> Option<TallyPart
         StatKey::All => (0, "''"),
         StatKey::Code => (1, "code"),
         StatKey::Lru => (2, "lru"),
+        StatKey::Cause => return None,
         StatKey::Unit => (3, "unit"),
         StatKey::Line => (4, "line"),
     };

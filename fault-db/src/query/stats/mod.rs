@@ -2,10 +2,11 @@
 //!
 //! A file answers in one of three ways:
 //! * if the filter allows it, from the counts that its triggers maintain, and incomplete days row by row;
-//! * row by row for one unit's counts by code, part or line, as a server always does;
+//! * row by row for one unit's counts by code, part, cause or line, as a server always does;
 //! * from the packed faults for every other filter, and for several spans at once.
 
 mod by_row;
+mod cases;
 mod counts;
 mod exposure;
 mod from_packed;
@@ -34,6 +35,8 @@ pub enum StatKey {
     Code,
     /// The part it points at.
     Lru,
+    /// The part it comes from; what one part explains is one case, and counted once.
+    Cause,
     /// The unit that had it.
     Unit,
     /// The line its unit was on.
@@ -55,14 +58,14 @@ pub struct StatQuery {
     pub back_within_days: u32,
 }
 
-/// The faults of one code, part, unit or line in a span of time.
+/// The faults of one code, part, unit or line in a span of time; of a cause its cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FaultStat {
     /// Depending on the key: the number as text, the part, the serial number, the line.
     pub key: String,
     /// The fault's name; empty for all but a code.
     pub name: String,
-    /// Faults first seen, closed ones too.
+    /// Faults, of a cause cases, first seen; closed ones too.
     pub faults: u32,
     /// Faults last seen that are not closed now.
     pub not_closed: u32,
@@ -108,7 +111,7 @@ enum Method {
 const DOING: &str = "counting faults";
 
 impl Store {
-    /// Counts faults by code, part, unit or line, the most frequent first.
+    /// Counts faults by code, part, unit or line, or cases by cause, the most frequent first.
     ///
     /// # Errors
     /// Of the filter, or of the file or server.
@@ -197,8 +200,11 @@ impl Store {
                         by,
                         ..query.clone()
                     };
-                    let counted = self.count(&resolved, &all, &span)?;
-                    total = counted.into_values().next().unwrap_or_default();
+                    let all = self.count(&resolved, &all, &span)?;
+                    total = all.into_values().next().unwrap_or_default();
+                    if query.by == StatKey::Cause {
+                        total.take_cases(&counted);
+                    }
                 }
             }
         }
@@ -231,6 +237,9 @@ impl Store {
         let counted = match self.method(resolved, query.by) {
             Method::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
                 .and_then(|counted| add_state_and_repairs(backend, resolved, query, counted, true)),
+            Method::Rows if query.by == StatKey::Cause => {
+                cases::count(backend, resolved, query, &span.bins)
+            }
             Method::Rows => {
                 by_row::count(backend, resolved, query.by, &span.bins).and_then(|counted| {
                     add_state_and_repairs(backend, resolved, query, counted, false)
@@ -312,11 +321,13 @@ fn add_not_closed(
 }
 
 impl StatKey {
-    /// The column of this key in faults, occurrences and repairs called `x`.
+    /// The key of faults, occurrences and repairs called `x`.
     fn column(self) -> &'static str {
         match self {
             Self::Code => "x.code",
             Self::Lru => "x.lru",
+            // Of occurrences; a fault's own row is not asked by cause.
+            Self::Cause => "(SELECT coalesce(f.cause, f.lru) FROM fault f WHERE f.seq = x.fault)",
             Self::Unit => "x.unit",
             Self::Line => "x.line",
             Self::All => "''",
@@ -340,7 +351,7 @@ impl Names {
                 &values![],
                 |row| Ok((row.get(0)?, row.get(1)?)),
             )?,
-            StatKey::Lru | StatKey::Line | StatKey::All => Vec::new(),
+            StatKey::Lru | StatKey::Cause | StatKey::Line | StatKey::All => Vec::new(),
         };
         Ok(Self {
             by,
@@ -356,7 +367,11 @@ impl Names {
             self.name(key, counts.stat(days))
         });
         let mut stats: Vec<_> = stats.collect();
-        stats.sort_by(|a, b| (b.occurrences, &a.key).cmp(&(a.occurrences, &b.key)));
+        let rank = |stat: &FaultStat| match self.by {
+            StatKey::Cause => (u64::from(stat.faults), stat.occurrences),
+            _ => (stat.occurrences, 0),
+        };
+        stats.sort_by(|a, b| (rank(b), &a.key).cmp(&(rank(a), &b.key)));
         stats
     }
 

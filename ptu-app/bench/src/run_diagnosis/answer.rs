@@ -7,6 +7,7 @@ use diagnosis::{Candidate, Diagnosis, Dictionary, Finding, Model, Observation};
 use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
 use protocol::LruId;
 
+use super::attribution::faults_of;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
@@ -38,6 +39,8 @@ pub struct Answer {
     pub diagnosis: Diagnosis,
     /// The likeliest fault of the part that was asked about, and why it is not the answer.
     pub why_not: Option<Candidate>,
+    /// The run's faults that come from each of the diagnosis's causes, in their order.
+    pub faults_of_causes: Vec<Vec<Id>>,
     /// Traces that show a part's faults, by part.
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
@@ -89,6 +92,7 @@ pub fn diagnose_run(
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
     Ok(Answer {
+        faults_of_causes: faults_of(&diagnosis.causes, &run, &occurrences),
         run,
         diagnosis,
         why_not: why_not.transpose()?,

@@ -1,6 +1,7 @@
 //! From a run to the part to replace: what was seen, the dictionary it is held against, the answer.
 
 mod answer;
+mod attribution;
 mod basis;
 mod dictionary;
 mod history;

@@ -1,14 +1,16 @@
-//! Changes to a fault that people make: `ptu faults state`, `repair` and `note`.
+//! Changes to a fault that people make: `ptu faults state`, `repair`, `cause` and `note`.
 
 use clap::Args;
-use fault_db::{FaultState, RepairRecord, Store};
+use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
 use crate::cli::print_out;
 use ptu_bench::clock::now_us;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::stdio;
 
-/// Change a fault's state: open, acknowledged, repaired, verified, closed
+/// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
+///
+/// The other faults that come from the same part and are in the same state follow.
 #[derive(Debug, Args)]
 pub struct StateArguments {
     /// The fault
@@ -21,9 +23,12 @@ pub struct StateArguments {
     /// Why
     #[arg(long, default_value = "")]
     note: String,
+    /// This fault alone, not the others of its case
+    #[arg(long)]
+    only: bool,
 }
 
-/// Record a repair
+/// Record a repair of a fault and of the others that come from the same part: its case
 #[derive(Debug, Args)]
 pub struct RepairArguments {
     /// The fault
@@ -43,6 +48,24 @@ pub struct RepairArguments {
     /// Who did it
     #[arg(long, default_value = "")]
     who: String,
+    /// This fault alone, not the others of its case
+    #[arg(long)]
+    only: bool,
+}
+
+/// Say which part a fault comes from; no diagnosis changes it afterwards
+#[derive(Debug, Args)]
+pub struct CauseArguments {
+    /// The fault
+    id: String,
+    /// The part that explains it; `none`: the fault stands alone
+    part: String,
+    /// Who says it
+    #[arg(long, default_value = "")]
+    who: String,
+    /// Why
+    #[arg(long, default_value = "")]
+    note: String,
 }
 
 /// Add a note to a fault; its state stays
@@ -60,8 +83,14 @@ pub struct NoteArguments {
 impl StateArguments {
     pub fn change(&self, store: &Store) -> Result<Exit, Failure> {
         let id = store.resolve_fault(&self.id)?;
-        let state = store.set_state(id, self.state, &self.who, &self.note, now_us())?;
-        print_out(&format!("fault {} is {}", id.short(), state.as_str()))
+        let (who, note, at_us) = (&self.who, &self.note, now_us());
+        print_out(&match self.only {
+            true => is_now(
+                &id.short(),
+                store.set_state(id, self.state, who, note, at_us)?,
+            ),
+            false => changed(&store.set_case_state(id, self.state, who, note, at_us)?),
+        })
     }
 }
 
@@ -71,37 +100,49 @@ impl RepairArguments {
             return Err(Failure::usage("a repair is of a part; name it with --part"));
         }
         let id = store.resolve_fault(&self.id)?;
-        let note = self.of_unknown_part(store)?;
+        let note = of_unknown_part(store, &self.part)?;
         let repair = RepairRecord {
             part: self.part.clone(),
             serial_old: self.old.clone(),
             serial_new: self.new.clone(),
             note: self.note.clone(),
         };
-        let state = store.record_repair(id, &repair, &self.who, now_us())?;
+        let (who, at_us) = (&self.who, now_us());
+        let said = match self.only {
+            true => is_now(&id.short(), store.record_repair(id, &repair, who, at_us)?),
+            false => changed(&store.repair_case(id, &repair, who, at_us)?),
+        };
         if let Some(note) = note {
             stdio::note(&note);
         }
-        print_out(&format!("fault {} is {}", id.short(), state.as_str()))
+        print_out(&said)
     }
+}
 
-    /// What to say of a part that nothing knows by this name, while another has nearly the same: a unit has
-    /// more parts than faults ever named, so the repair is recorded all the same.
-    fn of_unknown_part(&self, store: &Store) -> Result<Option<String>, Failure> {
-        let known = store.known_parts()?;
-        let part = self.part.trim().to_lowercase();
-        if known
-            .iter()
-            .any(|known| known.trim().to_lowercase() == part)
-        {
-            return Ok(None);
+impl CauseArguments {
+    pub fn attribute(&self, store: &Store) -> Result<Exit, Failure> {
+        let id = store.resolve_fault(&self.id)?;
+        let part = match self.part.trim() {
+            "none" | "-" => "",
+            part => part,
+        };
+        let note = match part {
+            "" => None,
+            part => of_unknown_part(store, part)?,
+        };
+        let cause = CauseRecord {
+            part: part.to_owned(),
+            note: self.note.trim().to_owned(),
+            ..CauseRecord::default()
+        };
+        store.set_cause(id, &cause, self.who.trim(), now_us())?;
+        if let Some(note) = note {
+            stdio::note(&note);
         }
-        let hint = did_you_mean(&part, known.iter().map(String::as_str));
-        let note = format!(
-            "note: no fault and no earlier repair names a part \"{}\"{hint}; recorded as it is",
-            self.part
-        );
-        Ok((!hint.is_empty()).then_some(note))
+        print_out(&match part {
+            "" => format!("fault {} stands alone", id.short()),
+            part => format!("fault {} comes from {part}", id.short()),
+        })
     }
 }
 
@@ -115,4 +156,36 @@ impl NoteArguments {
         store.add_note(id, self.who.trim(), text, now_us())?;
         print_out(&format!("noted on fault {}", id.short()))
     }
+}
+
+/// What to say of a part that nothing knows by this name, while another has nearly the same: a unit has
+/// more parts than faults ever named, so it is recorded all the same.
+fn of_unknown_part(store: &Store, asked: &str) -> Result<Option<String>, Failure> {
+    let known = store.known_parts()?;
+    let part = asked.trim().to_lowercase();
+    if known
+        .iter()
+        .any(|known| known.trim().to_lowercase() == part)
+    {
+        return Ok(None);
+    }
+    let hint = did_you_mean(&part, known.iter().map(String::as_str));
+    let note = format!(
+        "note: no fault and no earlier repair names a part \"{asked}\"{hint}; recorded as it is"
+    );
+    Ok((!hint.is_empty()).then_some(note))
+}
+
+fn is_now(fault: &str, state: FaultState) -> String {
+    format!("fault {fault} is {}", state.as_str())
+}
+
+/// The fault that was named, and what was settled with it.
+fn changed((named, rest): &(ChangedFault, Vec<ChangedFault>)) -> String {
+    let mut text = is_now(&named.id.short(), named.state);
+    for fault in rest {
+        let (id, name) = (fault.id.short(), &fault.code_name);
+        text += &format!("\n  and {id} of the same case, {name} {}", fault.lru);
+    }
+    text
 }

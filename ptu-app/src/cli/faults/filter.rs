@@ -23,9 +23,12 @@ pub struct FilterArguments {
     /// Only this code, number or name; several with commas between
     #[arg(long, value_name = "CODE[,CODE]")]
     code: Option<String>,
-    /// Only this part
+    /// Only pointing at this part
     #[arg(long)]
     lru: Option<String>,
+    /// Only coming from this part, as a diagnosis or a person has told; without either, pointing at it
+    #[arg(long, value_name = "PART")]
+    cause: Option<String>,
     /// Only this severity
     #[arg(long, ignore_case = true, value_parser = Severity::OF_FAULTS.map(Severity::label))]
     severity: Option<String>,
@@ -89,6 +92,7 @@ impl FilterArguments {
             train: self.train.clone(),
             code: self.code.clone(),
             lru: self.lru.clone(),
+            cause: self.cause.clone(),
             severity: self.severity.clone(),
             states: self.state.clone(),
             procedure: self.procedure.clone(),
@@ -143,6 +147,15 @@ impl FilterArguments {
                 let hint = did_you_mean(lru, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault ever named the part \"{lru}\"{hint}"
+                )));
+            }
+        }
+        if let Some(cause) = &self.cause {
+            let known = store.known_causes()?;
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(cause)) {
+                let hint = did_you_mean(cause, known.iter().map(String::as_str));
+                return Ok(Some(format!(
+                    "no fault ever came from the part \"{cause}\"{hint}"
                 )));
             }
         }

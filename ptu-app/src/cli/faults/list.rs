@@ -18,6 +18,7 @@ use ptu_report::{FAULT_KEYS, fault_json};
 ///   ptu faults list --state open
 ///   ptu faults list --unit SG-0142 --when 2026-03..2026-05
 ///   ptu faults list --note 교체 --lru eb_relay
+///   ptu faults list --cause eb_relay --state open,repaired
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ListArguments {
@@ -66,12 +67,13 @@ fn table(faults: &[FaultSummary]) -> String {
         "UNIT",
         "CODE",
         "PART",
+        "CAUSE",
         "SEVERITY",
         "STATE",
         "SEEN",
         "TRACE",
     ];
-    let mut table = Table::new(&headings).right([7]);
+    let mut table = Table::new(&headings).right([8]);
     for fault in faults {
         table.row([
             fault.id.short(),
@@ -79,6 +81,7 @@ fn table(faults: &[FaultSummary]) -> String {
             fault.unit_serial.clone(),
             format!("{} {}", fault.code, fault.code_name),
             fault.lru.clone(),
+            fault.cause().to_owned(),
             fault.severity.clone(),
             fault.state.as_str().into(),
             fault.occurrences.to_string(),

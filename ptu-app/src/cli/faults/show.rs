@@ -1,6 +1,6 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
+use fault_db::{CauseRecord, FaultDetail, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
@@ -22,6 +22,7 @@ pub fn show(store: &Store, id: &str, json: bool) -> Result<Exit, Failure> {
 
 fn detail_json(detail: &FaultDetail) -> Value {
     let mut value = fault_json(&detail.fault);
+    value["case"] = detail.case.iter().map(fault_json).collect();
     value["occurrence_list"] = detail
         .occurrences
         .iter()
@@ -41,7 +42,7 @@ fn detail_json(detail: &FaultDetail) -> Value {
             json!({
                 "kind": event.kind, "at": rfc3339(event.at_us), "who": event.who,
                 "note": event.note, "state": event.state.map(|state| state.as_str()),
-                "repair": event.repair,
+                "repair": event.repair, "cause": event.cause,
             })
         })
         .collect();
@@ -51,16 +52,27 @@ fn detail_json(detail: &FaultDetail) -> Value {
 fn detail(detail: &FaultDetail) -> String {
     let fault = &detail.fault;
     let mut text = format!(
-        "fault {}  {} {}  {}\nunit {}  part {}  {}  seen {}\n",
+        "fault {}  {} {}  {}\nunit {}  part {}  cause {}  {}  seen {}\n",
         fault.id,
         fault.code,
         line(&fault.code_name),
         line(&fault.severity),
         line(&fault.unit_serial),
         line(&fault.lru),
+        line(fault.cause()),
         fault.state.as_str(),
         times(fault),
     );
+    for other in &detail.case {
+        text.push_str(&format!(
+            "  same case: {}  {} {}  part {}  {}\n",
+            other.id.short(),
+            other.code,
+            line(&other.code_name),
+            line(&other.lru),
+            other.state.as_str(),
+        ));
+    }
     let mut table = Table::new(&["SEEN AT", "RUN", "TRACE", "WHAT"]);
     for seen in &detail.occurrences {
         table.row([
@@ -91,7 +103,8 @@ fn detail(detail: &FaultDetail) -> String {
                 repair.note
             )
         });
-        let note = format!("{}{repair}", event.note);
+        let cause = event.cause.as_ref().map_or_else(String::new, cause);
+        let note = format!("{}{repair}{cause}", event.note);
         table.row([
             local(event.at_us),
             event.kind.clone(),
@@ -101,6 +114,19 @@ fn detail(detail: &FaultDetail) -> String {
     }
     text.push_str(&format!("\n{}", table.render()));
     text
+}
+
+/// The part an attribution names, with what it rests on.
+fn cause(cause: &CauseRecord) -> String {
+    let part = match cause.part.as_str() {
+        "" => "stands alone",
+        part => part,
+    };
+    let run = cause.run.as_ref().map_or_else(String::new, |run| {
+        let percent = 100.0 * cause.probability.unwrap_or_default();
+        format!(" ({percent:.1} % in run {})", &run[..run.len().min(8)])
+    });
+    format!("{part}{run} {}", cause.note).trim_end().to_owned()
 }
 
 /// How often and when it was seen.

@@ -40,6 +40,9 @@ const BARS: usize = 24;
 /// Count faults, the most frequent first: which make up most of them, how long units go without one, how
 /// long repairs take and whether they hold
 ///
+/// By cause, cases are counted: what one part explains is one, with one repair, and SHARE and CUM are of
+/// cases. By anything else, observations are: a part that fails may have several faults.
+///
 /// SEEN counts occurrences, SHARE and CUM their share and that of all rows so far. FAULTS counts faults
 /// first seen in the span, OPEN those that are not closed now. MTBF is calendar days of all units, since
 /// the first run of each, by faults. MTTR is from a fault's opening to its repair. BACK are repairs
@@ -47,6 +50,7 @@ const BARS: usize = 24;
 /// faults closed without a repair, of all closed.
 ///
 /// Examples:
+///   ptu faults stats --when 2026
 ///   ptu faults stats --by lru --when 2026
 ///   ptu faults stats --by unit --lru eb_relay --back-within 14
 ///   ptu faults stats --by month --line line8 --csv
@@ -54,7 +58,7 @@ const BARS: usize = 24;
 #[command(verbatim_doc_comment)]
 pub struct StatsArguments {
     /// What to count by
-    #[arg(long, value_enum, default_value = "code")]
+    #[arg(long, value_enum, default_value = "cause")]
     by: GroupBy,
     /// A fault that is seen again within so many days of its repair is back
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
@@ -70,6 +74,8 @@ pub struct StatsArguments {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum GroupBy {
+    /// By the part that explains them: cases
+    Cause,
     /// By fault code
     Code,
     /// By replaceable part
@@ -87,6 +93,7 @@ impl StatsArguments {
         let by = match self.by {
             GroupBy::Code => StatKey::Code,
             GroupBy::Lru => StatKey::Lru,
+            GroupBy::Cause => StatKey::Cause,
             GroupBy::Unit => StatKey::Unit,
             GroupBy::Line => StatKey::Line,
             GroupBy::Month => StatKey::All,
@@ -109,26 +116,40 @@ impl StatsArguments {
         if stats.is_empty() && self.output.is_table() {
             return print_out(&self.filter.nothing(store)?);
         }
-        let all: u64 = stats.iter().map(|stat| stat.occurrences).sum();
-        let rows: Vec<_> = stats.iter().map(|stat| entry(stat, all)).collect();
+        let all: u64 = stats.iter().map(|stat| self.counted(stat)).sum();
+        let row = |stat| entry(stat, (self.counted(stat), all));
+        let rows: Vec<_> = stats.iter().map(row).collect();
         self.output
             .print(&KEYS, &rows, || self.table(&stats, together.as_ref(), all))
+    }
+
+    /// What shares are of: cases of a cause, else occurrences.
+    fn counted(&self, stat: &FaultStat) -> u64 {
+        match self.by {
+            GroupBy::Cause => u64::from(stat.faults),
+            _ => stat.occurrences,
+        }
     }
 
     fn headings(&self) -> Vec<&'static str> {
         let heading = match self.by {
             GroupBy::Code => "CODE",
             GroupBy::Lru => "PART",
+            GroupBy::Cause => "CAUSE",
             GroupBy::Unit => "UNIT",
             GroupBy::Line => "LINE",
             GroupBy::Month => "MONTH",
         };
-        let mut headings = vec![heading, "SEEN"];
+        let (counted, other) = match self.by {
+            GroupBy::Cause => ("CASES", "SEEN"),
+            _ => ("SEEN", "FAULTS"),
+        };
+        let mut headings = vec![heading, counted];
         if self.by != GroupBy::Month {
             headings.extend(["SHARE", "CUM"]);
         }
         headings.extend([
-            "FAULTS",
+            other,
             "OPEN",
             "UNITS",
             "MTBF",
@@ -156,21 +177,25 @@ impl StatsArguments {
         };
         let shown = shown.iter().map(|stat| (stat, true));
         for (stat, is_row) in shown.chain(together.map(|all| (all, false))) {
-            so_far += if is_row { stat.occurrences } else { 0 };
+            so_far += if is_row { self.counted(stat) } else { 0 };
             let name = match is_row {
                 true => format!("{} {}", stat.key, stat.name),
                 false => "all".to_owned(),
             };
-            let mut row = vec![name.trim_end().to_owned(), stat.occurrences.to_string()];
+            let mut row = vec![name.trim_end().to_owned(), self.counted(stat).to_string()];
             if is_course {
-                row.push(share(stat.occurrences, all));
+                row.push(share(self.counted(stat), all));
                 row.push(match is_row {
                     true => share(so_far, all),
                     false => String::new(),
                 });
             }
+            let other = match self.by {
+                GroupBy::Cause => stat.occurrences,
+                _ => u64::from(stat.faults),
+            };
             row.extend([
-                stat.faults.to_string(),
+                other.to_string(),
                 stat.not_closed.to_string(),
                 stat.units.to_string(),
                 stat.mtbf_days.map_or_else(dash, days),
@@ -255,12 +280,12 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
     Ok(stats.collect())
 }
 
-fn entry(stat: &FaultStat, all: u64) -> Value {
+fn entry(stat: &FaultStat, (counted, of): (u64, u64)) -> Value {
     let rate = |part: u32, all: u32| (all > 0).then(|| f64::from(part) / f64::from(all));
     json!({
         "key": stat.key, "name": stat.name, "faults": stat.faults,
         "not_closed": stat.not_closed, "occurrences": stat.occurrences,
-        "share": (all > 0).then(|| stat.occurrences as f64 / all as f64),
+        "share": (of > 0).then(|| counted as f64 / of as f64),
         "units": stat.units, "last_at": stat.last_at_us.map(rfc3339),
         "mtbf_days": stat.mtbf_days, "mttr_hours": stat.mttr_hours,
         "repairs": stat.repairs, "repairs_judged": stat.repairs_judged,

@@ -135,7 +135,7 @@ impl Change {
     ) {
         let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
-            part: fault.lru.clone(),
+            part: fault.cause().to_owned(),
             serial_old: some(&self.form.serial_old),
             serial_new: some(&self.form.serial_new),
             note: self.form.note.clone(),
@@ -144,9 +144,9 @@ impl Change {
         self.under_way = Request::Pending(context.queries.run(move |paths| {
             let store = paths.open()?;
             if state == FaultState::Repaired {
-                store.record_repair(id, &repair, &who, now_us())?;
+                store.repair_case(id, &repair, &who, now_us())?;
             } else {
-                store.set_state(id, state, &who, &note, now_us())?;
+                store.set_case_state(id, state, &who, &note, now_us())?;
             }
             Ok(id)
         }));

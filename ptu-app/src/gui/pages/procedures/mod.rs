@@ -272,7 +272,9 @@ impl ProceduresPage {
         self.conclusion = match outcome.exit {
             ptu_bench::failure::Exit::Failed => {
                 Request::Pending(context.queries.run(move |paths| {
-                    let answer = diagnose_run(&paths.read()?, &paths.scripts, id, None)?;
+                    let store = paths.open()?;
+                    let answer = diagnose_run(&store, &paths.scripts, id, None)?;
+                    answer.attribute(&store)?;
                     Ok(answer.diagnosis.conclusion)
                 }))
             }

@@ -1,0 +1,108 @@
+//! Which of what a run showed the faults that it was found to have explain: consequences of one cause, each by the
+//! part that it comes from.
+
+use std::collections::BTreeSet;
+
+use protocol::{LruId, Verdict};
+
+use super::belief::Belief;
+use super::model::{FIRST_EFFECT, Hypothesis};
+use super::observation::{CheckName, Observation, Sign};
+use super::verdict::Finding;
+use super::weights::Weights;
+
+/// A part that was found, and what it explains of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cause {
+    /// The part.
+    pub lru: LruId,
+    /// Probability of the finding.
+    pub probability: f64,
+    /// Signs that its fault shows.
+    pub signs: BTreeSet<Sign>,
+    /// Checks that its fault makes fail.
+    pub checks: BTreeSet<CheckName>,
+}
+
+/// The parts that were found, each with what it explains; none unless one part or two are found. What two parts show
+/// is the one's that shows it more often.
+pub fn causes(
+    belief: &Belief<'_, '_>,
+    weights: &Weights,
+    finding: Finding,
+    seen: &Observation,
+) -> Vec<Cause> {
+    let found = match finding {
+        Finding::Found => weights
+            .lrus
+            .first()
+            .map(|one| (vec![&one.lru], one.probability)),
+        Finding::TwoFound => (weights.both.first()).map(|(both, p)| (both.iter().collect(), *p)),
+        _ => None,
+    };
+    let Some((parts, probability)) = found else {
+        return Vec::new();
+    };
+    let effects: Vec<Vec<(usize, f64)>> = parts
+        .iter()
+        .map(|part| effects_of(belief, weights, part))
+        .collect();
+    let mut causes: Vec<Cause> = (parts.into_iter())
+        .map(|part| Cause {
+            lru: part.clone(),
+            probability,
+            signs: BTreeSet::new(),
+            checks: BTreeSet::new(),
+        })
+        .collect();
+    // The part whose fault shows it most often, if it is often enough.
+    let explaining = |share: &dyn Fn(usize) -> f64| {
+        let shares = effects.iter().map(|effects| {
+            let shares = effects
+                .iter()
+                .map(|(effect, weight)| weight * share(*effect));
+            shares.sum::<f64>()
+        });
+        let best = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let (place, share) = best?;
+        (share >= belief.model.settings.conclusion.explained_at).then_some(place)
+    };
+    for sign in belief.signs().in_steps.union(&belief.signs().in_log) {
+        if let Some(place) = explaining(&|effect| belief.model.share_of_sign(effect, sign)) {
+            causes[place].signs.insert(sign.clone());
+        }
+    }
+    for weighed in belief.steps() {
+        let step = &seen.steps[weighed.seen];
+        if step.result == Verdict::Passed {
+            continue;
+        }
+        let share = |effect| {
+            let hypothesis = belief.model.hypotheses[FIRST_EFFECT + effect];
+            let cell = belief.model.expected(hypothesis, weighed.place).cell;
+            f64::from(cell.count(step.result)) / f64::from(cell.runs().max(1))
+        };
+        if let Some(place) = explaining(&share) {
+            causes[place].checks.insert(step.check.clone());
+        }
+    }
+    causes
+}
+
+/// The effects that the fault of a part may have, each with its weight; together 1. A fault that was not seen yet has
+/// the one that it most likely acts like.
+fn effects_of(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId) -> Vec<(usize, f64)> {
+    let of_part = |hypothesis: Hypothesis| belief.model.lru(hypothesis) == Some(part);
+    let faults = weights
+        .faults
+        .iter()
+        .filter(|fault| of_part(fault.hypothesis));
+    let effects = faults.filter_map(|fault| {
+        let effect = belief.acts_like(fault.hypothesis)?;
+        Some((effect, fault.probability))
+    });
+    let effects: Vec<(usize, f64)> = effects.collect();
+    let all: f64 = effects.iter().map(|(_, p)| p).sum();
+    let share = |(effect, p): (usize, f64)| (effect, p / all.max(f64::MIN_POSITIVE));
+    effects.into_iter().map(share).collect()
+}

@@ -1,0 +1,86 @@
+//! Attributes the faults of a run that failed to the part that its diagnosis found.
+
+use std::collections::BTreeMap;
+
+use diagnosis::{Cause, CheckName, Sign};
+use fault_db::{CauseRecord, Id, RunDetail, RunOccurrence, Store, Verdict};
+use protocol::lru::from_stored;
+
+use super::Answer;
+use crate::clock::now_us;
+use crate::failure::Failure;
+use crate::run::CHECK_FAILED;
+
+impl Answer {
+    /// Stores what each fault of the run comes from. Nothing is stored of a run that did not fail, nor where the
+    /// dictionary does not fit, or no part was found; a fault that a person has attributed stays as it is.
+    ///
+    /// # Errors
+    /// The database does not take it.
+    pub fn attribute(&self, store: &Store) -> Result<(), Failure> {
+        if self.run.run.verdict != Some(Verdict::Failed) || !self.warnings.is_empty() {
+            return Ok(());
+        }
+        let causes = &self.diagnosis.causes;
+        for (cause, faults) in causes.iter().zip(&self.faults_of_causes) {
+            let record = CauseRecord {
+                part: cause.lru.to_string(),
+                run: Some(self.run.run.id.to_string()),
+                probability: Some(cause.probability),
+                note: String::new(),
+            };
+            store.attribute_diagnosed(faults, &record, now_us())?;
+        }
+        Ok(())
+    }
+}
+
+/// The faults of a run that come from each cause: those that name its part, and those of which it explains all that
+/// the run saw.
+pub(super) fn faults_of(
+    causes: &[Cause],
+    run: &RunDetail,
+    occurrences: &[RunOccurrence],
+) -> Vec<Vec<Id>> {
+    let mut seen: BTreeMap<Id, Vec<&RunOccurrence>> = BTreeMap::new();
+    for occurrence in occurrences {
+        seen.entry(occurrence.fault).or_default().push(occurrence);
+    }
+    let names = |cause: &Cause, seen: &[&RunOccurrence]| {
+        let lru = seen.first().and_then(|one| from_stored(&one.lru));
+        lru.as_ref() == Some(&cause.lru)
+    };
+    let of_cause = |cause: &Cause| {
+        let is_of = |seen: &[&RunOccurrence]| {
+            // What names a part that was found, too, is that part's.
+            match causes.iter().find(|cause| names(cause, seen)) {
+                Some(named) => named.lru == cause.lru,
+                None => seen.iter().all(|one| explains(cause, run, one)),
+            }
+        };
+        let faults = seen.iter().filter(|(_, seen)| is_of(seen));
+        faults.map(|(fault, _)| *fault).collect()
+    };
+    causes.iter().map(of_cause).collect()
+}
+
+/// Whether the cause shows this: a check that failed by its step, anything else by the sign that it is.
+fn explains(cause: &Cause, run: &RunDetail, seen: &RunOccurrence) -> bool {
+    if seen.code != i64::from(CHECK_FAILED) {
+        let sign = Sign {
+            fault: seen.code_name.clone(),
+            lru: from_stored(&seen.lru),
+        };
+        return cause.signs.contains(&sign);
+    }
+    let step = run
+        .steps
+        .iter()
+        .find(|step| Some(step.index) == seen.step_index);
+    step.is_some_and(|step| {
+        cause.checks.contains(&CheckName {
+            procedure: step.procedure.clone(),
+            step: step.name.clone(),
+        })
+    })
+}
