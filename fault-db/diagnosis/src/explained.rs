@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use protocol::{LruId, Verdict};
 
 use super::belief::Belief;
-use super::model::{FIRST_EFFECT, Hypothesis};
+use super::model::Hypothesis;
 use super::observation::{CheckName, Observation, Sign};
 use super::verdict::Finding;
 use super::weights::Weights;
@@ -77,10 +77,16 @@ pub fn causes(
         if step.result == Verdict::Passed {
             continue;
         }
-        let share = |effect| {
-            let hypothesis = belief.model.hypotheses[FIRST_EFFECT + effect];
-            let cell = belief.model.expected(hypothesis, weighed.place).cell;
-            f64::from(cell.count(step.result)) / f64::from(cell.runs().max(1))
+        // A check may fail under several faults; what it measured tells which.
+        let (model, place) = (belief.model, weighed.place);
+        let values = |effect| model.likelihood_of_values(effect, place, step);
+        let likeliest = (0..model.effects().len())
+            .map(values)
+            .fold(f64::MIN_POSITIVE, f64::max);
+        let share = |effect: usize| {
+            let cell = model.expected(model.effects()[effect], place).cell;
+            let failed = f64::from(cell.count(step.result)) / f64::from(cell.runs().max(1));
+            failed * values(effect) / likeliest
         };
         if let Some(place) = explaining(&share) {
             causes[place].checks.insert(step.check.clone());

@@ -278,6 +278,12 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// Likelihood of a step's measured values under an effect.
+    pub fn likelihood_of_values(&self, effect: usize, place: usize, step: &ObservedStep) -> f64 {
+        let expected = self.expected(self.effects()[effect], place);
+        likelihood_of_values(expected, step, |name| self.scales.get(&place)?.get(name))
+    }
+
     /// Whether the hypothesis is an intermittent mode.
     pub fn is_intermittent(&self, hypothesis: Hypothesis) -> bool {
         match hypothesis {

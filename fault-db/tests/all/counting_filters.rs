@@ -197,6 +197,7 @@ fn sums(conn: &Connection, case: &Case, query: &StatQuery) -> BTreeMap<String, S
     let column = |table: &str| match query.by {
         StatKey::Code => format!("{table}.code"),
         StatKey::Lru => format!("{table}.lru"),
+        StatKey::Cause => "coalesce(f.cause, f.lru)".to_owned(),
         StatKey::Unit => format!("(SELECT serial FROM unit u WHERE u.seq = {table}.unit)"),
         StatKey::Line => format!("{table}.line"),
         StatKey::All => "''".to_owned(),
@@ -327,6 +328,7 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
     let keys = [
         StatKey::Code,
         StatKey::Lru,
+        StatKey::Cause,
         StatKey::Unit,
         StatKey::Line,
         StatKey::All,

@@ -5,6 +5,7 @@ mod common;
 
 mod asking;
 mod care;
+mod cases;
 mod checking;
 mod counting;
 mod counting_filters;

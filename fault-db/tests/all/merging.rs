@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{Random, T0_US, by_hand, end, fault, ids, measurement, run_record, step};
 use fault_db::{
-    FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter, Store, StoreError,
-    Synchronous, Verdict,
+    CauseRecord, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter, Store,
+    StoreError, Synchronous, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -29,7 +29,7 @@ fn said(store: &Store) -> Vec<String> {
     let questions = [
         "SELECT u.serial || ' ' || f.code || f.lru || ' ' || f.state || ' ' || f.first_at_us || ' '
             || f.last_at_us || ' ' || f.occurrences || ' ' || f.repairs || ' ' || f.line || ' '
-            || ifnull(f.closed_at_us, '-') || ' seen '
+            || ifnull(f.closed_at_us, '-') || ' from ' || ifnull(f.cause, '-') || ' seen '
             || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault_occurrence o
                 WHERE o.fault = f.seq ORDER BY id)) || ' done '
             || (SELECT group_concat(hex(id) || turn) FROM (SELECT id, turn FROM fault_event e
@@ -95,7 +95,7 @@ fn live(store: &Store, random: &mut Random, clock_us: i64) {
             }
             let fault = known[(random.next() % known.len() as u64) as usize];
             let when_us = at_us + (random.next() % 1_000) as i64 * 60_000_000;
-            match act(store, fault, random.next() % 6, when_us) {
+            match act(store, fault, random.next() % 8, when_us) {
                 Ok(()) | Err(StoreError::Transition { .. }) => {}
                 Err(error) => panic!("{error}"),
             }
@@ -112,7 +112,7 @@ fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError>
     };
     match act {
         0 => store.acknowledge(fault, "kim", "", at_us).map(drop),
-        1 => store.record_repair(fault, &repair, "lee", at_us).map(drop),
+        1 => store.repair_case(fault, &repair, "lee", at_us).map(drop),
         2 => store
             .set_state(fault, FaultState::Verified, "kim", "", at_us)
             .map(drop),
@@ -120,9 +120,20 @@ fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError>
             .set_state(fault, FaultState::Open, "kim", "again", at_us)
             .map(drop),
         4 => store.add_note(fault, "park", "seen before", at_us),
-        _ => store
-            .set_state(fault, FaultState::Closed, "lee", "이상 없음", at_us)
+        6 => store.set_cause(fault, &from("psm"), "park", at_us),
+        7 => store
+            .attribute_diagnosed(&faults(store), &from("EB_relay"), at_us)
             .map(drop),
+        _ => store
+            .set_case_state(fault, FaultState::Closed, "lee", "이상 없음", at_us)
+            .map(drop),
+    }
+}
+
+fn from(part: &str) -> CauseRecord {
+    CauseRecord {
+        part: part.to_owned(),
+        ..CauseRecord::default()
     }
 }
 

@@ -21,12 +21,15 @@ const FOURTH: &[u8] = include_bytes!("../data/schema4.db.zst");
 /// The same file, as a program of the fifth schema brought it up to date.
 const FIFTH: &[u8] = include_bytes!("../data/schema5.db.zst");
 
-const OLDEST_TO_LAST: std::ops::RangeInclusive<usize> = 1..=STEPS.len() + 2;
+/// The same, brought up to date by the sixth.
+const SIXTH: &[u8] = include_bytes!("../data/schema6.db.zst");
+
+const OLDEST_TO_LAST: std::ops::RangeInclusive<usize> = 1..=STEPS.len() + 3;
 
 /// A file of an earlier schema with runs in it; how many.
 fn old_file(path: &Path, version: usize) -> usize {
     if version > STEPS.len() {
-        let packed = [FOURTH, FIFTH][version - STEPS.len() - 1];
+        let packed = [FOURTH, FIFTH, SIXTH][version - STEPS.len() - 1];
         let file = zstd::decode_all(packed).expect("packed");
         std::fs::write(path, file).expect("written");
         return 4;

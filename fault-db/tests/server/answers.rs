@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use fault_db::{
-    FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord, RunFilter,
-    RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
+    CauseRecord, FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord,
+    RunFilter, RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 
 use crate::common;
@@ -66,6 +66,17 @@ fn history(laptop: &Laptop) {
             store
                 .add_run_note(id, "kim", &text, end.finished_at_us)
                 .expect("a note");
+        }
+        if n % 5 == 0 {
+            let seen = store.run_occurrences(id).expect("its faults");
+            let seen: Vec<_> = seen.iter().map(|seen| seen.fault).collect();
+            let cause = CauseRecord {
+                part: "eb_relay".to_owned(),
+                ..CauseRecord::default()
+            };
+            store
+                .attribute_diagnosed(&seen, &cause, end.finished_at_us)
+                .expect("attributed");
         }
         if n % 4 == 3 {
             people(&store, end.finished_at_us + 3_600_000_000);
@@ -253,6 +264,10 @@ fn filters() -> Vec<FaultFilter> {
             ..all()
         },
         FaultFilter {
+            cause: text("EB_RELAY"),
+            ..all()
+        },
+        FaultFilter {
             severity: text("MAJOR"),
             ..all()
         },
@@ -350,6 +365,7 @@ fn a_server_gives_the_answers_its_files_give() {
         for by in [
             StatKey::Code,
             StatKey::Lru,
+            StatKey::Cause,
             StatKey::Unit,
             StatKey::Line,
             StatKey::All,

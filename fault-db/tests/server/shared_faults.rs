@@ -1,6 +1,6 @@
 //! Faults that several laptops saw: what each of them and the server make of all that was done about them.
 
-use fault_db::{FaultFilter, FaultState, RepairRecord, Store};
+use fault_db::{CauseRecord, FaultFilter, FaultState, RepairRecord, Store};
 
 use crate::laptop::{Laptop, connect, day, only_fault, open_faults, read_only};
 use crate::private::shared;
@@ -60,6 +60,69 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
         assert_eq!(only_fault(&laptop.open()).fault.state, FaultState::Verified);
         laptop.is_whole();
     }
+}
+
+/// Goal: the cause that a diagnosis on one laptop found, and that a person on the server corrected, is everywhere the
+/// same; a repair on the server settles the case there and on both laptops.
+#[test]
+fn a_case_is_one_on_laptops_and_server() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    one.run("U-1", day(0), &[101, 102, 103], false);
+    two.run("U-1", day(1), &[102], false);
+    let from = |part: &str| CauseRecord {
+        part: part.to_owned(),
+        ..CauseRecord::default()
+    };
+    let store = one.open();
+    let seen = open_faults(&store);
+    store
+        .attribute_diagnosed(&seen, &from("eb_relay"), day(0))
+        .expect("attributed");
+    drop(store);
+    two.sync(&address);
+    one.sync(&address);
+    let desk = connect(&address).expect("a server");
+    let fault_of = |store: &Store, code: i64| {
+        let faults = store.faults(&FaultFilter::default()).expect("listed");
+        faults
+            .into_iter()
+            .find(|fault| fault.code == code)
+            .expect("it")
+    };
+    let alone = fault_of(&desk, 103).id;
+    desk.set_cause(alone, &from(""), "park", day(2))
+        .expect("said");
+    let repair = RepairRecord {
+        part: "eb_relay".to_owned(),
+        serial_old: None,
+        serial_new: None,
+        note: String::new(),
+    };
+    let settled = desk.repair_case(fault_of(&desk, 101).id, &repair, "lee", day(3));
+    assert_eq!(settled.expect("repaired").1.len(), 1);
+    for laptop in [&one, &two] {
+        laptop.sync(&address);
+        laptop.is_whole();
+    }
+    for (code, cause, state) in [
+        (101, Some("eb_relay"), FaultState::Repaired),
+        (102, Some("eb_relay"), FaultState::Repaired),
+        (103, None, FaultState::Open),
+    ] {
+        for store in [&desk, &one.open()] {
+            let fault = fault_of(store, code);
+            assert_eq!(
+                (fault.cause.as_deref(), fault.state),
+                (cause, state),
+                "{code}"
+            );
+        }
+    }
+    assert_eq!(
+        fault_of(&two.open(), 102).cause.as_deref(),
+        Some("eb_relay")
+    );
 }
 
 /// A fault that is new to a laptop brings all its events.

@@ -9,6 +9,7 @@ mod bad_input;
 mod bad_scripts;
 mod bench_page;
 mod care;
+mod cases;
 mod diagnose;
 mod diagnose_matrix;
 mod documents;

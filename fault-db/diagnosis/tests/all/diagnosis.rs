@@ -171,6 +171,43 @@ fn two_faults_at_once_are_both_named() {
     assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
 }
 
+/// Goal: of what failed each part that was found has what its fault shows, and nothing that it does not.
+/// Method: one fault; two at once; and a dead relay beside a step that no fault of it acts on, where the relay is found.
+#[test]
+fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
+    let explained = |fails: &[&str], t| {
+        let found = diagnosed(&dictionary(), &run(fails, t));
+        let causes = found.causes.into_iter().map(|cause| {
+            let checks = cause
+                .checks
+                .iter()
+                .map(|check| format!("{}.{}", check.procedure, check.step));
+            (cause.lru.to_string(), checks.collect::<Vec<_>>())
+        });
+        causes.collect::<Vec<_>>()
+    };
+    let of = |part: &str, checks: &[&str]| {
+        (
+            part.to_owned(),
+            checks
+                .iter()
+                .map(|check| (*check).to_owned())
+                .collect::<Vec<_>>(),
+        )
+    };
+    assert_eq!(explained(&["a.s1"], Some(643.0)), [of("relay", &["a.s1"])]);
+    assert_eq!(
+        explained(&["a.s1", "a.s2", "b.s1"], Some(641.0)),
+        [of("relay", &["a.s1"]), of("sensor", &["a.s2", "b.s1"])]
+    );
+    assert_eq!(
+        explained(&["b.s1", "c.s1"], Some(240.0)),
+        [],
+        "no part is found"
+    );
+    assert_eq!(explained(&[], Some(240.0)), []);
+}
+
 #[test]
 fn a_result_that_no_mode_explains_blames_no_part() {
     let found = diagnosed(&dictionary(), &run(&["c.s2", "c.s3", "b.s3"], Some(240.0)));

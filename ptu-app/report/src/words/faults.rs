@@ -18,6 +18,8 @@ wordings! {
         by_unit: "by unit", "유닛별";
         by_code: "by code", "코드별";
         others: "others", "기타";
+        cause: "cause", "원인";
+        case_of: "{part}; {n} more come from it and follow what is done here", "{part}, 같은 원인의 고장 {n}건도 함께 처리됨";
         choose: "Choose a fault on the left", "왼쪽에서 고장을 고르십시오";
         not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
         times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";

@@ -1,6 +1,6 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{CauseRecord, FaultDetail, FaultSummary, FreezeSample, Store};
+use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
@@ -8,6 +8,7 @@ use crate::cli::{print_json, print_out};
 use ptu_bench::clock::{local, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
+use ptu_report::diagnosis::cause_text;
 use ptu_report::fault_json;
 
 /// Shows the fault an id stands for.
@@ -103,7 +104,7 @@ fn detail(detail: &FaultDetail) -> String {
                 repair.note
             )
         });
-        let cause = event.cause.as_ref().map_or_else(String::new, cause);
+        let cause = event.cause.as_ref().map_or_else(String::new, cause_text);
         let note = format!("{}{repair}{cause}", event.note);
         table.row([
             local(event.at_us),
@@ -114,19 +115,6 @@ fn detail(detail: &FaultDetail) -> String {
     }
     text.push_str(&format!("\n{}", table.render()));
     text
-}
-
-/// The part an attribution names, with what it rests on.
-fn cause(cause: &CauseRecord) -> String {
-    let part = match cause.part.as_str() {
-        "" => "stands alone",
-        part => part,
-    };
-    let run = cause.run.as_ref().map_or_else(String::new, |run| {
-        let percent = 100.0 * cause.probability.unwrap_or_default();
-        format!(" ({percent:.1} % in run {})", &run[..run.len().min(8)])
-    });
-    format!("{part}{run} {}", cause.note).trim_end().to_owned()
 }
 
 /// How often and when it was seen.

@@ -6,6 +6,7 @@ use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 use super::list::state_chip;
 use crate::gui::{Destination, Palette};
 use ptu_bench::clock;
+use ptu_report::diagnosis::cause_text;
 use ptu_report::limits::short;
 use ptu_report::words::{Words, fill};
 
@@ -33,9 +34,17 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
                 ("last", &last),
             ],
         );
+        let cause = match detail.case.len() {
+            0 => fault.cause().to_owned(),
+            more => fill(
+                words.faults.case_of,
+                &[("part", &fault.cause()), ("n", &more)],
+            ),
+        };
         for (what, value) in [
             (words.common.unit, fault.unit_serial.as_str()),
             (words.common.part, &fault.lru),
+            (words.faults.cause, &cause),
             (words.common.severity, &fault.severity),
             (words.faults.seen, &seen),
         ] {
@@ -85,7 +94,10 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
         match event.state {
             Some(state) => state_chip(ui, words, state),
             None => {
-                ui.label(words.common.note);
+                ui.label(match event.cause {
+                    Some(_) => words.faults.cause,
+                    None => words.common.note,
+                });
             }
         }
         if !event.who.is_empty() {
@@ -97,6 +109,9 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
         let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
         let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
         said = format!("{} {old} → {new} {}", repair.part, repair.note);
+    }
+    if let Some(cause) = &event.cause {
+        said = cause_text(cause);
     }
     if !said.is_empty() {
         ui.indent(event.id.to_string(), |ui| ui.label(said));

@@ -274,8 +274,12 @@ impl ProceduresPage {
                 Request::Pending(context.queries.run(move |paths| {
                     let store = paths.open()?;
                     let answer = diagnose_run(&store, &paths.scripts, id, None)?;
-                    answer.attribute(&store)?;
-                    Ok(answer.diagnosis.conclusion)
+                    let conclusion = &answer.diagnosis.conclusion;
+                    Ok(match answer.attribute(&store) {
+                        Ok(()) => conclusion.clone(),
+                        // The part is known all the same.
+                        Err(failure) => format!("{conclusion} ({failure})"),
+                    })
                 }))
             }
             _ => Request::Idle,

@@ -1,0 +1,170 @@
+//! One cause, one case: from the run that finds a part to the repair that settles all it explains.
+
+use serde_json::Value;
+
+use crate::common::{Place, list, text};
+
+/// Part pointed at, cause and state of each fault, in order.
+fn faults(place: &Place, more: &[&str]) -> Vec<[String; 3]> {
+    let all = place.json(&[&["faults", "list", "--json"], more].concat());
+    let told = |fault: &Value| ["lru", "cause", "state"].map(|key| text(&fault[key]).to_owned());
+    let mut told: Vec<_> = list(&all).iter().map(told).collect();
+    told.sort();
+    told
+}
+
+fn id_of(place: &Place, lru: &str) -> String {
+    let all = place.json(&["faults", "list", "--lru", lru, "--json"]);
+    text(&list(&all).first().expect("a fault")["id"]).to_owned()
+}
+
+/// A unit whose antenna was found dead, and whose EB relay is slow since.
+fn two_cases() -> Place {
+    let place = Place::new();
+    for (procedure, mode) in [
+        ("twc/exchange", "twc_antenna.dead"),
+        ("atp/overspeed", "eb_relay.slow"),
+    ] {
+        let run = ["run", procedure, "--serial-no", "BAD-1", "--inject", mode];
+        place.ptu(&run).exits(1);
+    }
+    place
+}
+
+fn states_of<'a>(faults: &'a [[String; 3]], cause: &str) -> Vec<&'a str> {
+    let of_cause = faults.iter().filter(|[_, of, _]| of == cause);
+    of_cause.map(|[.., state]| state.as_str()).collect()
+}
+
+#[test]
+fn the_repair_of_one_part_settles_what_it_explains_and_no_other_case() {
+    let place = two_cases();
+    let before = faults(&place, &[]);
+    assert!(
+        before.contains(&["atp_cpu", "eb_relay", "open"].map(str::to_owned)),
+        "{before:?}"
+    );
+    let relay = states_of(&before, "eb_relay").len();
+    let others: Vec<_> = before
+        .iter()
+        .filter(|[_, cause, _]| cause != "eb_relay")
+        .cloned()
+        .collect();
+    assert!(relay >= 2 && !others.is_empty(), "{before:?}");
+
+    let cpu = id_of(&place, "atp_cpu");
+    let shown = place.ptu(&["faults", "show", &cpu]).exits(0).out;
+    assert!(
+        shown.contains("same case: ") && shown.contains("diagnosed"),
+        "{shown}"
+    );
+    let repair = [
+        "faults", "repair", &cpu, "--part", "eb_relay", "--new", "SN-77", "--who", "Kim",
+    ];
+    let said = place.ptu(&repair).exits(0).out;
+    assert_eq!(
+        said.matches("of the same case").count(),
+        relay - 1,
+        "{said}"
+    );
+    place
+        .ptu(&["run", "atp/overspeed", "--serial-no", "BAD-1"])
+        .exits(0);
+    let after = faults(&place, &[]);
+    assert_eq!(states_of(&after, "eb_relay"), vec!["verified"; relay]);
+    for other in &others {
+        assert!(
+            after.contains(other),
+            "{other:?} was not repaired: {after:?}"
+        );
+    }
+
+    let causes = place.json(&["faults", "stats", "--json"]);
+    let of_relay = list(&causes)
+        .iter()
+        .find(|row| row["key"] == "eb_relay")
+        .expect("it");
+    assert_eq!(
+        (&of_relay["faults"], &of_relay["repairs"]),
+        (&1.into(), &1.into())
+    );
+    let parts = place.json(&["faults", "stats", "--by", "lru", "--json"]);
+    let keys: Vec<_> = list(&parts).iter().map(|row| text(&row["key"])).collect();
+    assert!(
+        keys.contains(&"atp_cpu"),
+        "observations are counted as they are: {keys:?}"
+    );
+
+    place
+        .ptu(&["faults", "state", &cpu, "closed", "--only"])
+        .exits(0);
+    let closed = faults(&place, &["--state", "closed"]);
+    assert_eq!(
+        closed,
+        [["atp_cpu", "eb_relay", "closed"].map(str::to_owned)]
+    );
+    place.ptu(&["db", "check"]).exits(0);
+}
+
+/// A person's word stands, whatever a run finds after it, and `none` takes a fault out of its case.
+#[test]
+fn what_a_person_says_stands_before_the_next_diagnosis() {
+    let place = two_cases();
+    let cpu = id_of(&place, "atp_cpu");
+    place
+        .ptu(&["faults", "cause", &cpu, "none", "--who", "Kim"])
+        .exits(0);
+    let run = [
+        "run",
+        "atp/overspeed",
+        "--serial-no",
+        "BAD-1",
+        "--inject",
+        "eb_relay.slow",
+    ];
+    place.ptu(&run).exits(1);
+    assert_eq!(faults(&place, &["--lru", "atp_cpu"])[0][1], "atp_cpu");
+    place
+        .ptu(&["faults", "cause", &cpu, "eb_relais"])
+        .exits(0)
+        .explains(&["eb_relay"]);
+    place
+        .ptu(&["faults", "list", "--cause", "eb_rely"])
+        .exits(0);
+    let said = place
+        .ptu(&["faults", "list", "--cause", "eb_rely"])
+        .exits(0)
+        .out;
+    assert!(
+        said.contains("\"eb_rely\"") && said.contains("eb_relay"),
+        "{said}"
+    );
+}
+
+/// Goal: two laptops that saw the same unit have the same cases, whichever imports the other first.
+#[test]
+fn cases_of_two_laptops_are_one_after_an_import_in_either_order() {
+    let (one, two) = (two_cases(), two_cases());
+    let cpu = id_of(&one, "atp_cpu");
+    one.ptu(&["faults", "repair", &cpu, "--part", "eb_relay"])
+        .exits(0);
+    let other = two.text_path("history.db");
+    let one_file = one.text_path("history.db");
+    let both = Place::new();
+    both.ptu(&["db", "import", &other]).exits(0);
+    both.ptu(&["db", "import", &one_file]).exits(0);
+    one.ptu(&["db", "import", &other]).exits(0);
+    let merged = faults(&one, &[]);
+    assert_eq!(faults(&both, &[]), merged);
+    assert_eq!(
+        merged.len(),
+        faults(&two, &[]).len(),
+        "each fault stands once"
+    );
+    // What the second laptop saw after the repair opened all of it again, or was before it for all.
+    let relay = states_of(&merged, "eb_relay");
+    assert!(relay.iter().all(|state| *state == relay[0]), "{merged:?}");
+    for place in [&one, &both] {
+        place.ptu(&["db", "check"]).exits(0);
+    }
+}
