@@ -32,43 +32,29 @@ pub fn causes(
     finding: Finding,
     seen: &Observation,
 ) -> Vec<Cause> {
-    let found = match finding {
-        Finding::Found => weights
-            .lrus
-            .first()
-            .map(|one| (vec![&one.lru], one.probability)),
-        Finding::TwoFound => (weights.both.first()).map(|(both, p)| (both.iter().collect(), *p)),
-        _ => None,
-    };
-    let Some((parts, probability)) = found else {
-        return Vec::new();
-    };
-    let effects: Vec<Vec<(usize, f64)>> = parts
+    let mut causes = found(weights, finding);
+    if causes.is_empty() {
+        return causes;
+    }
+    let effects = causes
         .iter()
-        .map(|part| effects_of(belief, weights, part))
-        .collect();
-    let mut causes: Vec<Cause> = (parts.into_iter())
-        .map(|part| Cause {
-            lru: part.clone(),
-            probability,
-            signs: BTreeSet::new(),
-            checks: BTreeSet::new(),
-        })
-        .collect();
+        .map(|cause| effects_of(belief, weights, &cause.lru));
+    let effects: Vec<Vec<(usize, f64)>> = effects.collect();
+    let model = belief.model;
     // The part whose fault shows it most often, if it is often enough.
     let explaining = |share: &dyn Fn(usize) -> f64| {
-        let shares = effects.iter().map(|effects| {
+        let of_part = |effects: &Vec<(usize, f64)>| {
             let shares = effects
                 .iter()
                 .map(|(effect, weight)| weight * share(*effect));
             shares.sum::<f64>()
-        });
-        let best = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let (place, share) = best?;
-        (share >= belief.model.settings.conclusion.explained_at).then_some(place)
+        };
+        let shares = effects.iter().map(of_part).enumerate();
+        let (place, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (share >= model.settings.conclusion.explained_at).then_some(place)
     };
     for sign in belief.signs().in_steps.union(&belief.signs().in_log) {
-        if let Some(place) = explaining(&|effect| belief.model.share_of_sign(effect, sign)) {
+        if let Some(place) = explaining(&|effect| model.share_of_sign(effect, sign)) {
             causes[place].signs.insert(sign.clone());
         }
     }
@@ -78,21 +64,40 @@ pub fn causes(
             continue;
         }
         // A check may fail under several faults; what it measured tells which.
-        let (model, place) = (belief.model, weighed.place);
-        let values = |effect| model.likelihood_of_values(effect, place, step);
-        let likeliest = (0..model.effects().len())
-            .map(values)
-            .fold(f64::MIN_POSITIVE, f64::max);
-        let share = |effect: usize| {
-            let cell = model.expected(model.effects()[effect], place).cell;
-            let failed = f64::from(cell.count(step.result)) / f64::from(cell.runs().max(1));
-            failed * values(effect) / likeliest
+        let values = |effect| model.likelihood_of_values(effect, weighed.place, step);
+        let likeliest = (0..model.effects().len()).map(values);
+        let likeliest = likeliest.fold(f64::MIN_POSITIVE, f64::max);
+        let share = |effect| {
+            let counted = model.expected(model.effects()[effect], weighed.place);
+            counted.share(counted.cell.count(step.result)) * values(effect) / likeliest
         };
         if let Some(place) = explaining(&share) {
             causes[place].checks.insert(step.check.clone());
         }
     }
     causes
+}
+
+/// The parts that were found, without what they explain.
+fn found(weights: &Weights, finding: Finding) -> Vec<Cause> {
+    let cause = |lru: &LruId, probability| Cause {
+        lru: lru.clone(),
+        probability,
+        signs: BTreeSet::new(),
+        checks: BTreeSet::new(),
+    };
+    match finding {
+        Finding::Found => {
+            let one = weights.lrus.iter().take(1);
+            one.map(|one| cause(&one.lru, one.probability)).collect()
+        }
+        Finding::TwoFound => {
+            let both = weights.both.iter().take(1);
+            let of_both = both.flat_map(|(both, p)| both.iter().map(|lru| cause(lru, *p)));
+            of_both.collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// The effects that the fault of a part may have, each with its weight; together 1. A fault that was not seen yet has

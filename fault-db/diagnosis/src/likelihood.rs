@@ -70,7 +70,8 @@ impl Expected<'_> {
         (n * share + self.doubt * nothing_known) / (n + self.doubt)
     }
 
-    fn share(&self, count: u32) -> f64 {
+    /// Share of the counted runs.
+    pub fn share(&self, count: u32) -> f64 {
         match self.cell.runs() {
             0 => 0.0,
             runs => f64::from(count) / f64::from(runs),
