@@ -114,3 +114,29 @@ fn seen_on_server(
     })?;
     Ok(counted)
 }
+
+/// Adds the faults that are not closed.
+pub(super) fn add_not_closed(
+    backend: &Backend,
+    resolved: &Resolved<'_>,
+    by: StatKey,
+    counted: &mut CountsByKey,
+) -> SqlResult<()> {
+    let mut conditions = resolved.conditions_at(backend, FilteredTable::Faults, "last_at_us");
+    conditions.require("x.state <> 'closed'");
+    // An operation on the column keeps SQLite from reading all faults in its order: few are not closed.
+    let group = match backend {
+        Backend::File(_) => format!("+{}", by.column()),
+        Backend::Server(_) => "1".to_owned(),
+    };
+    let sql = format!(
+        "SELECT {}, count(*) FROM fault x {} GROUP BY {group}",
+        by.column(),
+        conditions.sql()
+    );
+    backend.each(&sql, conditions.values(), |row| {
+        let key = Key::from_field(row.field(0)?);
+        counted.entry(key).or_default().not_closed = row.get(1)?;
+        Ok(())
+    })
+}

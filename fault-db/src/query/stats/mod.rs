@@ -20,7 +20,7 @@ use counts::{Counts, CountsByKey, Key};
 use exposure::{Exposure, Observed};
 use from_tally::TallyPart;
 
-use super::fault_filter::{FaultFilter, FilteredTable, Resolved};
+use super::fault_filter::{FaultFilter, Resolved};
 use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::store::Store;
@@ -287,37 +287,12 @@ fn add_state_and_repairs(
     has_repairs: bool,
 ) -> SqlResult<CountsByKey> {
     counted.retain(|_, counts| !counts.is_nothing());
-    add_not_closed(backend, resolved, query.by, &mut counted)?;
+    by_row::add_not_closed(backend, resolved, query.by, &mut counted)?;
     if !has_repairs || query.back_within_days != repairs::KEPT_DAYS {
         repairs::add(backend, resolved, query, &mut counted)?;
     }
     repairs::add_young(backend, resolved, query, &mut counted)?;
     Ok(counted)
-}
-
-fn add_not_closed(
-    backend: &Backend,
-    resolved: &Resolved<'_>,
-    by: StatKey,
-    counted: &mut CountsByKey,
-) -> SqlResult<()> {
-    let mut conditions = resolved.conditions_at(backend, FilteredTable::Faults, "last_at_us");
-    conditions.require("x.state <> 'closed'");
-    // An operation on the column keeps SQLite from reading all faults in its order: few are not closed.
-    let group = match backend {
-        Backend::File(_) => format!("+{}", by.column()),
-        Backend::Server(_) => "1".to_owned(),
-    };
-    let sql = format!(
-        "SELECT {}, count(*) FROM fault x {} GROUP BY {group}",
-        by.column(),
-        conditions.sql()
-    );
-    backend.each(&sql, conditions.values(), |row| {
-        let key = Key::from_field(row.field(0)?);
-        counted.entry(key).or_default().not_closed = row.get(1)?;
-        Ok(())
-    })
 }
 
 impl StatKey {

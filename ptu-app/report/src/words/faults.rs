@@ -19,7 +19,8 @@ wordings! {
         by_code: "by code", "코드별";
         others: "others", "기타";
         cause: "cause", "원인";
-        case_of: "{part}; {n} more come from it and follow what is done here", "{part}, 같은 원인의 고장 {n}건도 함께 처리됨";
+        with_cause: "{part}; cause {cause}", "{part}; 원인 {cause}";
+        case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";
         choose: "Choose a fault on the left", "왼쪽에서 고장을 고르십시오";
         not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
         times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";

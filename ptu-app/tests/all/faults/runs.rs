@@ -94,10 +94,11 @@ impl TestBench {
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
+        let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
+        answer.attribute(&store).expect("attributed");
         let detail = store
             .run(outcome.id, &process_id::is_alive)
             .expect("the run");
-        let answer = diagnose_run(&store, &self.directory, outcome.id, None).expect("a diagnosis");
         let first = answer.diagnosis.candidates.first();
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         FaultRun {

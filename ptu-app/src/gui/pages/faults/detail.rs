@@ -34,17 +34,10 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
                 ("last", &last),
             ],
         );
-        let cause = match detail.case.len() {
-            0 => fault.cause().to_owned(),
-            more => fill(
-                words.faults.case_of,
-                &[("part", &fault.cause()), ("n", &more)],
-            ),
-        };
+        let part = part(words, detail);
         for (what, value) in [
             (words.common.unit, fault.unit_serial.as_str()),
-            (words.common.part, &fault.lru),
-            (words.faults.cause, &cause),
+            (words.common.part, &part),
             (words.common.severity, &fault.severity),
             (words.faults.seen, &seen),
         ] {
@@ -53,6 +46,25 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
             ui.end_row();
         }
     });
+}
+
+/// The part that it points at, the one that it comes from, and how many other faults do.
+fn part(words: &Words, detail: &FaultDetail) -> String {
+    let fault = &detail.fault;
+    let cause = match detail.case.len() {
+        0 => fault.cause().to_owned(),
+        n => fill(
+            words.faults.case_of,
+            &[("cause", &fault.cause()), ("n", &n)],
+        ),
+    };
+    match cause == fault.lru {
+        true => cause,
+        false => fill(
+            words.faults.with_cause,
+            &[("part", &fault.lru), ("cause", &cause)],
+        ),
+    }
 }
 
 /// Events, occurrences and the freeze frame of the latest.
@@ -94,10 +106,11 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
         match event.state {
             Some(state) => state_chip(ui, words, state),
             None => {
-                ui.label(match event.cause {
-                    Some(_) => words.faults.cause,
-                    None => words.common.note,
-                });
+                let cause = event.cause.as_ref();
+                ui.label(cause.map_or(words.common.note, |_| words.faults.cause));
+                if let Some(cause) = cause {
+                    ui.label(cause_text(cause));
+                }
             }
         }
         if !event.who.is_empty() {
@@ -109,9 +122,6 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
         let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
         let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
         said = format!("{} {old} → {new} {}", repair.part, repair.note);
-    }
-    if let Some(cause) = &event.cause {
-        said = cause_text(cause);
     }
     if !said.is_empty() {
         ui.indent(event.id.to_string(), |ui| ui.label(said));
