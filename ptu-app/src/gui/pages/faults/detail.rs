@@ -71,7 +71,10 @@ fn part(words: &Words, detail: &FaultDetail) -> String {
 pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<Destination>) {
     ui.separator();
     ui.label(RichText::new(words.faults.what_was_done).strong());
-    for event in &detail.events {
+    // What a run found was not done by anybody, and stands above.
+    let is_finding =
+        |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
+    for event in detail.events.iter().filter(|event| !is_finding(event)) {
         show_event(ui, words, event);
     }
     ui.separator();
