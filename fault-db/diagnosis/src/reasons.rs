@@ -41,10 +41,12 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         let best_rival = rival.fold(healthy, f64::max);
         let step = &seen.steps[weighed.seen];
         let text = || text(model, model.effects()[own], weighed.place, step);
-        if ln_own - healthy > SPEAKS_AT {
-            for_it.push((ln_own - healthy, text()));
-        } else if best_rival - ln_own > SPEAKS_AT {
+        // What a healthy unit hardly ever shows is likelier under any fault: what another part's explains better speaks
+        // against this one.
+        if best_rival - ln_own > SPEAKS_AT {
             against.push((best_rival - ln_own, text()));
+        } else if ln_own - healthy > SPEAKS_AT {
+            for_it.push((ln_own - healthy, text()));
         }
     }
     let strongest = |mut all: Vec<(f64, String)>| {

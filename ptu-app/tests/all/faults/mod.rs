@@ -49,6 +49,14 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "an input that is lost for a moment, once in a suite: nothing tells whose moment it was",
     ),
     (
+        "io_board.door_flickers",
+        "doors that seem open for moments: by the input or by a contact, in the same steps",
+    ),
+    (
+        "power_supply.dips_when_warm",
+        "restarts in the last steps of few procedures: the line is silent as with a bad link",
+    ),
+    (
         "twc_cpu.hangs",
         "station data that are lost for moments, at the board or at its modem",
     ),
