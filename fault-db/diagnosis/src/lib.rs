@@ -41,4 +41,4 @@ pub use next_check::NextCheck;
 pub use observation::{CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
-pub use verdict::{Candidate, Diagnosis, Finding, PartProbability, TwoFaults};
+pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

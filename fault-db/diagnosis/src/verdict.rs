@@ -89,54 +89,79 @@ pub struct Diagnosis {
     pub no_fault: f64,
     /// Probability of a fault that stands in no dictionary.
     pub unknown_fault: f64,
-    /// The parts that were found, each with what it explains.
-    #[serde(skip)]
-    pub causes: Vec<Cause>,
 }
 
-impl Diagnosis {
-    /// What `seen` comes to.
-    pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
+/// A run held against a model: what each answer about the run is taken from.
+pub struct Assessment<'m, 'd, 's> {
+    belief: Belief<'m, 'd>,
+    seen: &'s Observation,
+    weights: Weights,
+    pairs: Vec<Pair>,
+}
+
+impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
+    /// Of all that was seen.
+    pub fn of(model: &'m Model<'d>, seen: &'s Observation) -> Self {
         let belief = Belief::after(model, seen);
         let (weights, pairs) = Weights::after(&belief, seen);
-        let candidates = weights.candidates(&belief, seen);
-        let settings = &model.settings.conclusion;
-        let next_check = weights.next_check(&belief, seen);
-        let (finding, conclusion) = weights.conclusion(model, seen, next_check.as_ref());
-        let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
-        let shown = pairs.iter().filter(is_shown);
-        let causes = causes(&belief, &weights, finding, seen);
         Self {
-            candidates,
+            belief,
+            seen,
+            weights,
+            pairs,
+        }
+    }
+
+    /// What it comes to.
+    pub fn diagnosis(&self) -> Diagnosis {
+        let (belief, weights) = (&self.belief, &self.weights);
+        let settings = &belief.model.settings.conclusion;
+        let next_check = weights.next_check(belief, self.seen);
+        let (finding, conclusion) =
+            weights.conclusion(belief.model, self.seen, next_check.as_ref());
+        let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
+        let shown = self.pairs.iter().filter(is_shown);
+        Diagnosis {
+            candidates: weights.candidates(belief, self.seen),
             next_check,
             conclusion,
             finding,
             two_faults: shown
                 .map(|pair| TwoFaults {
-                    faults: pair.both.map(|hypothesis| name(&belief, hypothesis).0),
+                    faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
                     probability: pair.probability,
                 })
                 .collect(),
             no_fault: weights.no_fault,
             unknown_fault: weights.unknown,
-            causes,
-            lrus: weights.lrus,
+            lrus: weights.lrus.clone(),
         }
+    }
+
+    /// The parts that `finding` names, each with what it explains.
+    pub fn causes(&self, finding: Finding) -> Vec<Cause> {
+        causes(&self.belief, &self.weights, finding, self.seen)
     }
 
     /// The likeliest fault mode of a part, however unlikely, with what speaks for it and against it; a fault that is not
     /// in the dictionary only of a part without any mode, as it may act like any. None of a part that is not known.
-    pub fn why_not(model: &Model<'_>, seen: &Observation, part: &LruId) -> Option<Candidate> {
-        let belief = Belief::after(model, seen);
-        let (weights, _) = Weights::after(&belief, seen);
-        let faults = weights.faults.iter();
+    pub fn likeliest_of(&self, part: &LruId) -> Option<Candidate> {
+        let model = self.belief.model;
+        let faults = self.weights.faults.iter();
         let of_part = faults.filter(|fault| model.lru(fault.hypothesis) == Some(part));
         let is_known = |fault: &Fault| model.effect(fault.hypothesis).is_some();
         let likeliest = of_part.max_by(|a, b| {
             let by_kind = is_known(a).cmp(&is_known(b));
             by_kind.then(a.probability.total_cmp(&b.probability))
         })?;
-        candidate(&belief, seen, likeliest)
+        candidate(&self.belief, self.seen, likeliest)
+    }
+}
+
+impl Diagnosis {
+    /// What `seen` comes to.
+    pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
+        Assessment::of(model, seen).diagnosis()
     }
 
     /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.

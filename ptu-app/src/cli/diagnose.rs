@@ -8,9 +8,9 @@ use protocol::LruId;
 use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
 use super::{Database, ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_bench::run_diagnosis::{diagnose_part, diagnose_run};
 use ptu_bench::stdio;
-use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
+use ptu_report::diagnosis::{candidate_json, diagnosis_json, diagnosis_text, why_not_text};
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
@@ -56,14 +56,28 @@ impl DiagnoseArguments {
         }
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(&self.run.unwrap_or_default())?;
-        let answer = diagnose_run(&store, &self.scripts.find()?, id, self.why_not.as_ref())?;
+        let directory = self.scripts.find()?;
+        let (answer, why_not) = match &self.why_not {
+            Some(part) => {
+                let (answer, fault) = diagnose_part(&store, &directory, id, part)?;
+                (answer, Some(fault))
+            }
+            None => (diagnose_run(&store, &directory, id)?, None),
+        };
         for warning in &answer.warnings {
             stdio::note(warning);
         }
         if self.json {
-            print_json(&diagnosis_json(&answer))
-        } else {
-            print_out(&diagnosis_text(&answer))
+            let mut said = diagnosis_json(&answer);
+            if let Some(fault) = &why_not {
+                said["why_not"] = candidate_json(&answer, fault);
+            }
+            return print_json(&said);
         }
+        let mut text = diagnosis_text(&answer);
+        if let Some(fault) = &why_not {
+            text += &why_not_text(fault);
+        }
+        print_out(&text)
     }
 }

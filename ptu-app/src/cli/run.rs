@@ -340,7 +340,7 @@ impl RunArguments {
         outcome: &Outcome,
     ) -> Option<Result<Answer, Failure>> {
         let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
-        is_wanted.then(|| diagnose_run(store, directory, outcome.id, None))
+        is_wanted.then(|| diagnose_run(store, directory, outcome.id))
     }
 
     /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
+    Assessment, Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
     Settings, Sign, Strategy, fixed_order, replayed,
 };
 use protocol::Verdict;
@@ -176,8 +176,12 @@ fn two_faults_at_once_are_both_named() {
 #[test]
 fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
     let explained = |fails: &[&str], t| {
-        let found = diagnosed(&dictionary(), &run(fails, t));
-        let causes = found.causes.into_iter().map(|cause| {
+        let (dictionary, settings) = (dictionary(), settings());
+        let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+        let seen = run(fails, t);
+        let assessed = Assessment::of(&model, &seen);
+        let causes = assessed.causes(assessed.diagnosis().finding);
+        let causes = causes.into_iter().map(|cause| {
             let checks = cause
                 .checks
                 .iter()

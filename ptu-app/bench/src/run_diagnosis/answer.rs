@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
-use diagnosis::{Candidate, Diagnosis, Dictionary, Finding, Model, Observation};
+use diagnosis::{
+    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation,
+};
 use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
 use protocol::LruId;
 
-use super::attribution::faults_of;
+use super::attribution::with_faults;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
@@ -37,10 +39,8 @@ pub struct Answer {
     pub run: RunDetail,
     /// The diagnosis.
     pub diagnosis: Diagnosis,
-    /// The likeliest fault of the part that was asked about, and why it is not the answer.
-    pub why_not: Option<Candidate>,
-    /// The run's faults that come from each of the diagnosis's causes, in their order.
-    pub faults_of_causes: Vec<Vec<Id>>,
+    /// The parts that were found, each with the run's faults that come from it.
+    pub causes: Vec<(Cause, Vec<Id>)>,
     /// Traces that show a part's faults, by part.
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
@@ -51,16 +51,42 @@ pub struct Answer {
     pub dictionary_current: bool,
 }
 
-/// Diagnoses a stored run; `why_not` is a part to say more about.
+/// Diagnoses a stored run.
 ///
 /// # Errors
-/// There is no such run, part or dictionary, or a file cannot be read.
+/// There is no such run or dictionary, or a file cannot be read.
 pub fn diagnose_run(
     store: &Store,
     directory: &ScriptsDirectory,
     id: Id,
-    why_not: Option<&LruId>,
 ) -> Result<Answer, Failure> {
+    let (answer, ()) = assess_run(store, directory, id, |_, _| Ok(()))?;
+    Ok(answer)
+}
+
+/// Diagnoses a stored run, and tells of a part its likeliest fault, with what speaks for it and against it.
+///
+/// # Errors
+/// There is no such run, part or dictionary, or a file cannot be read.
+pub fn diagnose_part(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    id: Id,
+    part: &LruId,
+) -> Result<(Answer, Candidate), Failure> {
+    assess_run(store, directory, id, |assessed, model| {
+        let fault = assessed.likeliest_of(part);
+        fault.ok_or_else(|| no_such_part(part, model))
+    })
+}
+
+/// Diagnoses a stored run, and takes `more` from the assessment.
+fn assess_run<T>(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    id: Id,
+    more: impl FnOnce(&Assessment<'_, '_, '_>, &Model<'_>) -> Result<T, Failure>,
+) -> Result<(Answer, T), Failure> {
     let run = store.run(id, &process_id::is_alive)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
@@ -79,28 +105,27 @@ pub fn diagnose_run(
     let repairs = store.confirmed_repairs(run.run.started_at_us)?;
     history.take_repairs(&repairs, &dictionary, &settings);
     let model = Model::new(&dictionary, &settings, &history.factors);
-    let mut diagnosis = Diagnosis::of(&model, &seen);
+    let assessed = Assessment::of(&model, &seen);
+    let mut diagnosis = assessed.diagnosis();
+    let causes = assessed.causes(diagnosis.finding);
+    let more = more(&assessed, &model)?;
     history.explain(&mut diagnosis);
-    let why_not = why_not.map(|part| {
-        let fault = Diagnosis::why_not(&model, &seen, part);
-        fault.ok_or_else(|| no_such_part(part, &model))
-    });
     cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
         let of_part = traces.entry(occurrence.lru.clone()).or_default();
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
-    Ok(Answer {
-        faults_of_causes: faults_of(&diagnosis.causes, &run, &occurrences),
+    let answer = Answer {
+        causes: with_faults(causes, &run, &occurrences),
         run,
         diagnosis,
-        why_not: why_not.transpose()?,
         traces,
         warnings,
         dictionary_from: from,
         dictionary_current: current,
-    })
+    };
+    Ok((answer, more))
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {

@@ -21,8 +21,7 @@ impl Answer {
         if self.run.run.verdict != Some(Verdict::Failed) || !self.warnings.is_empty() {
             return Ok(());
         }
-        let causes = &self.diagnosis.causes;
-        for (cause, faults) in causes.iter().zip(&self.faults_of_causes) {
+        for (cause, faults) in &self.causes {
             let record = CauseRecord {
                 part: cause.lru.to_string(),
                 run: Some(self.run.run.id.to_string()),
@@ -35,13 +34,13 @@ impl Answer {
     }
 }
 
-/// The faults of a run that come from each cause: those that name its part, and those of which it explains all that
-/// the run saw.
-pub(super) fn faults_of(
-    causes: &[Cause],
+/// Causes with the faults of a run that come from each: those that name its part, and those of which it explains all
+/// that the run saw.
+pub(super) fn with_faults(
+    causes: Vec<Cause>,
     run: &RunDetail,
     occurrences: &[RunOccurrence],
-) -> Vec<Vec<Id>> {
+) -> Vec<(Cause, Vec<Id>)> {
     let mut seen: BTreeMap<Id, Vec<&RunOccurrence>> = BTreeMap::new();
     for occurrence in occurrences {
         seen.entry(occurrence.fault).or_default().push(occurrence);
@@ -61,7 +60,8 @@ pub(super) fn faults_of(
         let faults = seen.iter().filter(|(_, seen)| is_of(seen));
         faults.map(|(fault, _)| *fault).collect()
     };
-    causes.iter().map(of_cause).collect()
+    let faults: Vec<_> = causes.iter().map(of_cause).collect();
+    causes.into_iter().zip(faults).collect()
 }
 
 /// Whether the cause shows this: a check that failed by its step, anything else by the sign that it is.

@@ -7,7 +7,7 @@ mod dictionary;
 mod history;
 mod repairs;
 
-pub use answer::{Answer, Bench, adaptive, diagnose_run};
+pub use answer::{Answer, Bench, adaptive, diagnose_part, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, Origin, choose};
 pub use history::OwnHistory;

@@ -28,10 +28,11 @@ impl OwnHistory {
             *weights.entry(&mode.name.lru).or_default() += mode.name.weight;
         }
         let of_all: f64 = weights.values().sum();
+        let unweighted = 1.0 / parts.len() as f64;
         for part in parts {
             let expected = match weights.get(part) {
                 Some(weight) => weight / of_all,
-                None => 1.0 / dictionary.lrus().len() as f64,
+                None => unweighted,
             };
             let like = settings.repairs_like_prior;
             let share = (count(part) + like * expected) / (all + like);

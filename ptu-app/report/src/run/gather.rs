@@ -37,7 +37,7 @@ impl Sheet {
         };
         let diagnosis = match directory {
             Some(directory) => {
-                diagnose_run(store, directory, id, None).map_err(|failure| failure.message)
+                diagnose_run(store, directory, id).map_err(|failure| failure.message)
             }
             None => Err("no scripts directory".into()),
         };

@@ -94,7 +94,7 @@ impl TestBench {
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
-        let answer = diagnose_run(&store, &self.directory, outcome.id, None).expect("a diagnosis");
+        let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
         answer.attribute(&store).expect("attributed");
         let detail = store
             .run(outcome.id, &process_id::is_alive)

@@ -66,7 +66,7 @@ impl DiagnosisPage {
         self.run = Some(run);
         self.answer = Request::Pending(context.queries.run(move |paths| {
             Ok(NamedAnswer {
-                answer: diagnose_run(&paths.read()?, &paths.scripts, run, None)?,
+                answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
                 parts: paths.scripts.faults()?.lrus,
             })
         }));

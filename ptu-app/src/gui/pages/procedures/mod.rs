@@ -273,7 +273,7 @@ impl ProceduresPage {
             ptu_bench::failure::Exit::Failed => {
                 Request::Pending(context.queries.run(move |paths| {
                     let store = paths.open()?;
-                    let answer = diagnose_run(&store, &paths.scripts, id, None)?;
+                    let answer = diagnose_run(&store, &paths.scripts, id)?;
                     let conclusion = &answer.diagnosis.conclusion;
                     Ok(match answer.attribute(&store) {
                         Ok(()) => conclusion.clone(),
