@@ -136,7 +136,7 @@ impl Atp {
         let motion = SupervisedMotion {
             speed,
             limit: self.limit,
-            stop: self.by_code() && self.limit == Speed::ZERO && !context.dead_guards.stop,
+            stop: self.must_stand() && !context.dead_guards.stop,
             standstill,
             moves: self.tachometers.moves(config),
         };
@@ -206,6 +206,12 @@ impl Atp {
     fn by_code(&self) -> bool {
         let mode = self.sequence.mode();
         matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun)
+    }
+
+    /// The code, or none, permits no motion; nor does a switched-off mode, in which a welded emergency brake relay
+    /// must not leave the train without any brake.
+    fn must_stand(&self) -> bool {
+        (self.by_code() || self.sequence.mode() == Mode::Off) && self.limit == Speed::ZERO
     }
 
     /// A train that has run past its stop point may be jogged back.
@@ -299,7 +305,7 @@ impl Atp {
         let causes = [
             (self.by_code() && code == Code::None, FsbCause::NoCode),
             (
-                stop && (over || code == Code::AbsoluteStop),
+                stop && (over || self.by_code() && code == Code::AbsoluteStop),
                 FsbCause::StopCode,
             ),
             (over, FsbCause::Overspeed),
