@@ -49,6 +49,15 @@ fn every_controller_stops_when_something_is_not_as_it_should_be() {
     }
 }
 
+#[test]
+fn every_controller_runs_driverless_and_makes_an_overrun_good() {
+    for controller in CONTROLLERS {
+        for line in ["line8", "line6"] {
+            passes("ato/driverless_section", line, controller);
+        }
+    }
+}
+
 /// Goal: what takes long is run when it is named, by path, folder or glob, and only then.
 #[test]
 fn long_procedures_run_only_when_named() {
