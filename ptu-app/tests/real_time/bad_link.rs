@@ -2,12 +2,12 @@
 //! unit that goes away. The run is recorded as an error, and earlier ones stay.
 
 use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
+use crate::common::proxy::{Change, frames, peer, proxy, unchanged};
 use crate::common::served::Unit;
 use crate::common::{Place, list, number, scripts, text};
-use protocol::frame::{self, Decoder, Header};
 use protocol::link::{End, Link};
 use protocol::message::{Channel, KeepAlive, LogEntry, Message};
 
@@ -35,17 +35,6 @@ fn fails(unit: &str, words: &[&str]) {
 
 /// What a run may take beside its bench time.
 const BESIDE_S: f64 = 2.0;
-
-/// Takes one client and does this with it on a thread of its own.
-fn peer(act: impl FnOnce(TcpStream) + Send + 'static) -> SocketAddr {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-    let address = listener.local_addr().expect("its address");
-    std::thread::spawn(move || {
-        let (stream, _) = listener.accept().expect("a client");
-        act(stream);
-    });
-    address
-}
 
 #[test]
 fn an_unknown_port() {
@@ -245,71 +234,6 @@ fn a_unit_without_a_serial_number_is_shown_as_one() {
     assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
 }
 
-/// What a proxy does to the bytes of one direction.
-type Change = Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>;
-
-/// Stands between `ptu` and a served unit for one client; gives what `--unit` takes.
-fn proxy(unit: &Unit, mut to_unit: Change, mut from_unit: Change) -> String {
-    let port = unit.port.clone();
-    let address = peer(move |client| {
-        let unit = TcpStream::connect(port).expect("the unit");
-        let pass = |mut from: TcpStream, mut to: TcpStream, change: &mut Change| {
-            let mut chunk = [0; 4096];
-            while let Ok(count @ 1..) = from.read(&mut chunk) {
-                if to.write_all(&change(&chunk[..count])).is_err() {
-                    break;
-                }
-            }
-            let _ = to.shutdown(std::net::Shutdown::Both);
-        };
-        let ends = |stream: &TcpStream| stream.try_clone().expect("a clone");
-        std::thread::scope(|scope| {
-            let (client_in, unit_out) = (ends(&client), ends(&unit));
-            scope.spawn(|| pass(client_in, unit_out, &mut to_unit));
-            pass(ends(&unit), ends(&client), &mut from_unit);
-        });
-    });
-    format!("tcp:{address}")
-}
-
-fn unchanged() -> Change {
-    Box::new(<[u8]>::to_vec)
-}
-
-/// Changes whole frames of the tester's channel: what is pushed goes on in the place of each, with
-/// sequence numbers that leave no gap.
-fn frames(mut change: impl FnMut(Message, &mut Vec<Message>) + Send + 'static) -> Change {
-    let (mut decoder, mut next_seq) = (Decoder::new(), 0_u16);
-    let mut payload_out = Vec::new();
-    Box::new(move |bytes| {
-        let mut out = Vec::new();
-        decoder.push(bytes);
-        while let Some(frame) = decoder.next_frame() {
-            let Ok((header, payload)) = frame else {
-                continue;
-            };
-            let message = Message::decode(header.channel, payload).expect("a unit's message");
-            if header.channel != Channel::Ptu {
-                frame::encode(&header, payload, &mut out);
-                continue;
-            }
-            let mut messages = Vec::new();
-            change(message, &mut messages);
-            for message in messages {
-                payload_out.clear();
-                message.encode(&mut payload_out);
-                let header = Header {
-                    seq: next_seq,
-                    ..header
-                };
-                next_seq = next_seq.wrapping_add(1);
-                frame::encode(&header, &payload_out, &mut out);
-            }
-        }
-        out
-    })
-}
-
 /// Flips a bit in one byte of a hundred, once the unit has been brought up.
 fn flips(mut state: u32) -> Change {
     let began = Instant::now();
@@ -349,7 +273,7 @@ fn a_bad_line_is_an_error_of_the_line() {
 #[test]
 fn a_log_that_is_never_answered() {
     let unit = Unit::on_tcp(&[]);
-    let mute = frames(|message, out| match message {
+    let mute = frames(Channel::Ptu, |message, out| match message {
         Message::LogEntry(_) | Message::LogEnd(_) => {}
         other => out.push(other),
     });
@@ -367,7 +291,7 @@ fn a_log_that_is_never_answered() {
 fn another_unit_in_the_middle_of_a_run() {
     let unit = Unit::on_tcp(&["--serial-no", "A-1"]);
     let began = Instant::now();
-    let other = frames(move |message, out| {
+    let other = frames(Channel::Ptu, move |message, out| {
         out.push(match message {
             Message::Identity(mut identity) if began.elapsed() > Duration::from_secs(8) => {
                 identity.serial[0] = b'B';
@@ -387,7 +311,7 @@ fn a_log_without_end_is_read_within_its_time_and_bounded() {
     let unit = Unit::on_tcp(&[]);
     let mut logged = 0;
     let mut asked = false;
-    let endless = frames(move |message, out| match message {
+    let endless = frames(Channel::Ptu, move |message, out| match message {
         Message::Status(mut status) if asked => {
             let entries = (logged..logged + 200).map(|index| LogEntry {
                 index,
