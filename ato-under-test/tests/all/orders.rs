@@ -4,12 +4,13 @@ use ato_under_test::{Setup, Unit};
 use protocol::event::Event;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
-    AtcToTcmsBits, CabEntries, DoorSide, LogEntry, Message, Mode, ModeSwitch, NumberState,
+    AtcToTcmsBits, CabEntries, Disarm, DoorSide, LogEntry, Message, Mode, ModeSwitch, NumberState,
     OrderLacks, OrderState, Outputs, ReadLog, SelfTest, StatusBits, TrainLines, TrainOrder,
     TwcOrders, TwcReport, TwcWayside,
 };
 
 use super::common::{Bench, config, departure, fault, line};
+use super::maintenance::{SESSION, arm};
 
 const OWN: u16 = 8001;
 
@@ -237,6 +238,33 @@ fn orders_in_the_wrong_place_are_refused_with_what_is_lacking() {
         let refused = wayside.parameters(Event::OrderRefused);
         assert_eq!(refused, [i32::from(lacks.bits())], "{order:?} {lacks:?}");
     }
+}
+
+/// A tester has the train: whoever gives orders meanwhile is told, and nothing of it is left when the tester has gone.
+#[test]
+fn orders_are_refused_while_a_tester_is_armed_and_taken_when_it_has_gone() {
+    let mut wayside = Wayside::arrived(&[]);
+    wayside.bench.tcms_obeys = true;
+    wayside
+        .bench
+        .input
+        .lines
+        .insert(TrainLines::MAINTENANCE_KEY);
+    wayside.bench.code("0");
+    wayside.run(2.0);
+    assert_eq!(arm(&mut wayside.bench), None);
+    assert_eq!(wayside.order(TrainOrder::PutAway), OrderState::Idle);
+    let refused = wayside.parameters(Event::OrderRefused);
+    let lacks = refused.iter().map(|bits| *bits as u16);
+    let lacks: Vec<_> = lacks.map(OrderLacks::from_bits_truncate).collect();
+    assert_eq!(lacks, [OrderLacks::DISARMED]);
+    wayside.bench.send(Disarm { session: SESSION });
+    wayside.bench.session = 0;
+    wayside.bench.code("75");
+    wayside.run(3.0);
+    assert_eq!(wayside.state(), OrderState::Idle);
+    wayside.order(TrainOrder::None);
+    assert_eq!(wayside.order(TrainOrder::PutAway), OrderState::PutAway);
 }
 
 #[test]
