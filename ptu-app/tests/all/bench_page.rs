@@ -52,6 +52,19 @@ fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_awa
     window.wait_for("Speed code: no code");
 }
 
+/// Goal: an order of the wayside is given by hand, and what becomes of it is seen. Method: one that the train, with a
+/// driver at the cab, is not in the state for.
+#[test]
+fn an_order_of_the_wayside_is_given_and_its_state_is_seen() {
+    let mut window = connected(on_bench());
+    fold(&mut window, &["ATP signal", "Speed", "Train lines", "TWC"]);
+    window.click("Wayside: good");
+    window.wait_for("Order state: —");
+    window.click("Order: turn back");
+    window.wait_for_part("order_refused:");
+    window.wait_for("Order state: none");
+}
+
 /// Goal: signals of the TEST board reach an armed unit only, and go away with "Stop all".
 #[test]
 fn the_test_board_is_for_an_armed_unit_only() {

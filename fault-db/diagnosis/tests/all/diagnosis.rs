@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Assessment, Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
-    Settings, Sign, Strategy, fixed_order, replayed,
+    Assessment, Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation,
+    ObservedStep, Settings, Sign, Strategy, fixed_order, replayed,
 };
 use protocol::Verdict;
 use protocol::lru::from_stored;

@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
-use diagnosis::{
-    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation,
-};
+use diagnosis::{Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation};
 use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
 use protocol::LruId;
 

@@ -174,6 +174,10 @@ wordings! {
         move_marker: "Move", "이동 적용";
         missing: "Missing", "누락";
         send_frame: "Send frame", "전문 송신";
+        wayside_order: "Order", "운행 지령";
+        destination: "Destination", "행선역";
+        no_orders: "not sent", "미송신";
+        order_state: "Order state", "지령 수행 상태";
         at_departure: "departure", "출발역";
         at_arrival: "arrival", "도착역";
         order: "ordered", "지시";

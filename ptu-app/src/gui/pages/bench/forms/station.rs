@@ -1,8 +1,8 @@
 //! TWC station data.
 
-use btu_rig::stimulus::{StationData, Stimulus};
+use btu_rig::stimulus::{OrderData, StationData, Stimulus};
 use protocol::line::{Line, Section};
-use protocol::message::{DoorSide, RunningMode};
+use protocol::message::{DoorSide, RunningMode, TrainOrder};
 
 use super::StimulusPath;
 
@@ -14,6 +14,8 @@ pub struct StationForm {
     pub ordered: bool,
     /// The fixed speed, km/h.
     pub fixed_speed_kmh: u8,
+    /// Station at which the train's run ends, for orders beside; 0 = none.
+    pub destination: u16,
 }
 
 impl StationForm {
@@ -34,6 +36,7 @@ impl StationForm {
             },
             ordered: false,
             fixed_speed_kmh: 60,
+            destination: 0,
         };
         if let Some(section) = line.sections.first() {
             form.departing(section);
@@ -69,6 +72,18 @@ impl StationForm {
             fixed_speed_kmh: self.ordered.then_some(self.fixed_speed_kmh),
             ..self.data
         }
+    }
+
+    /// An order beside the data, for their train and section.
+    pub fn order(&self, order: TrainOrder, line: &Line) -> Stimulus {
+        let section = line.section(self.data.section);
+        Stimulus::Orders(Some(OrderData {
+            section: section.map_or(0, |section| section.section),
+            length_dm: section.map_or(0, |section| (section.length_m * 10.0).round() as u32),
+            destination: self.destination,
+            order,
+            train_number: self.data.train_number,
+        }))
     }
 
     /// Sent on the way chosen.
@@ -116,6 +131,18 @@ mod tests {
         );
         assert_eq!(sent.door_side.label(), section.door_side);
         assert_eq!(sent.fixed_speed_kmh, None);
+        form.destination = 830;
+        form.data.section = 61;
+        let order = form.order(TrainOrder::PutAway, &line);
+        let told = OrderData {
+            section: 61,
+            length_dm: 8500,
+            destination: 830,
+            order: TrainOrder::PutAway,
+            train_number: 0,
+        };
+        assert_eq!(order, Stimulus::Orders(Some(told)));
+        form.arriving(section, next);
         assert_eq!(form.send(StimulusPath::Harness), Stimulus::Station(sent));
         assert_eq!(form.send(StimulusPath::TestBoard), Stimulus::PtuTwc(sent));
     }

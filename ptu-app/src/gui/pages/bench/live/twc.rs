@@ -48,6 +48,8 @@ pub fn twc(ui: &mut Ui, view: &View<'_>, sent: &WaysideFrame, palette: &Palette)
             fact(words.answer_station, Signal::TwcAnswerStation),
             fact(words.answers, Signal::TwcAnswers),
             fact(words.aligned, Signal::Aligned),
+            fact(words.destination, Signal::Destination),
+            fact(words.order_state, Signal::OrderState),
         ],
     );
 }

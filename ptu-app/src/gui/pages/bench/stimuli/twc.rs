@@ -3,7 +3,7 @@
 use btu_rig::stimulus::{Stimulus, WaysideCondition};
 use eframe::egui::Ui;
 use protocol::line::Line;
-use protocol::message::{DoorSide, RunningMode};
+use protocol::message::{DoorSide, RunningMode, TrainOrder};
 use protocol::signal::Signal;
 
 use super::buttons::{StimulusPanel, check, named_number, number, one_of, row};
@@ -34,6 +34,25 @@ pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Stimulu
     fields(ui, form, line, words);
     row(ui, "", |ui, _| {
         hand.button(ui, words.send_frame, form.send(StimulusPath::Harness));
+    });
+    ui.separator();
+    orders(ui, form, line, hand);
+}
+
+/// Orders beside the data: sent until another is chosen, or none.
+fn orders(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
+    let words = &hand.words().bench;
+    row(ui, words.destination, |ui, label| {
+        number(ui, label, &mut form.destination, 0..=u16::MAX, "");
+    });
+    row(ui, words.wayside_order, |ui, _| {
+        let names = words.states(Signal::WaysideOrder);
+        for (place, (order, text)) in TrainOrder::ALL.iter().zip(names).enumerate() {
+            let in_force = hand.seen.is(Signal::WaysideOrder, place as f64);
+            let stimulus = form.order(*order, line);
+            hand.choice(ui, words.wayside_order, text, in_force, stimulus);
+        }
+        hand.button(ui, words.no_orders, Stimulus::Orders(None));
     });
 }
 
