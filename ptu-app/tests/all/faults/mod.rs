@@ -53,10 +53,6 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "doors that seem open for moments: by the input or by a contact, in the same steps",
     ),
     (
-        "power_supply.dips_when_warm",
-        "restarts in the last steps of few procedures: the line is silent as with a bad link",
-    ),
-    (
         "twc_cpu.hangs",
         "station data that are lost for moments, at the board or at its modem",
     ),
