@@ -2,6 +2,7 @@
 //! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
 mod brake_proof;
+mod causes;
 mod code;
 mod direction;
 mod door_lines;
@@ -16,7 +17,6 @@ mod speedometer;
 mod tachometers;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
-use protocol::event::Event;
 use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
 
@@ -202,18 +202,6 @@ impl Atp {
         self.brake.step(now, brake_inputs, log);
     }
 
-    /// The mode is one in which the speed code counts.
-    fn by_code(&self) -> bool {
-        let mode = self.sequence.mode();
-        matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun)
-    }
-
-    /// The code, or none, permits no motion; nor does a switched-off mode, in which a welded emergency brake relay
-    /// must not leave the train without any brake.
-    fn must_stand(&self) -> bool {
-        (self.by_code() || self.sequence.mode() == Mode::Off) && self.limit == Speed::ZERO
-    }
-
     /// A train that has run past its stop point may be jogged back.
     fn may_jog_backward(&self, lines: TrainLines) -> bool {
         let ahead = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);
@@ -236,90 +224,6 @@ impl Atp {
                 measurable: motion.moves,
             },
         }
-    }
-
-    /// The limit by mode: by code under cab signal, fixed in yard and emergency mode.
-    fn limit_in_force(&self, config: &UnitConfig) -> Speed {
-        match self.sequence.mode() {
-            Mode::Yard => Speed::from_kmh(config.overspeed.yard_kmh),
-            Mode::Emergency => Speed::from_kmh(config.overspeed.emergency_kmh),
-            Mode::Manual | Mode::Automatic | Mode::AutomaticRun => {
-                self.decoder.limit(&config.codes)
-            }
-            Mode::Off | Mode::Unknown(_) => Speed::ZERO,
-        }
-    }
-
-    /// The first cause for the emergency brake that holds now.
-    fn emergency_cause(
-        &mut self,
-        now: Instant,
-        inputs: &Inputs,
-        context: ScanContext,
-        found: &[(bool, EbCause)],
-        log: &mut EventLog,
-    ) -> EbCause {
-        let lost = context.ever_alive && !inputs.alive;
-        match self.inputs_lost.changes(lost) {
-            Some(true) => log.push(now, Event::InputsLost, 0),
-            Some(false) => log.push(now, Event::InputsRestored, 0),
-            None => {}
-        }
-        let broken = self.broken_invariant();
-        if self.broken.rises(broken.is_some()) {
-            log.push(now, Event::InternalError, broken.unwrap_or_default());
-        }
-        let causes = [
-            (broken.is_some(), EbCause::Internal),
-            (context.started && !context.vital_passed, EbCause::SelfTest),
-            (lost, EbCause::InputsLost),
-            (self.tachometers.faulty(), EbCause::Tachometer),
-        ];
-        causes
-            .iter()
-            .chain(found)
-            .find(|(holds, _)| *holds)
-            .map_or(EbCause::None, |(_, cause)| *cause)
-    }
-
-    /// What must hold whatever came in; the number of the first that does not. A processor that
-    /// computes this has failed, and nothing it says can be trusted.
-    fn broken_invariant(&self) -> Option<i32> {
-        let speed = self.tachometers.speed();
-        let holds = [
-            speed.mps().is_finite() && speed >= Speed::ZERO,
-            self.limit.mps().is_finite() && self.limit >= Speed::ZERO,
-            self.tachometers.moved_m().is_finite(),
-            self.doors.enable().is_empty() || self.tachometers.standstill(),
-        ];
-        holds
-            .iter()
-            .position(|holds| !holds)
-            .map(|number| number as i32)
-    }
-
-    fn service_cause(&self, context: ScanContext, stop: bool) -> FsbCause {
-        let running = self.sequence.mode() == Mode::AutomaticRun;
-        let code = self.decoder.code();
-        let over = self.overspeed.service_brake;
-        let causes = [
-            (self.by_code() && code == Code::None, FsbCause::NoCode),
-            (
-                stop && (over || self.by_code() && code == Code::AbsoluteStop),
-                FsbCause::StopCode,
-            ),
-            (over, FsbCause::Overspeed),
-            (self.doors.hold(), FsbCause::DoorOpen),
-            (self.jog.brakes(), FsbCause::Jog),
-            (running && !context.twc_up, FsbCause::TwcLost),
-            (running && !context.tcms_up, FsbCause::TcmsLost),
-            (running && !context.ato_ready, FsbCause::AtoFailed),
-            (running && self.sequence.forbidden(), FsbCause::NotPermitted),
-        ];
-        causes
-            .iter()
-            .find(|(holds, _)| *holds)
-            .map_or(FsbCause::None, |(_, cause)| *cause)
     }
 
     /// The receiver was used for a test: what it decoded counts no more.
@@ -403,22 +307,5 @@ impl Atp {
     /// Why the full service brake is requested.
     pub fn fsb_cause(&self) -> FsbCause {
         self.fsb_cause
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// No input leads to such values: a processor that holds them has failed, and ATP must notice.
-    #[test]
-    fn a_limit_that_no_processor_may_hold_breaks_an_invariant() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let mut atp = Atp::new(&UnitConfig::from_toml(text).unwrap());
-        assert_eq!(atp.broken_invariant(), None);
-        for mps in [f64::NAN, f64::INFINITY, -1.0] {
-            atp.limit = Speed::from_mps(mps);
-            assert_eq!(atp.broken_invariant(), Some(1), "{mps}");
-        }
     }
 }

@@ -255,9 +255,7 @@ fn orders_are_refused_while_a_tester_is_armed_and_taken_when_it_has_gone() {
     assert_eq!(arm(&mut wayside.bench), None);
     assert_eq!(wayside.order(TrainOrder::PutAway), OrderState::Idle);
     let refused = wayside.parameters(Event::OrderRefused);
-    let lacks = refused.iter().map(|bits| *bits as u16);
-    let lacks: Vec<_> = lacks.map(OrderLacks::from_bits_truncate).collect();
-    assert_eq!(lacks, [OrderLacks::DISARMED]);
+    assert_eq!(refused, [i32::from(OrderLacks::DISARMED.bits())]);
     wayside.bench.send(Disarm { session: SESSION });
     wayside.bench.session = 0;
     wayside.bench.code("75");

@@ -125,9 +125,7 @@ impl DrivePlan {
         };
         Ok(Self {
             section: found.clone(),
-            onward_station: line
-                .after(found)
-                .map_or(found.to_station, |after| after.to_station),
+            onward_station: line.station_after(found),
             codes,
             below_limit_kmh: config.ato.below_limit_kmh + config.ato.normal_lowering_kmh,
             train,

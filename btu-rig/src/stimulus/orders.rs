@@ -1,5 +1,6 @@
 //! Orders of the wayside.
 
+use protocol::line::Section;
 use protocol::message::TrainOrder;
 use serde::{Deserialize, Serialize};
 
@@ -20,4 +21,17 @@ pub struct OrderData {
     pub order: TrainOrder,
     /// Train number; 0 = that of the train.
     pub train_number: u16,
+}
+
+impl OrderData {
+    /// An order that tells of a section, whose length is `length_m`; of none it tells 0.
+    pub fn of_section(order: TrainOrder, section: Option<&Section>, length_m: f64) -> Self {
+        Self {
+            section: section.map_or(0, |section| section.section),
+            length_dm: (length_m * 10.0).round() as u32,
+            destination: 0,
+            order,
+            train_number: 0,
+        }
+    }
 }

@@ -116,6 +116,12 @@ impl Line {
         sections.find(|after| after.from_station == section.to_station)
     }
 
+    /// The station after the arrival station of `section`; that one itself at the line's end.
+    pub fn station_after(&self, section: &Section) -> u16 {
+        let after = self.after(section);
+        after.map_or(section.to_station, |after| after.to_station)
+    }
+
     /// The section that ends at the departure station of `section`; `None` at the line's begin.
     pub fn before(&self, section: &Section) -> Option<&Section> {
         let mut sections = self.sections.iter();

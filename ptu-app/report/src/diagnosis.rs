@@ -13,9 +13,19 @@ use ptu_bench::run_diagnosis::Answer;
 /// The contract's keys first.
 pub fn diagnosis_json(answer: &Answer) -> Value {
     let d = &answer.diagnosis;
-    let candidate = |c: &Candidate| candidate_json(answer, c);
+    let traces = |lru: &str| -> Vec<String> {
+        let of_part = answer.traces.get(lru).into_iter().flatten();
+        of_part.map(Id::to_string).collect()
+    };
+    let candidate = |c: &Candidate| {
+        json!({
+            "lru": c.lru, "fault": c.fault, "probability": c.probability,
+            "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(c.lru.as_str()),
+        })
+    };
     json!({
         "candidates": d.candidates.iter().map(candidate).collect::<Vec<_>>(),
+        "why_not": answer.why_not.as_ref().map(candidate),
         "next_check": d.next_check,
         "conclusion": d.conclusion,
         "finding": d.finding,
@@ -26,16 +36,6 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "warnings": answer.warnings,
         "dictionary": Language::English.words().report.origin(answer.dictionary_from),
         "run": answer.run.run.id.to_string(),
-    })
-}
-
-/// A fault mode of a part.
-pub fn candidate_json(answer: &Answer, c: &Candidate) -> Value {
-    let traces = answer.traces.get(c.lru.as_str()).into_iter().flatten();
-    let traces: Vec<_> = traces.map(Id::to_string).collect();
-    json!({
-        "lru": c.lru, "fault": c.fault, "probability": c.probability,
-        "for": c.for_it, "against": c.against, "text": c.text, "traces": traces,
     })
 }
 
@@ -69,19 +69,16 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         100.0 * d.no_fault,
         100.0 * d.unknown_fault
     );
+    if let Some(c) = &answer.why_not {
+        let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
+        candidate_text(&mut text, c);
+    }
     for (lru, ids) in &answer.traces {
         let ids: Vec<_> = ids.iter().map(Id::short).collect();
         if !ids.is_empty() {
             let _ = writeln!(text, "traces of faults that name {lru}: {}", ids.join(", "));
         }
     }
-    text.trim_end().to_owned()
-}
-
-/// The likeliest fault mode of a part that somebody asked about.
-pub fn why_not_text(c: &Candidate) -> String {
-    let mut text = format!("\n\nwhy not {}; of its faults the likeliest is", c.lru);
-    candidate_text(&mut text, c);
     text.trim_end().to_owned()
 }
 

@@ -10,7 +10,7 @@ use super::{Database, ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::run_diagnosis::{diagnose_part, diagnose_run};
 use ptu_bench::stdio;
-use ptu_report::diagnosis::{candidate_json, diagnosis_json, diagnosis_text, why_not_text};
+use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
@@ -57,27 +57,17 @@ impl DiagnoseArguments {
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(&self.run.unwrap_or_default())?;
         let directory = self.scripts.find()?;
-        let (answer, why_not) = match &self.why_not {
-            Some(part) => {
-                let (answer, fault) = diagnose_part(&store, &directory, id, part)?;
-                (answer, Some(fault))
-            }
-            None => (diagnose_run(&store, &directory, id)?, None),
+        let answer = match &self.why_not {
+            Some(part) => diagnose_part(&store, &directory, id, part)?,
+            None => diagnose_run(&store, &directory, id)?,
         };
         for warning in &answer.warnings {
             stdio::note(warning);
         }
         if self.json {
-            let mut said = diagnosis_json(&answer);
-            if let Some(fault) = &why_not {
-                said["why_not"] = candidate_json(&answer, fault);
-            }
-            return print_json(&said);
+            print_json(&diagnosis_json(&answer))
+        } else {
+            print_out(&diagnosis_text(&answer))
         }
-        let mut text = diagnosis_text(&answer);
-        if let Some(fault) = &why_not {
-            text += &why_not_text(fault);
-        }
-        print_out(&text)
     }
 }

@@ -76,7 +76,7 @@ fn long_procedures_run_only_when_named() {
         assert!(holds(&listed(&[named])), "{named}");
     }
     let said = place.ptu(&["run", "--list"]).exits(0);
-    said.explains(&["run only when named: ", "ato/line_run"]);
+    said.explains(&["run only when named: ato/driverless_section, ato/line_run"]);
 }
 
 #[test]

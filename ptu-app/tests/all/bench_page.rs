@@ -57,12 +57,15 @@ fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_awa
 #[test]
 fn an_order_of_the_wayside_is_given_and_its_state_is_seen() {
     let mut window = connected(on_bench());
-    fold(&mut window, &["ATP signal", "Speed", "Train lines", "TWC"]);
+    fold(&mut window, &["ATP signal", "Speed", "Train lines"]);
+    window.click("TWC");
     window.click("Wayside: good");
     window.wait_for("Order state: —");
     window.click("Order: turn back");
     window.wait_for_part("order_refused:");
     window.wait_for("Order state: none");
+    window.click("not sent");
+    window.wait_for("Order state: —");
 }
 
 /// Goal: signals of the TEST board reach an armed unit only, and go away with "Stop all".

@@ -1,9 +1,7 @@
 //! A unit's own event log, read over its port: faults with freeze frames in the history, each once.
 
-use crate::common::proxy::{frames, proxy, unchanged};
 use crate::common::served::{Running, Unit};
 use crate::common::{Place, list, number, text};
-use protocol::message::{Channel, Message};
 use serde_json::Value;
 
 /// Reads the unit's log into the place's history.
@@ -120,25 +118,4 @@ fn without_a_unit_nothing_is_stored() {
         .exits(2)
         .explains(&["lock step", "--unit serial:PATH"]);
     assert_eq!(place.run_ids(), [earlier]);
-}
-
-/// Goal: a unit of before orders of the wayside is not blamed for what it never knew. Method: orders do not reach it.
-#[test]
-fn an_older_unit_that_knows_no_orders_is_passed_with_their_steps_skipped() {
-    let unit = Unit::on_tcp(&[]);
-    let no_orders = frames(Channel::Twc, |message, out| match message {
-        Message::TwcOrders(_) => {}
-        other => out.push(other),
-    });
-    let address = proxy(&unit, no_orders, unchanged());
-    let (said, report) = Place::new().run(&["ato/turn_back", "tcms/link", "--unit", &address]);
-    said.exits(0);
-    let skipped = list(&report["steps"])
-        .iter()
-        .filter(|step| step["verdict"] == "skipped");
-    let skipped: Vec<_> = skipped.map(|step| text(&step["procedure"])).collect();
-    let of_orders = |procedure: &&str| *procedure == "ato/turn_back";
-    assert_eq!(skipped.iter().filter(|name| of_orders(name)).count(), 8);
-    assert!(skipped.len() < list(&report["steps"]).len(), "{report}");
-    assert!(list(&report["faults"]).is_empty(), "{report}");
 }

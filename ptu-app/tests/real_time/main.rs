@@ -7,6 +7,7 @@ mod common;
 mod bad_link;
 mod field;
 mod manual;
+mod older_unit;
 mod pty;
 mod real_window;
 mod train;

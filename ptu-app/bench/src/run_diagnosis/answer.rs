@@ -37,6 +37,8 @@ pub struct Answer {
     pub run: RunDetail,
     /// The diagnosis.
     pub diagnosis: Diagnosis,
+    /// The likeliest fault of the part that was asked about, with what speaks for it and against it.
+    pub why_not: Option<Candidate>,
     /// The parts that were found, each with the run's faults that come from it.
     pub causes: Vec<(Cause, Vec<Id>)>,
     /// Traces that show a part's faults, by part.
@@ -58,11 +60,10 @@ pub fn diagnose_run(
     directory: &ScriptsDirectory,
     id: Id,
 ) -> Result<Answer, Failure> {
-    let (answer, ()) = assess_run(store, directory, id, |_, _| Ok(()))?;
-    Ok(answer)
+    assess_run(store, directory, id, None)
 }
 
-/// Diagnoses a stored run, and tells of a part its likeliest fault, with what speaks for it and against it.
+/// Diagnoses a stored run, and tells why a part is not the answer.
 ///
 /// # Errors
 /// There is no such run, part or dictionary, or a file cannot be read.
@@ -71,20 +72,16 @@ pub fn diagnose_part(
     directory: &ScriptsDirectory,
     id: Id,
     part: &LruId,
-) -> Result<(Answer, Candidate), Failure> {
-    assess_run(store, directory, id, |assessed, model| {
-        let fault = assessed.likeliest_of(part);
-        fault.ok_or_else(|| no_such_part(part, model))
-    })
+) -> Result<Answer, Failure> {
+    assess_run(store, directory, id, Some(part))
 }
 
-/// Diagnoses a stored run, and takes `more` from the assessment.
-fn assess_run<T>(
+fn assess_run(
     store: &Store,
     directory: &ScriptsDirectory,
     id: Id,
-    more: impl FnOnce(&Assessment<'_, '_, '_>, &Model<'_>) -> Result<T, Failure>,
-) -> Result<(Answer, T), Failure> {
+    why_not: Option<&LruId>,
+) -> Result<Answer, Failure> {
     let run = store.run(id, &process_id::is_alive)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
@@ -106,7 +103,10 @@ fn assess_run<T>(
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
     let causes = assessed.causes(diagnosis.finding);
-    let more = more(&assessed, &model)?;
+    let why_not = why_not.map(|part| {
+        let fault = assessed.likeliest_of(part);
+        fault.ok_or_else(|| no_such_part(part, &model))
+    });
     history.explain(&mut diagnosis);
     cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
@@ -114,16 +114,16 @@ fn assess_run<T>(
         let of_part = traces.entry(occurrence.lru.clone()).or_default();
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
-    let answer = Answer {
+    Ok(Answer {
         causes: with_faults(causes, &run, &occurrences),
         run,
         diagnosis,
+        why_not: why_not.transpose()?,
         traces,
         warnings,
         dictionary_from: from,
         dictionary_current: current,
-    };
-    Ok((answer, more))
+    })
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {

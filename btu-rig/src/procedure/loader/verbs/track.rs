@@ -120,21 +120,15 @@ fn orders(args: &Args<'_>) -> Result<OrderData, String> {
     }
     let order = args.text("order").and_then(TrainOrder::from_label);
     Ok(OrderData {
-        section: section.map_or(0, |section| section.section),
-        length_dm: (length_m * 10.0).round() as u32,
         destination: number("destination")?,
-        order: order.unwrap_or_default(),
         train_number: number("train_number")?,
+        ..OrderData::of_section(order.unwrap_or_default(), section, length_m)
     })
 }
 
 fn defaults(section: &Section, place: Place, line: &Line) -> StationData {
     match place {
         Place::Departure => StationData::at_departure(section),
-        Place::Arrival => {
-            let after = line.after(section);
-            let next = after.map_or(section.to_station, |s| s.to_station);
-            StationData::at_arrival(section, next)
-        }
+        Place::Arrival => StationData::at_arrival(section, line.station_after(section)),
     }
 }

@@ -21,50 +21,49 @@ pub struct StationForm {
 impl StationForm {
     /// A train waiting at the start of the line's first section.
     pub fn new(line: &Line) -> Self {
-        let mut form = Self {
-            data: StationData {
-                route: 0,
-                section: 0,
-                station: 0,
-                next_station: 0,
-                loop_id: 0,
-                fixed_speed_kmh: None,
-                running_mode: RunningMode::Normal,
-                door_side: DoorSide::None,
-                departure: false,
-                train_number: 0,
-            },
+        let none = StationData {
+            route: 0,
+            section: 0,
+            station: 0,
+            next_station: 0,
+            loop_id: 0,
+            fixed_speed_kmh: None,
+            running_mode: RunningMode::Normal,
+            door_side: DoorSide::None,
+            departure: false,
+            train_number: 0,
+        };
+        let first = line.sections.first();
+        Self {
+            data: first.map_or(none, StationData::at_departure),
             ordered: false,
             fixed_speed_kmh: 60,
             destination: 0,
-        };
-        if let Some(section) = line.sections.first() {
-            form.departing(section);
         }
-        form
     }
 
-    /// As the wayside tells a train at the start of a section; orders stay.
+    /// As the wayside tells a train at the start of a section; orders and the door side stay.
     pub fn departing(&mut self, section: &Section) {
-        self.data.route = section.route;
-        self.data.section = section.section;
-        self.data.station = section.from_station;
-        self.data.next_station = section.to_station;
-        self.data.loop_id = section.from_loop;
+        let door_side = self.data.door_side;
+        self.told(StationData {
+            door_side,
+            ..StationData::at_departure(section)
+        });
     }
 
-    /// As the wayside tells a train at the end of a section whose successor is `next`; orders stay.
-    pub fn arriving(&mut self, section: &Section, next: Option<&Section>) {
-        self.data.route = section.route;
-        self.data.section = next.map_or(section.section, |next| next.section);
-        self.data.station = section.to_station;
-        self.data.next_station = next.map_or(section.to_station, |next| next.to_station);
-        self.data.loop_id = section.to_loop;
-        self.data.door_side = DoorSide::ALL
-            .iter()
-            .copied()
-            .find(|side| side.label() == section.door_side)
-            .unwrap_or(DoorSide::None);
+    /// As the wayside tells a train at the end of a section; orders stay.
+    pub fn arriving(&mut self, section: &Section, line: &Line) {
+        let next = line.station_after(section);
+        self.told(StationData::at_arrival(section, next));
+    }
+
+    fn told(&mut self, told: StationData) {
+        self.data = StationData {
+            running_mode: self.data.running_mode,
+            departure: self.data.departure,
+            train_number: self.data.train_number,
+            ..told
+        };
     }
 
     pub fn station(&self) -> StationData {
@@ -77,12 +76,11 @@ impl StationForm {
     /// An order beside the data, for their train and section.
     pub fn order(&self, order: TrainOrder, line: &Line) -> Stimulus {
         let section = line.section(self.data.section);
+        let length_m = section.map_or(0.0, |section| section.length_m);
         Stimulus::Orders(Some(OrderData {
-            section: section.map_or(0, |section| section.section),
-            length_dm: section.map_or(0, |section| (section.length_m * 10.0).round() as u32),
             destination: self.destination,
-            order,
             train_number: self.data.train_number,
+            ..OrderData::of_section(order, section, length_m)
         }))
     }
 
@@ -104,12 +102,7 @@ mod tests {
     #[test]
     fn a_section_fills_in_its_departure_or_arrival_and_orders_stay() {
         let line = Line::from_toml(LINE8).expect("line");
-        let (at, section) = line
-            .sections
-            .iter()
-            .enumerate()
-            .find(|(_, section)| section.section == 61)
-            .expect("section 61");
+        let section = line.section(61).expect("section 61");
         let mut form = StationForm::new(&line);
         form.data.departure = true;
         form.ordered = true;
@@ -121,8 +114,7 @@ mod tests {
             (section.from_station, section.to_station, section.from_loop)
         );
         assert_eq!((sent.fixed_speed_kmh, sent.departure), (Some(45), true));
-        let next = line.sections.get(at + 1);
-        form.arriving(section, next);
+        form.arriving(section, &line);
         form.ordered = false;
         let sent = form.station();
         assert_eq!(
@@ -131,19 +123,25 @@ mod tests {
         );
         assert_eq!(sent.door_side.label(), section.door_side);
         assert_eq!(sent.fixed_speed_kmh, None);
+        assert_eq!(form.send(StimulusPath::Harness), Stimulus::Station(sent));
+        assert_eq!(form.send(StimulusPath::TestBoard), Stimulus::PtuTwc(sent));
+    }
+
+    #[test]
+    fn an_order_is_for_the_section_and_train_of_the_data() {
+        let line = Line::from_toml(LINE8).expect("line");
+        let mut form = StationForm::new(&line);
         form.destination = 830;
         form.data.section = 61;
-        let order = form.order(TrainOrder::PutAway, &line);
+        form.data.train_number = 8002;
         let told = OrderData {
             section: 61,
             length_dm: 8500,
             destination: 830,
             order: TrainOrder::PutAway,
-            train_number: 0,
+            train_number: 8002,
         };
+        let order = form.order(TrainOrder::PutAway, &line);
         assert_eq!(order, Stimulus::Orders(Some(told)));
-        form.arriving(section, next);
-        assert_eq!(form.send(StimulusPath::Harness), Stimulus::Station(sent));
-        assert_eq!(form.send(StimulusPath::TestBoard), Stimulus::PtuTwc(sent));
     }
 }

@@ -99,16 +99,14 @@ pub fn fields(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
 
 /// Buttons that fill in what the line says of a section's ends.
 fn fill_in(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
-    let number = form.data.section;
-    let place = line.sections.iter().position(|s| s.section == number);
-    let Some((place, section)) = place.and_then(|at| Some((at, line.sections.get(at)?))) else {
+    let Some(section) = line.section(form.data.section) else {
         return;
     };
     if ui.button(words.at_departure).clicked() {
         form.departing(section);
     }
     if ui.button(words.at_arrival).clicked() {
-        form.arriving(section, line.sections.get(place + 1));
+        form.arriving(section, line);
     }
 }
 
