@@ -200,7 +200,7 @@ pub(super) fn normalised(ln: &[f64]) -> Vec<f64> {
 }
 
 /// Logarithm of the sum of numbers given by their logarithms.
-fn ln_sum(all: impl Iterator<Item = f64> + Clone) -> f64 {
+pub(super) fn ln_sum(all: impl Iterator<Item = f64> + Clone) -> f64 {
     let greatest = all.clone().fold(f64::NEG_INFINITY, f64::max);
     if greatest == f64::NEG_INFINITY {
         return greatest;

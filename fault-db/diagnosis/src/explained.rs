@@ -16,7 +16,7 @@ use super::weights::Weights;
 pub struct Cause {
     /// The part.
     pub lru: LruId,
-    /// Probability of the finding.
+    /// Probability that it has failed.
     pub probability: f64,
     /// Signs that its fault shows.
     pub signs: BTreeSet<Sign>,
@@ -32,7 +32,7 @@ pub fn causes(
     finding: Finding,
     seen: &Observation,
 ) -> Vec<Cause> {
-    let mut causes = found(weights, finding);
+    let mut causes = found(weights, finding, belief.model.settings.found_at);
     if causes.is_empty() {
         return causes;
     }
@@ -79,25 +79,18 @@ pub fn causes(
 }
 
 /// The parts that were found, without what they explain.
-fn found(weights: &Weights, finding: Finding) -> Vec<Cause> {
-    let cause = |lru: &LruId, probability| Cause {
+fn found(weights: &Weights, finding: Finding, found_at: f64) -> Vec<Cause> {
+    if !matches!(finding, Finding::Found | Finding::TwoFound) {
+        return Vec::new();
+    }
+    let failed = weights.failed(found_at).into_iter();
+    let causes = failed.map(|(lru, probability)| Cause {
         lru: lru.clone(),
         probability,
         signs: BTreeSet::new(),
         checks: BTreeSet::new(),
-    };
-    match finding {
-        Finding::Found => {
-            let one = weights.lrus.iter().take(1);
-            one.map(|one| cause(&one.lru, one.probability)).collect()
-        }
-        Finding::TwoFound => {
-            let both = weights.both.iter().take(1);
-            let of_both = both.flat_map(|(both, p)| both.iter().map(|lru| cause(lru, *p)));
-            of_both.collect()
-        }
-        _ => Vec::new(),
-    }
+    });
+    causes.collect()
 }
 
 /// The effects that the fault of a part may have, each with its weight; together 1. A fault that was not seen yet has

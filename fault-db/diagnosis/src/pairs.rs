@@ -1,16 +1,19 @@
-//! Double faults, considered when no single fault explains the results.
+//! Two effects at once: of two faults, or of one that was not seen yet.
 //!
-//! A check passes under two faults only if it passes under each, and fails if either makes it fail. So a
-//! passed check has the lesser of the two likelihoods; any other result is the effect of one of them.
+//! A check passes under two effects only if it passes under each, and fails if either makes it fail. So a passed check
+//! has the lesser of the two likelihoods; any other result is that of one of them.
 
 use protocol::Verdict;
 
-use super::belief::{Belief, normalised};
-use super::model::{FIRST_EFFECT, Hypothesis};
+use super::belief::{Belief, ln_sum, normalised};
+use super::model::{FIRST_EFFECT, Hypothesis, Model, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 
-/// Number of best explaining modes that are combined to pairs.
+/// Number of best explaining modes, each of which is combined with all others.
 const MOST_EXPLAINING: usize = 12;
+
+/// Pairs that are less likely than this, beside the likeliest single fault, are nowhere seen.
+const LEAST_SHARE: f64 = 1e-12;
 
 /// Levels of two modes of different parts, and the probability of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,97 +22,155 @@ pub struct Pair {
     pub probability: f64,
 }
 
-/// The pairs worth reporting, the likeliest first, and the factor by which they reduce the probabilities of
-/// single hypotheses.
-pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, f64) {
+/// The pairs worth reporting, the likeliest first, and the probabilities of the single hypotheses beside them.
+pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64>) {
     let model = belief.model;
-    let explaining = explaining(belief, seen);
-    let mut both = Vec::new();
+    let effects = model.effects();
+    let counted = Steps::new(belief, seen, |ln| &ln.effects);
+    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects);
     let mut ln = belief.ln();
-    let singles = ln.len();
-    for (i, first) in explaining.iter().enumerate() {
+    let (mut found, mut like_both) = (Vec::new(), Vec::new());
+    let best = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let worth_a_look = best + LEAST_SHARE.ln();
+    let explaining = counted.explaining(model);
+    for (i, first) in explaining.iter().enumerate().take(MOST_EXPLAINING) {
         for second in &explaining[i + 1..] {
-            let hypotheses = [model.hypotheses[*first], model.hypotheses[*second]];
-            if model.lru(hypotheses[0]) == model.lru(hypotheses[1]) {
+            let both = [effects[*first], effects[*second]];
+            // Two intermittent modes would explain any intermittent failure.
+            if both.iter().all(|mode| model.is_intermittent(*mode)) {
                 continue;
             }
-            let prior = model.ln_priors[*first]
-                + model.ln_priors[*second]
+            like_both.push(([*first, *second], loosely.ln_of_both(*first, *second)));
+            if model.lru(both[0]) == model.lru(both[1]) {
+                continue;
+            }
+            let prior = model.ln_priors[FIRST_EFFECT + first]
+                + model.ln_priors[FIRST_EFFECT + second]
                 + model.settings.second_fault.ln();
-            both.push(hypotheses);
-            ln.push(prior + ln_pair(belief, [*first, *second], seen));
+            let ln = prior + counted.ln_of_both(*first, *second);
+            // Signs make nothing likelier.
+            if ln > worth_a_look {
+                found.push((both, ln + belief.signs().ln_under(model, &both)));
+            }
         }
     }
-    let all = normalised(&ln);
-    let left: f64 = all[..singles].iter().sum();
-    let found = both.into_iter().zip(&all[singles..]);
-    let mut found: Vec<_> = found
-        .map(|(both, probability)| Pair {
-            both,
-            probability: *probability,
-        })
-        .collect();
+    combine(belief, &like_both, &mut ln);
+    let singles = ln.len();
+    ln.extend(found.iter().map(|(_, ln)| ln));
+    let mut single = normalised(&ln);
+    let of_pairs = single.split_off(singles);
+    let found = found.into_iter().zip(of_pairs);
+    let pair = |((both, _), probability)| Pair { both, probability };
+    let mut found: Vec<Pair> = found.map(pair).collect();
     found.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    (found, left)
+    (found, single)
+}
+
+/// Takes into the unseen modes of `ln` that some act like two effects at once, each as likely as that one alone;
+/// `like_both` has the logarithms of the likelihood of all steps under such.
+fn combine(belief: &Belief<'_, '_>, like_both: &[([usize; 2], f64)], ln: &mut [f64]) {
+    let model = belief.model;
+    let combined = model.settings.combined;
+    let unseen = model.hypotheses.iter().zip(ln);
+    for (hypothesis, ln) in unseen {
+        let Hypothesis::Unseen { part } = *hypothesis else {
+            continue;
+        };
+        let alike = model.resemblance(part);
+        let like = like_both.iter().map(|([first, second], ln)| {
+            let in_either_order = std::f64::consts::LN_2;
+            alike[*first] + alike[*second] + in_either_order + ln
+        });
+        let beside_one = ln_sum(like) - ln_sum(belief.like_effects(part));
+        let shares = [(1.0 - combined).ln(), combined.ln() + beside_one];
+        *ln += ln_sum(shares.into_iter());
+    }
+}
+
+/// What the steps tell of each two effects.
+struct Steps<'b> {
+    /// Logarithms of the likelihood of each passed step under each effect.
+    passed: Vec<&'b [f64]>,
+    strange: Vec<StrangeStep<'b>>,
+}
+
+/// A step that did not pass, or showed a sign.
+struct StrangeStep<'b> {
+    ln_healthy: f64,
+    /// Logarithms of its likelihood under each effect.
+    ln: &'b [f64],
+    /// Probability of its result under each effect, and that times the likelihood.
+    weighted: Vec<(f64, f64)>,
+}
+
+impl<'b> Steps<'b> {
+    /// `of_effects` takes from a step's likelihoods those under each effect.
+    fn new(
+        belief: &'b Belief<'_, '_>,
+        seen: &Observation,
+        of_effects: fn(&StepLikelihoods) -> &[f64],
+    ) -> Self {
+        let model = belief.model;
+        let (mut passed, mut strange) = (Vec::new(), Vec::new());
+        for weighed in belief.steps() {
+            let step = &seen.steps[weighed.seen];
+            let ln = of_effects(&weighed.ln);
+            if !is_strange(step) {
+                passed.push(ln);
+                continue;
+            }
+            let weighted = model.effects().iter().zip(ln).map(|(effect, ln)| {
+                let expected = model.expected(*effect, weighed.place);
+                let result = expected.result(step.result);
+                (result, result * ln.exp())
+            });
+            strange.push(StrangeStep {
+                ln_healthy: weighed.ln.healthy,
+                ln,
+                weighted: weighted.collect(),
+            });
+        }
+        Self { passed, strange }
+    }
+
+    /// Modes that explain the failures better than a healthy unit, with their best level, the best first; by the
+    /// index of the effect.
+    fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
+        let explained = |effect: usize| -> f64 {
+            let strange = self.strange.iter();
+            let gains = strange.map(|step| (step.ln[effect] - step.ln_healthy).max(0.0));
+            gains.sum()
+        };
+        let mut best: Vec<(usize, usize, f64)> = Vec::new();
+        for (effect, hypothesis) in model.effects().iter().enumerate() {
+            let Hypothesis::Mode { mode, .. } = hypothesis else {
+                continue;
+            };
+            let score = explained(effect);
+            match best.last_mut().filter(|(_, of, _)| of == mode) {
+                Some(known) if known.2 >= score => {}
+                Some(known) => *known = (effect, *mode, score),
+                None => best.push((effect, *mode, score)),
+            }
+        }
+        best.retain(|(.., score)| *score > 0.0);
+        best.sort_by(|a, b| b.2.total_cmp(&a.2));
+        best.into_iter().map(|(effect, ..)| effect).collect()
+    }
+
+    /// Logarithm of the likelihood of all steps under two effects.
+    fn ln_of_both(&self, first: usize, second: usize) -> f64 {
+        let passed = self.passed.iter().map(|ln| ln[first].min(ln[second]));
+        // Whose the effect is, is not known: as likely each one's as it is its own.
+        let strange = self.strange.iter().map(|step| {
+            let (result, weighted) = step.weighted[first];
+            let (other_result, other_weighted) = step.weighted[second];
+            ((weighted + other_weighted) / (result + other_result)).ln()
+        });
+        passed.sum::<f64>() + strange.sum::<f64>()
+    }
 }
 
 fn is_strange(step: &ObservedStep) -> bool {
     step.result != Verdict::Passed || !step.signs.is_empty()
-}
-
-/// Permanent modes that explain the failures better than a healthy unit, with their best level, the best
-/// first; by index in the model.
-fn explaining(belief: &Belief<'_, '_>, seen: &Observation) -> Vec<usize> {
-    let steps = belief.steps().iter();
-    let wrong: Vec<_> = steps.filter(|w| is_strange(&seen.steps[w.seen])).collect();
-    let explained = |hypothesis: usize| -> f64 {
-        let gains = wrong
-            .iter()
-            .map(|w| w.ln.effects[hypothesis - FIRST_EFFECT] - w.ln.healthy);
-        gains.map(|gain| gain.max(0.0)).sum()
-    };
-    let mut best: Vec<(usize, usize, f64)> = Vec::new();
-    for (i, hypothesis) in belief.model.hypotheses.iter().enumerate() {
-        let Hypothesis::Mode { mode, .. } = hypothesis else {
-            continue;
-        };
-        // Two intermittent modes would explain any intermittent failure.
-        if belief.model.is_intermittent(*hypothesis) {
-            continue;
-        }
-        let score = explained(i);
-        match best.last_mut().filter(|(_, of, _)| of == mode) {
-            Some(known) if known.2 >= score => {}
-            Some(known) => *known = (i, *mode, score),
-            None => best.push((i, *mode, score)),
-        }
-    }
-    best.retain(|(.., score)| *score > 0.0);
-    best.sort_by(|a, b| b.2.total_cmp(&a.2));
-    best.truncate(MOST_EXPLAINING);
-    best.into_iter().map(|(i, ..)| i).collect()
-}
-
-fn ln_pair(belief: &Belief<'_, '_>, [first, second]: [usize; 2], seen: &Observation) -> f64 {
-    let of_steps = belief.steps().iter().map(|weighed| {
-        let ln = |hypothesis: usize| weighed.ln.effects[hypothesis - FIRST_EFFECT];
-        let (a, b) = (ln(first), ln(second));
-        let step = &seen.steps[weighed.seen];
-        if is_strange(step) {
-            // Whose the effect is, is not known: as likely each one's as it is its own.
-            let result = |i: usize| {
-                let expected = belief
-                    .model
-                    .expected(belief.model.hypotheses[i], weighed.place);
-                expected.result(step.result)
-            };
-            let (of_a, of_b) = (result(first), result(second));
-            ((of_a * a.exp() + of_b * b.exp()) / (of_a + of_b)).ln()
-        } else {
-            a.min(b)
-        }
-    });
-    let model = belief.model;
-    let both = [first, second].map(|i| model.hypotheses[i]);
-    of_steps.sum::<f64>() + belief.signs().ln_under(model, &both)
 }

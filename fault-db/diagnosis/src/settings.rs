@@ -30,6 +30,8 @@ pub struct Settings {
     pub anything: f64,
     /// Share of a part's faults that act in a way which is not in the dictionary.
     pub unseen_mode: f64,
+    /// Share of those that act like two effects of the dictionary at once.
+    pub combined: f64,
     /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
     /// of any part.
     pub other_part: f64,
@@ -151,6 +153,8 @@ impl Settings {
             ("otherwise_unseen", self.otherwise_unseen),
             ("anything", self.anything),
             ("unseen_mode", self.unseen_mode),
+            ("combined", self.combined),
+            ("loosely", self.loosely),
             ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
             ("likelihood.passed", likelihood.passed),
@@ -209,7 +213,7 @@ impl Default for Settings {
         Self {
             no_fault: 0.5,
             unknown_fault: 0.002,
-            second_fault: 1e-7,
+            second_fault: 1e-4,
             found_at: 0.95,
             healthy_at: 0.99,
             least_gain_bits: 0.01,
@@ -218,12 +222,13 @@ impl Default for Settings {
             otherwise_intermittent: 0.1,
             otherwise_unseen: 0.1,
             anything: 0.1,
-            unseen_mode: 0.03,
+            unseen_mode: 0.045,
+            combined: 0.001,
             other_part: 0.02,
-            loosely: 0.2,
+            loosely: 0.05,
             foresight: 0.15,
             suspect: 2.0,
-            weight_of_step: 0.7,
+            weight_of_step: 0.6,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,

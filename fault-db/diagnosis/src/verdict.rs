@@ -143,6 +143,11 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         causes(&self.belief, &self.weights, finding, self.seen)
     }
 
+    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
+    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
+        self.weights.credible_parts(sure)
+    }
+
     /// The likeliest fault mode of a part, however unlikely, with what speaks for it and against it; a fault that is not
     /// in the dictionary only of a part without any mode, as it may act like any. None of a part that is not known.
     pub fn likeliest_of(&self, part: &LruId) -> Option<Candidate> {
@@ -162,20 +167,6 @@ impl Diagnosis {
     /// What `seen` comes to.
     pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
         Assessment::of(model, seen).diagnosis()
-    }
-
-    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
-    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
-        let mut sum = 0.0;
-        let mut parts = Vec::new();
-        for part in &self.lrus {
-            if sum >= sure {
-                break;
-            }
-            sum += part.probability;
-            parts.push(&part.lru);
-        }
-        parts
     }
 }
 
@@ -199,9 +190,9 @@ impl Weights {
         let (pairs, single) = if seen.shows_a_fault() {
             pairs(belief, seen)
         } else {
-            (Vec::new(), 1.0)
+            (Vec::new(), belief.probabilities())
         };
-        (Self::new(belief, &pairs, single), pairs)
+        (Self::new(belief.model, &pairs, &single), pairs)
     }
 
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
@@ -234,15 +225,7 @@ impl Weights {
 
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
-        let found = self
-            .lrus
-            .first()
-            .is_some_and(|part| part.probability >= settings.found_at);
-        let both = self
-            .both
-            .first()
-            .is_some_and(|(_, both)| *both >= settings.found_at);
-        if found || both || self.no_fault >= settings.healthy_at {
+        if !self.failed(settings.found_at).is_empty() || self.no_fault >= settings.healthy_at {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
@@ -266,25 +249,21 @@ impl Weights {
                 )
             },
         );
-        if let Some(one) = self
-            .lrus
-            .first()
-            .filter(|part| part.probability >= settings.found_at)
-        {
-            return (
-                Finding::Found,
-                format!("replace {} ({})", one.lru, percent(one.probability)),
-            );
-        }
-        if let Some(([one, other], both)) = self
-            .both
-            .first()
-            .filter(|(_, both)| *both >= settings.found_at)
-        {
-            return (
-                Finding::TwoFound,
-                format!("two faults: replace {one} and {other} ({})", percent(*both)),
-            );
+        match self.failed(settings.found_at)[..] {
+            [] => {}
+            [(one, probability)] => {
+                return (
+                    Finding::Found,
+                    format!("replace {one} ({})", percent(probability)),
+                );
+            }
+            [(one, _), (other, _), ..] => {
+                let both = percent(self.both_failed(one, other));
+                return (
+                    Finding::TwoFound,
+                    format!("two faults: replace {one} and {other} ({both})"),
+                );
+            }
         }
         if self.no_fault >= settings.healthy_at {
             return (

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use protocol::LruId;
 
 use super::belief::Belief;
-use super::model::Hypothesis;
+use super::model::{Hypothesis, Model};
 use super::pairs::Pair;
 use super::verdict::PartProbability;
 
@@ -78,14 +78,13 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Of all that a belief holds likely; `pairs` are those of two faults, which leave `single` to the others.
-    pub fn new(belief: &Belief<'_, '_>, pairs: &[Pair], single: f64) -> Self {
-        let model = belief.model;
+    /// Of the probabilities of single hypotheses, in the model's order, and of the pairs beside them.
+    pub fn new(model: &Model<'_>, pairs: &[Pair], single: &[f64]) -> Self {
         let mut faults: Vec<Fault> = Vec::new();
         let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
         let (mut no_fault, mut unknown) = (0.0, 0.0);
-        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
-            let of_level = p * single;
+        for (hypothesis, p) in model.hypotheses.iter().zip(single) {
+            let of_level = *p;
             match *hypothesis {
                 Hypothesis::NoFault => no_fault = of_level,
                 Hypothesis::Unknown => unknown = of_level,
@@ -150,5 +149,53 @@ impl Weights {
             no_fault,
             unknown,
         }
+    }
+
+    /// The parts that have failed, alone or beside another, with probability `sure` at least, each with that
+    /// probability.
+    pub fn failed(&self, sure: f64) -> Vec<(&LruId, f64)> {
+        let failed = self.lrus.iter().map(|part| {
+            let beside: f64 = self.pairs_of(&part.lru).map(|(_, both)| both).sum();
+            (&part.lru, part.probability + beside / 2.0)
+        });
+        failed.filter(|(_, p)| *p >= sure).collect()
+    }
+
+    /// Probability that both of two parts have failed.
+    pub fn both_failed(&self, one: &LruId, other: &LruId) -> f64 {
+        let of_pair = self.pairs_of(one).filter(|(beside, _)| *beside == other);
+        of_pair.map(|(_, both)| both).sum()
+    }
+
+    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
+    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
+        let mut sum = 0.0;
+        let mut parts: Vec<&LruId> = Vec::new();
+        for part in &self.lrus {
+            if sum >= sure {
+                break;
+            }
+            // Two parts that have failed at once count with the first of them.
+            let beside =
+                self.pairs_of(&part.lru)
+                    .map(|(other, both)| match parts.contains(&other) {
+                        true => -both / 2.0,
+                        false => both / 2.0,
+                    });
+            sum += part.probability + beside.sum::<f64>();
+            parts.push(&part.lru);
+        }
+        parts
+    }
+
+    /// The parts that may have failed beside one, each with the probability of both.
+    fn pairs_of<'a>(&'a self, lru: &'a LruId) -> impl Iterator<Item = (&'a LruId, f64)> {
+        self.both
+            .iter()
+            .filter_map(move |([one, other], both)| match lru {
+                _ if lru == one => Some((other, *both)),
+                _ if lru == other => Some((one, *both)),
+                _ => None,
+            })
     }
 }

@@ -7,8 +7,8 @@ use diagnosis::{
     Assessment, Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation,
     ObservedStep, Settings, Sign, Strategy, fixed_order, replayed,
 };
-use protocol::Verdict;
 use protocol::lru::from_stored;
+use protocol::{LruId, Verdict};
 
 /// Procedures `a`, `b` and `c` with three steps each; `t` is measured in the first of each.
 fn checks() -> Vec<CheckName> {
@@ -150,15 +150,19 @@ fn a_measured_value_decides_between_two_modes_of_one_step() {
 
 #[test]
 fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
-    let found = diagnosed(&dictionary(), &run(&["b.s1", "c.s1"], Some(240.0)));
+    let (dictionary, settings) = (dictionary(), settings());
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let seen = run(&["b.s1", "c.s1"], Some(240.0));
+    let assessed = Assessment::of(&model, &seen);
+    let found = assessed.diagnosis();
     assert_eq!(found.finding, Finding::CannotTell);
     assert!(
         found.conclusion.starts_with("cannot tell"),
         "{}",
         found.conclusion
     );
-    let parts: BTreeSet<_> = found.credible_parts(0.9).into_iter().collect();
-    let named: BTreeSet<_> = parts.iter().map(|part| part.as_str()).collect();
+    let parts = assessed.credible_parts(0.9).into_iter();
+    let named: BTreeSet<_> = parts.map(|part| part.as_str()).collect();
     assert_eq!(named, BTreeSet::from(["antenna", "cable"]));
     assert_eq!(found.next_check, None, "nothing tells them apart");
 }
@@ -169,6 +173,44 @@ fn two_faults_at_once_are_both_named() {
     assert_eq!(found.finding, Finding::TwoFound, "{}", found.conclusion);
     let parts: BTreeSet<_> = found.lrus[..2].iter().map(|p| p.lru.as_str()).collect();
     assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
+}
+
+/// Goal: a part that has failed whatever else has is named, and alone. Method: a slow relay, beside which one of two
+/// parts has failed that no check tells apart.
+#[test]
+fn a_part_that_has_failed_beside_one_of_two_others_is_found() {
+    let (dictionary, settings) = (dictionary(), settings());
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+    let seen = run(&["a.s1", "b.s1", "c.s1"], Some(643.0));
+    let assessed = Assessment::of(&model, &seen);
+    let found = assessed.diagnosis();
+    assert_eq!(found.finding, Finding::Found, "{}", found.conclusion);
+    assert!(
+        found.conclusion.starts_with("replace relay"),
+        "{}",
+        found.conclusion
+    );
+    let named =
+        |parts: Vec<&LruId>| -> Vec<String> { parts.iter().map(ToString::to_string).collect() };
+    assert_eq!(named(assessed.credible_parts(0.9)), ["relay"]);
+    assert_eq!(
+        named(
+            assessed
+                .causes(found.finding)
+                .iter()
+                .map(|cause| &cause.lru)
+                .collect()
+        ),
+        ["relay"]
+    );
+    // Half of each pair is the relay's: the shares are those of one whole.
+    let share = found.lrus[0].probability;
+    assert!((0.45..0.55).contains(&share), "{share}");
+    let all: f64 = found.lrus.iter().map(|part| part.probability).sum();
+    assert!(
+        (all + found.no_fault + found.unknown_fault - 1.0).abs() < 1e-9,
+        "{all}"
+    );
 }
 
 /// Goal: of what failed each part that was found has what its fault shows, and nothing that it does not.
@@ -361,7 +403,7 @@ fn the_strategy_needs_fewer_steps_than_the_fixed_order() {
         let fixed = fixed_order(&model, &full);
         let (adaptive, seen) = replayed(&model, &full);
         assert_eq!(adaptive.settled, fixed.settled, "{part}");
-        let found = Diagnosis::of(&model, &seen);
+        let found = Assessment::of(&model, &seen);
         let credible = found.credible_parts(0.9);
         assert!(credible.iter().any(|named| **named == part), "{part}");
         sums[0] += adaptive.time_s;

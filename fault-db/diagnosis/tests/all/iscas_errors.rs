@@ -207,6 +207,8 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
         let dictionary = counted(&matrix, &mut dice);
         let settings = Settings {
             no_fault: 1.0 / matrix.states().len() as f64,
+            // Vectors are independent of each other.
+            weight_of_step: 0.99,
             ..Settings::default()
         };
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());

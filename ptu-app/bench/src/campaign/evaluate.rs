@@ -148,13 +148,14 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
 
 fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
     let mode = sample.fault()?;
-    let diagnosis = Diagnosis::of(model, &run.seen);
+    let assessed = diagnosis::Assessment::of(model, &run.seen);
+    let diagnosis = assessed.diagnosis();
     let parts: Vec<_> = match diagnosis.finding {
         Finding::TwoFound => {
             let found = diagnosis.lrus.iter().take(2);
             found.map(|part| &part.lru).collect()
         }
-        _ => diagnosis.credible_parts(SURE),
+        _ => assessed.credible_parts(SURE),
     };
     Some(Assessment {
         fault: mode.id.clone(),
