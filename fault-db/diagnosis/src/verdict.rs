@@ -296,9 +296,11 @@ impl Weights {
             .filter(|part| part.probability >= settings.conclusion.named_at)
             .map(|part| format!("{} ({})", part.lru, percent(part.probability)))
             .collect();
-        (
-            Finding::CannotTell,
-            format!("cannot tell yet which: {}; {then}", likely.join(" or ")),
-        )
+        let likely = match &likely[..] {
+            [] => "cannot tell yet which part".to_owned(),
+            [one] => format!("not certain yet: {one}"),
+            several => format!("cannot tell yet which: {}", several.join(" or ")),
+        };
+        (Finding::CannotTell, format!("{likely}; {then}"))
     }
 }
