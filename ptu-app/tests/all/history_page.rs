@@ -83,6 +83,12 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let (other, id) = (part(other), other["id"].as_str().expect("an id").to_owned());
     let mut window = on(place, Page::Faults, Language::English);
     window.wait_for_part("2 of 2");
+    // Of the other fault, too, the relay is the cause.
+    let causes = window
+        .shown()
+        .into_iter()
+        .filter(|name| name == "Cause: eb_relay");
+    assert_eq!(causes.count(), 2);
     window.click("eb_relay");
     window.wait_for("what was done");
     assert!(!window.enabled("Add note"), "there is nothing to add");

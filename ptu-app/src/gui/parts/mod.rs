@@ -16,7 +16,7 @@ pub use edit::{name_edit, note_edit};
 pub use file::usual_folder;
 pub use limit_bar::{limit_bar, value_text};
 pub use memory::{MemoryReader, Stored};
-pub use named::named_combo;
+pub use named::{named_cell, named_combo};
 pub use run_list::RunList;
 pub use run_note::RunNoteForm;
 pub use share_bar::share_bar;

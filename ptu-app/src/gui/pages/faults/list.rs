@@ -1,16 +1,18 @@
 //! The filters, and the list of faults that match.
 
-use eframe::egui::{ComboBox, Label, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui};
+use eframe::egui::{
+    ComboBox, Label, Response, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui,
+};
 use fault_db::{FaultState, FaultSummary, Id};
 
 use super::filter::{Filter, SPANS, names};
 use crate::gui::Palette;
-use crate::gui::parts::{chip, named_combo};
+use crate::gui::parts::{chip, named_cell, named_combo};
 use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
 
 /// Widths of the columns, points.
-const COLUMNS: [f32; 6] = [156.0, 78.0, 160.0, 110.0, 70.0, 36.0];
+const COLUMNS: [f32; 7] = [150.0, 72.0, 150.0, 96.0, 96.0, 70.0, 36.0];
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
     let faults_of = || faults.iter();
@@ -96,6 +98,7 @@ pub fn list(
         words.common.unit,
         words.common.code,
         words.common.part,
+        words.faults.by_cause,
         words.common.state,
         words.faults.seen,
     ];
@@ -136,11 +139,14 @@ fn row(ui: &mut Ui, words: &Words, fault: &FaultSummary, chosen: bool) -> bool {
         let code = format!("{} {}", fault.code, fault.code_name);
         clicked |= cell(ui, rest[1], RichText::new(code).strong());
         clicked |= cell(ui, rest[2], RichText::new(&fault.lru));
-        ui.allocate_ui([rest[3], ui.spacing().interact_size.y].into(), |ui| {
-            ui.set_min_width(rest[3]);
+        let cause = cell_of(ui, rest[3], RichText::new(fault.cause()));
+        named_cell(&cause, words.faults.by_cause, fault.cause());
+        clicked |= cause.clicked();
+        ui.allocate_ui([rest[4], ui.spacing().interact_size.y].into(), |ui| {
+            ui.set_min_width(rest[4]);
             state_chip(ui, words, fault.state);
         });
-        clicked |= cell(ui, rest[4], RichText::new(fault.occurrences.to_string()));
+        clicked |= cell(ui, rest[5], RichText::new(fault.occurrences.to_string()));
     });
     clicked
 }
@@ -158,11 +164,15 @@ pub fn state_chip(ui: &mut Ui, words: &Words, state: FaultState) {
 }
 
 fn cell(ui: &mut Ui, width: f32, text: RichText) -> bool {
+    cell_of(ui, width, text).clicked()
+}
+
+fn cell_of(ui: &mut Ui, width: f32, text: RichText) -> Response {
     let size = [width, ui.spacing().interact_size.y];
     let label = Label::new(text).truncate().sense(Sense::click());
     let response = ui.allocate_ui(size.into(), |ui| {
         ui.set_min_width(width);
         ui.add(label)
     });
-    response.inner.clicked()
+    response.inner
 }
