@@ -87,7 +87,7 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let causes = window
         .shown()
         .into_iter()
-        .filter(|name| name == "Cause: eb_relay");
+        .filter(|name| name == "cause: eb_relay");
     assert_eq!(causes.count(), 2);
     window.click("eb_relay");
     window.wait_for("what was done");

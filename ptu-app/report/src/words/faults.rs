@@ -19,7 +19,6 @@ wordings! {
         by_code: "by code", "코드별";
         others: "others", "기타";
         cause: "cause", "원인";
-        by_cause: "Cause", "원인";
         with_cause: "{part}; cause {cause}", "{part}; 원인 {cause}";
         case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";
         choose: "Choose a fault on the left", "왼쪽에서 고장을 고르십시오";

@@ -12,7 +12,7 @@ use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
 
 /// Widths of the columns, points.
-const COLUMNS: [f32; 7] = [150.0, 72.0, 150.0, 96.0, 96.0, 70.0, 36.0];
+const COLUMNS: [f32; 7] = [148.0, 70.0, 148.0, 108.0, 108.0, 66.0, 34.0];
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
     let faults_of = || faults.iter();
@@ -98,7 +98,7 @@ pub fn list(
         words.common.unit,
         words.common.code,
         words.common.part,
-        words.faults.by_cause,
+        words.faults.cause,
         words.common.state,
         words.faults.seen,
     ];
@@ -140,7 +140,7 @@ fn row(ui: &mut Ui, words: &Words, fault: &FaultSummary, chosen: bool) -> bool {
         clicked |= cell(ui, rest[1], RichText::new(code).strong());
         clicked |= cell(ui, rest[2], RichText::new(&fault.lru));
         let cause = cell_of(ui, rest[3], RichText::new(fault.cause()));
-        named_cell(&cause, words.faults.by_cause, fault.cause());
+        named_cell(&cause, words.faults.cause, fault.cause());
         clicked |= cause.clicked();
         ui.allocate_ui([rest[4], ui.spacing().interact_size.y].into(), |ui| {
             ui.set_min_width(rest[4]);
