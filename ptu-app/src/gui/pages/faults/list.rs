@@ -12,7 +12,7 @@ use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
 
 /// Widths of the columns, points.
-const COLUMNS: [f32; 7] = [148.0, 70.0, 148.0, 108.0, 108.0, 66.0, 34.0];
+const COLUMNS: [f32; 7] = [148.0, 68.0, 126.0, 108.0, 108.0, 62.0, 30.0];
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
     let faults_of = || faults.iter();

@@ -44,7 +44,7 @@ pub struct FaultsPage {
 impl FaultsPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
-        let list = Panel::left("fault list").default_size(750.0);
+        let list = Panel::left("fault list").default_size(720.0);
         let list = list.size_range(420.0..=900.0);
         let clicked = list.show(ui, |ui| self.list(ui, context)).inner;
         if let Some(id) = clicked {
