@@ -8,7 +8,6 @@ use protocol::{LruId, Verdict};
 use super::belief::Belief;
 use super::model::Hypothesis;
 use super::observation::{CheckName, Observation, Sign};
-use super::verdict::Finding;
 use super::weights::Weights;
 
 /// A part that was found, and what it explains of the run.
@@ -26,13 +25,8 @@ pub struct Cause {
 
 /// The parts that were found, each with what it explains; none unless one part or two are found. What two parts show
 /// is the one's that shows it more often.
-pub fn causes(
-    belief: &Belief<'_, '_>,
-    weights: &Weights,
-    finding: Finding,
-    seen: &Observation,
-) -> Vec<Cause> {
-    let mut causes = found(weights, finding, belief.model.settings.found_at);
+pub fn causes(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> Vec<Cause> {
+    let mut causes = found(weights, belief.model.settings.found_at);
     if causes.is_empty() {
         return causes;
     }
@@ -79,10 +73,7 @@ pub fn causes(
 }
 
 /// The parts that were found, without what they explain.
-fn found(weights: &Weights, finding: Finding, found_at: f64) -> Vec<Cause> {
-    if !matches!(finding, Finding::Found | Finding::TwoFound) {
-        return Vec::new();
-    }
+fn found(weights: &Weights, found_at: f64) -> Vec<Cause> {
     let failed = weights.failed(found_at).into_iter();
     let causes = failed.map(|(lru, probability)| Cause {
         lru: lru.clone(),

@@ -138,9 +138,9 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         }
     }
 
-    /// The parts that `finding` names, each with what it explains.
-    pub fn causes(&self, finding: Finding) -> Vec<Cause> {
-        causes(&self.belief, &self.weights, finding, self.seen)
+    /// The parts that are found, each with what it explains.
+    pub fn causes(&self) -> Vec<Cause> {
+        causes(&self.belief, &self.weights, self.seen)
     }
 
     /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.

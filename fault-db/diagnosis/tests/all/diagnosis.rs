@@ -190,19 +190,15 @@ fn a_part_that_has_failed_beside_one_of_two_others_is_found() {
         "{}",
         found.conclusion
     );
-    let named =
-        |parts: Vec<&LruId>| -> Vec<String> { parts.iter().map(ToString::to_string).collect() };
-    assert_eq!(named(assessed.credible_parts(0.9)), ["relay"]);
-    assert_eq!(
-        named(
-            assessed
-                .causes(found.finding)
-                .iter()
-                .map(|cause| &cause.lru)
-                .collect()
-        ),
-        ["relay"]
-    );
+    let parts: Vec<_> = assessed
+        .credible_parts(0.9)
+        .into_iter()
+        .map(LruId::to_string)
+        .collect();
+    assert_eq!(parts, ["relay"]);
+    let causes = assessed.causes().into_iter();
+    let parts: Vec<_> = causes.map(|cause| cause.lru.to_string()).collect();
+    assert_eq!(parts, ["relay"]);
     // Half of each pair is the relay's: the shares are those of one whole.
     let share = found.lrus[0].probability;
     assert!((0.45..0.55).contains(&share), "{share}");
@@ -222,7 +218,7 @@ fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());
         let seen = run(fails, t);
         let assessed = Assessment::of(&model, &seen);
-        let causes = assessed.causes(assessed.diagnosis().finding);
+        let causes = assessed.causes();
         let causes = causes.into_iter().map(|cause| {
             let checks = cause
                 .checks

@@ -196,7 +196,7 @@ fn counted(matrix: &Matrix, dice: &mut Dice) -> Dictionary {
 }
 
 /// Goal: a dictionary that was counted, not given, names no more wrong parts than it says, and few for
-/// certain. It takes checks for less independent than vectors are, so it may be right more often.
+/// certain. Method: vectors are independent of each other, so each weighs as one check.
 #[test]
 fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
     for (error, found_at_least) in [(0.01, 0.55), (0.05, 0.30)] {
@@ -207,7 +207,6 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
         let dictionary = counted(&matrix, &mut dice);
         let settings = Settings {
             no_fault: 1.0 / matrix.states().len() as f64,
-            // Vectors are independent of each other.
             weight_of_step: 0.99,
             ..Settings::default()
         };

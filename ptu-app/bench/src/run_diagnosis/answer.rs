@@ -102,7 +102,7 @@ fn assess_run(
     let model = Model::new(&dictionary, &settings, &history.factors);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
-    let causes = assessed.causes(diagnosis.finding);
+    let causes = assessed.causes();
     let why_not = why_not.map(|part| {
         let fault = assessed.likeliest_of(part);
         fault.ok_or_else(|| no_such_part(part, &model))
