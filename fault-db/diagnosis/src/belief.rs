@@ -5,6 +5,7 @@ use protocol::LruId;
 use super::model::{FIRST_EFFECT, Hypothesis, Model, NO_FAULT, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 use super::signs::SignsSeen;
+use super::spells::{RATES, over_rates};
 use super::suspects::Suspicion;
 
 /// What the evidence has settled.
@@ -23,7 +24,9 @@ pub struct Belief<'m, 'd> {
     pub model: &'m Model<'d>,
     /// Logarithms of the likelihood of all steps, without their signs, under each effect.
     effects: Vec<f64>,
-    /// The same under a fault that is not in the dictionary and acts like each effect.
+    /// The same under a fault that acts more or less like each effect, at each rate of spells.
+    at_rates: [Vec<f64>; RATES],
+    /// And over all rates.
     like_effects: Vec<f64>,
     /// The same on a healthy unit, with their signs.
     healthy: f64,
@@ -49,6 +52,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         Self {
             model,
             effects: vec![0.0; model.effects().len()],
+            at_rates: std::array::from_fn(|_| vec![0.0; model.effects().len()]),
             like_effects: vec![0.0; model.effects().len()],
             healthy: 0.0,
             signs: SignsSeen::default(),
@@ -77,8 +81,14 @@ impl<'m, 'd> Belief<'m, 'd> {
         for (sum, ln) in self.effects.iter_mut().zip(&ln.effects) {
             *sum += ln;
         }
-        for (sum, ln) in self.like_effects.iter_mut().zip(&ln.like_effects) {
-            *sum += ln;
+        for (sums, ln) in self.at_rates.iter_mut().zip(&ln.like_effects) {
+            for (sum, ln) in sums.iter_mut().zip(ln) {
+                *sum += ln;
+            }
+        }
+        for (effect, like) in self.like_effects.iter_mut().enumerate() {
+            let at_rates = self.at_rates.each_ref().map(|sums| sums[effect]);
+            *like = over_rates(at_rates, self.model.settings);
         }
         self.signs.made.insert(place);
         self.suspicion.see(self.model.dictionary, place, step);
@@ -114,6 +124,9 @@ impl<'m, 'd> Belief<'m, 'd> {
         let of = hypotheses.map(|(i, hypothesis)| {
             let steps = match *hypothesis {
                 Hypothesis::NoFault => self.healthy,
+                Hypothesis::Mode { .. } if model.is_intermittent(*hypothesis) => {
+                    self.like_effects[i - FIRST_EFFECT]
+                }
                 Hypothesis::Mode { .. } => {
                     let effect = i - FIRST_EFFECT;
                     let as_counted = (1.0 - loosely).ln() + self.effects[effect];

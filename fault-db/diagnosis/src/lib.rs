@@ -26,6 +26,7 @@ pub mod process;
 mod reasons;
 mod settings;
 mod signs;
+mod spells;
 mod strategy;
 mod suspects;
 mod unseen;

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use protocol::LruId;
+use protocol::{LruId, Verdict};
 
 use super::cell::{Cell, StepOutcome};
 use super::dictionary::{Column, Dictionary};
@@ -17,6 +17,7 @@ use super::observation::{ObservedStep, Sign};
 use super::outlook::{Outlook, outlooks};
 use super::settings::Settings;
 use super::signs::{ShownSign, shown_signs};
+use super::spells::{self, AS_COUNTED, RATES};
 use super::suspects::Suspects;
 use super::unseen::{frequency, resemblance};
 
@@ -53,8 +54,9 @@ pub struct StepLikelihoods {
     pub healthy: f64,
     /// Under each effect, without its signs, which count once in a run.
     pub effects: Vec<f64>,
-    /// Under a fault that is not in the dictionary and acts more or less like each effect.
-    pub like_effects: Vec<f64>,
+    /// Under a fault that acts more or less like each effect, at each rate of spells: one that is not in the dictionary,
+    /// or comes and goes.
+    pub like_effects: [Vec<f64>; RATES],
 }
 
 /// A dictionary prepared for diagnosis.
@@ -254,19 +256,23 @@ impl<'a> Model<'a> {
                 });
         let counted: Vec<f64> = counted.collect();
         let weight = settings.weight_of_step;
-        let (mut effects, mut like_effects) = (counted.clone(), counted.clone());
+        let rates = spells::rates(settings);
+        let mut effects = counted.clone();
+        let mut like_effects = rates.map(|_| counted.clone());
         for part in &self.effects_of_parts {
             let of_part: f64 = part.iter().map(|effect| counted[*effect]).sum();
             let same_part = of_part / part.len().max(1) as f64;
             let otherwise = mixed(same_part, anything, settings.anything);
             for effect in part.iter().copied() {
-                let share = match self.is_intermittent(self.effects()[effect]) {
-                    true => settings.otherwise_intermittent,
-                    false => settings.otherwise,
+                let ln = |counted, share: f64| weight * mixed(counted, otherwise, share).ln();
+                for (like, rate) in like_effects.iter_mut().zip(rates) {
+                    let at_rate = counted[effect] * self.factor(effect, place, step, rate);
+                    like[effect] = ln(at_rate, settings.otherwise_unseen);
+                }
+                effects[effect] = match self.is_intermittent(self.effects()[effect]) {
+                    true => like_effects[AS_COUNTED][effect],
+                    false => ln(counted[effect], settings.otherwise),
                 };
-                let ln = |share: f64| weight * mixed(counted[effect], otherwise, share).ln();
-                effects[effect] = ln(share);
-                like_effects[effect] = ln(settings.otherwise_unseen);
             }
         }
         StepLikelihoods {
@@ -276,6 +282,17 @@ impl<'a> Model<'a> {
             effects,
             like_effects,
         }
+    }
+
+    /// Factor on a step's likelihood under an effect whose spells come `rate` times as often as counted; 1 where it has
+    /// none, or none that hits the check.
+    fn factor(&self, effect: usize, place: usize, step: &ObservedStep, rate: f64) -> f64 {
+        let hypothesis = self.effects()[effect];
+        if !self.is_intermittent(hypothesis) || self.is_like_healthy(hypothesis, place) {
+            return 1.0;
+        }
+        let passes = self.expected(hypothesis, place).result(Verdict::Passed);
+        spells::factor(step.result, passes, rate)
     }
 
     /// Likelihood of a step's measured values under an effect.
@@ -306,7 +323,7 @@ fn mixed(one: f64, other: f64, share: f64) -> f64 {
 fn false_alarms(dictionary: &Dictionary) -> f64 {
     let cells = dictionary.healthy.cells.values();
     let (wrong, all) = cells.fold((0, 0), |(wrong, all), cell| {
-        let passed = cell.count(protocol::Verdict::Passed);
+        let passed = cell.count(Verdict::Passed);
         (wrong + cell.runs() - passed, all + cell.runs())
     });
     (f64::from(wrong) + 0.5) / (f64::from(all) + 1.0)

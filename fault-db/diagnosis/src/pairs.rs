@@ -8,6 +8,7 @@ use protocol::Verdict;
 use super::belief::{Belief, ln_sum, normalised};
 use super::model::{FIRST_EFFECT, Hypothesis, Model, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
+use super::spells::AS_COUNTED;
 
 /// Number of best explaining modes, each of which is combined with all others.
 const MOST_EXPLAINING: usize = 12;
@@ -27,7 +28,7 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64
     let model = belief.model;
     let effects = model.effects();
     let counted = Steps::new(belief, seen, |ln| &ln.effects);
-    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects);
+    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects[AS_COUNTED]);
     let mut ln = belief.ln();
     let (mut found, mut like_both) = (Vec::new(), Vec::new());
     let best = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);

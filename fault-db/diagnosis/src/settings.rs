@@ -22,9 +22,7 @@ pub struct Settings {
     pub doubt_runs: f64,
     /// Share of checks that a mode acts on otherwise than counted: like another mode of the same part, or anyhow.
     pub otherwise: f64,
-    /// The same of an intermittent mode.
-    pub otherwise_intermittent: f64,
-    /// The same of a mode that is not in the dictionary, beside the effect that it acts like.
+    /// The same of an intermittent mode, and of one that is not in the dictionary, beside the effect that it acts like.
     pub otherwise_unseen: f64,
     /// Share of those that may show anything.
     pub anything: f64,
@@ -37,6 +35,10 @@ pub struct Settings {
     pub other_part: f64,
     /// Share of units on which a known mode acts as loosely as an unseen one.
     pub loosely: f64,
+    /// Share of intermittent faults whose spells come less or more often than counted.
+    pub other_spells: f64,
+    /// How much less or more.
+    pub spell_rate: f64,
     /// Weight of the steps so far in what a fault that is not in the dictionary will do in others.
     pub foresight: f64,
     /// Weight of whom the failed checks suspect.
@@ -149,12 +151,12 @@ impl Settings {
             ("healthy_at", self.healthy_at),
             ("foresight", self.foresight),
             ("otherwise", self.otherwise),
-            ("otherwise_intermittent", self.otherwise_intermittent),
             ("otherwise_unseen", self.otherwise_unseen),
             ("anything", self.anything),
             ("unseen_mode", self.unseen_mode),
             ("combined", self.combined),
             ("loosely", self.loosely),
+            ("other_spells", self.other_spells),
             ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
             ("likelihood.passed", likelihood.passed),
@@ -191,7 +193,7 @@ impl Settings {
             ("likelihood.most_runs", likelihood.most_runs),
             ("conclusion.most_shown", conclusion.most_shown as f64),
             ("least_gain_bits", self.least_gain_bits),
-            ("loosely", self.loosely),
+            ("spell_rate", self.spell_rate),
             ("doubt_runs", self.doubt_runs),
             ("suspect", self.suspect),
             ("bring_up_s", self.bring_up_s),
@@ -219,13 +221,14 @@ impl Default for Settings {
             least_gain_bits: 0.01,
             doubt_runs: 1.0,
             otherwise: 0.0001,
-            otherwise_intermittent: 0.1,
             otherwise_unseen: 0.1,
             anything: 0.1,
             unseen_mode: 0.045,
             combined: 0.001,
             other_part: 0.02,
             loosely: 0.05,
+            other_spells: 0.8,
+            spell_rate: 5.0,
             foresight: 0.15,
             suspect: 2.0,
             weight_of_step: 0.6,

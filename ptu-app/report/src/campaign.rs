@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::left_out::{left_out_json, left_out_text, pairs_json, pairs_text};
+use crate::left_out::{
+    left_out_json, left_out_text, other_spells_json, other_spells_text, pairs_json, pairs_text,
+};
 use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
 
 /// The connection of a laptop alone, as a dictionary names it.
@@ -53,6 +55,7 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "basis_sha256": outcome.dictionary.basis.sha256,
         "left_out": outcome.left_out.as_ref().map(left_out_json),
         "pairs": outcome.pairs.as_ref().map(pairs_json),
+        "other_spells": outcome.other_spells.as_ref().map(other_spells_json),
     })
 }
 
@@ -181,6 +184,9 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     }
     if let Some(pairs) = &outcome.pairs {
         text += &pairs_text(pairs);
+    }
+    if let Some(spells) = &outcome.other_spells {
+        text += &other_spells_text(spells);
     }
     text.trim_end().to_owned()
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use ptu_bench::campaign::{LeftOut, PairFigures, Share, UnseenFigures};
+use ptu_bench::campaign::{LeftOut, OtherSpells, PairFigures, Share, UnseenFigures};
 
 use crate::campaign::{percent, share_json};
 
@@ -47,6 +47,23 @@ pub fn left_out_text(left_out: &LeftOut) -> String {
         let _ = writeln!(text, "\n{what}: {} runs detected", figures.first.all);
         figures_text(&mut text, figures);
     }
+    text
+}
+
+/// Faults that come and go at another rate.
+pub fn other_spells_json(spells: &OtherSpells) -> Value {
+    let mut json = figures_json(&spells.figures);
+    json["detected"] = share_json(spells.detected);
+    json
+}
+
+/// For people.
+pub fn other_spells_text(spells: &OtherSpells) -> String {
+    let Share { of, all } = spells.detected;
+    let mut text = format!(
+        "\nfaults that come and go a quarter of and four times as often: {of} of {all} runs detected\n"
+    );
+    figures_text(&mut text, &spells.figures);
     text
 }
 

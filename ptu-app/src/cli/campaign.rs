@@ -31,6 +31,7 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign --harness none              what a laptop alone on a train can find
 ///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
 ///   ptu campaign --pairs 100                 what it is worth for two faults at once
+///   ptu campaign --other-spells              what it is worth for faults that come more or less often
 ///   ptu campaign --runs runs.zst             goes on where it was stopped
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -57,6 +58,9 @@ pub struct CampaignArguments {
     /// Units with two random faults of different parts, to assess it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     pairs: u32,
+    /// Faults that come and go, too, a quarter of and four times as often as the catalogue says, to assess it
+    #[arg(long)]
+    other_spells: bool,
     /// Other units: another number means other seeds for all of them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     units: u32,
@@ -95,6 +99,7 @@ impl CampaignArguments {
             good: self.good,
             leave_out: self.leave_out_modes,
             pairs: self.pairs,
+            other_spells: self.other_spells,
             units: self.units,
             kept: self.runs.clone(),
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),

@@ -351,6 +351,43 @@ fn contradicting_evidence_gives_no_certain_answer() {
     assert!(found.lrus[0].probability < 0.95, "{}", found.conclusion);
 }
 
+/// Goal: a fault that comes more often than when it was counted is known by all that it hits.
+/// Method: the plug hit each of six checks in one of eight runs, the lamp five of them in every other run; all six fail.
+#[test]
+fn a_fault_that_comes_oftener_than_counted_is_known_by_all_that_it_hits() {
+    let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());
+    dictionary.set_healthy(&vec![run(&[], None); 24]);
+    let six = ["a.s2", "a.s3", "b.s1", "b.s2", "b.s3", "c.s1"];
+    let mut add = |id, fails: &dyn Fn(usize) -> Vec<&'static str>| {
+        let runs: Vec<_> = (0..24).map(|turn| run(&fails(turn), None)).collect();
+        let loose = ModeName {
+            kind: "intermittent".into(),
+            ..mode(id, 1.0)
+        };
+        dictionary.add(&loose, "nominal".into(), &runs);
+    };
+    add("plug.loose", &|turn| {
+        six.get(turn % 8).copied().into_iter().collect()
+    });
+    add("lamp.loose", &|turn| {
+        let hit = six.iter().enumerate().take(5);
+        hit.filter(|(n, _)| (turn >> n) % 2 == 0)
+            .map(|(_, check)| *check)
+            .collect()
+    });
+    let first = |other_spells| {
+        let settings = Settings {
+            other_spells,
+            ..settings()
+        };
+        let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+        Diagnosis::of(&model, &run(&six, None)).lrus[0].lru.clone()
+    };
+    assert_eq!(first(Settings::default().other_spells), "plug");
+    // Counted spells alone speak for the lamp.
+    assert_eq!(first(1e-6), "lamp");
+}
+
 #[test]
 fn a_unit_s_own_log_points_at_a_part_without_any_step() {
     let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());

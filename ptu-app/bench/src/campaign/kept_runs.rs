@@ -137,6 +137,7 @@ mod tests {
             good: 2,
             leave_out: None,
             pairs: 40,
+            other_spells: true,
             units,
             jobs: 1,
             kept: None,

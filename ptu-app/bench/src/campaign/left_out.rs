@@ -49,6 +49,24 @@ pub struct UnseenFigures {
     pub wrong_answers: Vec<(String, String)>,
 }
 
+/// Figures over runs with faults that come and go less or more often than the dictionary counted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherSpells {
+    /// A step did not pass, or a fault was found.
+    pub detected: Share,
+    /// Of those.
+    pub figures: UnseenFigures,
+}
+
+impl OtherSpells {
+    pub(super) fn of(runs: &[Assessment]) -> Self {
+        Self {
+            detected: Share::over(runs.iter(), |run| run.detected),
+            figures: UnseenFigures::of(runs.iter().filter(|run| run.detected)),
+        }
+    }
+}
+
 /// All that a campaign's runs say about it.
 pub(super) struct Evidence<'a> {
     pub basis: &'a Basis,
@@ -115,11 +133,13 @@ impl UnseenFigures {
         evidence: &Evidence<'_>,
     ) -> Self {
         let assessed = left_out.flat_map(|left_out| assess_without(&left_out, evidence));
-        Self::of(&assessed.filter(|run| run.detected).collect::<Vec<_>>())
+        let assessed: Vec<_> = assessed.filter(|run| run.detected).collect();
+        Self::of(assessed.iter())
     }
 
-    fn of(runs: &[Assessment]) -> Self {
-        let share = |has: &dyn Fn(&Assessment) -> bool| Share::over(runs.iter(), has);
+    fn of<'a>(runs: impl Iterator<Item = &'a Assessment>) -> Self {
+        let runs: Vec<_> = runs.collect();
+        let share = |has: &dyn Fn(&Assessment) -> bool| Share::over(runs.iter().copied(), has);
         let class = |run: &Assessment| {
             let top = run.ranked.first().map_or(0.0, |part| part.probability);
             ((top * CLASSES as f64) as usize).min(CLASSES - 1)
@@ -138,11 +158,11 @@ impl UnseenFigures {
             wrong: share(&Assessment::is_wrong),
             unknown: share(&|run| run.finding == Finding::UnknownFault),
             reliability: std::array::from_fn(|of| {
-                let in_class = runs.iter().filter(|run| class(run) == of);
+                let in_class = runs.iter().copied().filter(|run| class(run) == of);
                 Share::over(in_class, |run| run.rank() == Some(0))
             }),
             brier: squared.sum::<f64>() / runs.len().max(1) as f64,
-            confused: confused(runs),
+            confused: confused(&runs),
             wrong_answers: runs
                 .iter()
                 .filter(|run| run.is_wrong())
@@ -182,7 +202,7 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
     )
 }
 
-fn confused(runs: &[Assessment]) -> Vec<(LruId, LruId, usize)> {
+fn confused(runs: &[&Assessment]) -> Vec<(LruId, LruId, usize)> {
     let mut counts: BTreeMap<(&LruId, &LruId), usize> = BTreeMap::new();
     for run in runs {
         if let Some(taken) = run.ranked.first().filter(|part| part.lru != run.lru) {

@@ -25,7 +25,7 @@ use protocol::injection::FaultMode;
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
 use kept_runs::KeptRuns;
 use left_out::Evidence;
-pub use left_out::{LeftOut, UnseenFigures};
+pub use left_out::{LeftOut, OtherSpells, UnseenFigures};
 pub use pairs::PairFigures;
 pub use redundant::{Redundancy, redundancy};
 pub use samples::{Purpose, Sample, samples};
@@ -52,6 +52,8 @@ pub struct Request {
     pub leave_out: Option<u32>,
     /// Runs of units with two faults to assess it.
     pub pairs: u32,
+    /// Faults that come and go less and more often than counted, too.
+    pub other_spells: bool,
     /// Which units: another number means other seeds for everything.
     pub units: u32,
     /// Embedded units to test side by side.
@@ -68,6 +70,8 @@ pub struct Outcome {
     pub assessments: Vec<Assessment>,
     /// What it is worth for two faults at once, if that was asked for.
     pub pairs: Option<PairFigures>,
+    /// What it is worth for faults that come and go less or more often than counted, if that was asked for.
+    pub other_spells: Option<OtherSpells>,
     /// Good runs, and what did not pass in those that did not.
     pub good: Vec<Vec<String>>,
     /// What it is worth for faults that it does not know, if that was asked for.
@@ -169,16 +173,32 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
     } = *evidence;
     let dictionary = dictionary(basis.clone(), suite, modes, samples, runs);
     let held_out = samples.iter().zip(runs);
-    let held_out = held_out.filter(|(sample, _)| sample.purpose == Purpose::Assessment);
-    let of = |faults: usize| -> Vec<_> {
-        let of_so_many = |(sample, _): &(&Sample, _)| sample.faults.len() == faults;
-        held_out.clone().filter(of_so_many).collect()
+    let of = |purpose: Purpose, faults: usize| -> Vec<_> {
+        let is_of =
+            |(sample, _): &(&Sample, _)| sample.purpose == purpose && sample.faults.len() == faults;
+        held_out.clone().filter(is_of).collect()
     };
-    let pairs = of(2);
+    let pairs = of(Purpose::Assessment, 2);
+    let other_spells = of(Purpose::OtherSpells, 1);
     Outcome {
-        assessments: evaluate::assess(&dictionary, settings, &of(1), true, jobs),
+        assessments: evaluate::assess(
+            &dictionary,
+            settings,
+            &of(Purpose::Assessment, 1),
+            true,
+            jobs,
+        ),
         pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, settings, &pairs)),
-        good: evaluate::not_passed(&of(0)),
+        other_spells: (!other_spells.is_empty()).then(|| {
+            OtherSpells::of(&evaluate::assess(
+                &dictionary,
+                settings,
+                &other_spells,
+                false,
+                jobs,
+            ))
+        }),
+        good: evaluate::not_passed(&of(Purpose::Assessment, 0)),
         left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
         dictionary,
         runs: samples.len(),

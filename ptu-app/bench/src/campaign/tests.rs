@@ -24,6 +24,7 @@ fn asked() -> Request {
         good: 0,
         leave_out: None,
         pairs: 0,
+        other_spells: false,
         units: 0,
         jobs: 2,
         kept: None,
