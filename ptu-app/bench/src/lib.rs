@@ -37,6 +37,7 @@ pub mod run_diagnosis;
 pub mod stdio;
 pub mod stop;
 pub mod stored;
+pub mod structure;
 pub mod table;
 #[cfg(test)]
 mod test_support;

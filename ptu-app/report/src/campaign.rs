@@ -54,6 +54,7 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "need_bench": need_bench(outcome),
         "basis_sha256": outcome.dictionary.basis.sha256,
         "left_out": outcome.left_out.as_ref().map(left_out_json),
+        "off_way": outcome.off_way.iter().map(|off| json!({ "fault": off.fault, "step": off.step.to_string() })).collect::<Vec<_>>(),
         "pairs": outcome.pairs.as_ref().map(pairs_json),
         "other_spells": outcome.other_spells.as_ref().map(other_spells_json),
     })
@@ -179,6 +180,13 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         steps.redundant.len(),
         steps.never_failed.len()
     );
+    for off in &outcome.off_way {
+        let _ = writeln!(
+            text,
+            "{} fails {}, whose way does not pass its part",
+            off.fault, off.step
+        );
+    }
     if let Some(left_out) = &outcome.left_out {
         text += &left_out_text(left_out);
     }

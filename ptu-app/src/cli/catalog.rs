@@ -10,9 +10,10 @@ use serde_json::{Value, json};
 
 use super::{ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::structure::Structure;
 use ptu_bench::table::Table;
 
-/// Show faults, signals, speed codes, lines, parts or a train's cars
+/// Show faults, signals, speed codes, lines, parts, the structure or a train's cars
 #[derive(Debug, Args)]
 pub struct CatalogArguments {
     /// What to show
@@ -43,6 +44,8 @@ enum CatalogTopic {
     Lines,
     /// Parts that can be replaced
     Lrus,
+    /// Parts that each signal comes through, from the sensors on
+    Structure,
     /// Masses and brake forces of a train's cars, its MT pairs and the whole of it
     Train,
 }
@@ -56,6 +59,7 @@ impl CatalogArguments {
             CatalogTopic::Codes => self.codes()?,
             CatalogTopic::Lines => self.lines()?,
             CatalogTopic::Lrus => self.lrus()?,
+            CatalogTopic::Structure => self.structure()?,
             CatalogTopic::Train => self.train()?,
         };
         if self.json {
@@ -82,6 +86,14 @@ impl CatalogArguments {
         let catalogue = self.scripts.find()?.faults()?;
         let entry = |lru: &protocol::injection::Lru| json!({ "id": lru.id, "name": lru.name, "name_ko": lru.name_ko });
         Ok(catalogue.lrus.iter().map(entry).collect())
+    }
+
+    fn structure(&self) -> Result<Vec<Value>, Failure> {
+        let directory = self.scripts.find()?;
+        let structure = Structure::load(&directory, &directory.faults()?)?;
+        let entry =
+            |(signal, parts): (Signal, _)| json!({ "signal": signal.name(), "parts": parts });
+        Ok(structure.signals().map(entry).collect())
     }
 
     fn codes(&self) -> Result<Vec<Value>, Failure> {

@@ -36,6 +36,7 @@ use crate::failure::{Failure, did_you_mean};
 use crate::pool;
 use crate::run_diagnosis::basis;
 use crate::stop::Stop;
+use crate::structure::OffWay;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -76,6 +77,8 @@ pub struct Outcome {
     pub good: Vec<Vec<String>>,
     /// What it is worth for faults that it does not know, if that was asked for.
     pub left_out: Option<LeftOut>,
+    /// Steps that a mode fails though its part is not on their way.
+    pub off_way: Vec<OffWay>,
     /// Suite runs made.
     pub runs: usize,
 }
@@ -200,6 +203,7 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
         }),
         good: evaluate::not_passed(&of(Purpose::Assessment, 0)),
         left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
+        off_way: suite.off_way(&dictionary),
         dictionary,
         runs: samples.len(),
     }

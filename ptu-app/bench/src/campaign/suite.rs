@@ -3,7 +3,7 @@
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use btu_rig::rig::Harness;
-use diagnosis::{CheckName, Observation};
+use diagnosis::{CheckName, Dictionary, Observation};
 use protocol::LruId;
 use protocol::injection::FaultCatalogue;
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,7 @@ use crate::run::{
 };
 use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
 use crate::stop::Stop;
+use crate::structure::{OffWay, Structure};
 
 /// All procedures of the default suite that a connection can run, and the bench they run on.
 pub struct Suite {
@@ -24,6 +25,8 @@ pub struct Suite {
     tasks: Vec<Task>,
     /// Parts and fault modes.
     pub catalogue: FaultCatalogue,
+    /// The parts that each signal comes through.
+    structure: Structure,
 }
 
 /// A run of the suite.
@@ -67,6 +70,7 @@ impl Suite {
             .procedures
             .into_iter()
             .filter(|p| !p.on_request && p.needs.lacks(connection).is_none());
+        let catalogue = directory.faults()?;
         Ok(Self {
             setup,
             connection,
@@ -76,13 +80,25 @@ impl Suite {
                     options: RunOptions::default(),
                 })
                 .collect(),
-            catalogue: directory.faults()?,
+            structure: Structure::load(directory, &catalogue)?,
+            catalogue,
         })
     }
 
     /// How it reaches the units.
     pub fn connection(&self) -> Connection {
         self.connection
+    }
+
+    /// What a dictionary of this suite has off the way of a fault's part, and the structure does not list.
+    pub fn off_way(&self, dictionary: &Dictionary) -> Vec<OffWay> {
+        let procedures: Vec<_> = self
+            .tasks
+            .iter()
+            .map(|task| task.procedure.clone())
+            .collect();
+        let off_way = self.structure.off_way(&procedures, dictionary);
+        self.structure.not_understood(off_way)
     }
 
     /// All checks in order, each with the part that its script suspects when it fails.

@@ -1,0 +1,323 @@
+//! The structure of a unit and its train (`scripts/units/structure.toml`): the parts that each signal comes through, from
+//! the sensors on, and so the parts on the way of what a step judges.
+//!
+//! A fault dictionary is held against it: the first step of a procedure that fails under a mode has the mode's part on its
+//! way. Steps after it may fail because it did, and what the unit logs fails any step. All else is a finding, about the
+//! file or about the unit; the file lists those that are understood.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
+use btu_rig::procedure::plan::{Connection, Expectation, Step};
+use diagnosis::{Cell, CheckName, Dictionary, Mode};
+use protocol::event::Event;
+use protocol::injection::FaultCatalogue;
+use protocol::signal::{Origin, Signal};
+use protocol::{LruId, Verdict};
+use serde::Deserialize;
+
+use crate::data::{ScriptsDirectory, read};
+use crate::failure::Failure;
+
+/// Where it stands in the scripts directory.
+pub const FILE: &str = "units/structure.toml";
+
+/// A mode fails a step that more than this share of its runs does not pass, at one of its levels.
+const FAILS: f64 = 0.5;
+
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    /// Parts on the way of every signal that has a way.
+    everywhere: Vec<LruId>,
+    /// Parts beside them in procedures that a laptop runs.
+    on_the_train: Vec<LruId>,
+    ways: Vec<WrittenWay>,
+    off_way: Vec<KnownOffWay>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenWay {
+    #[serde(default)]
+    signals: Vec<String>,
+    /// Events that the unit logs for the same reasons.
+    #[serde(default)]
+    events: Vec<String>,
+    /// Signals that these are made of.
+    #[serde(default)]
+    from: Vec<String>,
+    /// Parts that make them.
+    #[serde(default)]
+    parts: Vec<LruId>,
+}
+
+/// Fault modes that are known to fail a step off the way of their part.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KnownOffWay {
+    /// Their names.
+    pub faults: Vec<String>,
+    /// The step, `procedure: step`.
+    pub step: String,
+    /// Why it fails all the same.
+    pub because: String,
+}
+
+/// A fault mode that fails a step off the way of its part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OffWay {
+    /// Fault mode.
+    pub fault: String,
+    /// The first step of its procedure that it fails.
+    pub step: CheckName,
+}
+
+/// The parts that each signal comes through.
+#[derive(Debug)]
+pub struct Structure {
+    signals: BTreeMap<Signal, BTreeSet<LruId>>,
+    events: BTreeMap<Event, BTreeSet<LruId>>,
+    on_the_train: Vec<LruId>,
+    /// What fails off the way, and why.
+    pub known_off_way: Vec<KnownOffWay>,
+}
+
+impl Structure {
+    /// Reads the structure of the unit and train whose parts a catalogue lists.
+    ///
+    /// # Errors
+    /// The file is missing or wrong.
+    pub fn load(directory: &ScriptsDirectory, catalogue: &FaultCatalogue) -> Result<Self, Failure> {
+        let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
+        let file = directory.path().join(FILE);
+        Self::from_toml(&read(&file)?, &parts)
+            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+    }
+
+    /// Reads and checks the file; `parts` are those that can be replaced.
+    fn from_toml(text: &str, parts: &[&LruId]) -> Result<Self, String> {
+        let written: Written = toml::from_str(text).map_err(|error| error.to_string())?;
+        let named = written.ways.iter().flat_map(|way| &way.parts);
+        let mut named = named
+            .chain(&written.everywhere)
+            .chain(&written.on_the_train);
+        if let Some(part) = named.find(|part| !parts.contains(part)) {
+            return Err(format!("no part \"{part}\"; `ptu catalog lrus` lists them"));
+        }
+        let mut steps = BTreeMap::new();
+        let mut events = Vec::new();
+        for way in &written.ways {
+            let parts = way.parts.iter().chain(&written.everywhere);
+            let from = all(&way.from, signal)?;
+            let made = WayStep {
+                parts: parts.cloned().collect(),
+                from,
+            };
+            for signal in all(&way.signals, signal)? {
+                if steps.insert(signal, made.clone()).is_some() {
+                    return Err(format!("signal {} has two ways", signal.name()));
+                }
+            }
+            let of_way = all(&way.events, event)?.into_iter();
+            events.extend(of_way.map(|event| (event, made.clone())));
+        }
+        let of_unit = Signal::ALL.iter();
+        let mut of_unit = of_unit.filter(|signal| signal.definition().origin == Origin::Unit);
+        if let Some(signal) = of_unit.find(|signal| !steps.contains_key(signal)) {
+            return Err(format!("the unit's signal {} has no way", signal.name()));
+        }
+        let of_signals = steps
+            .iter()
+            .map(|(signal, step)| (*signal, upstream(step, &steps)));
+        let of_events = events
+            .iter()
+            .map(|(event, step)| (*event, upstream(step, &steps)));
+        Ok(Self {
+            signals: of_signals.collect(),
+            events: of_events.collect(),
+            on_the_train: written.on_the_train,
+            known_off_way: written.off_way,
+        })
+    }
+
+    /// The signals that have a way, each with the parts that it comes through.
+    pub fn signals(&self) -> impl Iterator<Item = (Signal, &BTreeSet<LruId>)> {
+        self.signals.iter().map(|(signal, parts)| (*signal, parts))
+    }
+
+    /// The parts on the way of what a step looks at, its signals and the events that it waits for, and the part that it
+    /// suspects.
+    pub fn of_step(&self, procedure: &Procedure, step: &Step) -> BTreeSet<LruId> {
+        let mut way: BTreeSet<_> = step.suspect.iter().cloned().collect();
+        if procedure.needs == Connection::Ptu {
+            way.extend(self.on_the_train.iter().cloned());
+        }
+        step.for_each_signal(&mut |signal| {
+            way.extend(self.signals.get(&signal).into_iter().flatten().cloned());
+        });
+        for expectation in &step.expectations {
+            if let Expectation::Logs { event, .. } = expectation {
+                way.extend(self.events.get(event).into_iter().flatten().cloned());
+                way.extend(event.definition().lru.clone());
+            }
+        }
+        way
+    }
+
+    /// The modes of a dictionary whose first failed step in a procedure is off the way of their part.
+    pub fn off_way(&self, procedures: &[Arc<Procedure>], dictionary: &Dictionary) -> Vec<OffWay> {
+        let mut found = Vec::new();
+        for procedure in procedures {
+            let steps = procedure.steps.iter().filter_map(|step| {
+                let name = CheckName {
+                    procedure: procedure.id.clone(),
+                    step: step.name.clone(),
+                };
+                Some((
+                    dictionary.place(&name)?,
+                    name,
+                    self.of_step(procedure, step),
+                ))
+            });
+            let steps: Vec<_> = steps.collect();
+            for mode in &dictionary.modes {
+                let first = steps.iter().find(|(place, ..)| fails(mode, *place));
+                found.extend(first.and_then(|(_, step, way)| {
+                    let is_off = !way.contains(&mode.name.lru);
+                    is_off.then(|| OffWay {
+                        fault: mode.name.id.clone(),
+                        step: step.clone(),
+                    })
+                }));
+            }
+        }
+        found
+    }
+
+    /// Those of them that the file does not list.
+    pub fn not_understood(&self, off_way: Vec<OffWay>) -> Vec<OffWay> {
+        let is_known = |off: &OffWay| {
+            self.known_off_way.iter().any(|known| {
+                known.faults.contains(&off.fault) && known.step == off.step.to_string()
+            })
+        };
+        off_way.into_iter().filter(|off| !is_known(off)).collect()
+    }
+}
+
+/// One step of a way: the parts that make a signal, and what they make it of.
+#[derive(Clone, Debug)]
+struct WayStep {
+    parts: BTreeSet<LruId>,
+    from: Vec<Signal>,
+}
+
+/// All parts up to the sensors, whatever turns the ways take.
+fn upstream(last: &WayStep, steps: &BTreeMap<Signal, WayStep>) -> BTreeSet<LruId> {
+    let mut parts = last.parts.clone();
+    let (mut seen, mut ahead) = (BTreeSet::new(), last.from.clone());
+    while let Some(signal) = ahead.pop() {
+        if let Some(step) = steps.get(&signal).filter(|_| seen.insert(signal)) {
+            parts.extend(step.parts.iter().cloned());
+            ahead.extend(&step.from);
+        }
+    }
+    parts
+}
+
+/// Whether a mode fails a step by what the step judges: what the unit logs meanwhile fails any step.
+fn fails(mode: &Mode, place: usize) -> bool {
+    let fails = |cell: &Cell| {
+        let failed = cell
+            .signatures
+            .iter()
+            .filter(|(outcome, _)| outcome.result != Verdict::Passed && outcome.signs.is_empty());
+        let failed: u32 = failed.map(|(_, runs)| runs).sum();
+        f64::from(failed) > FAILS * f64::from(cell.runs())
+    };
+    let mut cells = mode
+        .columns
+        .iter()
+        .filter_map(|level| level.cells.get(&place));
+    cells.any(fails)
+}
+
+fn all<T>(names: &[String], of: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
+    names.iter().map(|name| of(name)).collect()
+}
+
+fn signal(name: &str) -> Result<Signal, String> {
+    Signal::from_name(name)
+        .ok_or_else(|| format!("no signal \"{name}\"; `ptu catalog signals` lists them"))
+}
+
+fn event(name: &str) -> Result<Event, String> {
+    Event::from_name(name).ok_or_else(|| format!("no event \"{name}\""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{procedures, scripts, setup};
+
+    fn structure() -> Structure {
+        Structure::load(&scripts(), &scripts().faults().unwrap()).unwrap()
+    }
+
+    fn dictionary() -> Dictionary {
+        let packed = std::fs::read(scripts().path().join("dictionary.zst")).unwrap();
+        Dictionary::from_bytes(&packed).unwrap()
+    }
+
+    /// Goal: structure and campaign say the same of the steps that a part's faults fail.
+    /// Method: the dictionary that comes with the scripts; what it has off the way is what the file lists.
+    #[test]
+    fn the_dictionary_fails_steps_on_the_way_of_the_part_and_those_that_are_listed() {
+        let structure = structure();
+        let off = structure.off_way(&procedures(&setup(&[])), &dictionary());
+        let listed = structure.known_off_way.iter().flat_map(|known| {
+            known
+                .faults
+                .iter()
+                .map(|fault| (fault.clone(), known.step.clone()))
+        });
+        let found: BTreeSet<_> = off
+            .into_iter()
+            .map(|off| (off.fault, off.step.to_string()))
+            .collect();
+        assert_eq!(found, listed.collect());
+    }
+
+    /// Goal: a way that leads past a part is noticed. Method: the speed without its first sensor.
+    #[test]
+    fn a_part_that_is_missing_on_a_way_is_a_finding() {
+        let text = read(&scripts().path().join(FILE)).unwrap();
+        let sensor = "parts = [\"speed_sensor_1\", \"atp_cpu\"]";
+        assert!(text.contains(sensor));
+        let catalogue = scripts().faults().unwrap();
+        let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
+        let without = Structure::from_toml(&text.replace(sensor, "parts = []"), &parts).unwrap();
+        let off = without.off_way(&procedures(&setup(&[])), &dictionary());
+        let off = without.not_understood(off);
+        let of_sensor = |off: &OffWay| off.fault.starts_with("speed_sensor_1.");
+        assert!(!off.is_empty() && off.iter().all(of_sensor), "{off:?}");
+    }
+
+    #[test]
+    fn names_that_there_are_not_and_signals_without_a_way_are_refused() {
+        let text = read(&scripts().path().join(FILE)).unwrap();
+        let catalogue = scripts().faults().unwrap();
+        let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
+        let refused = |from: &str, to: &str| {
+            assert!(text.contains(from), "{from}");
+            Structure::from_toml(&text.replacen(from, to, 1), &parts).unwrap_err()
+        };
+        assert!(refused("\"eb_relay\"", "\"relay\"").contains("no part \"relay\""));
+        assert!(refused("\"limit\"", "\"limits\"").contains("no signal \"limits\""));
+        assert!(refused("signals = [\"limit\"]", "signals = []").contains("limit has no way"));
+        assert!(refused("signals = [\"eb\"]", "signals = [\"fsb\"]").contains("two ways"));
+    }
+}
