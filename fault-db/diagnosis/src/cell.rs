@@ -139,6 +139,12 @@ impl Cell {
         }
     }
 
+    /// Whether it did not pass in some run, or showed a sign.
+    pub fn shows_a_fault(&self) -> bool {
+        let mut signatures = self.signatures.iter();
+        signatures.any(|(s, _)| s.result != Verdict::Passed || !s.signs.is_empty())
+    }
+
     /// Whether it equals a healthy unit's: no other signatures, and values that agree.
     pub fn is_like(&self, healthy: &Self) -> bool {
         let known = |(signature, _): &(StepOutcome, u32)| {

@@ -14,6 +14,8 @@ use super::observation::{CheckName, Observation, Sign};
 
 /// Compression level: read often, written seldom.
 const ZSTD_LEVEL: i32 = 15;
+/// Level of real runs.
+const CASES: &str = "cases";
 /// A dictionary unpacks to at most this many bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
@@ -197,6 +199,29 @@ impl Dictionary {
                 name: mode.clone(),
                 columns: vec![column],
             }),
+        }
+    }
+
+    /// Adds real runs with a fault of a part, as a mode of their own. They are few: checks that passed in all of them tell of
+    /// these units rather than of the fault, and count as they do under the other modes, in as many runs as those have.
+    pub fn add_cases(&mut self, mode: &ModeName, runs: &[Observation]) {
+        let columns = self.modes.iter().flat_map(|mode| &mode.columns);
+        let mut counted: Vec<u32> = columns.map(|column| column.runs).collect();
+        counted.sort_unstable();
+        let usual = counted.get(counted.len() / 2).copied().unwrap_or(1);
+        self.add(mode, CASES.into(), runs);
+        let added = self
+            .modes
+            .last_mut()
+            .and_then(|mode| mode.columns.last_mut());
+        if let Some(column) = added.filter(|column| column.runs > 0) {
+            column.cells.retain(|_, cell| cell.shows_a_fault());
+            let times = usual.div_ceil(column.runs);
+            column
+                .signs
+                .iter_mut()
+                .for_each(|(_, shown)| *shown *= times);
+            column.runs *= times;
         }
     }
 

@@ -150,23 +150,6 @@ impl Store {
         )
     }
 
-    /// How often each part was repaired before a time, of all units, and the repair is confirmed: its fault is
-    /// verified or closed and has not come back. Work on one unit at one time for several faults is one repair.
-    pub fn confirmed_repairs(&self, before_us: i64) -> Result<BTreeMap<String, u32>, StoreError> {
-        let counted = self.backend().select(
-            "SELECT part, count(*) FROM (
-                SELECT DISTINCT r.part, r.unit, r.at_us FROM repair r JOIN fault f ON f.seq = r.fault
-                WHERE f.state IN ('verified', 'closed') AND r.back_at_us IS NULL AND r.at_us < ?1) confirmed
-             GROUP BY part",
-            &values![before_us],
-            |row| Ok((row.get::<String>(0)?, row.get::<i64>(1)?)),
-        );
-        let counted =
-            counted.map_err(|error| self.failed("counting the confirmed repairs", error))?;
-        let count = |(part, count)| (part, u32::try_from(count).unwrap_or(u32::MAX));
-        Ok(counted.into_iter().map(count).collect())
-    }
-
     /// Whether an occurrence of this fault with this message is stored for the unit, at about this time or,
     /// with `None`, at any time.
     pub fn knows_occurrence(

@@ -1,5 +1,6 @@
 //! Queries: lists, single rows with their details, statistics, and free SQL.
 
+mod confirmed;
 mod daily;
 mod distinct_names;
 mod fault_filter;
@@ -16,6 +17,7 @@ mod trace_read;
 mod traces;
 mod trend;
 
+pub use confirmed::NamedAndRepaired;
 pub use daily::DailyCount;
 pub use fault_filter::FaultFilter;
 pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};

@@ -1,9 +1,11 @@
 //! A unit's own history: what counts for a part, and what does not.
 
 use crate::common::{T0_US, end, fault, open, run_record};
+use std::collections::BTreeMap;
+
 use fault_db::{
-    FaultRecord, FaultState, Id, LOG_SOURCE, PartHistory, RepairRecord, RunRecord, RunWriter,
-    Store, Verdict,
+    CauseRecord, FaultRecord, FaultState, Id, LOG_SOURCE, NamedAndRepaired, PartHistory,
+    RepairRecord, RunRecord, RunWriter, Store, Verdict,
 };
 
 const DAY_US: i64 = 86_400_000_000;
@@ -207,13 +209,13 @@ fn occurrences_and_times_under_test_are_known() {
 fn confirmed_repairs_are_counted_by_part_and_those_in_vain_are_not() {
     let history = History::new();
     let faults = |day| [naming(RELAY, day), naming(SENSOR, day)];
-    let (_, opened) = history.run(1, run_record("U-1"), &faults(1));
+    let (run, opened) = history.run(1, run_record("U-1"), &faults(1));
     for fault in &opened {
         history.repair(*fault, RELAY, 1);
     }
     let count = |day: i64| {
         let before_us = T0_US + day * DAY_US;
-        let counted = history.store.confirmed_repairs(before_us);
+        let counted = history.store.confirmed_repairs(before_us, "default");
         counted.expect("counts").get(RELAY).copied().unwrap_or(0)
     };
     assert_eq!(count(2), 0, "nobody has verified it");
@@ -225,6 +227,47 @@ fn confirmed_repairs_are_counted_by_part_and_those_in_vain_are_not() {
         verified.expect("verified");
     }
     assert_eq!((count(1), count(3)), (0, 1));
+    let before_us = T0_US + 3 * DAY_US;
+    let of_others = history.store.confirmed_repairs(before_us, "another type");
+    assert!(of_others.expect("counts").is_empty());
+    let cases = history.store.confirmed_cases(before_us, "default", 9);
+    assert_eq!(cases.expect("cases"), [(RELAY.to_owned(), run)]);
     history.run(4, run_record("U-1"), &faults(4));
     assert_eq!(count(5), 0, "it came back");
+}
+
+/// Goal: it can be seen how often the part that a diagnosis found was the one whose repair helped.
+/// Method: of three units whose faults were attributed to the relay, two have the relay repaired, one the sensor.
+#[test]
+fn parts_found_by_a_diagnosis_are_compared_with_those_repaired() {
+    let history = History::new();
+    for (unit, repaired) in [("U-1", RELAY), ("U-2", SENSOR), ("U-3", RELAY)] {
+        let (run, opened) = history.run(1, run_record(unit), &[naming(SENSOR, 1)]);
+        let cause = CauseRecord {
+            part: RELAY.into(),
+            run: Some(run.to_string()),
+            probability: Some(0.97),
+            note: String::new(),
+        };
+        let at_us = T0_US + DAY_US + 1;
+        history
+            .store
+            .attribute_diagnosed(&opened, &cause, at_us)
+            .expect("attributed");
+        history.repair(opened[0], repaired, 1);
+        let at_us = T0_US + 2 * DAY_US;
+        let verified = FaultState::Verified;
+        history
+            .store
+            .set_state(opened[0], verified, "kim", "", at_us)
+            .expect("verified");
+    }
+    let counted = history
+        .store
+        .named_and_repaired(T0_US + 3 * DAY_US, "default");
+    let of_relay = NamedAndRepaired { named: 3, right: 2 };
+    assert_eq!(
+        counted.expect("counts"),
+        BTreeMap::from([(RELAY.to_owned(), of_relay)])
+    );
 }

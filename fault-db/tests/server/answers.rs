@@ -231,6 +231,13 @@ fn lists() -> Vec<Question> {
             let known = store.knows_occurrence("U-1", (101, "speed code lost"), None)?;
             Ok((parts, spans, known))
         }),
+        question("what confirmed repairs tell", |store| {
+            let repairs = store.confirmed_repairs(day(60), "default")?;
+            let cases = store.confirmed_cases(day(60), "default", 20)?;
+            let named = store.named_and_repaired(day(60), "default")?;
+            assert!(!repairs.is_empty() && !cases.is_empty() && !named.is_empty());
+            Ok((repairs, cases, named))
+        }),
     ]
 }
 

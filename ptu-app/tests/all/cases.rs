@@ -141,6 +141,43 @@ fn what_a_person_says_stands_before_the_next_diagnosis() {
     );
 }
 
+/// Goal: what a repair has proved once is known the next time, in another unit.
+/// Method: the suite on a unit with a fault that it cannot tell from one of another part; the same fault in a second unit,
+/// before and after the repair of the first is verified.
+#[test]
+fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
+    let place = Place::new();
+    let run = |serial, seed| {
+        let inject = ["--inject", "atp_cpu.given_up_released", "--seed", seed];
+        let run = ["run", "--serial-no", serial];
+        place.ptu(&[&run[..], &inject].concat()).exits(1);
+        place.json(&["diagnose", "latest", "--json"])
+    };
+    let first = run("BAD-1", "1");
+    assert_eq!(first["finding"], "cannot_tell", "{}", first["conclusion"]);
+    let fault = id_of(&place, "atp_cpu");
+    let repair = [
+        "faults", "repair", &fault, "--part", "atp_cpu", "--new", "SN-9",
+    ];
+    place.ptu(&repair).exits(0);
+    let unproved = run("BAD-2", "2");
+    assert_eq!(
+        unproved["finding"], "cannot_tell",
+        "{}",
+        unproved["conclusion"]
+    );
+    place.ptu(&["faults", "state", &fault, "verified"]).exits(0);
+    let known = run("BAD-3", "3");
+    let best = &known["candidates"][0];
+    assert_eq!(
+        best["fault"], "atp_cpu.confirmed",
+        "{}",
+        known["conclusion"]
+    );
+    assert_eq!(best["text"], "as in 1 confirmed case");
+    assert_eq!(known["finding"], "found", "{}", known["conclusion"]);
+}
+
 /// Goal: two laptops that saw the same unit have the same cases, whichever imports the other first.
 #[test]
 fn cases_of_two_laptops_are_one_after_an_import_in_either_order() {

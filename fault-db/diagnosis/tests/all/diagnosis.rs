@@ -388,6 +388,19 @@ fn a_fault_that_comes_oftener_than_counted_is_known_by_all_that_it_hits() {
     assert_eq!(first(1e-6), "lamp");
 }
 
+/// Goal: one real case is enough to know the same fault again, and says little where the run is another.
+#[test]
+fn a_confirmed_case_is_known_again() {
+    let mut dictionary = dictionary();
+    let seen = run(&["c.s2", "c.s3", "b.s3"], Some(240.0));
+    let before = diagnosed(&dictionary, &seen);
+    dictionary.add_cases(&mode("sensor.confirmed", 0.1), std::slice::from_ref(&seen));
+    assert_ne!(top(&before), "sensor.confirmed");
+    assert_eq!(top(&diagnosed(&dictionary, &seen)), "sensor.confirmed");
+    let other = run(&["b.s1", "c.s1"], Some(240.0));
+    assert!(["antenna.dead", "cable.open"].contains(&top(&diagnosed(&dictionary, &other))));
+}
+
 #[test]
 fn a_unit_s_own_log_points_at_a_part_without_any_step() {
     let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());

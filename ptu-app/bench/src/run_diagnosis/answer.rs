@@ -8,6 +8,7 @@ use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
 use protocol::LruId;
 
 use super::attribution::with_faults;
+use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
 use super::{UNIT_CONFIG, settings};
@@ -86,7 +87,7 @@ fn assess_run(
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
     let Chosen {
-        dictionary,
+        mut dictionary,
         from,
         mut warnings,
         current,
@@ -97,8 +98,8 @@ fn assess_run(
         warnings.push("the run has no step and no fault that could be diagnosed".into());
     }
     let mut history = OwnHistory::before(&run, &occurrences, store, &settings)?;
-    let repairs = store.confirmed_repairs(run.run.started_at_us)?;
-    history.take_repairs(&repairs, &dictionary, &settings);
+    let of_type = (run.run.started_at_us, run.run.unit_config_name.as_str());
+    take_confirmed((&mut history, &mut dictionary), store, of_type, &settings)?;
     let model = Model::new(&dictionary, &settings, &history.factors);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
@@ -194,10 +195,11 @@ pub fn adaptive(
     }
     let settings = settings(directory)?;
     let mut history = OwnHistory::up_to_now(serial, store, &settings)?;
-    let repairs = store.confirmed_repairs(now_us())?;
-    history.take_repairs(&repairs, &chosen.dictionary, &settings);
+    let mut dictionary = chosen.dictionary;
+    let of_type = (now_us(), UNIT_CONFIG);
+    take_confirmed((&mut history, &mut dictionary), store, of_type, &settings)?;
     Ok(Adaptive {
-        dictionary: chosen.dictionary,
+        dictionary,
         settings,
         lru_factors: history.factors,
     })
@@ -205,7 +207,7 @@ pub fn adaptive(
 
 /// Leaves out what cannot be compared with this dictionary, and warns of it: steps of scripts that were
 /// others then, steps it does not know.
-fn comparable(
+pub(super) fn comparable(
     run: &RunDetail,
     mut seen: Observation,
     dictionary: &Dictionary,
