@@ -70,11 +70,10 @@ pub use id::{Id, IdSource};
 pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
 pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
-    DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary, LOG_SOURCE,
-    NamedAndRepaired, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail,
-    RunFault, RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey,
-    StatQuery, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit,
-    code_number,
+    ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary,
+    LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail, RunFault,
+    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
+    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
 };
 pub use record::{
     CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,

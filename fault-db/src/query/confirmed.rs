@@ -2,7 +2,7 @@
 //!
 //! A repair is confirmed when its fault is verified or closed and has not come back.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::faults::json;
 use crate::backend::values;
@@ -19,35 +19,56 @@ macro_rules! confirmed {
     };
 }
 
-/// How often a part was found by a diagnosis and something was then repaired.
+/// Confirmed repairs of a part. Work on one unit at one time for several faults is one repair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct NamedAndRepaired {
-    /// Confirmed repairs of faults that were attributed to the part.
+pub struct ConfirmedRepairs {
+    /// Of this part.
+    pub repairs: u32,
+    /// Of any part, where a diagnosis had attributed the fault to this one.
     pub named: u32,
-    /// Those of the part itself.
+    /// Of these, of the part itself.
     pub right: u32,
 }
 
 impl Store {
-    /// How often each part was repaired before a time, in units of a type (their configuration's name), and the repair is
-    /// confirmed. Work on one unit at one time for several faults is one repair.
+    /// The confirmed repairs of each part before a time, in units of a type (their configuration's name).
     pub fn confirmed_repairs(
         &self,
         before_us: i64,
         unit_type: &str,
-    ) -> Result<BTreeMap<String, u32>, StoreError> {
-        let counted = self.select(
+    ) -> Result<BTreeMap<String, ConfirmedRepairs>, StoreError> {
+        let repairs = self.select(
             "counting the confirmed repairs",
             concat!(
-                "SELECT part, count(*) FROM (SELECT DISTINCT r.part, r.unit, r.at_us ",
-                confirmed!(),
-                ") confirmed GROUP BY part"
+                "SELECT r.unit, r.at_us, r.part, (SELECT d.body FROM fault_event d
+                    WHERE d.fault = r.fault AND d.kind = 'diagnosed' AND d.at_us <= r.at_us
+                    ORDER BY d.at_us DESC, d.seq DESC LIMIT 1) ",
+                confirmed!()
             ),
             &values![before_us, unit_type],
-            |row| Ok((row.get::<String>(0)?, row.get::<i64>(1)?)),
+            |row| {
+                let named = match row.get::<Option<&str>>(3)? {
+                    Some(_) => Some(part_name(&json::<CauseRecord>(row, 3)?.part)),
+                    None => None,
+                };
+                let (unit, at_us): (i64, i64) = (row.get(0)?, row.get(1)?);
+                Ok(((unit, at_us, row.get::<String>(2)?), named))
+            },
         )?;
-        let count = |(part, count)| (part, u32::try_from(count).unwrap_or(u32::MAX));
-        Ok(counted.into_iter().map(count).collect())
+        let mut counted: BTreeMap<String, ConfirmedRepairs> = BTreeMap::new();
+        let repairs: BTreeSet<_> = repairs.into_iter().collect();
+        let each: BTreeSet<_> = repairs.iter().map(|(repair, _)| repair).collect();
+        for (.., part) in each {
+            counted.entry(part.clone()).or_default().repairs += 1;
+        }
+        for ((.., part), named) in &repairs {
+            if let Some(named) = named {
+                let counts = counted.entry(named.clone()).or_default();
+                counts.named += 1;
+                counts.right += u32::from(named == part);
+            }
+        }
+        Ok(counted)
     }
 
     /// The runs in which faults with a confirmed repair showed last before it, each with the part that was repaired; of
@@ -77,48 +98,5 @@ impl Store {
         cases.sort();
         cases.dedup();
         Ok(cases)
-    }
-
-    /// Of the confirmed repairs of faults that a diagnosis had attributed to a part: how often that part was repaired.
-    pub fn named_and_repaired(
-        &self,
-        before_us: i64,
-        unit_type: &str,
-    ) -> Result<BTreeMap<String, NamedAndRepaired>, StoreError> {
-        let mut repairs = self.select(
-            "comparing diagnoses with repairs",
-            concat!(
-                "SELECT r.unit, r.at_us, r.part, (SELECT d.body FROM fault_event d
-                    WHERE d.fault = r.fault AND d.kind = 'diagnosed' AND d.at_us <= r.at_us
-                    ORDER BY d.at_us DESC, d.seq DESC LIMIT 1) ",
-                confirmed!()
-            ),
-            &values![before_us, unit_type],
-            |row| {
-                let diagnosed = match row.get::<Option<&str>>(3)? {
-                    Some(_) => Some(json::<CauseRecord>(row, 3)?),
-                    None => None,
-                };
-                let named = diagnosed.map(|cause| part_name(&cause.part));
-                Ok((
-                    row.get::<i64>(0)?,
-                    row.get::<i64>(1)?,
-                    row.get::<String>(2)?,
-                    named,
-                ))
-            },
-        )?;
-        repairs.sort();
-        repairs.dedup();
-        let mut counted: BTreeMap<String, NamedAndRepaired> = BTreeMap::new();
-        for (.., part, named) in repairs {
-            if let Some(named) = named {
-                let is_right = named == part;
-                let counts = counted.entry(named).or_default();
-                counts.named += 1;
-                counts.right += u32::from(is_right);
-            }
-        }
-        Ok(counted)
     }
 }

@@ -4,7 +4,7 @@ use crate::common::{T0_US, end, fault, open, run_record};
 use std::collections::BTreeMap;
 
 use fault_db::{
-    CauseRecord, FaultRecord, FaultState, Id, LOG_SOURCE, NamedAndRepaired, PartHistory,
+    CauseRecord, ConfirmedRepairs, FaultRecord, FaultState, Id, LOG_SOURCE, PartHistory,
     RepairRecord, RunRecord, RunWriter, Store, Verdict,
 };
 
@@ -216,7 +216,10 @@ fn confirmed_repairs_are_counted_by_part_and_those_in_vain_are_not() {
     let count = |day: i64| {
         let before_us = T0_US + day * DAY_US;
         let counted = history.store.confirmed_repairs(before_us, "default");
-        counted.expect("counts").get(RELAY).copied().unwrap_or(0)
+        counted
+            .expect("counts")
+            .get(RELAY)
+            .map_or(0, |of| of.repairs)
     };
     assert_eq!(count(2), 0, "nobody has verified it");
     for fault in &opened {
@@ -264,10 +267,13 @@ fn parts_found_by_a_diagnosis_are_compared_with_those_repaired() {
     }
     let counted = history
         .store
-        .named_and_repaired(T0_US + 3 * DAY_US, "default");
-    let of_relay = NamedAndRepaired { named: 3, right: 2 };
-    assert_eq!(
-        counted.expect("counts"),
-        BTreeMap::from([(RELAY.to_owned(), of_relay)])
-    );
+        .confirmed_repairs(T0_US + 3 * DAY_US, "default");
+    let of = |repairs, named, right| ConfirmedRepairs {
+        repairs,
+        named,
+        right,
+    };
+    let relay = (RELAY.to_owned(), of(2, 3, 2));
+    let sensor = (SENSOR.to_owned(), of(1, 0, 0));
+    assert_eq!(counted.expect("counts"), BTreeMap::from([relay, sensor]));
 }

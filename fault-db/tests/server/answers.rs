@@ -234,9 +234,8 @@ fn lists() -> Vec<Question> {
         question("what confirmed repairs tell", |store| {
             let repairs = store.confirmed_repairs(day(60), "default")?;
             let cases = store.confirmed_cases(day(60), "default", 20)?;
-            let named = store.named_and_repaired(day(60), "default")?;
-            assert!(!repairs.is_empty() && !cases.is_empty() && !named.is_empty());
-            Ok((repairs, cases, named))
+            assert!(repairs.values().any(|of| of.named > 0) && !cases.is_empty());
+            Ok((repairs, cases))
         }),
     ]
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use diagnosis::{Dictionary, ModeName, Observation, Settings};
-use fault_db::{NamedAndRepaired, Store};
+use fault_db::{ConfirmedRepairs, Store};
 use protocol::LruId;
 use protocol::lru::from_stored;
 
@@ -34,9 +34,9 @@ pub(super) fn take_confirmed(
         return Ok(());
     }
     history.take_repairs(&repairs, dictionary, settings);
-    for (part, counts) in store.named_and_repaired(before_us, unit_type)? {
-        if let Some(part) = from_stored(&part) {
-            history.add_for(&part, was_right(counts));
+    for (part, counts) in repairs.iter().filter(|(_, counts)| counts.named > 0) {
+        if let Some(part) = from_stored(part) {
+            history.add_for(&part, was_right(*counts));
         }
     }
     let mut cases: BTreeMap<LruId, Vec<Observation>> = BTreeMap::new();
@@ -70,8 +70,7 @@ pub(super) fn take_confirmed(
     Ok(())
 }
 
-fn was_right(NamedAndRepaired { named, right }: NamedAndRepaired) -> String {
-    format!(
-        "found by a diagnosis before {named} confirmed repairs, and the part repaired in {right} of them"
-    )
+fn was_right(of: ConfirmedRepairs) -> String {
+    let ConfirmedRepairs { named, right, .. } = of;
+    format!("repaired in {right} of the {named} confirmed repairs for which a diagnosis found it")
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use diagnosis::{Dictionary, Settings};
+use fault_db::ConfirmedRepairs;
 use protocol::LruId;
 
 use super::history::OwnHistory;
@@ -12,12 +13,16 @@ impl OwnHistory {
     /// beside them, so that a few repairs change little and many decide: the mean of a Dirichlet distribution.
     pub(super) fn take_repairs(
         &mut self,
-        repairs: &BTreeMap<String, u32>,
+        repairs: &BTreeMap<String, ConfirmedRepairs>,
         dictionary: &Dictionary,
         settings: &Settings,
     ) {
         let parts = dictionary.lrus();
-        let count = |part: &LruId| f64::from(repairs.get(part.as_str()).copied().unwrap_or(0));
+        let count = |part: &LruId| {
+            repairs
+                .get(part.as_str())
+                .map_or(0.0, |of| f64::from(of.repairs))
+        };
         // Repairs of what is no part of the unit say nothing of its parts.
         let all: f64 = parts.iter().map(|part| count(part)).sum();
         if all == 0.0 {
@@ -71,7 +76,13 @@ mod tests {
     }
 
     fn factors(repairs: &[(&str, u32)]) -> BTreeMap<LruId, f64> {
-        let repairs = repairs.iter().map(|(part, n)| ((*part).to_owned(), *n));
+        let confirmed = |repairs| ConfirmedRepairs {
+            repairs,
+            ..ConfirmedRepairs::default()
+        };
+        let repairs = repairs
+            .iter()
+            .map(|(part, n)| ((*part).to_owned(), confirmed(*n)));
         let mut history = OwnHistory::default();
         history.take_repairs(&repairs.collect(), &dictionary(), &Settings::default());
         history.factors
