@@ -1,7 +1,10 @@
 //! The posterior probability of each hypothesis, updated step by step with Bayes' rule.
 
+use std::collections::BTreeMap;
+
 use protocol::LruId;
 
+use super::cell::StepOutcome;
 use super::model::{FIRST_EFFECT, Hypothesis, Model, NO_FAULT, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 use super::signs::SignsSeen;
@@ -32,6 +35,8 @@ pub struct Belief<'m, 'd> {
     healthy: f64,
     signs: SignsSeen,
     suspicion: Suspicion,
+    /// What each check showed last.
+    shown: BTreeMap<usize, StepOutcome>,
     steps: Vec<WeighedStep>,
 }
 
@@ -57,6 +62,7 @@ impl<'m, 'd> Belief<'m, 'd> {
             healthy: 0.0,
             signs: SignsSeen::default(),
             suspicion: Suspicion::default(),
+            shown: BTreeMap::new(),
             steps: Vec::new(),
         }
     }
@@ -76,7 +82,12 @@ impl<'m, 'd> Belief<'m, 'd> {
         let Some(place) = self.model.dictionary.place(&step.check) else {
             return;
         };
-        let ln = self.model.ln_likelihoods(place, step);
+        let outcome = StepOutcome::of(step);
+        let mut ln = self.model.ln_likelihoods(place, step);
+        if self.shown.get(&place) == Some(&outcome) {
+            self.model.keep_what_comes_and_goes(place, &mut ln);
+        }
+        self.shown.insert(place, outcome);
         self.healthy += ln.healthy;
         for (sum, ln) in self.effects.iter_mut().zip(&ln.effects) {
             *sum += ln;
@@ -103,6 +114,11 @@ impl<'m, 'd> Belief<'m, 'd> {
     /// The steps added, each with its likelihoods.
     pub(super) fn steps(&self) -> &[WeighedStep] {
         &self.steps
+    }
+
+    /// What a check showed last.
+    pub(super) fn shown(&self, place: usize) -> Option<&StepOutcome> {
+        self.shown.get(&place)
     }
 
     /// The signs that showed.

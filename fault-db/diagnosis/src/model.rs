@@ -284,6 +284,20 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// Takes from the likelihoods of a check that showed the same before: what lasts shows it again for certain, and so does
+    /// a check that an effect does not act on.
+    pub fn keep_what_comes_and_goes(&self, place: usize, ln: &mut StepLikelihoods) {
+        ln.healthy = 0.0;
+        for (effect, hypothesis) in self.effects().iter().enumerate() {
+            if !self.is_intermittent(*hypothesis) || self.is_like_healthy(*hypothesis, place) {
+                ln.effects[effect] = 0.0;
+                ln.like_effects
+                    .iter_mut()
+                    .for_each(|like| like[effect] = 0.0);
+            }
+        }
+    }
+
     /// Factor on a step's likelihood under an effect whose spells come `rate` times as often as counted; 1 where it has
     /// none, or none that hits the check.
     fn factor(&self, effect: usize, place: usize, step: &ObservedStep, rate: f64) -> f64 {

@@ -2,6 +2,9 @@
 //!
 //! A procedure sets the unit up at its start and its steps build on each other. So a check costs all steps
 //! of its procedure before it, except those that have just run.
+//!
+//! Where no other check tells more, one that was made may: what comes and goes hits other checks the next time. What lasts
+//! shows the same again.
 
 use std::collections::BTreeSet;
 
@@ -21,6 +24,8 @@ pub struct NextCheck {
     pub gain_bits: f64,
     /// Duration, s, including the steps before it and the set-up of the unit.
     pub cost_s: f64,
+    /// It was made already, and is worth making again.
+    pub again: bool,
 }
 
 fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::Error> {
@@ -45,6 +50,22 @@ impl Belief<'_, '_> {
         under_way: Option<&str>,
         may: Option<&BTreeSet<String>>,
     ) -> Option<NextCheck> {
+        self.best_check(done, under_way, may, false)
+    }
+
+    /// The check in `done` that is worth most when it is made again.
+    pub fn next_check_again(&self, done: &BTreeSet<CheckName>) -> Option<NextCheck> {
+        self.best_check(done, None, None, true)
+    }
+
+    /// `again` chooses among the checks in `done`, otherwise among the others.
+    fn best_check(
+        &self,
+        done: &BTreeSet<CheckName>,
+        under_way: Option<&str>,
+        may: Option<&BTreeSet<String>>,
+        again: bool,
+    ) -> Option<NextCheck> {
         let classes = self.classes();
         let dictionary = self.model.dictionary;
         let settings = self.model.settings;
@@ -63,8 +84,8 @@ impl Belief<'_, '_> {
             if may.is_some_and(|may| !may.contains(procedure)) {
                 continue;
             }
-            let again = done.contains(check);
-            if under_way == Some(procedure) && again {
+            let is_done = done.contains(check);
+            if under_way == Some(procedure) && is_done {
                 continue;
             }
             cost_s += dictionary
@@ -72,7 +93,7 @@ impl Belief<'_, '_> {
                 .cells
                 .get(&place)
                 .map_or(0.0, |cell| cell.time_s);
-            if again {
+            if is_done != again {
                 continue;
             }
             let gain_bits = self.gain_bits(place, &classes);
@@ -88,6 +109,7 @@ impl Belief<'_, '_> {
                         check,
                         gain_bits,
                         cost_s,
+                        again,
                     },
                 ));
             }
@@ -128,7 +150,15 @@ impl Belief<'_, '_> {
         if outlook.effects.is_empty() {
             return 0.0;
         }
-        let mut joint = vec![vec![0.0; classes.all.len()]; outlook.outcomes];
+        // What lasts shows what the check showed before.
+        let before = self.shown(place).map(|outcome| {
+            let known = outlook.outcomes.iter().position(|known| known == outcome);
+            known.unwrap_or(outlook.outcomes.len())
+        });
+        let is_new = |effect: usize| {
+            before.is_none() || self.model.is_intermittent(self.model.effects()[effect])
+        };
+        let mut joint = vec![vec![0.0; classes.all.len()]; outlook.outcomes.len() + 1];
         let mut add = |outcomes: &[(usize, f64)], of_classes: &[f64]| {
             for (outcome, share) in outcomes {
                 for (sum, p) in joint[*outcome].iter_mut().zip(of_classes) {
@@ -137,14 +167,17 @@ impl Belief<'_, '_> {
             }
         };
         let mut like_healthy = classes.all.clone();
-        for (effect, outcomes) in &outlook.effects {
+        for (effect, outcomes) in outlook.effects.iter().filter(|(effect, _)| is_new(*effect)) {
             let of_classes = &classes.with_effect[*effect];
             for (left, p) in like_healthy.iter_mut().zip(of_classes) {
                 *left = (*left - p).max(0.0);
             }
             add(outcomes, of_classes);
         }
-        add(&outlook.healthy, &like_healthy);
+        match before {
+            Some(outcome) => add(&[(outcome, 1.0)], &like_healthy),
+            None => add(&outlook.healthy, &like_healthy),
+        }
         information_bits(&joint)
     }
 }

@@ -9,8 +9,8 @@ type Shares = Vec<(usize, f64)>;
 /// The outcomes of one check.
 #[derive(Clone, Debug, Default)]
 pub struct Outlook {
-    /// How many there are.
-    pub outcomes: usize,
+    /// Which they are.
+    pub outcomes: Vec<StepOutcome>,
     /// On a healthy unit.
     pub healthy: Shares,
     /// Under the effects that differ from a healthy unit here, each by its index.
@@ -45,7 +45,7 @@ pub fn outlooks<'a>(
             .map(|(effect, cell)| (effect, shares(cell)))
             .collect();
         Outlook {
-            outcomes: known.len(),
+            outcomes: known.into_iter().cloned().collect(),
             healthy,
             effects,
         }

@@ -229,7 +229,8 @@ impl Weights {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
-        belief.next_check(&done, None, None)
+        let fresh = belief.next_check(&done, None, None);
+        fresh.or_else(|| belief.next_check_again(&done))
     }
 
     fn conclusion(
@@ -243,8 +244,9 @@ impl Weights {
         let then = next.map_or_else(
             || "nothing in this suite would tell more".to_owned(),
             |next| {
+                let again = if next.again { " again" } else { "" };
                 format!(
-                    "next, run {} ({:.2} bits in {:.0} s)",
+                    "next, run{again} {} ({:.2} bits in {:.0} s)",
                     next.check, next.gain_bits, next.cost_s
                 )
             },

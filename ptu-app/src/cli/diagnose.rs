@@ -8,7 +8,7 @@ use protocol::LruId;
 use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
 use super::{Database, ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run_diagnosis::{diagnose_part, diagnose_run};
+use ptu_bench::run_diagnosis::{Question, diagnose};
 use ptu_bench::stdio;
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
@@ -19,6 +19,7 @@ use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 /// Examples:
 ///   ptu diagnose latest                                        the last run
 ///   ptu diagnose 7ae4aeef --json
+///   ptu diagnose latest 7ae4aeef                               two runs of one unit together
 ///   ptu diagnose latest --why-not io_board                     what speaks against this part
 ///   ptu diagnose --matrix pump.json                            cheapest order of tests
 ///   ptu diagnose --matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
@@ -28,14 +29,14 @@ use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiagnoseArguments {
-    /// The run: an id, its beginning or end (at least 4 digits), or `latest`
+    /// The run: an id, its beginning or end (at least 4 digits), or `latest`; more runs of the unit are evidence, too
     #[arg(value_name = "RUN", required_unless_present = "matrix")]
-    run: Option<String>,
+    runs: Vec<String>,
     /// Dependency matrix of states and tests; its format is in scripts/README.md
-    #[arg(long, value_name = "FILE", conflicts_with = "run")]
+    #[arg(long, value_name = "FILE", conflicts_with = "runs")]
     matrix: Option<PathBuf>,
     /// A part of which to say what speaks for it and against it, however unlikely it is
-    #[arg(long, value_name = "PART", requires = "run")]
+    #[arg(long, value_name = "PART", requires = "runs")]
     why_not: Option<LruId>,
     #[command(flatten)]
     matrix_options: MatrixOptions,
@@ -55,12 +56,18 @@ impl DiagnoseArguments {
             return diagnose_matrix(matrix, &self.matrix_options, self.json);
         }
         let store = self.database.open_read_only()?;
-        let id = store.resolve_run(&self.run.unwrap_or_default())?;
-        let directory = self.scripts.find()?;
-        let answer = match &self.why_not {
-            Some(part) => diagnose_part(&store, &directory, id, part)?,
-            None => diagnose_run(&store, &directory, id)?,
+        let runs = self.runs.iter().map(|run| store.resolve_run(run));
+        let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
+        let Some((run, with)) = runs.split_first() else {
+            return Err(Failure::usage("name a run, or a matrix"));
         };
+        let directory = self.scripts.find()?;
+        let question = Question {
+            run: *run,
+            with,
+            why_not: self.why_not.as_ref(),
+        };
+        let answer = diagnose(&store, &directory, &question)?;
         for warning in &answer.warnings {
             stdio::note(warning);
         }

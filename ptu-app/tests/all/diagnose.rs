@@ -207,6 +207,37 @@ fn what_cannot_be_diagnosed_is_refused_with_the_next_move() {
         .explains(&["dictionary.zst"]);
 }
 
+/// Goal: what two runs of a unit saw is one evidence, and another unit's is none.
+#[test]
+fn runs_of_one_unit_are_diagnosed_together() {
+    let place = Place::new();
+    let run = |serial, procedure| {
+        let fault = ["--inject", "eb_relay.slow"];
+        let run = ["run", procedure, "--serial-no", serial];
+        place.ptu(&[&run[..], &fault].concat());
+        let runs = place.json(&["runs", "list", "--json"]);
+        text(&list(&runs)[0]["id"]).to_owned()
+    };
+    let other = run("BAD-2", "atp/overspeed");
+    let first = run("BAD-1", "door/interlocks");
+    run("BAD-1", "atp/overspeed");
+    let share = |runs: &[&str]| {
+        let said = place.json(&[&["diagnose"], runs, &["--json"]].concat());
+        said["candidates"][0]["probability"]
+            .as_f64()
+            .expect("a number")
+    };
+    assert!(share(&["latest", &first]) > share(&["latest"]));
+    place
+        .ptu(&["diagnose", "latest", &other])
+        .exits(2)
+        .explains(&["BAD-1", "BAD-2"]);
+    place
+        .ptu(&["diagnose", "latest", "latest"])
+        .exits(2)
+        .explains(&["named twice"]);
+}
+
 /// Goal: a technician who does not believe an answer is told what speaks against the part that he has in mind.
 #[test]
 fn a_part_that_is_not_the_answer_is_told_with_what_speaks_against_it() {

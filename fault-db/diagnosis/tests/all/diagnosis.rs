@@ -388,6 +388,52 @@ fn a_fault_that_comes_oftener_than_counted_is_known_by_all_that_it_hits() {
     assert_eq!(first(1e-6), "lamp");
 }
 
+/// Goal: to make a check again tells of what comes and goes, and of nothing that lasts.
+/// Method: the plug fails c.s1 in every other run, the antenna in each; the check fails five times more, or passes once.
+#[test]
+fn a_check_made_again_tells_what_comes_and_goes_from_what_lasts() {
+    let mut dictionary = dictionary();
+    let loose = ModeName {
+        kind: "intermittent".into(),
+        ..mode("plug.loose", 1.0)
+    };
+    let turns = (0..20).map(|turn| run(&["b.s1", "c.s1"][..2 * (turn % 2)], Some(240.0)));
+    dictionary.add(&loose, "nominal".into(), &turns.collect::<Vec<_>>());
+    let mut seen = run(&["b.s1", "c.s1"], Some(240.0));
+    let share = |seen: &Observation, of: &str| {
+        let found = diagnosed(&dictionary, seen);
+        let part = found.lrus.iter().find(|part| part.lru.as_str() == of);
+        part.map_or(0.0, |part| part.probability)
+    };
+    let once = ["plug", "antenna", "cable"].map(|part| share(&seen, part));
+    assert!(once.iter().all(|p| *p > 0.1), "{once:?}");
+    let open = diagnosed(&dictionary, &seen);
+    let next = open.next_check.expect("a check to make again");
+    assert!(
+        next.again && ["s1"].contains(&next.check.step.as_str()),
+        "{next:?}"
+    );
+    assert!(open.conclusion.contains("run again"), "{}", open.conclusion);
+    let is_hit = |step: &&ObservedStep| step.check == name("c", "s1");
+    let failed = seen.steps.iter().find(is_hit).cloned().expect("c.s1");
+    seen.steps.extend(std::iter::repeat_n(failed.clone(), 5));
+    let (plug, antenna) = (share(&seen, "plug"), share(&seen, "antenna"));
+    assert!(plug < 0.7 * once[0], "{plug} of {once:?}");
+    assert!(
+        (antenna / share(&seen, "cable") - once[1] / once[2]).abs() < 0.01,
+        "{antenna}"
+    );
+    seen.steps.push(ObservedStep {
+        result: Verdict::Passed,
+        ..failed
+    });
+    assert!(
+        share(&seen, "plug") > 2.0 * plug,
+        "{}",
+        share(&seen, "plug")
+    );
+}
+
 /// Goal: one real case is enough to know the same fault again, and says little where the run is another.
 #[test]
 fn a_confirmed_case_is_known_again() {

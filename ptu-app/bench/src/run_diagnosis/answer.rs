@@ -52,6 +52,17 @@ pub struct Answer {
     pub dictionary_current: bool,
 }
 
+/// What is asked of a stored run.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The run.
+    pub run: Id,
+    /// Runs of the same unit that are evidence, too: the fault is there in all of them.
+    pub with: &'a [Id],
+    /// A part of which to tell why it is not the answer.
+    pub why_not: Option<&'a LruId>,
+}
+
 /// Diagnoses a stored run.
 ///
 /// # Errors
@@ -61,28 +72,28 @@ pub fn diagnose_run(
     directory: &ScriptsDirectory,
     id: Id,
 ) -> Result<Answer, Failure> {
-    assess_run(store, directory, id, None)
+    let question = Question {
+        run: id,
+        with: &[],
+        why_not: None,
+    };
+    diagnose(store, directory, &question)
 }
 
-/// Diagnoses a stored run, and tells why a part is not the answer.
+/// Answers a question about a stored run.
 ///
 /// # Errors
-/// There is no such run, part or dictionary, or a file cannot be read.
-pub fn diagnose_part(
+/// There is no such run, part or dictionary, a run is of another unit, or a file cannot be read.
+pub fn diagnose(
     store: &Store,
     directory: &ScriptsDirectory,
-    id: Id,
-    part: &LruId,
+    asked: &Question<'_>,
 ) -> Result<Answer, Failure> {
-    assess_run(store, directory, id, Some(part))
-}
-
-fn assess_run(
-    store: &Store,
-    directory: &ScriptsDirectory,
-    id: Id,
-    why_not: Option<&LruId>,
-) -> Result<Answer, Failure> {
+    let Question {
+        run: id,
+        with,
+        why_not,
+    } = *asked;
     let run = store.run(id, &process_id::is_alive)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
@@ -93,7 +104,13 @@ fn assess_run(
         current,
     } = choose(Some(store), directory, connection_of(store, &occurrences)?)?;
     let seen = of_run(&run, &occurrences);
-    let seen = comparable(&run, seen, &dictionary, &mut warnings);
+    let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
+    for other in with {
+        let more = of_same_unit(store, &run, *other)?;
+        let more = comparable(&run, more, &dictionary, &mut warnings);
+        seen.steps.extend(more.steps);
+        seen.signs.extend(more.signs);
+    }
     if seen.is_empty() {
         warnings.push("the run has no step and no fault that could be diagnosed".into());
     }
@@ -125,6 +142,26 @@ fn assess_run(
         dictionary_from: from,
         dictionary_current: current,
     })
+}
+
+/// What was seen in another run of the unit.
+fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation, Failure> {
+    let other = store.run(other, &process_id::is_alive)?;
+    let (this, that) = (&run.run, &other.run);
+    if this.id == that.id {
+        return Err(Failure::usage(format!("run {} is named twice", that.id)));
+    }
+    if this.unit_serial != that.unit_serial || this.unit_config_sha256 != that.unit_config_sha256 {
+        return Err(Failure::usage(format!(
+            "run {} is of unit {}, {}, and not of {}, {}; runs of one unit alone are diagnosed together",
+            that.id,
+            that.unit_serial,
+            that.unit_config_name,
+            this.unit_serial,
+            this.unit_config_name
+        )));
+    }
+    Ok(of_run(&other, &store.run_occurrences(that.id)?))
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {

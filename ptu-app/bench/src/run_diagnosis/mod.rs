@@ -8,7 +8,7 @@ mod dictionary;
 mod history;
 mod repairs;
 
-pub use answer::{Answer, Bench, adaptive, diagnose_part, diagnose_run};
+pub use answer::{Answer, Bench, Question, adaptive, diagnose, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, Origin, choose};
 pub use history::OwnHistory;
