@@ -16,10 +16,12 @@ use crate::failure::{Failure, did_you_mean};
 use crate::new_file::{NewFile, cannot_write};
 use crate::owner_only;
 
-/// Folder of unit configurations and the fault catalogue.
+/// Folder of unit configurations, the fault catalogue and the structure.
 const UNITS: &str = "units";
 /// The fault catalogue's name there.
 const FAULTS: &str = "faults";
+/// The name of the structure there.
+const STRUCTURE: &str = "structure";
 /// Longest script, data file or other text that is read, bytes.
 pub const LONGEST_FILE: u64 = 4 << 20;
 /// Longest all scripts together, bytes.
@@ -179,7 +181,7 @@ impl ScriptsDirectory {
         self.names("trains")
     }
 
-    /// Names of what `folder` holds; the fault catalogue among unit configurations is none of them.
+    /// Names of what `folder` holds; fault catalogue and structure, among unit configurations, are none of them.
     fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.join(folder))
             .into_iter()
@@ -188,7 +190,7 @@ impl ScriptsDirectory {
         let mut names: Vec<_> = entries
             .filter_map(|entry| entry.file_name().into_string().ok())
             .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
-            .filter(|name| (folder, name.as_str()) != (UNITS, FAULTS))
+            .filter(|name| folder != UNITS || ![FAULTS, STRUCTURE].contains(&name.as_str()))
             .collect();
         names.sort();
         names

@@ -25,13 +25,13 @@ const LONGEST_FILE: u64 = 64 << 20;
 #[derive(Debug, Args)]
 pub struct MatrixOptions {
     /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
-    #[arg(long, value_name = "OUTCOMES", conflicts_with = "run")]
+    #[arg(long, value_name = "OUTCOMES", conflicts_with = "runs")]
     outcomes: Option<String>,
     /// How the tree is made [default: optimal if it can be found, else greedy]
-    #[arg(long, value_enum, conflicts_with = "run")]
+    #[arg(long, value_enum, conflicts_with = "runs")]
     tree: Option<TreeMethod>,
     /// Probability that an answer must have where tests may err, above 0.5 and at most 1
-    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, conflicts_with = "run")]
+    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, conflicts_with = "runs")]
     confidence: f64,
 }
 
