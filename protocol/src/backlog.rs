@@ -2,6 +2,9 @@
 //!
 //! If all of them were read in the first of those scans, frames would be ahead of the program's own time,
 //! every later frame would seem late, and a partner that has sent all the while would seem silent.
+//!
+//! A partner that has sent nothing all the while stood still itself: both are programs on one computer that held
+//! them up. Then neither has anything to make up, and the time is none for both.
 
 use alloc::vec::Vec;
 
@@ -11,11 +14,48 @@ use crate::{Duration, SCAN};
 #[derive(Debug, Default)]
 pub struct Backlog {
     waiting: Vec<u8>,
+    /// Bytes that usually arrive in a scan, in parts of [`PARTS`].
+    usual: usize,
+    /// The last scan was late, too.
+    late: bool,
 }
 
+/// Less than this is made up whatever the partner did.
+const PAUSE: Duration = Duration::from_ms(100);
+/// The usual number of bytes is kept in parts of this size, and is an average of as many scans.
+const PARTS: usize = 64;
+
 impl Backlog {
-    /// Adds what arrived and appends to `out` what belongs to this scan, which is `behind` its time.
-    pub fn share(&mut self, arrived: &[u8], behind: Duration, out: &mut Vec<u8>) {
+    /// Adds what arrived and appends to `out` what belongs to this scan, which is `behind` its time. Returns how much
+    /// of that is no time, because the partner stood still as well.
+    pub fn share(&mut self, arrived: &[u8], behind: Duration, out: &mut Vec<u8>) -> Duration {
+        let pause = self.pause(arrived.len(), behind);
+        self.spread(
+            arrived,
+            Duration::from_us(behind.as_us() - pause.as_us()),
+            out,
+        );
+        pause
+    }
+
+    /// All of `behind`, if this is the first scan after a standstill in which less than half of what usually arrives
+    /// in that time has arrived.
+    fn pause(&mut self, arrived: usize, behind: Duration) -> Duration {
+        let late = behind >= PAUSE;
+        let first = late && !core::mem::replace(&mut self.late, late);
+        if behind < SCAN {
+            self.usual = self.usual - self.usual / PARTS + arrived;
+        }
+        let scans = usize::try_from(behind.as_us() / SCAN.as_us()).unwrap_or(usize::MAX);
+        let usual = self.usual.saturating_mul(scans) / PARTS;
+        if !first || arrived.saturating_mul(2) >= usual {
+            return Duration::ZERO;
+        }
+        self.late = false;
+        behind
+    }
+
+    fn spread(&mut self, arrived: &[u8], behind: Duration, out: &mut Vec<u8>) {
         let scans_to_make_up = behind.as_us() / SCAN.as_us();
         if scans_to_make_up == 0 {
             out.append(&mut self.waiting);
@@ -59,6 +99,61 @@ mod tests {
             [20, 20, 20, 20, 20]
         );
         assert_eq!(shares(&mut backlog, 10, &[500, 0]), [1, 9]);
+    }
+
+    /// The pause after 200 scans with 20 bytes each, when `arrived` bytes came while the program stood still.
+    fn pause(arrived: usize, behind_ms: u64) -> Duration {
+        let (mut backlog, mut out) = (Backlog::default(), Vec::new());
+        for _ in 0..200 {
+            let none = backlog.share(&[0; 20], Duration::ZERO, &mut out);
+            assert_eq!(none, Duration::ZERO);
+        }
+        out.clear();
+        let pause = backlog.share(&vec![0; arrived], Duration::from_ms(behind_ms), &mut out);
+        let taken = if pause > Duration::ZERO {
+            arrived
+        } else {
+            arrived.div_ceil(behind_ms as usize / 10 + 1)
+        };
+        assert_eq!(out.len(), taken);
+        pause
+    }
+
+    #[test]
+    fn a_partner_that_stood_still_as_well_leaves_nothing_to_make_up() {
+        assert_eq!(pause(20, 300), Duration::from_ms(300));
+        assert_eq!(pause(0, 5_000), Duration::from_ms(5_000));
+    }
+
+    #[test]
+    fn a_partner_that_went_on_is_heard_scan_by_scan() {
+        assert_eq!(pause(600, 300), Duration::ZERO);
+        assert_eq!(pause(350, 300), Duration::ZERO);
+    }
+
+    #[test]
+    fn a_short_standstill_and_a_partner_that_never_spoke_are_made_up() {
+        assert_eq!(pause(0, 90), Duration::ZERO);
+        let mut backlog = Backlog::default();
+        assert_eq!(
+            backlog.share(&[], Duration::from_ms(300), &mut Vec::new()),
+            Duration::ZERO
+        );
+    }
+
+    /// Only the scan that wakes up can tell: those made up after it find nothing more on the wire.
+    #[test]
+    fn scans_that_are_made_up_are_no_pause() {
+        let (mut backlog, mut out) = (Backlog::default(), Vec::new());
+        for _ in 0..200 {
+            backlog.share(&[0; 20], Duration::ZERO, &mut out);
+        }
+        let mut late = |arrived: usize, ms: u64| {
+            backlog.share(&vec![0; arrived], Duration::from_ms(ms), &mut out)
+        };
+        assert_eq!(late(600, 300), Duration::ZERO);
+        assert_eq!(late(0, 290), Duration::ZERO);
+        assert_eq!(late(0, 280), Duration::ZERO);
     }
 
     #[test]

@@ -26,6 +26,11 @@ impl ScanDeadlines {
         self.due.max(now + MAKE_UP.times(self.slower))
     }
 
+    /// Counts `pause`, in the time of the bench, as no time.
+    pub fn put_off(&mut self, pause: Duration) {
+        self.due += pause.times(self.slower);
+    }
+
     /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
     pub const fn behind(&self, now: Instant) -> Duration {
         Duration::from_us(now.since(self.due).as_us() / self.slower as u64)

@@ -111,7 +111,9 @@ impl Listener for Console {
             SessionEvent::Run(RunEvent::Waiting { what, left }) => {
                 present(format!("{what}, {:.0} s left", left.as_secs()))
             }
-            SessionEvent::Run(RunEvent::StepFinished(_)) => Shown::StepDone,
+            SessionEvent::Run(RunEvent::StepFinished(result)) if !result.repeated => {
+                Shown::StepDone
+            }
             _ => return,
         };
         // Beside a terminal that takes nothing this is missed.
@@ -124,14 +126,16 @@ impl Listener for Console {
                 Some(format!("asks    {}: {text} {HOW_TO_ANSWER}", procedure.id))
             }
             SessionEvent::Run(RunEvent::StepFinished(result))
-                if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
+                if result.repeated
+                    || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
             {
+                let verdict = match result.repeated {
+                    true => "repeat",
+                    false => result.verdict.label(),
+                };
                 Some(format!(
-                    "{:<7} {}: {}: {}",
-                    result.verdict.label(),
-                    procedure.id,
-                    result.name,
-                    result.message
+                    "{verdict:<7} {}: {}: {}",
+                    procedure.id, result.name, result.message
                 ))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {

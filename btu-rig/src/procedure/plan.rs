@@ -87,6 +87,8 @@ pub struct Step {
     pub repeat: u32,
     /// What happens after it did not pass.
     pub on_fail: OnFail,
+    /// It begins in the state that the step before left, and cannot be run without that.
+    pub continues: bool,
     /// When it is ended as an error.
     pub time_limit: Duration,
     /// Longest time one repetition can take.

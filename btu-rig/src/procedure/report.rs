@@ -34,6 +34,8 @@ pub struct StepResult {
     pub line: u32,
     /// Over its expectations and measurements.
     pub verdict: Verdict,
+    /// It was not tested because the tester's computer stood still, and is begun again: another result follows.
+    pub repeated: bool,
     /// Why, when it did not pass; may also be a note.
     pub message: String,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.

@@ -60,6 +60,8 @@ pub(super) struct StepEnd {
     pub measurements: Vec<Measurement>,
     /// Suspected part of an event that no step provoked.
     pub named_part: Option<LruId>,
+    /// How far the tester was behind, where that alone may have failed it.
+    pub too_late: Option<Duration>,
 }
 
 impl StepRun {
@@ -312,13 +314,9 @@ impl StepRun {
         }
         // Events and brakes are as they are; what was judged by the bench's clock may be its delay, and what
         // did not come about a frame that did not come through.
+        let failed_now = !failed_before && self.has_failed() && !aborted;
+        let too_late = (failed_now && self.behind > TOO_LATE).then_some(self.behind);
         if !failed_before && self.has_failed() {
-            if self.behind > TOO_LATE {
-                self.hold(Problem::Bench(format!(
-                    "the tester was {:.2} s behind, held up by its own computer: run this again",
-                    self.behind.as_secs()
-                )));
-            }
             let lost = self
                 .lost_or_damaged
                 .map_or(0, |(before, now)| now.saturating_sub(before));
@@ -335,6 +333,7 @@ impl StepRun {
             bench_time,
             measurements,
             named_part: self.named_part,
+            too_late,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The rig and a unit on a wire, moved on together one scan at a time.
 
-use protocol::{Instant, SCAN};
+use protocol::{Duration, Instant, SCAN};
 use thiserror::Error;
 
 use super::Rig;
@@ -27,6 +27,12 @@ pub trait UnitLink {
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure>;
+
+    /// How long unit and bench both stood still since this was last asked, as two programs do on a computer that is
+    /// held up: time that neither of them lived through.
+    fn take_pause(&mut self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 /// A rig with its unit. Time is virtual; over a port the caller paces the ticks.

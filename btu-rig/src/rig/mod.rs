@@ -51,12 +51,12 @@ mod unit_clock;
 mod wayside;
 mod wheel;
 
-use protocol::Instant;
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{IoInput, Message};
+use protocol::{Duration, Instant};
 
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
@@ -378,6 +378,12 @@ impl Rig {
     /// counted against the line.
     pub fn note_stalled(&mut self, now: Instant) {
         self.line_watch.note_stalled(now);
+    }
+
+    /// Bench and unit both stood still for so long, which is no time for either.
+    pub fn note_pause(&mut self, now: Instant, pause: Duration) {
+        self.line_watch.note_stalled(now);
+        self.tester.put_off_time(pause);
     }
 
     /// What the unit logged before it was first heard is not read.

@@ -286,6 +286,11 @@ impl Tester {
         self.clock.tell(time);
     }
 
+    /// Bench and unit both stood still for so long.
+    pub fn put_off_time(&mut self, pause: Duration) {
+        self.clock.put_off(pause);
+    }
+
     /// The unit has the time, or does not take it.
     pub fn time_settled(&self) -> bool {
         self.clock.settled()

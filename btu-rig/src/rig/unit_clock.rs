@@ -37,6 +37,16 @@ impl UnitClock {
         };
     }
 
+    /// Bench and unit both stood still for so long: the time of day went on, and is told again.
+    pub fn put_off(&mut self, pause: Duration) {
+        if let Some(time) = self.time {
+            self.tell(TimeOfDay {
+                utc_us: time.utc_us.saturating_add(pause.as_us() as i64),
+                ..time
+            });
+        }
+    }
+
     /// The unit was started again: its clock with it.
     pub fn restart(&mut self) {
         self.told.clear();

@@ -154,6 +154,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         when: draft.when,
         repeat: draft.repeat,
         on_fail: draft.on_fail,
+        continues: draft.continues,
         time_limit: Duration::ZERO,
         worst_case: Duration::ZERO,
         suspect: draft.suspect.flatten(),

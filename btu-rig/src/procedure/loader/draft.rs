@@ -33,6 +33,7 @@ pub(super) struct StepDraft {
     pub when: Option<Condition>,
     pub repeat: u32,
     pub on_fail: OnFail,
+    pub continues: bool,
     pub limit: Option<Duration>,
     /// `Some(None)`: the call says that the step suspects no part.
     pub suspect: Option<Option<LruId>>,

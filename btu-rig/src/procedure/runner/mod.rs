@@ -4,6 +4,7 @@
 //! [`Driver::make_safe`], until the driver confirms or [`SAFE_WITHIN`] is over. Clean-up always
 //! runs, and never beside a live step: the step is finished first. No data is never `passed`.
 
+mod attempts;
 mod closing;
 mod interrupt;
 mod pause;
@@ -18,6 +19,7 @@ use protocol::message::SelfTest;
 use protocol::signal::Sample;
 use protocol::{Duration, Instant, LruId};
 
+pub use attempts::{ATTEMPTS, Resume};
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
 pub use schedule::{PromptPolicy, RunOptions};
@@ -103,6 +105,16 @@ pub struct Runner {
     not_reported: u64,
     leaving: bool,
     pause: Pause,
+    /// Where it began.
+    begun_at: Resume,
+    /// What is left for the next runner.
+    resume: Option<Resume>,
+    /// When the set-up before repeated steps was done.
+    set_up_at: Option<Instant>,
+    /// How long the tester's computer stood still since the last scan, if too long.
+    stood_still: Option<Duration>,
+    /// Times clean-up was begun.
+    clean_ups: u32,
     verdict: Verdict,
     messages: Vec<String>,
     out: Vec<RunEvent>,
@@ -114,6 +126,7 @@ impl Runner {
         Self {
             schedule: schedule(&procedure, &options, round),
             captured: vec![None; procedure.slots],
+            begun_at: Resume::from_the_start(procedure.slots),
             procedure,
             options,
             phase: Phase::NotStarted,
@@ -133,6 +146,10 @@ impl Runner {
             not_reported: 0,
             leaving: false,
             pause: Pause::default(),
+            resume: None,
+            set_up_at: None,
+            stood_still: None,
+            clean_ups: 1,
             verdict: Verdict::Skipped,
             messages: Vec::new(),
             out: Vec::new(),
@@ -153,9 +170,8 @@ impl Runner {
         };
     }
 
-    /// The tester's computer did not keep up since the last scan, or somebody else acted on the unit, so nothing the
-    /// unit did meanwhile can be judged. The present step becomes an error with this reason; the remaining steps are
-    /// not run.
+    /// Somebody else acted on the unit, or the tester cannot go on, so nothing the unit did meanwhile can be judged.
+    /// The present step becomes an error with this reason; the remaining steps are not run.
     pub fn interrupted(&mut self, reason: String) {
         self.interrupted = Some(reason);
     }
@@ -226,6 +242,7 @@ impl Runner {
         if let Some(reason) = self.interrupted.take() {
             self.break_off(now, sample, reason);
         }
+        self.obey_standstill(now);
         self.take_unit_events(events);
         self.watch_brake(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
@@ -293,11 +310,12 @@ impl Runner {
         };
         let progress =
             actions.advance(&procedure.setup, scan, &mut operator, driver, &mut self.out);
-        if progress == Progress::Waiting {
+        let done = progress == Progress::Done;
+        if progress == Progress::Waiting || (done && !self.has_settled(now)) {
             return;
         }
         self.phase = Phase::Steps {
-            next: 0,
+            next: self.begun_at.first,
             live: None,
         };
         if let Progress::Stuck(problem) = progress {

@@ -76,3 +76,16 @@ pub(super) fn schedule(
     }
     turns
 }
+
+/// Place of the step from which the one at `place` is repeated: itself, or the first of those it continues from.
+pub(super) fn group_start(
+    procedure: &Procedure,
+    schedule: &[ScheduledStep],
+    place: usize,
+) -> usize {
+    let continues = |place: &usize| procedure.steps[schedule[*place].index].continues;
+    (1..=place)
+        .rev()
+        .find(|place| !continues(place))
+        .unwrap_or_default()
+}

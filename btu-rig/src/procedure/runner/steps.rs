@@ -133,9 +133,26 @@ impl Runner {
             unit_time: self.evidence.unit_time,
         };
         let started = run.started();
+        let place = *next - 1;
+        let before_target = place < self.begun_at.target;
         let end = run.finish(step, scan, aborted);
+        if let Some(by) = end.too_late {
+            self.spoil(place, started, now, by);
+            return;
+        }
         for (measure, measurement) in step.measures.iter().zip(&end.measurements) {
             self.captured[measure.slot] = measurement.value;
+        }
+        // Run again only for the state it leaves: its result stands already, unless it shows something else now.
+        if before_target
+            && matches!(
+                end.verdict,
+                Verdict::Passed | Verdict::Skipped | Verdict::Aborted
+            )
+        {
+            return;
+        }
+        for measurement in &end.measurements {
             self.out.push(RunEvent::Measured {
                 index: turn.index,
                 measurement: measurement.clone(),
@@ -143,9 +160,13 @@ impl Runner {
         }
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
-            name: turn.name(step),
+            name: match before_target {
+                true => format!("{} (repeated)", turn.name(step)),
+                false => turn.name(step),
+            },
             line: step.line,
             verdict: end.verdict,
+            repeated: false,
             message: end.message,
             suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
@@ -168,6 +189,10 @@ impl Runner {
 
     /// Reports all steps still to come as skipped and goes on to clean-up.
     pub(super) fn skip_rest(&mut self, now: Instant, reason: &str) {
+        if let Phase::Steps { next, .. } = &mut self.phase {
+            // Those before have their results.
+            *next = (*next).max(self.begun_at.target);
+        }
         while let Phase::Steps { next, .. } = &self.phase
             && let Some(turn) = self.schedule.get(*next).copied()
         {
@@ -181,12 +206,29 @@ impl Runner {
 
     /// Reports a step that is not run.
     fn pass_over(&mut self, turn: ScheduledStep, now: Instant, verdict: Verdict, reason: &str) {
+        let Phase::Steps { next, .. } = &mut self.phase else {
+            return;
+        };
+        *next += 1;
+        if *next > self.begun_at.target {
+            self.report_not_run(turn, now, verdict, reason);
+        }
+    }
+
+    pub(super) fn report_not_run(
+        &mut self,
+        turn: ScheduledStep,
+        now: Instant,
+        verdict: Verdict,
+        reason: &str,
+    ) {
         let step = &self.procedure.steps[turn.index];
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
             name: turn.name(step),
             line: step.line,
             verdict,
+            repeated: false,
             message: reason.into(),
             suspect: self.suspect(step),
             started: now,
@@ -194,9 +236,6 @@ impl Runner {
             measurements: Vec::new(),
         }));
         self.verdict = self.verdict.and(verdict);
-        if let Phase::Steps { next, .. } = &mut self.phase {
-            *next += 1;
-        }
     }
 }
 

@@ -166,7 +166,8 @@ pub fn run_round(
     round: u32,
     mut each_scan: impl FnMut(&mut World<'_>),
 ) -> Outcome {
-    let mut runner = Runner::new(procedure(script), options, round);
+    let procedure = procedure(script);
+    let mut runner = Runner::new(procedure.clone(), options.clone(), round);
     let mut sample = Sample::default();
     sample.set(Signal::Eb, 0.0);
     sample.set(Signal::Speed, 0.0);
@@ -186,6 +187,10 @@ pub fn run_round(
         let now = Instant::from_us(u64::from(scan) * SCAN.as_us());
         let poll = runner.advance(now, &sample, &logged, link_error, &mut fake);
         events.extend(runner.take_events());
+        if let (Poll::Done, Some(rest)) = (poll, runner.to_be_resumed().cloned()) {
+            runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);
+            continue;
+        }
         if poll == Poll::Done {
             return Outcome {
                 events,

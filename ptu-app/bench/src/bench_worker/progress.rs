@@ -260,7 +260,7 @@ impl Progress {
     }
 
     fn step_finished(&mut self, place: usize, result: &StepResult) {
-        self.done += 1;
+        self.done += usize::from(!result.repeated);
         if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
             self.not_passed += 1;
         }

@@ -39,6 +39,13 @@ impl Pace {
         }
     }
 
+    /// Counts `pause` as no time: nothing went on meanwhile.
+    pub fn put_off(&mut self, pause: Duration) {
+        if let Self::Real { deadlines, .. } = self {
+            deadlines.put_off(pause);
+        }
+    }
+
     /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
     pub fn behind(&self) -> Duration {
         match self {

@@ -112,6 +112,8 @@ pub struct WireLink {
     began: Option<(std::time::Instant, Instant)>,
     read: Vec<u8>,
     backlog: Backlog,
+    /// How long both ends stood still.
+    pause: BenchDuration,
 }
 
 enum Port {
@@ -141,6 +143,7 @@ impl WireLink {
             began: None,
             read: Vec::new(),
             backlog: Backlog::default(),
+            pause: BenchDuration::ZERO,
         })
     }
 
@@ -164,6 +167,16 @@ impl WireLink {
                 .unwrap_or(u64::MAX)
                 .saturating_sub(bench_us),
         )
+    }
+}
+
+impl WireLink {
+    /// Time in which both ends stood still is none.
+    fn put_off(&mut self, pause: BenchDuration) {
+        self.pause += pause;
+        if let Some((began, _)) = &mut self.began {
+            *began += Duration::from_micros(pause.as_us()) * self.slower;
+        }
     }
 }
 
@@ -213,12 +226,17 @@ impl UnitLink for WireLink {
             Port::LockStep(port) => exchange_scan(port, to_unit, &mut self.read),
         };
         let behind = self.behind(now);
-        self.backlog.share(&self.read, behind, from_unit);
+        let pause = self.backlog.share(&self.read, behind, from_unit);
+        self.put_off(pause);
         self.read.clear();
         exchanged.map_err(|reason| LinkFailure {
             link: self.name.clone(),
             reason,
         })
+    }
+
+    fn take_pause(&mut self) -> BenchDuration {
+        std::mem::take(&mut self.pause)
     }
 }
 

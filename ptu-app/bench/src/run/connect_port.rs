@@ -63,7 +63,7 @@ impl BenchSetup {
         }
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
             .controlled_by(self.run_control.clone())
-            .with_max_lag(self.max_lag());
+            .with_max_lag(self.max_lag(None));
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);
         if session.has_stalled() {
@@ -79,6 +79,8 @@ impl BenchSetup {
             });
         }
         let identity = identity?;
+        let connection = session.bench().rig().connection();
+        session.set_max_lag(self.max_lag(connection));
         Ok(ReadyUnit {
             session,
             identity,
@@ -86,10 +88,15 @@ impl BenchSetup {
         })
     }
 
-    /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`,
-    /// and the last frame it received may already be a cycle old.
-    fn max_lag(&self) -> Duration {
-        let silence_us = u64::from(self.config.content.link.io_timeout_ms) * 1000;
+    /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`, and the
+    /// last frame it received may already be a cycle old. On a train, which gives the inputs itself, it ends the
+    /// session after `tester_timeout_ms`; a keep-alive may be as old as half of that.
+    fn max_lag(&self, connection: Option<Connection>) -> Duration {
+        let link = &self.config.content.link;
+        if connection == Some(Connection::Ptu) {
+            return Duration::from_us(u64::from(link.tester_timeout_ms) * 1000 / 2);
+        }
+        let silence_us = u64::from(link.io_timeout_ms) * 1000;
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
     }
 

@@ -27,6 +27,8 @@ mod observe;
 #[cfg(test)]
 mod on_train_tests;
 mod repetitions;
+#[cfg(test)]
+mod resume_tests;
 mod run_control;
 pub mod select;
 mod session;

@@ -9,6 +9,7 @@ const MESSAGES: usize = 8;
 /// How many repetitions of a procedure have ended, and their common verdict.
 pub(super) struct RepetitionTally {
     of: u32,
+    begun: bool,
     over: u32,
     verdict: Verdict,
     messages: Vec<String>,
@@ -21,6 +22,7 @@ impl RepetitionTally {
     pub(super) fn new(of: u32) -> Self {
         Self {
             of,
+            begun: false,
             over: 0,
             verdict: Verdict::Skipped,
             messages: Vec::new(),
@@ -42,18 +44,20 @@ impl RepetitionTally {
     }
 
     /// What the present repetition says, as the whole procedure says it: the procedure begins with the first,
-    /// and each one's end is kept for [`finished`](Self::finished).
-    pub(super) fn take(&mut self, event: RunEvent) -> Option<RunEvent> {
+    /// and each one's end is kept for [`finished`](Self::finished). `goes_on` = what ends is not the whole repetition,
+    /// because a step of it is begun again.
+    pub(super) fn take(&mut self, event: RunEvent, goes_on: bool) -> Option<RunEvent> {
         match event {
             RunEvent::ProcedureStarted { steps, at } => {
                 let steps = steps * self.of as usize;
-                (self.over == 0).then_some(RunEvent::ProcedureStarted { steps, at })
+                let first = !std::mem::replace(&mut self.begun, true);
+                first.then_some(RunEvent::ProcedureStarted { steps, at })
             }
             RunEvent::ProcedureFinished {
                 verdict, message, ..
             } => {
                 self.note(verdict, message);
-                self.over += 1;
+                self.over += u32::from(!goes_on);
                 None
             }
             other => Some(other),

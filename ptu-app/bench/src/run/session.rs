@@ -83,6 +83,11 @@ impl<L: UnitLink> Session<L> {
         self
     }
 
+    /// The same, once it is known how the unit is reached.
+    pub fn set_max_lag(&mut self, max_lag: Duration) {
+        self.max_lag = Some(max_lag);
+    }
+
     /// Replaces the stop that ends runs on this session.
     pub fn set_stop(&mut self, stop: &Stop) {
         self.stop = stop.clone();
@@ -187,6 +192,7 @@ impl<L: UnitLink> Session<L> {
         if let Err(failure) = self.bench.tick() {
             self.link_error.get_or_insert(failure.to_string());
         }
+        self.put_off();
         let behind = self.behind();
         if self.max_lag.is_some_and(|max_lag| behind > max_lag) {
             self.stalled = self.stalled.max(Some(behind));
@@ -204,6 +210,17 @@ impl<L: UnitLink> Session<L> {
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);
         }
+    }
+
+    /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
+    fn put_off(&mut self) {
+        let pause = self.bench.link_mut().take_pause();
+        if pause == Duration::ZERO {
+            return;
+        }
+        self.pace.put_off(pause);
+        let now = self.bench.now();
+        self.bench.rig_mut().note_pause(now, pause);
     }
 
     /// Judges what the unit logged during bring-up: nothing was provoked yet, so each fault event counts.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict};
 use btu_rig::recorded::{RecordingDriver, StimulusRecord};
 use btu_rig::rig::UnitLink;
-use protocol::{Duration, Instant};
+use protocol::Instant;
 
 use super::Session;
 use crate::run::event::{RecordedStimuli, SessionEvent};
@@ -99,14 +99,30 @@ impl<L: UnitLink> Session<L> {
             }
             self.wait_with(false);
             self.finish_window(sink);
+            if let Some(rest) = runner.to_be_resumed().cloned() {
+                let repeats = "before the repetition of a step";
+                self.settle_again(repeats, &mut rounds, &mut progress, sink);
+                runner = Runner::resumed(procedure.clone(), options.clone(), rounds.over(), rest);
+                presses = 0;
+                continue;
+            }
             let failed = |rounds: &RepetitionTally, progress: &Progress<'_>| {
                 options.stop_on_fail && (!rounds.passed() || progress.faults > 0)
             };
             if !rounds.left() || link_lost || !go_on() || failed(&rounds, &progress) {
                 break;
             }
-            let settled = self.settle_again(&mut rounds, &mut progress, sink);
-            if !settled || failed(&rounds, &progress) {
+            self.settle_again(
+                "before the next repetition",
+                &mut rounds,
+                &mut progress,
+                sink,
+            );
+            if self.stop.presses() > 0 {
+                rounds.note(Verdict::Aborted, "stopped by the operator".into());
+                break;
+            }
+            if failed(&rounds, &progress) {
                 break;
             }
             runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
@@ -130,7 +146,7 @@ impl<L: UnitLink> Session<L> {
         }
         *presses = pressed;
         if let Some(behind) = self.stalled.take() {
-            runner.interrupted(stall_message(behind));
+            runner.stood_still(behind);
         }
         if let Some(why) = self.bench.rig_mut().take_intervention() {
             runner.interrupted(why);
@@ -147,32 +163,27 @@ impl<L: UnitLink> Session<L> {
     ) {
         for event in runner.take_events() {
             self.note(&event, progress, sink);
-            if let Some(event) = rounds.take(event) {
+            if let Some(event) = rounds.take(event, runner.to_be_resumed().is_some()) {
                 sink(SessionEvent::Run(event));
             }
         }
     }
 
-    /// Before the next repetition of a procedure the unit settles as between two procedures. False if stop was
-    /// pressed: then it is not begun.
+    /// Before a procedure or a step is repeated the unit settles as between two procedures; `when` is that, in
+    /// messages.
     fn settle_again(
         &mut self,
+        when: &str,
         rounds: &mut RepetitionTally,
         progress: &mut Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
-    ) -> bool {
+    ) {
         progress.step = None;
         progress.step_began = self.bench.now();
         for fault in between_procedures(self) {
-            let found = format!("found before the next repetition: {}", fault.name);
-            rounds.note(Verdict::Failed, found);
+            rounds.note(Verdict::Failed, format!("found {when}: {}", fault.name));
             self.report(fault, progress, sink);
         }
-        let stopped = self.stop.presses() > 0;
-        if stopped {
-            rounds.note(Verdict::Aborted, "stopped by the operator".into());
-        }
-        !stopped
     }
 
     /// Records an open trace window to its end while nothing is done. Events logged meanwhile are read by the next
@@ -242,12 +253,4 @@ impl<L: UnitLink> Session<L> {
             sink(SessionEvent::Trace(Box::new(cut)));
         }
     }
-}
-
-fn stall_message(behind: Duration) -> String {
-    format!(
-        "the tester was held up for {:.2} s by its own computer, which says nothing about the unit; end other \
-         programs and run this again",
-        behind.as_secs()
-    )
 }

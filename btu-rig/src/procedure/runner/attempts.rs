@@ -1,0 +1,210 @@
+//! Steps in which the tester's own computer stood still: not tested, and repeated from the procedure's set-up.
+//!
+//! The unit was not heard or not driven meanwhile, so it may have braked for that reason alone. What is left of the
+//! procedure is run by another runner, which is made from a [`Resume`]: set-up, the steps before that the repeated one
+//! continues from, the step itself and those after it. Only a step that was not tested is repeated, never one
+//! that failed.
+
+use std::sync::Arc;
+
+use protocol::{Duration, Instant};
+
+use super::pause::Pause;
+use super::schedule::{RunOptions, ScheduledStep, group_start};
+use super::{Phase, Runner};
+use crate::procedure::Verdict;
+use crate::procedure::action_run::ActionRun;
+use crate::procedure::event_set::EventSet;
+use crate::procedure::evidence::LogState;
+use crate::procedure::plan::Procedure;
+use crate::procedure::report::{RunEvent, StepResult};
+
+/// How often a step is begun at most.
+pub const ATTEMPTS: u32 = 3;
+/// After set-up the unit says within this time how much it has logged.
+const LOG_SETTLES: Duration = Duration::from_ms(200);
+/// And its log is read within this time, or the steps begin all the same.
+const LOG_WITHIN: Duration = Duration::from_ms(10_000);
+/// How often clean-up is begun at most.
+const CLEAN_UPS: u32 = 3;
+
+/// What a runner is to go on with, and what it knows of the steps before.
+#[derive(Clone, Debug)]
+pub struct Resume {
+    /// Place in the schedule of the first step that is run again, so that the target finds the state it needs.
+    pub(super) first: usize,
+    /// Place of the first step that is not tested yet.
+    pub(super) target: usize,
+    /// Number of the target's attempt, from 1.
+    pub(super) attempt: u32,
+    pub(super) captured: Vec<Option<f64>>,
+    pub(super) provoked: EventSet,
+    pub(super) pause: Pause,
+}
+
+impl Resume {
+    /// From the first step on.
+    pub(super) fn from_the_start(slots: usize) -> Self {
+        Self {
+            first: 0,
+            target: 0,
+            attempt: 1,
+            captured: vec![None; slots],
+            provoked: EventSet::default(),
+            pause: Pause::default(),
+        }
+    }
+}
+
+impl Runner {
+    /// A runner for what `resume` says is left of the procedure.
+    pub fn resumed(
+        procedure: Arc<Procedure>,
+        options: RunOptions,
+        round: u32,
+        resume: Resume,
+    ) -> Self {
+        let new = Self::new(procedure, options, round);
+        Self {
+            captured: resume.captured.clone(),
+            provoked: resume.provoked,
+            pause: resume.pause,
+            begun_at: resume,
+            ..new
+        }
+    }
+
+    /// What is left of the procedure, when this runner is done and has not run all of it.
+    pub fn to_be_resumed(&self) -> Option<&Resume> {
+        self.resume.as_ref()
+    }
+
+    /// The tester's computer stood still for so long since the last scan that the unit was not driven: what it did
+    /// meanwhile is not judged. The present step is repeated, by the runner that goes on as [`Runner::to_be_resumed`] says.
+    pub fn stood_still(&mut self, by: Duration) {
+        self.stood_still = Some(by);
+    }
+
+    /// After the set-up of a repetition: what the unit logged until now is read, so that no step is held to it.
+    pub(super) fn has_settled(&mut self, now: Instant) -> bool {
+        if self.begun_at.target == 0 && self.begun_at.attempt == 1 {
+            return true;
+        }
+        let waited = now.since(*self.set_up_at.get_or_insert(now));
+        waited >= LOG_WITHIN || waited >= LOG_SETTLES && self.evidence.log == LogState::Read
+    }
+
+    pub(super) fn obey_standstill(&mut self, now: Instant) {
+        let Some(by) = self.stood_still.take() else {
+            return;
+        };
+        match &mut self.phase {
+            Phase::Setup(_) => self.spoil(self.begun_at.target, now, now, by),
+            Phase::Steps { next, live } => {
+                let (place, live) = (*next, live.take());
+                let wanted = live.is_some() || !self.leaving;
+                if wanted && place < self.schedule.len() {
+                    self.spoil(place, live.map_or(now, |run| run.started()), now, by);
+                }
+            }
+            // Its actions may have waited for what the unit did not do while it braked.
+            Phase::CleanUp { actions, since } if self.clean_ups < CLEAN_UPS => {
+                self.clean_ups += 1;
+                (*actions, *since) = (ActionRun::default(), now);
+            }
+            _ => {}
+        }
+    }
+
+    /// The step at `place` was not tested: it is repeated, or given up after the last attempt.
+    pub(super) fn spoil(&mut self, place: usize, started: Instant, now: Instant, by: Duration) {
+        // A step that is run again only to reach the target's state is the target's attempt.
+        let target = place.max(self.begun_at.target);
+        let attempt = match target == self.begun_at.target {
+            true => self.begun_at.attempt,
+            false => 1,
+        };
+        let last = attempt >= ATTEMPTS;
+        let turn = self.schedule[target];
+        self.report_spoiled(turn, (started, now), attempt, by);
+        let next = match last {
+            true => self.after_given_up(target, now),
+            false => Some(target),
+        };
+        self.resume = next.map(|next| Resume {
+            first: group_start(&self.procedure, &self.schedule, next),
+            target: next,
+            attempt: if last { 1 } else { attempt + 1 },
+            captured: self.captured.clone(),
+            provoked: self.provoked,
+            pause: self.pause,
+        });
+        self.phase = Phase::CleanUp {
+            actions: ActionRun::default(),
+            since: now,
+        };
+    }
+
+    /// Reports the steps that cannot be run without the one given up as skipped; the place of the next one that can.
+    fn after_given_up(&mut self, target: usize, now: Instant) -> Option<usize> {
+        let procedure = Arc::clone(&self.procedure);
+        let name = self.schedule[target].name(&procedure.steps[self.schedule[target].index]);
+        let mut next = target + 1;
+        while let Some(turn) = self.schedule.get(next).copied() {
+            if !procedure.steps[turn.index].continues {
+                return Some(next);
+            }
+            let why = format!("not run, it continues from \"{name}\", which was not tested");
+            self.report_not_run(turn, now, Verdict::Skipped, &why);
+            next += 1;
+        }
+        None
+    }
+
+    fn report_spoiled(
+        &mut self,
+        turn: ScheduledStep,
+        (started, now): (Instant, Instant),
+        attempt: u32,
+        by: Duration,
+    ) {
+        let step = &self.procedure.steps[turn.index];
+        let last = attempt >= ATTEMPTS;
+        let (verdict, then) = match last {
+            true => (
+                Verdict::Error,
+                "end other programs and run this again".to_owned(),
+            ),
+            false => (
+                Verdict::Skipped,
+                format!("the step is repeated ({} of {ATTEMPTS})", attempt + 1),
+            ),
+        };
+        let message = format!(
+            "not tested in attempt {attempt} of {ATTEMPTS}: {}; {then}",
+            stood_still_text(by)
+        );
+        self.out.push(RunEvent::StepFinished(StepResult {
+            index: turn.index,
+            name: turn.name(step),
+            line: step.line,
+            verdict,
+            repeated: !last,
+            message,
+            suspect: None,
+            started,
+            bench_time: now.since(started),
+            measurements: Vec::new(),
+        }));
+        if last {
+            self.verdict = self.verdict.and(Verdict::Error);
+        }
+    }
+}
+
+fn stood_still_text(by: Duration) -> String {
+    format!(
+        "the tester's computer stood still for {:.2} s, which says nothing about the unit",
+        by.as_secs()
+    )
+}
