@@ -12,6 +12,7 @@
 )]
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -22,6 +23,7 @@ use ptu_app::gui::DataPaths;
 use ptu_app::gui::{App, Options, Settings};
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::link::{Pace, keep_time};
 
 /// How long each measurement takes.
 const LASTS: Duration = Duration::from_secs(20);
@@ -32,9 +34,51 @@ fn main() {
     let (late_us, frames) = lateness(true);
     row("a window without a pause", &late_us);
     println!("frames laid out meanwhile: {frames}");
+    println!("\nlateness of 10 ms scans          p50     p99.9       max     scans");
+    for (name, busy) in [("quiet", 0), ("beside six busy loops", 6)] {
+        for (priority, raised) in [("", false), (", raised", true)] {
+            scans(&format!("{name}{priority}"), busy, raised);
+        }
+    }
+}
+
+/// Lateness of scans in a thread that does nothing else, `busy` loops beside it.
+fn scans(name: &str, busy: usize, raised: bool) {
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..busy {
+            scope.spawn(|| {
+                while !over.load(Ordering::Relaxed) {
+                    std::hint::spin_loop();
+                }
+            });
+        }
+        let timed = scope.spawn(|| {
+            let raised = raised && keep_time();
+            let mut pace = Pace::real();
+            let mut late_us = Vec::new();
+            let began = Instant::now();
+            while began.elapsed() < LASTS {
+                pace.wait();
+                late_us.push(pace.behind().as_us());
+            }
+            (late_us, raised)
+        });
+        let (mut late_us, was_raised) = timed.join().expect("a thread");
+        over.store(true, Ordering::Relaxed);
+        late_us.sort_unstable();
+        match raised && !was_raised {
+            true => println!("{name:<30} the system does not let it"),
+            false => percentiles(name, &late_us, 0.999),
+        }
+    });
 }
 
 fn row(name: &str, late_us: &[u64]) {
+    percentiles(name, late_us, 0.99);
+}
+
+fn percentiles(name: &str, late_us: &[u64], high: f64) {
     let last = late_us.len().saturating_sub(1);
     let at = |share: f64| {
         late_us
@@ -45,7 +89,7 @@ fn row(name: &str, late_us: &[u64]) {
     println!(
         "{name:<26} {:>6} µs {:>6} µs {:>6} µs  {:>8}",
         at(0.5),
-        at(0.99),
+        at(high),
         at(1.0),
         late_us.len()
     );

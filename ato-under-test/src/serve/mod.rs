@@ -3,6 +3,7 @@
 //!
 //! What is served is anything [`Served`]: the unit at its harness, or one at the maintenance port of a train.
 
+mod priority;
 mod tcp;
 mod wire;
 
@@ -15,6 +16,7 @@ use std::vec::Vec;
 
 use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
+pub use priority::keep_time;
 pub use wire::{Place, Wire};
 
 /// What is at the far end of a wire.
@@ -62,6 +64,7 @@ pub fn in_real_time(
     wire: &mut Wire,
     slower: u32,
 ) -> Result<(), ServeError> {
+    keep_time();
     let began = WallClock::now();
     let clock = || Instant::from_us(began.elapsed().as_micros() as u64);
     let mut deadlines = ScanDeadlines::new(clock(), slower);

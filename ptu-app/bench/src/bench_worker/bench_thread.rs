@@ -16,7 +16,7 @@ use protocol::{Duration, SCAN};
 use super::event::BenchEvent;
 use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
-use crate::link::Pace;
+use crate::link::{Pace, keep_time};
 use crate::run::{
     BenchSetup, Connected, Listener, READY_WITHIN, RunStart, Session, SessionEvent, run_on, settled,
 };
@@ -155,6 +155,7 @@ impl BenchThread {
         session: &mut Session<L>,
         orders: &Receiver<Order>,
     ) -> WatchEnd {
+        keep_time();
         self.live_state.enter_idle(session.bench().rig());
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;

@@ -6,6 +6,7 @@ pub mod ports;
 mod sim;
 mod wire;
 
+pub use ato_under_test::serve::keep_time;
 pub use delayed::Delayed;
 pub use pace::Pace;
 pub use sim::{SIM_SERIAL, SimLink};

@@ -15,6 +15,7 @@ use super::first_failure::FirstFailure;
 use super::session::Session;
 use super::settle::{READY_WITHIN, between_procedures, settled};
 use super::{ProcedureStream, RunPlan, Task, stream};
+use crate::link::keep_time;
 use crate::stop::Stop;
 
 /// Procedures that may be begun before those in front of them have ended; each keeps room for its events.
@@ -105,6 +106,7 @@ impl<'a> Worker<'a> {
         match &mut *self.connected {
             Connected::Sim(setup) => run_on_fresh(setup, task, self.stop, sink, go_on),
             Connected::Port(session, _, found) => {
+                keep_time();
                 let began = session.now();
                 found.extend(between_procedures(session));
                 let found = std::mem::take(found);
