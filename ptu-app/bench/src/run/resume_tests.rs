@@ -1,57 +1,114 @@
-//! Where a procedure can be taken up again, as after a standstill of the tester's computer.
+//! Every step of every procedure can be repeated when the tester's computer stood still in it.
 
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
 
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Runner, Verdict};
+use btu_rig::rig::Rig;
+use protocol::{Duration, Instant};
 
 use super::workers::run_here;
-use super::{BenchSetup, SessionEvent, Task};
+use super::{BenchSetup, RunControl, SessionEvent, Task};
 use crate::stop::Stop;
 use crate::test_support::{procedures, setup};
 
-/// What does not pass when only the steps from `first` on are run.
-fn not_passed(setup: &BenchSetup, procedure: &Arc<Procedure>, first: usize) -> Vec<String> {
+/// Stands still once in each step, so many scans after it began, if it lasts so long.
+struct StandsStill {
+    after: u32,
+    seen: Mutex<Seen>,
+}
+
+#[derive(Default)]
+struct Seen {
+    /// Steps that began, by their name.
+    begun: BTreeSet<String>,
+    /// Scans until the present one, which began for the first time, is spoiled.
+    scans_left: Option<u32>,
+}
+
+impl RunControl for StandsStill {
+    fn before_scan(&self, runner: &mut Runner) {
+        let mut seen = self.seen.lock().expect("steps");
+        seen.scans_left = match seen.scans_left {
+            Some(1) => {
+                runner.stood_still(Duration::from_ms(300));
+                None
+            }
+            left => left.map(|left| left - 1),
+        };
+    }
+
+    fn after_cycle(&self, _: Instant, _: &Rig) {}
+}
+
+impl StandsStill {
+    fn take(&self, event: &RunEvent) {
+        let mut seen = self.seen.lock().expect("steps");
+        match event {
+            RunEvent::StepStarted { name, .. } => {
+                let first = seen.begun.insert(name.clone());
+                seen.scans_left = first.then_some(self.after);
+            }
+            RunEvent::StepFinished(_) => seen.scans_left = None,
+            _ => {}
+        }
+    }
+}
+
+/// What is not as if the computer had not stood still.
+fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<String> {
+    let stands_still = Arc::new(StandsStill {
+        after,
+        seen: Mutex::default(),
+    });
+    setup.run_control = Some(stands_still.clone());
     let task = Task {
         procedure: procedure.clone(),
-        options: RunOptions {
-            chosen: Some((first..procedure.steps.len()).collect()),
-            ..RunOptions::default()
-        },
+        options: RunOptions::default(),
     };
     let mut said = Vec::new();
     run_here(setup, &task, &Stop::default(), &mut |event| match event {
-        SessionEvent::Run(RunEvent::StepFinished(step))
-            if !matches!(step.verdict, Verdict::Passed | Verdict::Skipped) =>
-        {
-            said.push(format!("{}: {}", step.name, step.message));
+        SessionEvent::Run(event) => {
+            stands_still.take(&event);
+            match event {
+                RunEvent::StepFinished(step)
+                    if !matches!(step.verdict, Verdict::Passed | Verdict::Skipped) =>
+                {
+                    said.push(format!(
+                        "line {}, {}: {}",
+                        step.line, step.name, step.message
+                    ));
+                }
+                RunEvent::ProcedureFinished { message, .. } => {
+                    said.extend(Some(message).filter(|message| !message.is_empty()));
+                }
+                _ => {}
+            }
         }
-        SessionEvent::Run(RunEvent::ProcedureFinished { message, .. }) => {
-            said.extend(Some(message).filter(|message| !message.is_empty()));
-        }
+        SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.message)),
         _ => {}
     });
     said
 }
 
-/// Goal: a step can be repeated after a new set-up, unless it says that it continues. Method: each procedure is run
-/// from each such step to its end, on a good unit.
+/// Goal: a step that is repeated after a new set-up finds the state it needs: it says if it continues from the one
+/// before. Method: each procedure on a good unit, and the computer stands still in each of its steps, early, after
+/// a third of a second and after a second.
 #[test]
-fn every_step_that_does_not_continue_can_be_the_first() {
-    let setup = setup(&[]);
+fn every_step_can_be_repeated() {
+    for after in [1, 33, 100] {
+        every_step_repeated(after);
+    }
+}
+
+fn every_step_repeated(after: u32) {
+    let mut setup = setup(&[]);
     let mut wrong = Vec::new();
     for procedure in procedures(&setup) {
-        for (first, step) in procedure.steps.iter().enumerate().skip(1) {
-            if step.continues {
-                continue;
-            }
-            let said = not_passed(&setup, &procedure, first);
-            if !said.is_empty() {
-                wrong.push(format!(
-                    "{}#{first}@{} {}: {}",
-                    procedure.id, step.line, step.name, said[0]
-                ));
-            }
+        let said = amiss(&mut setup, &procedure, after);
+        if !said.is_empty() {
+            wrong.push(format!("{}: {said:#?}", procedure.id));
         }
     }
-    assert!(wrong.is_empty(), "{} {wrong:#?}", wrong.len());
+    assert!(wrong.is_empty(), "{after} scans: {}", wrong.join("\n"));
 }
