@@ -13,6 +13,7 @@ SERVICE_BRAKED, EMERGENCY_BRAKED = 0x44, 0x08     # FULL_SERVICE_BRAKE with SERV
 EB_RELAY, FSB, ALARM, CODE_VALID, STANDSTILL = 0x001, 0x002, 0x008, 0x080, 0x100
 ARMED, UP, MANUAL = 0x001, 0x180, 2                                     # UP: STARTED and INPUTS_OK
 EB_OVERSPEED, FSB_OVERSPEED = 2, 1
+SCAN_END = b"\x7e" * 3
 NO_ORDER, TURN_BACK, IDLE, KEYED, CONFIRMED = 0, 1, 0, 1, 2
 ANSWERS = dict(enumerate("accepted not_armed out_of_range board_failed".split()))
 REFUSALS = dict(enumerate("none key_off moving bad_answer busy tester_silent disarmed starting_up brakes_released "
@@ -31,9 +32,10 @@ FROM_UNIT = {                               # the fields that are used here; x =
                   "answered_seq train_number number_state destination order_state received refused others")}
 
 class Client:
-    def __init__(self, path, lines):
-        self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+    def __init__(self, path, lines, lock_step):
+        self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | (0 if lock_step else os.O_NONBLOCK))
         tty.setraw(self.fd)
+        self.scans = 0 if lock_step else None                           # since the first, in lock step
         self.lines, self.session = lines, 0                             # session 0 only listens
         self.next_seq, self.due = dict.fromkeys(PARTNER, 0), dict.fromkeys(PARTNER, 0.0)
         self.alive, self.orders, self.keyed = 0, None, None             # orders: train number and order
@@ -41,9 +43,13 @@ class Client:
         self.last, self.heard = {}, {}      # channel: (sequence, time); name: its newest message
         self.bytes, self.refused = b"", 0   # bytes since the last flag; number of frames
 
+    def now(self):
+        """Seconds: in lock step the clock moves with the scans alone."""
+        return time.monotonic() if self.scans is None else self.scans * 0.010
+
     def send(self, channel, layout, *fields):
         seq, self.next_seq[channel] = self.next_seq[channel], (self.next_seq[channel] + 1) & 0xFFFF
-        stamp = int(time.monotonic() * 1000) & 0xFFFFFFFF
+        stamp = int(self.now() * 1000) & 0xFFFFFFFF
         body = struct.pack(">BBBBHI" + layout, 1, channel, PARTNER[channel], UNIT, seq, stamp, *fields)
         body += struct.pack("<I", zlib.crc32(body))
         body = body.replace(b"\x7d", b"\x7d\x5d").replace(b"\x7e", b"\x7d\x5e")
@@ -52,7 +58,7 @@ class Client:
         return seq
 
     def keep_sending(self):
-        now = time.monotonic()
+        now = self.now()
         if now >= self.due[IO]:             # nothing in the antenna, no pulse, no marker
             self.due[IO] = now + 0.020
             released = "IoOutput" in self.heard and self.heard["IoOutput"].outputs & EB_RELAY
@@ -74,10 +80,20 @@ class Client:
             self.send(PTU, "BI", 0x05, self.session)
 
     def receive(self):
-        if select.select([self.fd], [], [], 0.005)[0]:
-            *frames, self.bytes = (self.bytes + os.read(self.fd, 4096)).split(b"\x7e")
-            for stuffed in filter(None, frames):
-                self.refused += not self.accept(stuffed)
+        if self.scans is not None:          # this scan is over; the unit's follows, and its end
+            os.write(self.fd, SCAN_END)
+            self.scans += 1
+            heard = b""
+            while not heard.endswith(SCAN_END):
+                heard += os.read(self.fd, 4096)
+            self.take(heard)
+        elif select.select([self.fd], [], [], 0.005)[0]:
+            self.take(os.read(self.fd, 4096))
+
+    def take(self, heard):
+        *frames, self.bytes = (self.bytes + heard).split(b"\x7e")
+        for stuffed in filter(None, frames):
+            self.refused += not self.accept(stuffed)
 
     def accept(self, stuffed):
         """Takes what stood between two flags, unless it must be refused."""
@@ -91,21 +107,21 @@ class Client:
         if (version, source, target, struct.calcsize(layout)) != (1, UNIT, PARTNER.get(channel), len(body) - 15):
             return False                    # version, channel, address, layout
         last, at = self.last.get(channel, (0, 0.0))
-        if time.monotonic() < at + 1 and not 1 <= (seq - last) & 0xFFFF <= 1000:
+        if self.now() < at + 1 and not 1 <= (seq - last) & 0xFFFF <= 1000:
             return False                    # sequence
-        self.last[channel] = seq, time.monotonic()
+        self.last[channel] = seq, self.now()
         self.heard[name] = collections.namedtuple(name, fields)(*struct.unpack(layout, body[11:-4]))
         self.log += [self.heard[name]] if name == "LogEntry" else []
         return True
 
     def wait(self, what, name, fits=lambda message: True):
         """Keeps the line going until a message of this name was heard that fits."""
-        end = time.monotonic() + 10
+        end = self.now() + 10
         while name not in self.heard or not fits(self.heard[name]):
             state = self.heard.get("ArmState")
             if state and not state.armed:
                 sys.exit(f"failed: not armed: {REFUSALS.get(state.refusal, state.refusal)}")
-            if time.monotonic() > end:
+            if self.now() > end:
                 sys.exit(f"failed: no {what} within 10 s")
             self.keep_sending()
             self.receive()
@@ -128,8 +144,8 @@ class Client:
             sys.exit(f"failed: {what} {seq}: {ANSWERS.get(given.answer, given.answer)}, {given}")
 
     def idle(self, seconds):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        end = self.now() + seconds
+        while self.now() < end:
             self.keep_sending()
             self.receive()
 
@@ -188,8 +204,8 @@ def order(client):
     print(f"train {own + 1} keyed in at the cab and confirmed")
 
 def run(client, carrier, rate, level, limit, speed, orders):
-    quiet = time.monotonic() + 1.1          # after 1 s of silence every channel begins anew
-    while time.monotonic() < quiet:
+    quiet = client.now() + 1.1          # after 1 s of silence every channel begins anew
+    while client.now() < quiet:
         client.receive()
     client.heard.clear()
     client.wait("end of start-up", "Status", lambda status: status.bits & UP == UP)
@@ -225,9 +241,10 @@ if __name__ == "__main__":
                         help="a speed beyond the emergency margin")
     parser.add_argument("--orders", action="store_true", help="gives orders in place of test signals")
     parser.add_argument("--no-key", dest="key", action="store_const", const=0, default=MAINTENANCE_KEY)
+    parser.add_argument("--lock-step", action="store_true", help="the unit scans when this does, not by the clock")
     options = parser.parse_args()
     try:
-        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key), *options.code,
+        run(Client(options.pty, DOORS_CLOSED | HCR | FORWARD | EB_LOOP_FED | options.key, options.lock_step), *options.code,
             options.overspeed, options.orders)
     except (OSError, struct.error) as error:
         sys.exit(f"failed: {error}")

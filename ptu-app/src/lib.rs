@@ -8,6 +8,7 @@
 
 pub mod cli;
 mod console;
+#[cfg(feature = "window")]
 pub mod gui;
 mod operator;
 mod sparkline;

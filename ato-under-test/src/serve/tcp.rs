@@ -215,3 +215,23 @@ fn is_of_one_client(error: &io::Error) -> bool {
         ErrorKind::ConnectionAborted | ErrorKind::ConnectionReset | ErrorKind::Interrupted
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a server that is `behind` its time hears of a client that spoke before it was taken.
+    fn heard(behind: Duration) -> usize {
+        let (mut server, at) = Server::listen("127.0.0.1:0").unwrap();
+        let mut client = TcpStream::connect(at).unwrap();
+        client.write_all(b"spoken before").unwrap();
+        assert!(server.attend(Instant::ZERO, behind, 0).unwrap());
+        server.read(&mut [0; 64])
+    }
+
+    #[test]
+    fn what_was_sent_while_the_program_stood_still_is_not_heard_as_fresh() {
+        assert_eq!(heard(Duration::from_ms(1500)), 0);
+        assert_eq!(heard(Duration::ZERO), 13);
+    }
+}

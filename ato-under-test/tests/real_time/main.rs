@@ -1,5 +1,3 @@
-//! What the program that serves the unit promises: command line, ports and clients, by the clock.
+//! What the program that serves the unit promises its TCP clients, by the clock, one after the other.
 
-mod command_line;
-mod independent_client;
 mod tcp;

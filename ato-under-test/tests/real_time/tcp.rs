@@ -9,11 +9,13 @@ use std::time::{Duration, Instant};
 use protocol::link::{End, Link};
 use protocol::message::{ArmRequest, Identify, IoInput, KeepAlive, Message, Taken};
 
-// What holds the machine up is no fault of the unit.
-
 /// A client of which nothing is heard is let go after this time, and what a busy machine may add.
 const SILENT: Duration = Duration::from_secs(10);
 const SLACK: Duration = Duration::from_secs(3);
+/// Reading takes no longer, unless the computer stands still, which is no time of the test's.
+const MOMENT: Duration = Duration::from_millis(20);
+/// How often a client acts.
+const EVERY: Duration = Duration::from_millis(100);
 
 /// A served unit; ends with the value.
 struct Unit {
@@ -97,7 +99,7 @@ impl Client {
         match self.stream.read(&mut chunk) {
             Ok(0) => self.closed = true,
             Ok(count) => self.link.push(&chunk[..count]),
-            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => {}
+            Err(error) if is_nothing(&error) => {}
             Err(_) => self.closed = true,
         }
         let now = self.now();
@@ -106,12 +108,13 @@ impl Client {
             .collect()
     }
 
-    /// All that arrives for a while, or until the connection is closed.
+    /// All that arrives for a while, in which the computer does not stand still, or until the connection is closed.
     fn hear_for(&mut self, time: Duration) -> Vec<Message> {
-        let began = Instant::now();
-        let mut heard = Vec::new();
-        while began.elapsed() < time && !self.closed {
+        let (mut heard, mut passed) = (Vec::new(), Duration::ZERO);
+        while passed < time && !self.closed {
+            let began = Instant::now();
             heard.extend(self.hear());
+            passed += began.elapsed().min(MOMENT);
         }
         heard
     }
@@ -119,15 +122,24 @@ impl Client {
     /// Whether the unit answers who it is to one question, within a while.
     fn is_answered(&mut self, within: Duration) -> bool {
         self.send(Identify {});
-        let began = Instant::now();
-        while began.elapsed() < within && !self.closed {
-            let heard = self.hear();
+        let mut passed = Duration::ZERO;
+        while passed < within && !self.closed {
+            let heard = self.hear_for(MOMENT);
             if heard.iter().any(|m| matches!(m, Message::Identity(_))) {
                 return true;
             }
+            passed += MOMENT;
         }
         false
     }
+}
+
+/// A program that was stopped and goes on is interrupted in what it waited for.
+fn is_nothing(error: &std::io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
+    )
 }
 
 fn taken(heard: &[Message]) -> Option<Taken> {
@@ -184,17 +196,18 @@ fn who_follows_on_a_connection_of_its_own_is_heard_at_once() {
     }
 }
 
-/// How long the unit keeps a client that does this every 100 ms.
+/// How long the unit keeps a client that does this every 100 ms; while the computer stands still no time goes by.
 fn kept_for(at_most: Duration, act: impl Fn(&mut Client)) -> Duration {
     let unit = Unit::serve();
     let mut client = Client::connect(&unit);
     assert!(client.is_answered(Duration::from_secs(2)));
-    let began = Instant::now();
-    while began.elapsed() < at_most && !client.closed {
+    let mut kept = Duration::ZERO;
+    while kept < at_most && !client.closed {
         act(&mut client);
-        client.hear_for(Duration::from_millis(100));
+        client.hear_for(EVERY);
+        kept += EVERY;
     }
-    began.elapsed()
+    kept
 }
 
 #[test]
@@ -212,22 +225,6 @@ fn a_client_that_falls_silent_is_let_go_and_one_that_speaks_on_any_channel_is_no
         assert!((SILENT..longest).contains(&kept), "{kept:?}");
     }
     assert!(speaking >= longest, "{speaking:?}");
-}
-
-#[test]
-fn what_was_sent_while_the_unit_stood_still_is_not_heard_as_fresh() {
-    let unit = Unit::serve();
-    std::thread::sleep(Duration::from_millis(200));
-    unit.signal("STOP");
-    let mut client = Client::connect(&unit);
-    client.send(Identify {});
-    client.send(KeepAlive { session: 0 });
-    std::thread::sleep(Duration::from_millis(1500));
-    unit.signal("CONT");
-    let heard = client.hear_for(Duration::from_millis(700));
-    let answers = |m: &Message| matches!(m, Message::Identity(_) | Message::Status(_));
-    assert!(!heard.iter().any(answers), "{heard:?}");
-    assert!(client.is_answered(Duration::from_secs(2)));
 }
 
 #[test]

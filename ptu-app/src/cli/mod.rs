@@ -8,6 +8,10 @@ mod diagnose;
 mod diagnose_matrix;
 mod drive;
 mod faults;
+#[cfg(feature = "window")]
+mod gui;
+#[cfg(not(feature = "window"))]
+#[path = "no_window.rs"]
 mod gui;
 mod help;
 mod output;

@@ -279,7 +279,11 @@ fn exchange_scan(
         if asked.elapsed() > STEP {
             return Err(not_in_step(ErrorKind::TimedOut.into()));
         }
-        let count = port.read(&mut chunk).map_err(not_in_step)?;
+        let count = match port.read(&mut chunk) {
+            // As after the program was stopped and went on.
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            read => read.map_err(not_in_step)?,
+        };
         from_unit.extend_from_slice(&chunk[..count]);
     }
     Ok(())

@@ -1,11 +1,9 @@
 //! A client written from `protocol/WIRE.md` alone, in another language, talks to the served unit:
-//! if the text and the unit ever differ, this fails.
+//! if the text and the unit ever differ, this fails. Both go in lock step: what holds the machine up holds neither.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
-
-// What holds the machine up is no fault of the unit or the client, which talk in real time.
 
 struct Served(Child);
 
@@ -20,7 +18,7 @@ impl Drop for Served {
 fn serve() -> (Served, String) {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
     let mut child = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
-        .arg("--pty")
+        .args(["--pty", "--lock-step"])
         .arg("--scripts")
         .arg(scripts)
         .stdout(Stdio::piped())
@@ -39,6 +37,7 @@ fn client(arguments: &[&str]) -> Output {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/tests/client.py");
     Command::new("python3")
         .arg(script)
+        .arg("--lock-step")
         .args(arguments)
         .output()
         .expect("python3, which scripts/test installs")
