@@ -28,7 +28,7 @@ use super::describe::meanings;
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::plan::{Procedure, Step};
-use super::report::RunEvent;
+use super::report::{Outside, OutsideStep, RunEvent};
 use super::step_run::StepRun;
 use super::{Driver, UnitEvent, Verdict};
 
@@ -167,11 +167,9 @@ impl Runner {
     }
 
     /// A fault was found while the unit was brought up, before any step.
-    pub fn found_before(&mut self, what: &str) {
-        self.note(
-            Verdict::Failed,
-            format!("found before the first step: {what}"),
-        );
+    pub fn found_before(&mut self, what: &str, at: Instant) {
+        let text = format!("found before the first step: {what}");
+        self.outside(Outside::BringUp, Verdict::Failed, text, at);
     }
 
     /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
@@ -226,7 +224,7 @@ impl Runner {
         if let Some(reason) = self.interrupted.take() {
             self.break_off(now, sample, reason);
         }
-        self.take_unit_events(events);
+        self.take_unit_events(events, now);
         self.watch_brake(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
             self.lose_link(now, sample, error);
@@ -263,7 +261,8 @@ impl Runner {
             at: now,
         });
         if self.schedule.is_empty() {
-            self.fault("no step to run".into());
+            let text = "no step to run".into();
+            self.outside(Outside::Whole, Verdict::Error, text, now);
             self.phase = Phase::MakeSafe { since: now };
         } else if let Some(reason) = self.passed_over.take() {
             self.phase = Phase::Steps {
@@ -302,8 +301,8 @@ impl Runner {
         };
         if let Progress::Stuck(problem) = progress {
             let text = format!("setup: {}", problem.message());
+            self.outside(Outside::SetUp, Verdict::Error, text.clone(), now);
             self.skip_rest(now, &format!("not run, {text}"));
-            self.fault(text);
         }
     }
 
@@ -323,11 +322,11 @@ impl Runner {
     }
 
     /// What stands at the end beside the steps.
-    fn conclude(&mut self) {
+    fn conclude(&mut self, now: Instant) {
         if !self.self_test.is_empty() {
             let items = meanings(&SelfTest::SPEC, self.self_test.bits());
             let text = format!("the unit says its self-test failed: {items}");
-            self.note(Verdict::Failed, text);
+            self.outside(Outside::SelfTest, Verdict::Failed, text, now);
         }
         let before = self.not_kept_before.unwrap_or_default();
         let more = self.not_reported + self.evidence.not_kept.saturating_sub(before);
@@ -336,7 +335,7 @@ impl Runner {
                 "the unit logged more than {LOG_ENTRIES} events that no step provoked, and {more} more \
                  entries, not stored"
             );
-            self.note(Verdict::Failed, text);
+            self.outside(Outside::UnitLog, Verdict::Failed, text, now);
         }
     }
 
@@ -350,8 +349,15 @@ impl Runner {
         }
     }
 
-    fn fault(&mut self, text: String) {
-        self.note(Verdict::Error, text);
+    /// Reports what failed outside a step.
+    fn outside(&mut self, place: Outside, verdict: Verdict, text: String, at: Instant) {
+        self.out.push(RunEvent::OutsideStep(OutsideStep {
+            place,
+            verdict,
+            message: text.clone(),
+            at,
+        }));
+        self.note(verdict, text);
     }
 
     fn note(&mut self, verdict: Verdict, text: String) {
