@@ -16,6 +16,7 @@ use crate::operator::HOW_TO_ANSWER;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
+use ptu_bench::stored::outside_of;
 use ptu_bench::table::{Table, cell};
 
 /// How often the bar's clock moves while nothing happens.
@@ -239,6 +240,7 @@ fn procedures(run: &RunDetail) -> Table {
             .position(|s| s.procedure != first.procedure)
             .unwrap_or(steps.len());
         let (mine, rest) = steps.split_at(end);
+        let of_script = mine.iter().filter(|s| outside_of(s).is_none()).count();
         let passed = mine
             .iter()
             .filter(|s| s.verdict == fault_db::Verdict::Passed)
@@ -247,7 +249,7 @@ fn procedures(run: &RunDetail) -> Table {
         table.row([
             first.procedure.clone(),
             worst(mine, run.run.verdict).into(),
-            mine.len().to_string(),
+            of_script.to_string(),
             passed.to_string(),
             format!("{:.1} s", time as f64 / 1e6),
         ]);
@@ -277,7 +279,7 @@ fn summary(run: &RunDetail) -> String {
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s",
         run.run.id.short(),
         display_text::line(&run.run.unit_serial),
-        run.steps.len(),
+        run.steps.iter().filter(|s| outside_of(s).is_none()).count(),
         run.faults.len(),
         run.run
             .verdict

@@ -37,7 +37,7 @@ pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
-pub use report::{Measurement, RunEvent, StepResult};
+pub use report::{Measurement, Outside, OutsideStep, RunEvent, StepResult};
 pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;

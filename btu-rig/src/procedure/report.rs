@@ -48,6 +48,80 @@ pub struct StepResult {
     pub measurements: Vec<Measurement>,
 }
 
+/// Where something failed that is no step of the procedure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// While the unit was brought up, or settled between two procedures.
+    BringUp,
+    /// In the actions before the first step.
+    SetUp,
+    /// In the actions after the last step.
+    CleanUp,
+    /// While outputs were made safe.
+    SafeOutputs,
+    /// The unit logged an event that no step provoked, while no step was under way.
+    UnprovokedEvent,
+    /// The unit says that its self-test failed.
+    SelfTest,
+    /// The unit's log could not be read to its end, or held more than is kept.
+    UnitLog,
+    /// The link to the unit or the tester itself, while no step was under way.
+    Bench,
+    /// The operator's stop, while no step was under way.
+    Stop,
+    /// The procedure was due and not begun.
+    NotBegun,
+    /// The procedure or the run as a whole.
+    Whole,
+}
+
+impl Outside {
+    /// Every place.
+    pub const ALL: [Self; 11] = [
+        Self::BringUp,
+        Self::SetUp,
+        Self::CleanUp,
+        Self::SafeOutputs,
+        Self::UnprovokedEvent,
+        Self::SelfTest,
+        Self::UnitLog,
+        Self::Bench,
+        Self::Stop,
+        Self::NotBegun,
+        Self::Whole,
+    ];
+
+    /// Its name, under which it is stored and shown where a step has the name of the script.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::BringUp => "bring-up",
+            Self::SetUp => "set-up",
+            Self::CleanUp => "clean-up",
+            Self::SafeOutputs => "safe outputs",
+            Self::UnprovokedEvent => "unprovoked event",
+            Self::SelfTest => "self-test",
+            Self::UnitLog => "unit log",
+            Self::Bench => "bench",
+            Self::Stop => "stop",
+            Self::NotBegun => "not begun",
+            Self::Whole => "as a whole",
+        }
+    }
+}
+
+/// What failed outside the steps of a procedure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutsideStep {
+    /// Where.
+    pub place: Outside,
+    /// Failed, error or aborted.
+    pub verdict: Verdict,
+    /// What.
+    pub message: String,
+    /// Bench time.
+    pub at: Instant,
+}
+
 /// The stream of a run: console, window, database and reports all read this.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunEvent {
@@ -104,6 +178,8 @@ pub enum RunEvent {
         /// Bench time.
         at: Instant,
     },
+    /// Something failed that belongs to no step.
+    OutsideStep(OutsideStep),
     /// The procedure is over and outputs are safe, or could not be made so, which is an error.
     ProcedureFinished {
         /// Over its steps and what stands beside them.

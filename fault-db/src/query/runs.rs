@@ -87,9 +87,9 @@ pub struct RunSummary {
     pub unit_config_sha256: String,
     /// Faults injected on purpose.
     pub injected: Option<String>,
-    /// Steps recorded.
+    /// Steps recorded, and what failed outside them.
     pub steps: u32,
-    /// Steps that failed or could not be tested.
+    /// Of these, what failed, could not be tested or was stopped.
     pub steps_not_passed: u32,
     /// Number of distinct faults seen.
     pub faults: u32,
@@ -146,7 +146,7 @@ const SELECT_RUN: &str = "
         r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
         r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
-        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error')),
+        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
         r.seq, r.train
     FROM run r JOIN unit u ON u.seq = r.unit";

@@ -2,8 +2,8 @@
 //! verdict is a type of its own; parts and severities are text there, since a database may hold those of another
 //! program.
 
-use btu_rig::procedure::Verdict;
-use fault_db::FaultRecord;
+use btu_rig::procedure::{Outside, OutsideStep, Verdict};
+use fault_db::{FaultRecord, StepRecord};
 use protocol::lru;
 
 use crate::run::FaultSeen;
@@ -48,6 +48,37 @@ pub fn fault_record(
         message: fault.message,
         freeze: fault.freeze,
     }
+}
+
+/// The procedure of an entry that is of the run as a whole.
+pub const WHOLE_RUN: &str = "run";
+
+/// The kind of a record that is a step of a script.
+pub const STEP: &str = "step";
+
+/// What failed outside the steps of a procedure as it is stored: among the steps, so that whoever reads these reads it,
+/// without a line of a script.
+pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> StepRecord {
+    StepRecord {
+        index: 0,
+        procedure: procedure.to_owned(),
+        name: entry.place.name().to_owned(),
+        verdict: stored(entry.verdict),
+        started_bench_us: bench_us,
+        bench_time_us: 0,
+        message: entry.message.clone(),
+        script_line: None,
+        measurements: Vec::new(),
+    }
+}
+
+/// Where this failed, if it is no step of a script.
+pub fn outside_of(step: &StepRecord) -> Option<Outside> {
+    let named = |place: &Outside| place.name() == step.name;
+    Outside::ALL
+        .into_iter()
+        .find(named)
+        .filter(|_| step.script_line.is_none())
 }
 
 #[cfg(test)]

@@ -3,19 +3,22 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
+use btu_rig::procedure::Outside;
 use fault_db::{MeasurementRecord, RunDetail, StepRecord};
 use protocol::display_text;
 
 use ptu_bench::clock::rfc3339;
+use ptu_bench::stored::{STEP, outside_of};
 
 /// Names of the columns.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 16] = [
     "run",
     "unit_serial",
     "started_at",
     "procedure",
     "step_index",
     "step",
+    "kind",
     "step_verdict",
     "bench_time_s",
     "message",
@@ -49,7 +52,7 @@ pub fn csv(run: &RunDetail) -> String {
     text
 }
 
-fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 15] {
+fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 16] {
     let text = |text: &str| Cell::Text(text.to_owned());
     let number = |value: Option<f64>| {
         Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
@@ -62,6 +65,7 @@ fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord
         text(&step.procedure),
         Cell::Number(step.index.to_string()),
         text(&step.name),
+        text(outside_of(step).map_or(STEP, Outside::name)),
         text(step.verdict.as_str()),
         number(Some(step.bench_time_us as f64 / 1e6)),
         text(&step.message),

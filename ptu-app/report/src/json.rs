@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+use btu_rig::procedure::Outside;
 use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepRecord};
 use protocol::display_text;
 use serde::Serialize;
@@ -10,6 +11,7 @@ use serde_json::{Value, json};
 
 use ptu_bench::clock::rfc3339;
 use ptu_bench::failure::Failure;
+use ptu_bench::stored::{STEP, outside_of};
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
@@ -58,6 +60,7 @@ fn step_json(step: &StepRecord) -> Value {
     json!({
         "procedure": step.procedure,
         "name": step.name,
+        "kind": outside_of(step).map_or(STEP, Outside::name),
         "verdict": step.verdict.as_str(),
         "bench_time_s": seconds(step.bench_time_us),
         "measurements": step.measurements.iter().map(measurement_json).collect::<Vec<_>>(),

@@ -1,33 +1,38 @@
 //! JUnit XML, for tools that collect test results.
 
+use std::time::Duration;
+
+use btu_rig::procedure::Outside;
+use chrono::{DateTime, FixedOffset};
 use fault_db::{RunDetail, StepRecord, Verdict};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use ptu_bench::failure::Failure;
+use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of};
 
-/// One suite a procedure, one case a step; measurements go to the case's output.
+/// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
+///
+/// A run that did not pass has a case that did not: also one without a verdict, and one of a program that did not
+/// store what failed outside steps.
 pub fn junit(run: &RunDetail) -> Result<String, Failure> {
     let mut report = Report::new(format!("ptu run {}", run.run.id));
-    let mut begun: Option<(String, TestSuite)> = None;
-    for step in &run.steps {
-        if begun
-            .as_ref()
-            .is_none_or(|(procedure, _)| *procedure != step.procedure)
-        {
-            if let Some((_, suite)) = begun.take() {
-                report.add_test_suite(suite);
-            }
-            begun = Some((
-                step.procedure.clone(),
-                TestSuite::new(&*display_text::line(&step.procedure)),
-            ));
+    let began_us = run.run.started_at_us;
+    report.set_timestamp(utc(began_us));
+    for steps in run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
+        let procedure = &*display_text::line(&steps[0].procedure);
+        let mut suite = TestSuite::new(procedure);
+        suite.set_timestamp(utc(began_us + steps[0].started_bench_us));
+        let all_us = steps.iter().map(|step| step.bench_time_us.max(0) as u64);
+        suite.set_time(Duration::from_micros(all_us.sum()));
+        for step in steps {
+            suite.add_test_case(case(step, began_us));
         }
-        if let Some((_, suite)) = &mut begun {
-            suite.add_test_case(case(step));
-        }
+        report.add_test_suite(suite);
     }
-    if let Some((_, suite)) = begun {
+    if let Some(case) = of_whole(run) {
+        let mut suite = TestSuite::new(WHOLE_RUN);
+        suite.add_test_case(case);
         report.add_test_suite(suite);
     }
     report
@@ -35,18 +40,34 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
         .map_err(|error| Failure::bench(format!("cannot make the JUnit report: {error}")))
 }
 
-fn case(step: &StepRecord) -> TestCase {
-    let status = match step.verdict {
-        Verdict::Passed => TestCaseStatus::success(),
-        Verdict::Skipped => TestCaseStatus::skipped(),
-        Verdict::Failed => failed(NonSuccessKind::Failure, &step.message),
-        Verdict::Error | Verdict::Aborted => failed(NonSuccessKind::Error, &step.message),
+/// What the run came to, where no step says it.
+fn of_whole(run: &RunDetail) -> Option<TestCase> {
+    let passed = |verdict| matches!(verdict, Verdict::Passed | Verdict::Skipped);
+    let (verdict, message) = match run.run.verdict {
+        Some(verdict) if passed(verdict) => return None,
+        Some(_) if !run.steps.iter().all(|step| passed(step.verdict)) => return None,
+        Some(verdict) => (verdict, "the run did not pass; no step says why"),
+        None => (Verdict::Error, "the run has not come to its end"),
     };
+    let name = Outside::Whole.name();
+    let mut case = TestCase::new(name, status(verdict, name, message));
+    case.set_classname(WHOLE_RUN);
+    Some(case)
+}
+
+fn case(step: &StepRecord, began_us: i64) -> TestCase {
+    let kind = outside_of(step).map_or(STEP, Outside::name);
+    let status = status(step.verdict, kind, &step.message);
     let mut case = TestCase::new(&*display_text::line(&step.name), status);
     case.set_classname(&*display_text::line(&step.procedure));
-    case.set_time(std::time::Duration::from_micros(
-        step.bench_time_us.max(0) as u64
-    ));
+    case.set_time(Duration::from_micros(step.bench_time_us.max(0) as u64));
+    case.set_timestamp(utc(began_us + step.started_bench_us));
+    case.add_property(("kind", kind));
+    case.add_property(("verdict", step.verdict.as_str()));
+    case.add_property(("step_index", &*step.index.to_string()));
+    if let Some(line) = step.script_line {
+        case.add_property(("script_line", &*line.to_string()));
+    }
     let lines: Vec<_> = step
         .measurements
         .iter()
@@ -63,8 +84,24 @@ fn case(step: &StepRecord) -> TestCase {
     case
 }
 
-fn failed(kind: NonSuccessKind, message: &str) -> TestCaseStatus {
-    let mut status = TestCaseStatus::non_success(kind);
+/// A verdict with where it was given and why; so has a step that was skipped.
+fn status(verdict: Verdict, kind: &str, message: &str) -> TestCaseStatus {
+    let mut status = match verdict {
+        Verdict::Passed => return TestCaseStatus::success(),
+        Verdict::Skipped => TestCaseStatus::skipped(),
+        Verdict::Failed => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        Verdict::Error | Verdict::Aborted => TestCaseStatus::non_success(NonSuccessKind::Error),
+    };
     status.set_message(&*display_text::lines(message));
+    if verdict != Verdict::Skipped {
+        status.set_type(format!("{kind} {}", verdict.as_str()));
+    }
     status
+}
+
+/// A moment in UTC; bench time of a unit in virtual time runs ahead of the day, so that this orders what happened.
+fn utc(at_us: i64) -> DateTime<FixedOffset> {
+    DateTime::from_timestamp_micros(at_us)
+        .unwrap_or_default()
+        .fixed_offset()
 }

@@ -173,16 +173,15 @@ impl ScriptsOption {
     }
 }
 
-/// Goes on with what is `said` of a unit that is not known: with the serial number near to it, if there is
-/// one. Nothing of a unit that is known.
-fn unknown_unit(store: &Store, serial: &str, said: &str) -> Result<Option<String>, Failure> {
+/// Refuses a unit that is not known here, with the serial number near to it, if there is one.
+fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
     let known = store.known_units()?;
     if known.iter().any(|known| known == serial) {
-        return Ok(None);
+        return Ok(());
     }
     let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
-    Ok(Some(format!(
-        "{said}{hint}; `ptu runs list` shows the units"
+    Err(Failure::usage(format!(
+        "no unit \"{serial}\" was ever tested{hint}; `ptu runs list` shows the units"
     )))
 }
 

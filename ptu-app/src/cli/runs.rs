@@ -5,7 +5,7 @@ use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
 use super::{
-    Database, ScriptsOption, at_least_one, print_json, print_out, since_argument, unknown_unit,
+    Database, ScriptsOption, at_least_one, check_unit, print_json, print_out, since_argument,
 };
 use crate::console::verdict_table;
 use ptu_bench::clock;
@@ -92,8 +92,11 @@ impl RunsArguments {
                 limit,
                 json,
             } => {
+                if let Some(unit) = &unit {
+                    check_unit(&store, unit)?;
+                }
                 let filter = RunFilter {
-                    unit: unit.clone(),
+                    unit,
                     verdict,
                     since_us: since,
                     limit: Some(limit),
@@ -103,13 +106,7 @@ impl RunsArguments {
                 if json {
                     return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
                 }
-                let unit = unit.as_deref().filter(|_| runs.is_empty());
-                let unknown = unit.map(|unit| {
-                    let said = format!("no unit \"{unit}\" was ever tested");
-                    unknown_unit(&store, unit, &said)
-                });
-                let unknown = unknown.transpose()?;
-                print_out(&unknown.flatten().unwrap_or_else(|| table(&runs)))
+                print_out(&table(&runs))
             }
             Verb::Show {
                 id,

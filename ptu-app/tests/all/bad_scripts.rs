@@ -2,6 +2,7 @@
 //! driven.
 
 use crate::common::{Place, list, scripts, text};
+use quick_junit::{Report, TestCaseStatus};
 
 const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
 
@@ -165,10 +166,57 @@ fn a_step_that_runs_too_long_is_an_error_and_clean_up_runs() {
         .explains(&["too long", "time limit of 2.000 s", "clean-up:", "yard"]);
     let steps = list(&report["steps"]);
     let verdicts: Vec<_> = steps.iter().map(|s| text(&s["verdict"])).collect();
-    assert_eq!(verdicts, ["error", "passed"], "{}", said.all());
+    assert_eq!(verdicts, ["error", "passed", "error"], "{}", said.all());
+    assert_eq!(steps[2]["kind"], "clean-up");
     assert!(text(&steps[0]["message"]).contains("time limit"));
     assert_eq!(report["run"]["verdict"], "error");
     assert!(place.run_ids().contains(&earlier));
+}
+
+/// Goal: a clean-up that does not succeed is in all that is kept of a run whose steps passed. Method: every format.
+#[test]
+fn a_clean_up_that_fails_is_in_every_report() {
+    let place = Place::new();
+    place.write(
+        "unclean.star",
+        "procedure(title = \"Test\", title_ko = \"시험\", cleanup = until(mode, \"yard\", within = s(1)))\n\
+         step(\"short\", do = wait(s(1)))\n",
+    );
+    let files = ["r.junit.xml", "r.csv", "r.html"];
+    let reports = files.map(|file| ["--report", file]).concat();
+    let (said, report) = place.run(&[&["unclean.star"], &reports[..]].concat());
+    let said = said.exits(3);
+    assert_eq!(report["run"]["verdict"], "error");
+    assert_eq!(report["run"]["steps_not_passed"], 1);
+    let of_kind = |kind: &str| {
+        let steps = list(&report["steps"]).iter();
+        let found: Vec<_> = steps.filter(|step| step["kind"] == kind).collect();
+        assert_eq!(found.len(), 1, "{kind}: {report}");
+        found[0].clone()
+    };
+    assert_eq!(of_kind("step")["verdict"], "passed");
+    assert_eq!(of_kind("clean-up")["verdict"], "error");
+    let why = text(&of_kind("clean-up")["message"]).to_owned();
+    assert!(why.contains("yard"), "{why}");
+
+    let junit = Report::deserialize_from_str(&place.read("r.junit.xml")).expect("JUnit XML");
+    assert_eq!((junit.tests, junit.errors, junit.failures), (2, 1, 0));
+    let case = &junit.test_suites[0].test_cases[1];
+    let TestCaseStatus::NonSuccess { message, ty, .. } = &case.status else {
+        panic!("{case:?}");
+    };
+    assert_eq!(message.as_ref().expect("a message").as_str(), why);
+    assert_eq!(ty.as_ref().expect("a type").as_str(), "clean-up error");
+    assert!(case.timestamp.is_some() && !case.properties.is_empty());
+    for shown in [
+        place.read("r.csv"),
+        place.read("r.html"),
+        said.all(),
+        place.ptu(&["runs", "show", "latest"]).exits(0).out,
+    ] {
+        assert!(shown.to_lowercase().contains("clean-up"), "{shown}");
+        assert!(shown.contains("yard"), "{shown}");
+    }
 }
 
 #[test]

@@ -394,7 +394,7 @@ fn what_cannot_be_asked_is_named() {
     assert!(!place.path("out.png").exists());
 }
 
-/// Goal: an empty answer does not say that there is nothing when a name was only written otherwise.
+/// Goal: a name that nothing has is refused alike by all lists; an empty answer does not say that there is nothing when a name was only written otherwise.
 #[test]
 fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
     let place = mended();
@@ -421,22 +421,31 @@ fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
         ),
         ("--serial", "S-4", "serial number \"S-4\" was ever"),
         ("--serial", "r17", "(did you mean \"R-17\"?)"),
-        ("--state", "closed", "no such faults recorded\n"),
+        ("--unit", "bad-1", "(did you mean \"BAD-1\"?)"),
     ] {
         for verb in ["list", "stats"] {
-            let hint = place.ptu(&["faults", verb, option, asked]).exits(0).out;
-            assert!(hint.contains(said), "{verb} {option} {asked}: {hint}");
+            for format in [&[][..], &["--json"]] {
+                let asked = [&["faults", verb, option, asked], format].concat();
+                let hint = place.ptu(&asked).exits(2).err;
+                assert!(hint.contains(said), "{asked:?}: {hint}");
+            }
         }
     }
-    let runs = place.ptu(&["runs", "list", "--unit", "bad-1"]).exits(0).out;
-    assert!(runs.contains("did you mean \"BAD-1\"?"), "{runs}");
-    assert_eq!(
-        place
-            .ptu(&["runs", "list", "--unit", "bad-1", "--json"])
-            .exits(0)
-            .out,
-        "[]\n"
-    );
+    for format in [&[][..], &["--json"]] {
+        let asked = [&["runs", "list", "--unit", "bad-1"], format].concat();
+        let runs = place.ptu(&asked).exits(2).err;
+        assert!(runs.contains("did you mean \"BAD-1\"?"), "{runs}");
+    }
+    // What there is, and has had no fault, is a name that is known.
+    for (option, asked) in [
+        ("--state", "closed"),
+        ("--lru", "tra"),
+        ("--code", "rollback"),
+        ("--procedure", "twc/exchange"),
+    ] {
+        let said = place.ptu(&["faults", "list", option, asked]).exits(0).out;
+        assert_eq!(said, "no such faults recorded\n", "{option} {asked}");
+    }
 }
 
 #[test]

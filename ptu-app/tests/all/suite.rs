@@ -147,6 +147,20 @@ fn every_listed_step_is_reported_with_its_measurements() {
 }
 
 #[test]
+fn procedures_run_in_the_order_in_which_they_are_named() {
+    let place = Place::new();
+    let asked = ["tcms/link", "atp/power_up", "door/*", "atp/power_up"];
+    let (_, report) = place.run(&asked);
+    let mut order: Vec<_> = list(&report["steps"])
+        .iter()
+        .map(|step| text(&step["procedure"]))
+        .collect();
+    order.dedup();
+    assert_eq!(order[..2], ["tcms/link", "atp/power_up"]);
+    assert!(order.len() > 2 && order[2..].iter().all(|of| of.starts_with("door/")));
+}
+
+#[test]
 fn a_recorded_run_is_shown_as_it_was_reported() {
     let (place, report) = whole_suite();
     assert_eq!(&place.json(&["runs", "show", "latest", "--json"]), report);

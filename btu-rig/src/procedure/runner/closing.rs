@@ -6,11 +6,11 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::{Phase, Runner, Stop};
-use crate::procedure::Driver;
 use crate::procedure::action_run::{Progress, Scan};
 use crate::procedure::evidence::{LogState, counted};
-use crate::procedure::report::RunEvent;
+use crate::procedure::report::{Outside, RunEvent};
 use crate::procedure::worst_case::{TIME_LIMIT_MARGIN, total_worst_case};
+use crate::procedure::{Driver, Verdict};
 
 /// Time outputs have to become safe: a wheel at top speed comes to rest first, because one that
 /// stops at once would be an impossible wheel.
@@ -60,8 +60,11 @@ impl Runner {
             over = true;
         }
         // Before a repetition the unit may have braked because it was not driven: the next set-up has its say.
-        if self.resume.is_none() {
-            problems.into_iter().for_each(|text| self.fault(text));
+        if self.resume.is_some() {
+            problems.clear();
+        }
+        for text in problems {
+            self.outside(Outside::CleanUp, Verdict::Error, text, now);
         }
         if over {
             self.phase = Phase::MakeSafe { since: now };
@@ -74,9 +77,8 @@ impl Runner {
             if now.since(since) < SAFE_WITHIN {
                 return;
             }
-            self.fault(format!(
-                "outputs are not confirmed safe after {SAFE_WITHIN}"
-            ));
+            let text = format!("outputs are not confirmed safe after {SAFE_WITHIN}");
+            self.outside(Outside::SafeOutputs, Verdict::Error, text, now);
         }
         self.phase = Phase::ReadLog { since: now };
     }
@@ -89,12 +91,11 @@ impl Runner {
             if now.since(since) < LOG_WITHIN {
                 return;
             }
-            self.fault(format!(
-                "the unit's log was not read to its end within {LOG_WITHIN}"
-            ));
+            let text = format!("the unit's log was not read to its end within {LOG_WITHIN}");
+            self.outside(Outside::UnitLog, Verdict::Error, text, now);
         }
         self.phase = Phase::Done;
-        self.conclude();
+        self.conclude(now);
         let messages = self.messages.iter().map(|text| (text.as_str(), 1));
         self.out.push(RunEvent::ProcedureFinished {
             verdict: self.overall(),

@@ -6,6 +6,7 @@ use protocol::signal::Sample;
 use super::{Phase, Runner, Stop};
 use crate::procedure::Verdict;
 use crate::procedure::action_run::Problem;
+use crate::procedure::report::Outside;
 
 impl Runner {
     pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
@@ -13,7 +14,7 @@ impl Runner {
         let text = format!("link to the unit: {error}");
         match self.phase {
             Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::ReadLog { .. } => {
-                self.fault(text);
+                self.outside(Outside::Bench, Verdict::Error, text, now);
             }
             _ => self.break_off(now, sample, text),
         }
@@ -26,12 +27,14 @@ impl Runner {
                 if let Some(step) = live.as_mut() {
                     step.break_off(Problem::Bench(text.clone()));
                     self.finish_step(now, sample, false);
+                    self.note(Verdict::Error, text.clone());
+                } else {
+                    self.outside(Outside::Bench, Verdict::Error, text.clone(), now);
                 }
-                self.fault(text.clone());
                 self.skip_rest(now, &format!("not run, {text}"));
             }
             Phase::Setup(_) => {
-                self.fault(text.clone());
+                self.outside(Outside::Bench, Verdict::Error, text.clone(), now);
                 self.phase = Phase::Steps {
                     next: 0,
                     live: None,
@@ -52,22 +55,24 @@ impl Runner {
         }
         match &self.phase {
             Phase::Setup(_) | Phase::Steps { .. } => {
+                let text = "stopped by the operator".to_owned();
                 if matches!(self.phase, Phase::Steps { live: Some(_), .. }) {
                     self.finish_step(now, sample, true);
-                } else if matches!(self.phase, Phase::Setup(_)) {
-                    self.phase = Phase::Steps {
-                        next: 0,
-                        live: None,
-                    };
+                    self.note(Verdict::Aborted, text);
+                } else {
+                    if matches!(self.phase, Phase::Setup(_)) {
+                        self.phase = Phase::Steps {
+                            next: 0,
+                            live: None,
+                        };
+                    }
+                    self.outside(Outside::Stop, Verdict::Aborted, text, now);
                 }
-                self.note(Verdict::Aborted, "stopped by the operator".into());
                 self.skip_rest(now, "not run, stopped by the operator");
             }
             Phase::CleanUp { .. } if self.stop == Stop::CutShort => {
-                self.note(
-                    Verdict::Aborted,
-                    "clean-up cut short by the operator".into(),
-                );
+                let text = "clean-up cut short by the operator".into();
+                self.outside(Outside::CleanUp, Verdict::Aborted, text, now);
                 self.phase = Phase::MakeSafe { since: now };
             }
             _ => {}

@@ -30,7 +30,7 @@ use super::describe::meanings;
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::plan::{Procedure, Step};
-use super::report::RunEvent;
+use super::report::{Outside, OutsideStep, RunEvent};
 use super::step_run::StepRun;
 use super::{Driver, UnitEvent, Verdict};
 
@@ -183,11 +183,9 @@ impl Runner {
     }
 
     /// A fault was found while the unit was brought up, before any step.
-    pub fn found_before(&mut self, what: &str) {
-        self.note(
-            Verdict::Failed,
-            format!("found before the first step: {what}"),
-        );
+    pub fn found_before(&mut self, what: &str, at: Instant) {
+        let text = format!("found before the first step: {what}");
+        self.outside(Outside::BringUp, Verdict::Failed, text, at);
     }
 
     /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
@@ -243,7 +241,7 @@ impl Runner {
             self.break_off(now, sample, reason);
         }
         self.obey_standstill(now);
-        self.take_unit_events(events);
+        self.take_unit_events(events, now);
         self.watch_brake(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
             self.lose_link(now, sample, error);
@@ -280,7 +278,8 @@ impl Runner {
             at: now,
         });
         if self.schedule.is_empty() {
-            self.fault("no step to run".into());
+            let text = "no step to run".into();
+            self.outside(Outside::Whole, Verdict::Error, text, now);
             self.phase = Phase::MakeSafe { since: now };
         } else if let Some(reason) = self.passed_over.take() {
             self.phase = Phase::Steps {
@@ -320,8 +319,8 @@ impl Runner {
         };
         if let Progress::Stuck(problem) = progress {
             let text = format!("setup: {}", problem.message());
+            self.outside(Outside::SetUp, Verdict::Error, text.clone(), now);
             self.skip_rest(now, &format!("not run, {text}"));
-            self.fault(text);
         }
     }
 
@@ -341,11 +340,11 @@ impl Runner {
     }
 
     /// What stands at the end beside the steps.
-    fn conclude(&mut self) {
+    fn conclude(&mut self, now: Instant) {
         if !self.self_test.is_empty() {
             let items = meanings(&SelfTest::SPEC, self.self_test.bits());
             let text = format!("the unit says its self-test failed: {items}");
-            self.note(Verdict::Failed, text);
+            self.outside(Outside::SelfTest, Verdict::Failed, text, now);
         }
         let before = self.not_kept_before.unwrap_or_default();
         let more = self.not_reported + self.evidence.not_kept.saturating_sub(before);
@@ -354,7 +353,7 @@ impl Runner {
                 "the unit logged more than {LOG_ENTRIES} events that no step provoked, and {more} more \
                  entries, not stored"
             );
-            self.note(Verdict::Failed, text);
+            self.outside(Outside::UnitLog, Verdict::Failed, text, now);
         }
     }
 
@@ -368,8 +367,15 @@ impl Runner {
         }
     }
 
-    fn fault(&mut self, text: String) {
-        self.note(Verdict::Error, text);
+    /// Reports what failed outside a step.
+    fn outside(&mut self, place: Outside, verdict: Verdict, text: String, at: Instant) {
+        self.out.push(RunEvent::OutsideStep(OutsideStep {
+            place,
+            verdict,
+            message: text.clone(),
+            at,
+        }));
+        self.note(verdict, text);
     }
 
     fn note(&mut self, verdict: Verdict, text: String) {

@@ -9,7 +9,7 @@ use crate::procedure::UnitEvent;
 use crate::procedure::Verdict;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
-use crate::procedure::report::RunEvent;
+use crate::procedure::report::{Outside, RunEvent};
 
 /// Events after which the emergency brake is applied.
 const BRAKING_EVENTS: [Event; 15] = [
@@ -35,13 +35,13 @@ impl Runner {
     ///
     /// Only while steps run: power-up, making safe and what the last procedure left behind cause
     /// events of their own. A restart of the unit by itself counts at any time.
-    pub(super) fn take_unit_events(&mut self, events: &[UnitEvent]) {
+    pub(super) fn take_unit_events(&mut self, events: &[UnitEvent], now: Instant) {
         let restarts =
             |entry: &&UnitEvent| Event::from_code(entry.code).is_some_and(Event::restarts_unit);
         let Phase::Steps { live, .. } = &mut self.phase else {
             for entry in events.iter().filter(restarts) {
                 self.restarted = true;
-                self.verdict = self.verdict.and(Verdict::Failed);
+                self.outside_event(entry, now);
                 self.out.push(RunEvent::UnsolicitedEvent(*entry));
             }
             return;
@@ -50,6 +50,7 @@ impl Runner {
         if let Some(step) = live.as_mut().filter(|_| self.restarted) {
             step.note_restart();
         }
+        let mut outside = Vec::new();
         for entry in events {
             let known = Event::from_code(entry.code);
             if let (Some(step), Some(event)) = (live.as_mut(), known) {
@@ -65,6 +66,11 @@ impl Runner {
                 }
             } else if !asked {
                 self.verdict = self.verdict.and(Verdict::Failed);
+                if let Some(step) = live.as_mut() {
+                    step.fail_by_event(entry);
+                } else if self.reported < LOG_ENTRIES {
+                    outside.push(entry);
+                }
                 if self.reported < LOG_ENTRIES {
                     self.reported += 1;
                     self.out.push(RunEvent::UnsolicitedEvent(*entry));
@@ -75,11 +81,16 @@ impl Runner {
                     let part = || event.suspect(entry.parameter);
                     self.train_part = self.train_part.take().or_else(part);
                 }
-                if let Some(step) = live.as_mut() {
-                    step.fail_by_event(entry);
-                }
             }
         }
+        for entry in outside {
+            self.outside_event(entry, now);
+        }
+    }
+
+    fn outside_event(&mut self, entry: &UnitEvent, now: Instant) {
+        let text = format!("{}, which no step provoked", entry.as_logged());
+        self.outside(Outside::UnprovokedEvent, Verdict::Failed, text, now);
     }
 
     pub(super) fn watch_brake(&mut self, now: Instant, sample: &Sample) {

@@ -25,7 +25,7 @@ pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
 pub use live_state::{HISTORY, LiveData, LiveState, Phase};
 pub use permit::{Refused, permit};
-pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting};
+pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting, outside_place};
 
 use crate::failure::Failure;
 use crate::run::{BenchSetup, RunPlan};

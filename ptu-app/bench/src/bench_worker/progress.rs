@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time;
 
 use btu_rig::procedure::plan::Step;
-use btu_rig::procedure::{Measurement, Procedure, RunEvent, StepResult, Verdict};
+use btu_rig::procedure::{
+    Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
+};
 use protocol::Duration;
 
 use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, steps_of};
@@ -48,7 +50,7 @@ pub struct ProcedureProgress {
     pub procedure: Arc<Procedure>,
     /// Steps chosen of it.
     pub chosen: Vec<usize>,
-    /// Results of its steps, in the order in which they ran.
+    /// Results of its steps, in the order in which they ran, and what failed outside them: [`outside_place`].
     pub results: Vec<StepResult>,
     /// Its verdict, once it has ended.
     pub verdict: Option<Verdict>,
@@ -247,6 +249,7 @@ impl Progress {
                 }
             }
             RunEvent::StepFinished(result) => self.step_finished(place, result),
+            RunEvent::OutsideStep(entry) => self.outside_step(place, entry),
             RunEvent::ProcedureFinished {
                 verdict, message, ..
             } => {
@@ -256,6 +259,24 @@ impl Progress {
                 self.present = None;
             }
             RunEvent::UnsolicitedEvent(_) | RunEvent::UnsolicitedBrake { .. } => {}
+        }
+    }
+
+    fn outside_step(&mut self, place: usize, entry: &OutsideStep) {
+        self.not_passed += 1;
+        if self.not_passed < KEPT {
+            self.procedures[place].results.push(StepResult {
+                index: OUTSIDE,
+                name: entry.place.name().to_owned(),
+                line: 0,
+                repeated: false,
+                verdict: entry.verdict,
+                message: entry.message.clone(),
+                suspect: None,
+                started: entry.at,
+                bench_time: Duration::ZERO,
+                measurements: Vec::new(),
+            });
         }
     }
 
@@ -279,6 +300,18 @@ impl Progress {
         }
     }
 }
+
+/// Where this failed, if it is no step of the procedure.
+pub fn outside_place(result: &StepResult) -> Option<Outside> {
+    let named = |place: &Outside| place.name() == result.name;
+    Outside::ALL
+        .into_iter()
+        .find(named)
+        .filter(|_| result.index == OUTSIDE)
+}
+
+/// The place in the procedure of what is no step of it.
+const OUTSIDE: usize = usize::MAX;
 
 impl RunPosition {
     fn of(procedure: usize) -> Self {

@@ -1,10 +1,10 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
-use btu_rig::procedure::{Procedure, RunEvent, StepResult, Verdict};
+use btu_rig::procedure::{Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
 use fault_db::{Id, MeasurementRecord, RecordingRecord, StepRecord};
-use protocol::Duration;
+use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
@@ -13,7 +13,7 @@ use super::trace_data::trace_data;
 use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
-use crate::stored::{fault_record, stored};
+use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -65,6 +65,13 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
+    /// What failed outside the steps of the present procedure: stored after its last step, so that places of steps
+    /// do not depend on it.
+    outside: Vec<OutsideStep>,
+    /// The present procedure has something recorded that did not pass.
+    says_why: bool,
+    /// So has the run.
+    run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,
     link_lost: bool,
@@ -87,6 +94,9 @@ impl<'a> Collector<'a> {
             dates: Vec::new(),
             faults_before: 0,
             verdict: Verdict::Skipped,
+            outside: Vec::new(),
+            says_why: false,
+            run_says_why: false,
             finished: 0,
             link_lost: false,
             broken_off: false,
@@ -99,6 +109,49 @@ impl<'a> Collector<'a> {
         self.ordinal += 1;
         self.steps_before = self.steps;
         self.faults_before = self.dates.len();
+        self.says_why = false;
+    }
+
+    /// The present procedure was due and not begun, because the run was stopped.
+    pub fn not_begun(&mut self, verdict: Verdict, why: &str) {
+        let Some(procedure) = self.procedure.clone() else {
+            return;
+        };
+        let entry = OutsideStep {
+            place: Outside::NotBegun,
+            verdict,
+            message: why.to_owned(),
+            at: Instant::ZERO,
+        };
+        for event in [
+            RunEvent::OutsideStep(entry.clone()),
+            RunEvent::ProcedureFinished {
+                verdict,
+                message: why.to_owned(),
+                at: entry.at,
+            },
+        ] {
+            self.listener
+                .on_event(&procedure, &SessionEvent::Run(event));
+        }
+        self.outside.push(entry);
+        self.store_outside(&procedure.id);
+    }
+
+    /// The run cannot go on; what was said of the present procedure stays.
+    pub fn broken_off(&mut self, why: &str) {
+        self.outside.push(OutsideStep {
+            place: Outside::Whole,
+            verdict: Verdict::Error,
+            message: why.to_owned(),
+            at: Instant::ZERO,
+        });
+        self.run_says_why = true;
+    }
+
+    /// Whether the present procedure ran to its end.
+    pub fn is_finished(&self) -> bool {
+        self.finished == self.ordinal
     }
 
     pub fn take(&mut self, event: SessionEvent) {
@@ -109,9 +162,26 @@ impl<'a> Collector<'a> {
         let line = self.listener.line(&procedure, &event);
         match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => self.step(&procedure, result),
-            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
+            SessionEvent::Run(RunEvent::OutsideStep(entry)) => {
+                self.says_why = true;
+                self.outside.push(entry);
+            }
+            SessionEvent::Run(RunEvent::ProcedureFinished {
+                verdict,
+                message,
+                at,
+            }) => {
                 self.finished += 1;
                 self.verdict = self.verdict.and(verdict);
+                if !is_passed(verdict) && !self.says_why {
+                    self.outside.push(OutsideStep {
+                        place: Outside::Whole,
+                        verdict,
+                        message,
+                        at,
+                    });
+                }
+                self.store_outside(&procedure.id);
             }
             SessionEvent::Run(_) => {}
             SessionEvent::LinkLost(_) => self.link_lost = true,
@@ -137,9 +207,26 @@ impl<'a> Collector<'a> {
         }
     }
 
-    fn step(&mut self, procedure: &Procedure, result: StepResult) {
-        let index = self.steps;
+    /// The place of the next record, which has this verdict.
+    fn next_index(&mut self, verdict: Verdict) -> u32 {
+        self.says_why |= !is_passed(verdict);
+        self.run_says_why |= !is_passed(verdict);
         self.steps += 1;
+        self.steps - 1
+    }
+
+    /// Stores what failed outside the steps of a procedure, in the order in which it did.
+    fn store_outside(&mut self, procedure: &str) {
+        for entry in std::mem::take(&mut self.outside) {
+            let index = self.next_index(entry.verdict);
+            let at = self.before + Duration::from_us(entry.at.as_us());
+            let record = outside_record(procedure, &entry, at.as_us() as i64);
+            self.store.step(StepRecord { index, ..record });
+        }
+    }
+
+    fn step(&mut self, procedure: &Procedure, result: StepResult) {
+        let index = self.next_index(result.verdict);
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
@@ -193,12 +280,22 @@ impl<'a> Collector<'a> {
     /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
     pub fn finish(mut self, id: Id, stopped: Option<Verdict>) -> (RunStore, Outcome) {
         if let Some(verdict) = stopped
-            && self.finished < self.ordinal
+            && !self.is_finished()
         {
             self.verdict = self.verdict.and(verdict);
         }
         self.broken_off = stopped == Some(Verdict::Error) && self.verdict == Verdict::Error;
         let verdict = self.overall();
+        if !is_passed(verdict) && !self.run_says_why {
+            self.outside.push(OutsideStep {
+                place: Outside::Whole,
+                verdict,
+                message: "no step was run".into(),
+                at: Instant::ZERO,
+            });
+        }
+        // Also what a procedure said that the program did not run to its end.
+        self.store_outside(WHOLE_RUN);
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,
             Verdict::Failed => Exit::Failed,
@@ -215,6 +312,10 @@ impl<'a> Collector<'a> {
             },
         )
     }
+}
+
+fn is_passed(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Passed | Verdict::Skipped)
 }
 
 /// Steps a plan will run, repetitions counted.

@@ -175,6 +175,43 @@ fn a_run_stopped_between_two_procedures_is_aborted_whatever_came_before() {
     }
 }
 
+/// What was due and not begun is recorded, however many procedures that are; in a run that ends with its first failure
+/// nothing after that is due.
+#[test]
+fn a_stopped_run_keeps_the_procedures_that_it_did_not_begin() {
+    let mut plan = plan_of(&[PASSES, FAILS, PASSES, PASSES]);
+    let at = ends(&plan);
+    let kept = |at: usize, plan: &RunPlan| {
+        let presser = Arc::new(StopBeforeScan {
+            at: Some(at),
+            ..StopBeforeScan::default()
+        });
+        let (_, run) = recorded(&presser, plan, setup(&[]));
+        let said = |step: &fault_db::StepRecord| {
+            (
+                step.procedure.clone(),
+                step.name.clone(),
+                step.verdict.as_str(),
+            )
+        };
+        run.steps.iter().map(said).collect::<Vec<_>>()
+    };
+    let of = |place: &str, name: &str, verdict| (place.to_owned(), name.to_owned(), verdict);
+    let expected = [
+        of("0", "waits", "passed"),
+        of("1", "not begun", "aborted"),
+        of("2", "not begun", "aborted"),
+        of("3", "not begun", "aborted"),
+    ];
+    assert_eq!(kept(at[0], &plan), expected);
+    plan.jobs = 3;
+    assert_eq!(kept(1, &plan).last(), expected.last());
+    plan.jobs = 1;
+    plan.stop_on_fail = true;
+    let expected = [of("0", "waits", "passed"), of("1", "sounds", "failed")];
+    assert_eq!(kept(at[1], &plan), expected);
+}
+
 /// What nothing was left out of has its own verdict and exit code, and so has a run that was to end there by
 /// itself.
 #[test]

@@ -46,8 +46,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{self, Procedure, RunOptions};
+use btu_rig::procedure::{self, Outside, OutsideStep, Procedure, RunOptions};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
+use protocol::Instant;
 
 pub use adaptive::Adaptive;
 pub use bench_contents::{BenchContents, BenchFile, Stimuli};
@@ -69,7 +70,7 @@ pub use workers::run_here;
 use crate::clock;
 use crate::failure::{Exit, Failure};
 use crate::stop::Stop;
-use crate::stored::stored;
+use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
 use collector::Collector;
 use first_failure::FirstFailure;
 pub use store_thread::LinePrinter;
@@ -159,7 +160,18 @@ fn reach(
                 Exit::Aborted => Verdict::Aborted,
                 _ => Verdict::Error,
             };
-            RunStore::begin(store, record, None, stop)?.finish(began.end(verdict, 0))?;
+            let run_store = RunStore::begin(store, record, None, stop)?;
+            run_store.step(outside_record(
+                WHOLE_RUN,
+                &OutsideStep {
+                    place: Outside::Bench,
+                    verdict: from_stored(verdict),
+                    message: failure.message.clone(),
+                    at: Instant::ZERO,
+                },
+                0,
+            ));
+            run_store.finish(began.end(verdict, 0))?;
             Err(failure)
         }
     }
@@ -190,14 +202,29 @@ pub fn run_on(
         std::thread::scope(|scope| match &plan.adaptive {
             Some(adaptive) => {
                 let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
-                collect(procedures, &mut collector, &first_failure);
+                collect(
+                    procedures,
+                    &mut collector,
+                    &first_failure,
+                    &plan.tasks[..0],
+                    stop,
+                );
             }
             None => {
                 let procedures = workers::start(scope, plan, connected, &first_failure, stop);
-                collect(procedures, &mut collector, &first_failure);
+                collect(
+                    procedures,
+                    &mut collector,
+                    &first_failure,
+                    &plan.tasks,
+                    stop,
+                );
             }
         });
     }));
+    if worked.is_err() {
+        collector.broken_off("the program failed in this run");
+    }
     let (run_store, outcome) = collector.finish(id, left_out(stop));
     let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
@@ -221,18 +248,39 @@ fn left_out(stop: &Stop) -> Option<procedure::Verdict> {
 }
 
 /// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
-/// what a bench does next.
+/// what a bench does next. What was `due` and is in none of the streams, because the run was stopped, is recorded as
+/// not begun.
 fn collect(
     procedures: impl IntoIterator<Item = ProcedureStream>,
     collector: &mut Collector<'_>,
     first_failure: &FirstFailure,
+    due: &[Task],
+    stop: &Stop,
 ) {
+    let mut places = 0;
+    let not_begun = |collector: &mut Collector<'_>| {
+        if let Some(verdict) = left_out(stop) {
+            let why = stop.reason().unwrap_or("stopped by the operator");
+            collector.not_begun(verdict, &format!("not begun, {why}"));
+        }
+    };
     for (place, (procedure, stream)) in procedures.into_iter().enumerate() {
         if !first_failure.admits(place) {
-            break;
+            return;
         }
+        places = place + 1;
         collector.begin(&procedure);
-        stream.into_iter().for_each(|event| collector.take(event));
+        let mut events = stream.into_iter().peekable();
+        if events.peek().is_none() {
+            not_begun(collector);
+        }
+        events.for_each(|event| collector.take(event));
+    }
+    for (place, task) in due.iter().enumerate().skip(places) {
+        if first_failure.admits(place) && stop.presses() > 0 {
+            collector.begin(&task.procedure);
+            not_begun(collector);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use fault_db::{RunDetail, RunOccurrence, StepRecord};
 use protocol::lru;
 
 use super::{CHECK_FAILED, FaultSeen, SessionEvent};
-use crate::stored::from_stored;
+use crate::stored::{from_stored, outside_of};
 
 /// Gathers the steps of a procedure, each with the signs that showed since the one before.
 #[derive(Debug)]
@@ -109,6 +109,9 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
 
 fn of_step(step: &StepRecord) -> Option<ObservedStep> {
     let result = Some(from_stored(step.verdict)).filter(|verdict| is_observed(*verdict))?;
+    if outside_of(step).is_some() {
+        return None;
+    }
     let values = step.measurements.iter();
     Some(ObservedStep {
         check: CheckName {

@@ -1,6 +1,6 @@
 //! Repetitions of a procedure, reported as one procedure with the steps of all repetitions.
 
-use btu_rig::procedure::{RunEvent, Verdict};
+use btu_rig::procedure::{Outside, OutsideStep, RunEvent, Verdict};
 use protocol::Instant;
 
 /// Different messages of repetitions that are kept; what went wrong in thousands is told by the first few.
@@ -64,8 +64,24 @@ impl RepetitionTally {
         }
     }
 
-    /// Takes note of something beside the steps.
-    pub(super) fn note(&mut self, verdict: Verdict, message: String) {
+    /// Takes note of what failed between two repetitions; the event that reports it.
+    pub(super) fn outside(
+        &mut self,
+        place: Outside,
+        verdict: Verdict,
+        message: String,
+        at: Instant,
+    ) -> RunEvent {
+        self.note(verdict, message.clone());
+        RunEvent::OutsideStep(OutsideStep {
+            place,
+            verdict,
+            message,
+            at,
+        })
+    }
+
+    fn note(&mut self, verdict: Verdict, message: String) {
         self.verdict = self.verdict.and(verdict);
         if message.is_empty() || self.messages.contains(&message) {
             return;

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
+use btu_rig::procedure::Procedure;
 use btu_rig::rig::Random;
 use glob::Pattern;
 
@@ -20,17 +22,24 @@ pub fn shuffle<T>(items: &mut [T], seed: u64) {
     }
 }
 
-/// The texts the loader needs for the procedures asked for: those, and all libraries.
+/// Puts procedures into the order in which their files were asked for; those of one name stay as they are.
+pub fn in_order(order: &[String], procedures: &mut [Arc<Procedure>]) {
+    procedures.sort_by_key(|procedure| order.iter().position(|path| *path == procedure.path));
+}
+
+/// The texts the loader needs for the procedures asked for: those, and all libraries; and the paths of those, in the order in
+/// which they were asked for, or none where all were.
 ///
 /// # Errors
 /// A path or glob that names nothing, or a file that cannot be read.
 pub fn scripts(
     directory: &ScriptsDirectory,
     asked: &[String],
-) -> Result<BTreeMap<String, String>, Failure> {
+) -> Result<(BTreeMap<String, String>, Vec<String>), Failure> {
     let all = directory.procedures()?;
+    let mut order = Vec::new();
     if asked.is_empty() {
-        return Ok(all);
+        return Ok((all, order));
     }
     let mut chosen: BTreeMap<_, _> = all
         .iter()
@@ -38,13 +47,14 @@ pub fn scripts(
         .map(clone_pair)
         .collect();
     for name in asked {
-        let found = matching(directory, &all, name)?;
+        let mut found = matching(directory, &all, name)?;
         if found.is_empty() {
-            chosen.extend([outside(name, &all)?]);
+            found.extend([outside(name, &all)?]);
         }
+        order.extend(found.keys().cloned());
         chosen.extend(found);
     }
-    Ok(chosen)
+    Ok((chosen, order))
 }
 
 fn clone_pair((path, text): (&String, &String)) -> (String, String) {

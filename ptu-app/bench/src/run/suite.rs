@@ -32,7 +32,7 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// Loads the procedures that `patterns` name, or all.
+    /// Loads the procedures that `patterns` name, in their order, or all.
     ///
     /// # Errors
     /// A file cannot be read, or a pattern names nothing.
@@ -41,9 +41,9 @@ impl Suite {
         patterns: &[String],
         setup: &BenchSetup,
     ) -> Result<Self, Failure> {
-        let texts = select::scripts(directory, patterns)?;
+        let (texts, order) = select::scripts(directory, patterns)?;
         let Loaded {
-            procedures,
+            mut procedures,
             errors,
             need_cars,
             printed,
@@ -53,6 +53,7 @@ impl Suite {
             &setup.line.content,
             &setup.train,
         )?;
+        select::in_order(&order, &mut procedures);
         let mut errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
         if errors.is_empty() {
             errors = wrong_suspects(&procedures, &directory.faults()?);

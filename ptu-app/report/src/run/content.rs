@@ -11,6 +11,7 @@ use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::words::{Language, Words, fill};
 use ptu_bench::clock::{local, local_zoned};
+use ptu_bench::stored::outside_of;
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
@@ -43,14 +44,19 @@ fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
 
 fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let (run, report) = (&sheet.run.run, &words.report);
-    let steps = &sheet.run.steps;
+    let (steps, outside): (Vec<_>, Vec<_>) =
+        (sheet.run.steps.iter()).partition(|step| outside_of(step).is_none());
     let not_passed = steps.iter().filter(|step| !passed(step.verdict)).count();
     let of = steps.len();
-    let counted = match (of, not_passed) {
+    let mut counted = match (of, not_passed) {
         (0, _) => report.no_steps.to_owned(),
         (_, 0) => fill(report.all_passed, &[("of", &of)]),
         (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
     };
+    if !outside.is_empty() {
+        let more = fill(report.outside_steps, &[("n", &outside.len())]);
+        counted = format!("{counted}   {more}");
+    }
     let who: [(&str, &dyn std::fmt::Display); 2] =
         [("serial", &run.unit_serial), ("run", &run.id.short())];
     let (tone, said) = verdict(run, words);
@@ -93,7 +99,8 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
         Column::new(name, 0.2, Align::Left)
     });
     let counts = all.map(|verdict| {
-        let count = steps.iter().filter(|step| step.verdict == verdict).count();
+        let of_script = steps.iter().filter(|step| outside_of(step).is_none());
+        let count = of_script.filter(|step| step.verdict == verdict).count();
         let tone = if count == 0 {
             Tone::Soft
         } else {
@@ -310,10 +317,8 @@ fn all_steps(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = Vec::new();
     for mine in sheet.run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
         let good = mine.iter().filter(|s| s.verdict == Verdict::Passed).count();
-        let counted = fill(
-            report.procedure_passed,
-            &[("passed", &good), ("of", &mine.len())],
-        );
+        let of = mine.iter().filter(|s| outside_of(s).is_none()).count();
+        let counted = fill(report.procedure_passed, &[("passed", &good), ("of", &of)]);
         blocks.push(Block::Subheading(mine[0].procedure.clone(), counted));
         blocks.push(Block::Table(steps::table(mine, words)));
     }

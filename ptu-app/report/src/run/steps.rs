@@ -3,6 +3,7 @@
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
 use ptu_bench::run::uncertainty_of;
+use ptu_bench::stored::outside_of;
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use crate::limits::short;
@@ -31,10 +32,14 @@ pub fn table(steps: &[StepRecord], words: &Words) -> Table {
 
 fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
     let plain = |text: String| Cell::Text(Tone::Plain, text);
+    let name = match outside_of(step) {
+        Some(place) => words.common.outside(place).to_owned(),
+        None => step.name.clone(),
+    };
     let mut rows = vec![Row {
         kind: RowKind::Head,
         cells: vec![
-            (plain(step.name.clone()), 1 + MEASURED),
+            (plain(name), 1 + MEASURED),
             (verdict(step.verdict, words), 1),
             (plain(format!("{:.1}", step.bench_time_us as f64 / 1e6)), 1),
         ],

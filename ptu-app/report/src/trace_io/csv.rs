@@ -1,7 +1,7 @@
 //! Exports traces as comma-separated values, with a description in a file beside.
 //!
-//! One line per row: the time in seconds from the trigger, then one column per signal, headed by its name and its
-//! unit; words and bits are numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what
+//! One line per row: the time in seconds from the trigger, then one column per signal under its name in files
+//! ([`column_name`]); enumerations are words, bits numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what
 //! the signals are, as the W3C's "CSV on the Web" has it.
 
 use std::borrow::Cow;
@@ -13,18 +13,11 @@ use protocol::display_text;
 use serde_json::{Value, json};
 
 use super::about::TraceInfo;
+use super::column::{column_name, word};
 use crate::csv::no_formula;
 
 /// Heading of the column of times.
 pub const TIME: &str = "time_s";
-
-/// A signal's heading: its name, and its unit behind it.
-pub fn heading(channel: &Channel) -> String {
-    match channel.unit.replace('/', "").as_str() {
-        "" => channel.name.clone(),
-        unit => format!("{}_{unit}", channel.name),
-    }
-}
 
 /// Writes the line of headings.
 ///
@@ -40,7 +33,7 @@ pub fn put_headings<'a>(
         write!(out, ",{heading}")?;
     }
     for channel in channels {
-        let heading = heading(channel);
+        let heading = column_name(channel);
         write!(
             out,
             ",{}",
@@ -59,15 +52,15 @@ pub fn put_time(out: &mut impl Write, time_us: i64, period_us: i64) -> io::Resul
     write!(out, "{:.digits$}", time_us as f64 / 1e6)
 }
 
-/// Goes on with a sample.
+/// Goes on with a sample of this signal.
 ///
 /// # Errors
 /// `out` fails.
-pub fn put_sample(out: &mut impl Write, sample: f64) -> io::Result<()> {
-    if sample.is_nan() {
-        out.write_all(b",")
-    } else {
-        write!(out, ",{sample}")
+pub fn put_sample(out: &mut impl Write, channel: &Channel, sample: f64) -> io::Result<()> {
+    match word(channel, sample) {
+        _ if sample.is_nan() => out.write_all(b","),
+        Some(word) => write!(out, ",{}", quoted(&display_text::line(&no_formula(word)))),
+        None => write!(out, ",{sample}"),
     }
 }
 
@@ -91,10 +84,11 @@ pub(super) fn description(file: &str, about: &TraceInfo) -> Value {
     let column = |channel: &Channel| {
         let datatype = match channel.kind {
             ChannelKind::Number { .. } => "double",
-            ChannelKind::Enum { .. } | ChannelKind::Bit => "integer",
+            ChannelKind::Enum { .. } => "string",
+            ChannelKind::Bit => "integer",
         };
         json!({
-            "name": channel.name, "titles": heading(channel), "datatype": datatype,
+            "name": column_name(channel), "titles": column_name(channel), "datatype": datatype,
             "dc:description": format!("{}, {}", channel.name, unit_told(channel)),
         })
     };

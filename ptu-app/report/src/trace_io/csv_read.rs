@@ -8,7 +8,8 @@ use fault_db::{Channel, ChannelKind, open_regular_file, read_regular_file};
 use serde_json::Value;
 
 use super::about::TraceInfo;
-use super::csv::{beside, heading};
+use super::column::is_called;
+use super::csv::beside;
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;
@@ -198,12 +199,11 @@ fn fields(line: &str, separator: char) -> Result<Vec<String>, &'static str> {
     Ok(fields)
 }
 
-/// The signal with this heading, or of this name.
+/// The signal that is called so.
 fn channel(text: &str, known: &[&[Channel]]) -> Channel {
     let all = || known.iter().flat_map(|channels| channels.iter());
     all()
-        .find(|channel| heading(channel) == text)
-        .or_else(|| all().find(|channel| channel.name == text))
+        .find(|channel| is_called(channel, text))
         .map_or_else(|| plain(text), Clone::clone)
 }
 

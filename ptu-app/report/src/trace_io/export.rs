@@ -76,8 +76,8 @@ fn put_csv(out: &mut impl Write, chosen: &TracePart<'_>, to: &Path) -> Result<()
         for row in 0..columns.first().map_or(0, Vec::len) {
             let mut put = || {
                 csv::put_time(out, about.time_us(first + row), about.period_us)?;
-                for column in columns {
-                    csv::put_sample(out, column[row])?;
+                for (channel, column) in about.channels.iter().zip(columns) {
+                    csv::put_sample(out, channel, column[row])?;
                 }
                 out.write_all(b"\n")
             };

@@ -5,13 +5,14 @@ use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
 
-use fault_db::{Channel, open_regular_file};
+use fault_db::{Channel, ChannelKind, open_regular_file};
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
 use super::about::{NAME, TraceInfo};
+use super::column::is_called;
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_bench::failure::Failure;
 
@@ -148,7 +149,8 @@ impl Reading<'_> {
                 let at_us = i64::try_from(header.log_time / 1000).unwrap_or(i64::MAX);
                 self.signals -= topic.table.columns.len();
                 self.samples -= topic.table.samples();
-                topic.take(at_us, &message, self.known);
+                let own = self.about.as_ref().map_or(&[][..], |about| &about.channels);
+                topic.take(at_us, &message, &[own, self.known]);
                 self.signals += topic.table.columns.len();
                 self.samples += topic.table.samples();
                 check_size(self.file, self.signals, self.samples)?;
@@ -203,7 +205,7 @@ impl Reading<'_> {
 }
 
 impl Topic {
-    fn take(&mut self, at_us: i64, message: &Value, known: &[Channel]) {
+    fn take(&mut self, at_us: i64, message: &Value, known: &[&[Channel]]) {
         self.table.times_us.push(at_us);
         self.fields(&mut String::new(), message, 0, known);
         let rows = self.table.times_us.len();
@@ -221,7 +223,24 @@ impl Topic {
         Ok(())
     }
 
-    fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &[Channel]) {
+    /// The number of a word, if it is one of a signal that has words.
+    fn number(&self, path: &str, word: &str, known: &[&[Channel]]) -> Option<f64> {
+        let made;
+        let channel = match self.places.get(path) {
+            Some(place) => &self.table.channels[*place],
+            None => {
+                made = channel(&self.name, path, known);
+                &made
+            }
+        };
+        let ChannelKind::Enum { labels } = &channel.kind else {
+            return None;
+        };
+        let found = labels.iter().find(|(_, label)| *label == word);
+        found.map(|(number, _)| *number as f64)
+    }
+
+    fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &[&[Channel]]) {
         let sample = match value {
             Value::Object(fields) if depth < MAX_DEPTH => {
                 for (name, value) in fields {
@@ -238,6 +257,10 @@ impl Topic {
             Value::Number(number) => number.as_f64().unwrap_or(f64::NAN),
             Value::Bool(bit) => f64::from(u8::from(*bit)),
             Value::Null => f64::NAN,
+            Value::String(word) => match self.number(path, word, known) {
+                Some(number) => number,
+                None => return,
+            },
             _ => return,
         };
         let before = self.table.times_us.len() - 1;
@@ -259,8 +282,11 @@ impl Topic {
 
 /// The signal a field stands for: of its own name, or of its topic's where it is just the value there; else
 /// one of the name of both.
-fn channel(topic: &str, path: &str, known: &[Channel]) -> Channel {
-    let named = |name: &str| known.iter().find(|channel| channel.name == name).cloned();
+fn channel(topic: &str, path: &str, known: &[&[Channel]]) -> Channel {
+    let named = |name: &str| {
+        let mut all = known.iter().copied().flatten();
+        all.find(|channel| is_called(channel, name)).cloned()
+    };
     let is_value = matches!(path, "" | "value" | "data");
     let of_topic = if is_value { named(topic) } else { None };
     named(path).or(of_topic).unwrap_or_else(|| match path {

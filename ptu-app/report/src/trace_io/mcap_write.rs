@@ -1,7 +1,7 @@
 //! Traces as MCAP: one message of JSON per row, under one topic, for Foxglove, PlotJuggler and the like.
 //!
-//! One field per signal, null where a sample is not known; words and bits are numbers, so that they plot. The
-//! schema has each signal's unit and words, the file's metadata [`TraceInfo`](super::TraceInfo) under its name.
+//! One field per signal, called as [`column_name`] says, null where a sample is not known; enumerations are words, bits
+//! numbers. The schema has each signal's unit and words, the file's metadata [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::collections::BTreeMap;
 use std::io::{self, Seek, Write};
@@ -13,6 +13,7 @@ use mcap::{Compression, McapError, WriteOptions};
 use serde_json::{Map, Value, json};
 
 use super::about::{NAME, TraceInfo};
+use super::column::{column_name, word};
 use super::part::TracePart;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
@@ -52,7 +53,8 @@ pub(super) fn put(
     chosen.each_block(|first, columns| {
         for row in 0..columns.first().map_or(0, Vec::len) {
             message.clear();
-            put_row(&mut message, &keys, columns, row).map_err(|error| failed(error.into()))?;
+            put_row(&mut message, about, &keys, columns, row)
+                .map_err(|error| failed(error.into()))?;
             let number = first + row;
             let at_us = (number as i64).saturating_mul(about.period_us);
             // Nothing was recorded before 1970.
@@ -76,12 +78,13 @@ pub(super) fn put(
 
 /// Each signal's name as JSON has it before a value; the same in every row.
 fn keys(about: &TraceInfo) -> Vec<String> {
-    let name = |channel: &Channel| Value::from(channel.name.as_str()).to_string();
+    let name = |channel: &Channel| Value::from(column_name(channel)).to_string();
     about.channels.iter().map(|c| name(c) + ":").collect()
 }
 
 fn put_row(
     message: &mut Vec<u8>,
+    about: &TraceInfo,
     keys: &[String],
     columns: &[Vec<f64>],
     row: usize,
@@ -89,7 +92,9 @@ fn put_row(
     message.push(b'{');
     for (place, (key, column)) in keys.iter().zip(columns).enumerate() {
         let before = if place == 0 { "" } else { "," };
-        write!(message, "{before}{key}{}", number(column[row]))?;
+        let channel = &about.channels[place];
+        let value = word(channel, column[row]).map_or_else(|| number(column[row]), Value::from);
+        write!(message, "{before}{key}{value}")?;
     }
     message.push(b'}');
     Ok(())
@@ -109,7 +114,7 @@ fn schema(about: &TraceInfo) -> Value {
     let properties: Map<String, Value> = about
         .channels
         .iter()
-        .map(|channel| (channel.name.clone(), property(channel)))
+        .map(|channel| (column_name(channel), property(channel)))
         .collect();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -126,10 +131,9 @@ fn property(channel: &Channel) -> Value {
         }
         ChannelKind::Bit => json!({"type": ["integer", "null"], "minimum": 0, "maximum": 1}),
         ChannelKind::Enum { labels } => {
-            let word = |(n, word): (&i64, &String)| json!({"const": n, "title": word});
-            let mut words: Vec<Value> = labels.iter().map(word).collect();
-            words.push(json!({"const": null, "title": "not known"}));
-            json!({"oneOf": words})
+            let words: Vec<_> = labels.values().collect();
+            // What has no word is a number.
+            json!({"anyOf": [{"enum": words}, {"type": ["number", "null"]}]})
         }
     }
 }

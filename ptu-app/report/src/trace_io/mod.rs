@@ -8,6 +8,7 @@
 
 mod about;
 mod align;
+mod column;
 pub mod csv;
 mod csv_read;
 mod export;
@@ -19,6 +20,7 @@ mod series;
 
 pub use about::TraceInfo;
 pub use align::{Aligned, align};
+pub use column::column_name;
 pub use export::{Format, export};
 pub use part::{Seconds, TracePart};
 pub use series::{Import, import, is_importable};

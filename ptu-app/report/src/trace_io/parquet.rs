@@ -1,6 +1,6 @@
 //! Traces as Apache Parquet: a column of times, then one column per signal.
 //!
-//! Numbers are doubles, bits booleans, enums their words; an unknown sample is null. The file's metadata
+//! Columns are called as [`column_name`] says. Numbers are doubles, bits booleans, enums their words; an unknown sample is null. The file's metadata
 //! has [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::io::Write;
@@ -18,6 +18,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::about::NAME;
+use super::column::{column_name, word};
 use super::part::TracePart;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::cannot_write;
@@ -82,7 +83,7 @@ fn schema(channels: &[Channel]) -> Result<Type, ParquetError> {
             ChannelKind::Bit => (Physical::BOOLEAN, None),
             ChannelKind::Enum { .. } => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        let field = Type::primitive_type_builder(&channel.name, physical)
+        let field = Type::primitive_type_builder(&column_name(channel), physical)
             .with_repetition(Repetition::OPTIONAL)
             .with_logical_type(logical)
             .build()?;
@@ -147,14 +148,9 @@ fn put_samples(
                 .typed::<BoolType>()
                 .write_batch(&values, known, None)?;
         }
-        ChannelKind::Enum { labels } => {
-            // What has no word is a number still.
-            let word = |sample: f64| {
-                let label = labels
-                    .get(&(sample as i64))
-                    .filter(|_| sample.fract() == 0.0);
-                label.map_or_else(|| sample.to_string(), Clone::clone)
-            };
+        ChannelKind::Enum { .. } => {
+            let word =
+                |sample| word(channel, sample).map_or_else(|| sample.to_string(), str::to_owned);
             let values: Vec<ByteArray> = present()
                 .map(|sample| ByteArray::from(word(sample).into_bytes()))
                 .collect();

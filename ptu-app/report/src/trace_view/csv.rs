@@ -51,8 +51,8 @@ fn put(
         if let Some(axis) = distance {
             write!(out, ",{:.2}", axis.at(row))?;
         }
-        for column in known().map(|place| &trace.columns[*place]) {
-            put_sample(out, column[row])?;
+        for place in known() {
+            put_sample(out, &trace.channels[*place], trace.columns[*place][row])?;
         }
         out.write_all(b"\n")?;
     }

@@ -1,6 +1,6 @@
 //! Verdicts, states, units and what every page says.
 
-use btu_rig::procedure::Verdict;
+use btu_rig::procedure::{Outside, Verdict};
 use fault_db::FaultState;
 
 use super::wordings;
@@ -16,6 +16,17 @@ wordings! {
         aborted: "aborted", "중단";
         running: "running", "진행 중";
         interrupted: "interrupted", "미완료";
+        bring_up: "bring-up", "기동";
+        set_up: "set-up", "준비";
+        clean_up: "clean-up", "종료 처리";
+        safe_outputs: "safe outputs", "출력 안전화";
+        unprovoked_event: "unprovoked event", "유발하지 않은 이벤트";
+        self_test: "self-test", "자체 시험";
+        unit_log: "unit log", "유닛 로그";
+        bench: "bench", "벤치";
+        stop: "stop", "정지 명령";
+        not_begun: "not begun", "시작 안 함";
+        as_a_whole: "as a whole", "전체";
         open: "open", "미조치";
         acknowledged: "acknowledged", "확인됨";
         repaired: "repaired", "수리됨";
@@ -65,6 +76,23 @@ impl Common {
     /// A stored verdict.
     pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> &'static str {
         self.verdict(from_stored(verdict))
+    }
+
+    /// Where something failed that is no step.
+    pub fn outside(&self, place: Outside) -> &'static str {
+        match place {
+            Outside::BringUp => self.bring_up,
+            Outside::SetUp => self.set_up,
+            Outside::CleanUp => self.clean_up,
+            Outside::SafeOutputs => self.safe_outputs,
+            Outside::UnprovokedEvent => self.unprovoked_event,
+            Outside::SelfTest => self.self_test,
+            Outside::UnitLog => self.unit_log,
+            Outside::Bench => self.bench,
+            Outside::Stop => self.stop,
+            Outside::NotBegun => self.not_begun,
+            Outside::Whole => self.as_a_whole,
+        }
     }
 
     /// A fault's state.

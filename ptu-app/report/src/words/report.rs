@@ -14,6 +14,7 @@ wordings! {
         of_unit: "Unit {serial}, run {run}", "유닛 {serial}, 시험 {run}";
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
         all_passed: "{of} steps", "{of}개 단계";
+        outside_steps: "Outside steps: {n}", "단계 외 미합격: {n}건";
         no_steps: "No steps were run.", "수행된 단계가 없습니다.";
         not_finished: "The run has no verdict: it is under way or was broken off. What is here was recorded until then.",
             "판정이 없는 시험입니다. 진행 중이거나 도중에 끊겼으며, 그때까지 기록된 내용만 실었습니다.";

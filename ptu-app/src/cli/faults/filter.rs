@@ -2,10 +2,11 @@
 
 use clap::Args;
 use fault_db::{FaultFilter, FaultState, Store, code_number};
-use protocol::event::Severity;
+use protocol::event::{Event, Severity};
 
-use crate::cli::{since_argument, unknown_unit};
+use crate::cli::{check_unit, since_argument};
 use ptu_bench::clock::Span;
+use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
 
 /// Which faults.
@@ -73,10 +74,7 @@ impl FilterArguments {
     /// As the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.unit {
-            let said = format!("no unit \"{unit}\" was ever tested");
-            if let Some(said) = unknown_unit(store, unit, &said)? {
-                return Err(Failure::usage(said));
-            }
+            check_unit(store, unit)?;
         }
         // Of several the others would hide it.
         if self.code.as_ref().is_some_and(|codes| codes.contains(','))
@@ -105,11 +103,13 @@ impl FilterArguments {
         })
     }
 
-    /// What to say when nothing was found: that a name asked for is not in this history at all, that nothing
-    /// fits, or that there is nothing.
+    /// What to say when nothing was found: that nothing fits, or that there is nothing.
+    ///
+    /// # Errors
+    /// A name asked for is known neither in this history nor in the scripts.
     pub fn nothing(&self, store: &Store) -> Result<String, Failure> {
         if let Some(said) = self.unknown(store)? {
-            return Ok(said);
+            return Err(Failure::usage(said));
         }
         Ok(match self.filter(store)? == FaultFilter::default() {
             true => "no faults recorded",
@@ -125,9 +125,15 @@ impl FilterArguments {
         };
         let known = store.known_codes()?;
         let names = || known.iter().map(|(_, name)| name.as_str());
+        let events = || Event::ALL.iter().map(|event| event.definition());
         let is_known = |code: &str| match code_number(code) {
-            Some(number) => known.iter().any(|(known, _)| *known == number),
-            None => names().any(|name| name.eq_ignore_ascii_case(code)),
+            Some(number) => {
+                known.iter().any(|(known, _)| *known == number)
+                    || events().any(|event| i64::from(event.code) == number)
+            }
+            None => names()
+                .chain(events().map(|event| event.name))
+                .any(|name| name.eq_ignore_ascii_case(code)),
         };
         let mut asked = codes.split(',').map(str::trim);
         Ok(asked.find(|code| !is_known(code)).map(|code| {
@@ -136,14 +142,14 @@ impl FilterArguments {
         }))
     }
 
-    /// The first name that nothing here has, and the nearest that something has.
+    /// The first name that neither something here nor the scripts have, and the nearest that something here has.
     fn unknown(&self, store: &Store) -> Result<Option<String>, Failure> {
         if let Some(said) = self.unknown_code(store)? {
             return Ok(Some(said));
         }
         if let Some(lru) = &self.lru {
             let known = store.known_lrus()?;
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(lru)) {
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(lru)) && !is_part(lru) {
                 let hint = did_you_mean(lru, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault ever named the part \"{lru}\"{hint}"
@@ -152,7 +158,7 @@ impl FilterArguments {
         }
         if let Some(cause) = &self.cause {
             let known = store.known_causes()?;
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(cause)) {
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(cause)) && !is_part(cause) {
                 let hint = did_you_mean(cause, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault ever came from the part \"{cause}\"{hint}"
@@ -170,7 +176,7 @@ impl FilterArguments {
         }
         if let Some(line) = &self.line {
             let known = store.known_lines()?;
-            if !known.contains(line) {
+            if !known.contains(line) && !has_script(&format!("lines/{line}.toml")) {
                 let hint = did_you_mean(line, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault was ever seen on the line \"{line}\"{hint}"
@@ -179,7 +185,7 @@ impl FilterArguments {
         }
         if let Some(procedure) = &self.procedure {
             let known = store.known_procedures()?;
-            if !known.contains(procedure) {
+            if !known.contains(procedure) && !has_script(&format!("{procedure}.star")) {
                 let hint = did_you_mean(procedure, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault was ever seen in the procedure \"{procedure}\"{hint}"
@@ -197,4 +203,18 @@ impl FilterArguments {
         }
         Ok(None)
     }
+}
+
+/// Whether the scripts know a part of this name, without any fault of it here.
+fn is_part(name: &str) -> bool {
+    let catalogue = ScriptsDirectory::find(None).and_then(|directory| directory.faults());
+    catalogue.is_ok_and(|catalogue| {
+        let mut parts = catalogue.lrus.iter();
+        parts.any(|lru| lru.id.as_str().eq_ignore_ascii_case(name))
+    })
+}
+
+/// Whether the scripts have this file.
+fn has_script(path: &str) -> bool {
+    ScriptsDirectory::find(None).is_ok_and(|directory| directory.path().join(path).is_file())
 }

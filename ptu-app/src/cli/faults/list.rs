@@ -42,8 +42,11 @@ impl ListArguments {
         let more = faults.len() > self.limit as usize;
         faults.truncate(self.limit as usize);
         self.output.save()?;
-        if faults.is_empty() && self.output.is_table() {
-            return print_out(&self.filter.nothing(store)?);
+        if faults.is_empty() {
+            let said = self.filter.nothing(store)?;
+            if self.output.is_table() {
+                return print_out(&said);
+            }
         }
         if more && !self.output.is_table() {
             stdio::note(&format!("only the first {}; see --limit", self.limit));

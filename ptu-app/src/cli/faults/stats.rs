@@ -113,8 +113,11 @@ impl StatsArguments {
             }
         };
         self.output.save()?;
-        if stats.is_empty() && self.output.is_table() {
-            return print_out(&self.filter.nothing(store)?);
+        if stats.is_empty() {
+            let said = self.filter.nothing(store)?;
+            if self.output.is_table() {
+                return print_out(&said);
+            }
         }
         let all: u64 = stats.iter().map(|stat| self.counted(stat)).sum();
         let row = |stat| entry(stat, (self.counted(stat), all));

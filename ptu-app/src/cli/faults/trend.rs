@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
-use crate::cli::{at_least_one, unknown_unit};
+use crate::cli::{at_least_one, check_unit};
 use ptu_bench::clock::{Span, local_day, rfc3339, utc_day};
 use ptu_bench::data;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
@@ -104,13 +104,7 @@ impl TrendArguments {
             )));
         }
         if let Some(unit) = &self.unit {
-            let said = format!(
-                "no measurement \"{}\" of unit {unit} recorded",
-                self.measurement
-            );
-            if let Some(said) = unknown_unit(store, unit, &said)? {
-                return Err(Failure::usage(said));
-            }
+            check_unit(store, unit)?;
         }
         let procedures = store.measuring_procedures(&self.measurement)?;
         let span = self.when.unwrap_or_default();

@@ -10,10 +10,11 @@ mod runs;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-use crate::common::{Place, has_shape, list, normalised, text};
+use crate::common::{Place, has_shape, list, normalised, number, text};
 use glob::Pattern;
 use protocol::injection::{FaultKind, FaultMode};
 use protocol::signal::Signal;
+use quick_junit::Report;
 use runs::{FaultRun, TestBench, run_program};
 
 /// Trace rows are this far apart.
@@ -255,6 +256,7 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     if run.exit != 1 {
         problems.push(format!("exit {}", run.exit));
     }
+    problems.extend(check_junit(run));
     problems.extend(check_steps(mode, run));
     problems.extend(check_parts(mode, run));
     problems.extend(check_side(mode, run));
@@ -262,6 +264,15 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     problems.extend(check_diagnosis(mode, run));
     let named = |problem| format!("{}: {problem}", mode.id);
     problems.into_iter().map(named).collect()
+}
+
+/// Who reads nothing but JUnit sees that the run did not pass, and as many cases as JSON says.
+fn check_junit(run: &FaultRun) -> Option<String> {
+    let junit = Report::deserialize_from_str(&run.junit).expect("JUnit XML");
+    let not_passed = junit.failures + junit.errors;
+    let json = number(&run.report["run"]["steps_not_passed"]) as usize;
+    let wrong = || format!("exit {}: {not_passed} in JUnit, {json} in JSON", run.exit);
+    ((run.exit == 0) != (not_passed == 0) || json != not_passed).then(wrong)
 }
 
 /// Diagnosis puts the broken part first, whatever the stored faults name.
@@ -328,7 +339,7 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
         .map(|fault| format!("suspects the other side: {fault}"));
     let failed = list(&run.report["steps"])
         .iter()
-        .filter(|step| train_is_broken && step["verdict"] == "failed")
+        .filter(|step| train_is_broken && step["verdict"] == "failed" && step["kind"] == "step")
         .filter(|step| {
             let procedure = text(&step["procedure"]);
             let mut excused = UNIT_FAILED.iter();

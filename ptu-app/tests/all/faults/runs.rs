@@ -13,6 +13,7 @@ use ptu_bench::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
 use ptu_bench::run_diagnosis::diagnose_run;
 use ptu_bench::stop::Stop;
 use ptu_report::run_json;
+use ptu_report::words::Language;
 use serde_json::Value;
 
 /// What a run on a faulty unit came to.
@@ -21,6 +22,8 @@ pub struct FaultRun {
     pub exit: u8,
     /// The report as JSON.
     pub report: Value,
+    /// The same as JUnit XML.
+    pub junit: String,
     /// The part that diagnosis names first.
     pub first_candidate: String,
     /// The trace of each stored fault that has one.
@@ -101,8 +104,12 @@ impl TestBench {
             .expect("the run");
         let first = answer.diagnosis.candidates.first();
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
+        let junit = place.text_path("r.junit.xml");
+        let target = junit.parse().expect("a report");
+        ptu_report::write(&[target], &store, None, &detail, Language::English).expect("written");
         FaultRun {
             exit: outcome.exit.code(),
+            junit: place.read("r.junit.xml"),
             report: run_json(&detail),
             first_candidate: first.map_or(String::new(), |first| first.lru.to_string()),
             traces: ids
@@ -115,7 +122,7 @@ impl TestBench {
 /// The same through the program.
 pub fn run_program(id: &str) -> FaultRun {
     let place = Place::new();
-    let (said, report) = place.run(&["--inject", id]);
+    let (said, report) = place.run(&["--inject", id, "--report", "r.junit.xml"]);
     assert!(!said.err.contains("panicked"), "{}", said.all());
     let diagnosis = place.json(&["diagnose", "latest", "--json"]);
     let first = &diagnosis["candidates"][0]["lru"];
@@ -127,6 +134,7 @@ pub fn run_program(id: &str) -> FaultRun {
         exit: said.code.expect("an exit code") as u8,
         first_candidate: first.as_str().unwrap_or_default().to_owned(),
         traces: traces.collect(),
+        junit: place.read("r.junit.xml"),
         report,
     }
 }

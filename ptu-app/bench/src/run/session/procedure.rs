@@ -3,7 +3,9 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict};
+use btu_rig::procedure::{
+    Outside, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict,
+};
 use btu_rig::recorded::{RecordingDriver, StimulusRecord};
 use btu_rig::rig::UnitLink;
 use protocol::Instant;
@@ -65,7 +67,7 @@ impl<L: UnitLink> Session<L> {
         }
         let mut progress = Progress::new(procedure, self.bench.now());
         for fault in found {
-            runner.found_before(&fault.name);
+            runner.found_before(&fault.name, fault.at);
             self.report(fault, &mut progress, sink);
         }
         let (mut presses, mut link_lost) = (0, false);
@@ -119,7 +121,9 @@ impl<L: UnitLink> Session<L> {
                 sink,
             );
             if self.stop.presses() > 0 {
-                rounds.note(Verdict::Aborted, "stopped by the operator".into());
+                let text = "stopped by the operator".into();
+                let event = rounds.outside(Outside::Stop, Verdict::Aborted, text, self.bench.now());
+                sink(SessionEvent::Run(event));
                 break;
             }
             if failed(&rounds, &progress) {
@@ -181,7 +185,9 @@ impl<L: UnitLink> Session<L> {
         progress.step = None;
         progress.step_began = self.bench.now();
         for fault in between_procedures(self) {
-            rounds.note(Verdict::Failed, format!("found {when}: {}", fault.name));
+            let found = format!("found {when}: {}", fault.name);
+            let event = rounds.outside(Outside::BringUp, Verdict::Failed, found, fault.at);
+            sink(SessionEvent::Run(event));
             self.report(fault, progress, sink);
         }
     }

@@ -10,7 +10,7 @@ use protocol::lru;
 use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
-use ptu_bench::bench_worker::Progress;
+use ptu_bench::bench_worker::{Progress, outside_place};
 use ptu_bench::run::CHECK_FAILED;
 use ptu_report::words::{Words, fill};
 
@@ -106,7 +106,7 @@ fn row(
     ui.horizontal(|ui| {
         verdict_chip(ui, result.verdict, words);
         let id = run.procedures.get(place.0).map(|p| p.procedure.id.as_str());
-        let name = format!("{}: {}", id.unwrap_or_default(), result.name);
+        let name = format!("{}: {}", id.unwrap_or_default(), name(result, words));
         if ui.selectable_label(on, name).clicked() {
             shown.chosen = (!on).then_some(place);
         }
@@ -115,6 +115,11 @@ fn row(
             ui.add(eframe::egui::Label::new(message).truncate());
         }
     });
+}
+
+/// The step's name, or where it failed if that is no step.
+fn name<'a>(result: &'a StepResult, words: &'a Words) -> &'a str {
+    outside_place(result).map_or(&result.name, |place| words.common.outside(place))
 }
 
 fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a StepResult)> {
@@ -136,9 +141,13 @@ fn details(
         return;
     };
     let procedure = &progress.procedure;
-    ui.label(RichText::new(format!("{}: {}", procedure.id, result.name)).strong());
+    let name = name(result, words);
+    ui.label(RichText::new(format!("{}: {name}", procedure.id)).strong());
     if !result.message.is_empty() {
         ui.label(&result.message);
+    }
+    if outside_place(result).is_some() {
+        return;
     }
     if result.verdict == Verdict::Failed {
         let part = lru::shown(result.suspect.as_ref());
