@@ -16,7 +16,7 @@ use crate::operator::HOW_TO_ANSWER;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
-use ptu_bench::stored::outside_of;
+use ptu_bench::stored::{outside_of, standing, was_repeated};
 use ptu_bench::table::{Table, cell};
 
 /// How often the bar's clock moves while nothing happens.
@@ -169,10 +169,25 @@ impl Listener for Console {
     }
 }
 
+/// Attempts at steps that were not tested, and made again.
+fn repeated(run: &RunDetail) -> String {
+    let mut table = Table::new(&["REPEATED STEP", "WHY"]);
+    let places = (0..run.steps.len()).filter(|place| was_repeated(&run.steps, *place));
+    let rows: Vec<_> = places.map(|place| &run.steps[place]).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    for step in rows {
+        let name = format!("{}: {}", step.procedure, step.name);
+        table.row([name, step.message.clone()]);
+    }
+    format!("\n\n{}", table.render())
+}
+
 /// Why steps were skipped, each reason once.
 fn skipped(run: &RunDetail) -> String {
     let mut reasons = BTreeMap::<&str, usize>::new();
-    let skipped = run.steps.iter();
+    let skipped = standing(&run.steps);
     for step in skipped.filter(|step| step.verdict == fault_db::Verdict::Skipped) {
         *reasons.entry(&step.message).or_default() += 1;
     }
@@ -211,6 +226,7 @@ pub fn verdict_table(run: &RunDetail) -> String {
         }
         text.push_str(&format!("\n\n{}", table.render()));
     }
+    text.push_str(&repeated(run));
     text.push_str(&skipped(run));
     if !run.faults.is_empty() {
         let mut table = Table::new(&["FAULT", "CODE", "PART", "SEVERITY", "SEEN", "TRACE"]);
@@ -240,7 +256,7 @@ fn procedures(run: &RunDetail) -> Table {
             .position(|s| s.procedure != first.procedure)
             .unwrap_or(steps.len());
         let (mine, rest) = steps.split_at(end);
-        let of_script = mine.iter().filter(|s| outside_of(s).is_none()).count();
+        let of_script = standing(mine).filter(|s| outside_of(s).is_none()).count();
         let passed = mine
             .iter()
             .filter(|s| s.verdict == fault_db::Verdict::Passed)
@@ -279,7 +295,9 @@ fn summary(run: &RunDetail) -> String {
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s",
         run.run.id.short(),
         display_text::line(&run.run.unit_serial),
-        run.steps.iter().filter(|s| outside_of(s).is_none()).count(),
+        standing(&run.steps)
+            .filter(|s| outside_of(s).is_none())
+            .count(),
         run.faults.len(),
         run.run
             .verdict

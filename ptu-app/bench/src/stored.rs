@@ -81,6 +81,23 @@ pub fn outside_of(step: &StepRecord) -> Option<Outside> {
         .filter(|_| step.script_line.is_none())
 }
 
+/// Whether the result at `place` is an attempt at a step that was not tested and made again: another result of that step
+/// follows.
+pub fn was_repeated(steps: &[StepRecord], place: usize) -> bool {
+    let step = &steps[place];
+    let later = steps[place + 1..].iter();
+    step.verdict == fault_db::Verdict::Skipped
+        && later
+            .take_while(|later| later.procedure == step.procedure)
+            .any(|later| later.name == step.name && outside_of(later).is_none())
+}
+
+/// Results of steps that stand, without attempts that were made again.
+pub fn standing(steps: &[StepRecord]) -> impl Iterator<Item = &StepRecord> {
+    let places = (0..steps.len()).filter(|place| !was_repeated(steps, *place));
+    places.map(|place| &steps[place])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,10 +6,10 @@ use btu_rig::procedure::Outside;
 use chrono::{DateTime, FixedOffset};
 use fault_db::{RunDetail, StepRecord, Verdict};
 use protocol::display_text;
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
 use ptu_bench::failure::Failure;
-use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of};
+use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
 ///
@@ -25,8 +25,13 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
         suite.set_timestamp(utc(began_us + steps[0].started_bench_us));
         let all_us = steps.iter().map(|step| step.bench_time_us.max(0) as u64);
         suite.set_time(Duration::from_micros(all_us.sum()));
-        for step in steps {
-            suite.add_test_case(case(step, began_us));
+        for (place, step) in steps.iter().enumerate() {
+            if was_repeated(steps, place) {
+                continue;
+            }
+            let before = steps[..place].iter();
+            let attempts = before.filter(|before| before.name == step.name);
+            suite.add_test_case(case(step, attempts, began_us));
         }
         report.add_test_suite(suite);
     }
@@ -55,9 +60,22 @@ fn of_whole(run: &RunDetail) -> Option<TestCase> {
     Some(case)
 }
 
-fn case(step: &StepRecord, began_us: i64) -> TestCase {
+/// A case with the attempts at it that were not tested.
+fn case<'a>(
+    step: &StepRecord,
+    attempts: impl Iterator<Item = &'a StepRecord>,
+    began_us: i64,
+) -> TestCase {
     let kind = outside_of(step).map_or(STEP, Outside::name);
-    let status = status(step.verdict, kind, &step.message);
+    let mut status = status(step.verdict, kind, &step.message);
+    for attempt in attempts {
+        let mut rerun = TestRerun::new(NonSuccessKind::Error);
+        rerun.set_timestamp(utc(began_us + attempt.started_bench_us));
+        rerun.set_time(Duration::from_micros(attempt.bench_time_us.max(0) as u64));
+        rerun.set_type("not tested");
+        rerun.set_message(&*display_text::lines(&attempt.message));
+        status.add_rerun(rerun);
+    }
     let mut case = TestCase::new(&*display_text::line(&step.name), status);
     case.set_classname(&*display_text::line(&step.procedure));
     case.set_time(Duration::from_micros(step.bench_time_us.max(0) as u64));
