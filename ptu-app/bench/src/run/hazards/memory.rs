@@ -2,7 +2,7 @@
 //! runs that the brake line ended, a train that is put away.
 
 use protocol::signal::Signal;
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, SCAN};
 
 use super::monitor::{NO_POWER_N, Observed};
 
@@ -58,7 +58,10 @@ impl Confirmed {
         let within = self.within;
         self.spells.retain(|(.., to)| now.since(*to) < within);
         let heard = self.spells.iter().filter(|(limit, ..)| *limit == limit_kmh);
-        let heard_us: u64 = heard.map(|(_, from, to)| to.since(*from).as_us()).sum();
+        // Each scan counts whole.
+        let heard_us: u64 = heard
+            .map(|(_, from, to)| (to.since(*from) + SCAN).as_us())
+            .sum();
         let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         match heard_us >= self.needs.as_us() {
             true => greatest(&mut self.lately.note(now, limit_kmh, span)),
@@ -124,8 +127,7 @@ impl Blind {
 
     /// The unit cannot know yet that the train moves.
     pub fn note(&mut self, seen: Observed<'_>) -> bool {
-        let dead = |signal| seen.value(signal) == 1.0;
-        let blind = dead(Signal::Tacho1) && dead(Signal::Tacho2);
+        let blind = seen.blind;
         if !blind || seen.kmh() < Self::TOLD_KMH {
             self.since = None;
             return blind;

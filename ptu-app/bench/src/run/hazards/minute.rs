@@ -5,7 +5,7 @@ use btu_rig::rig::{Bench, Random};
 use btu_rig::stimulus::{
     OrderData, StationData, Stimulus, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
 };
-use protocol::injection::FaultMode;
+use protocol::injection::{FaultMode, Place};
 use protocol::line::Section;
 use protocol::message::{DoorSide, ModeSwitch, RunningMode, TrainOrder};
 use protocol::signal::Signal;
@@ -121,6 +121,7 @@ impl<'a> Minute<'a> {
             let truth = rig.truth();
             let observed = Observed {
                 now,
+                blind: self.blind(),
                 sample: rig.sample(),
                 speed_mps: truth.speed_mps,
                 accel_mps2: truth.accel_mps2,
@@ -387,7 +388,8 @@ impl<'a> Minute<'a> {
     fn blind(&self) -> bool {
         let sample = self.bench.rig().sample();
         let dead = |signal| sample.get(signal) == Some(1.0);
-        dead(Signal::Tacho1) && dead(Signal::Tacho2)
+        let unfed = |fault: &FaultMode| fault.place == Place::SpeedSensors;
+        dead(Signal::Tacho1) && dead(Signal::Tacho2) || self.faults.iter().any(unfed)
     }
 
     fn change_station(&mut self) {

@@ -110,6 +110,8 @@ pub struct Observed<'a> {
     pub reverser: i8,
     /// The start button is pressed, or was a moment ago.
     pub start: bool,
+    /// No tachometer gives pulses.
+    pub blind: bool,
 }
 
 impl Observed<'_> {
