@@ -138,6 +138,7 @@ events! {
     DoorObstructed = 244 "door_obstructed" Minor "-" "Doors not proved closed after the last try: departure refused" "출입문 닫힘 실패: 출발 불허" "sides";
     DoorOrderRefused = 245 "door_order_refused" Major "ato_cpu" "Doors ordered to open on a side that is not enabled: order stopped" "허용되지 않은 쪽 출입문 열림 지령 차단" "sides";
     DoorsStayClosed = 246 "doors_stay_closed" Major "io_board" "Doors that are enabled and ordered to open stay closed" "출입문 열림 지령에 무응답" "sides";
+    DoorChatters = 247 "door_chatters" Minor "door_contact" "A door line opens more often than doors can: a contact chatters" "출입문 접점 떨림" "openings within a second";
     MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
     MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
     MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";

@@ -139,6 +139,8 @@ pub struct Monitor {
     asleep: Asleep,
     blind: Blind,
     sides: Lately,
+    /// Sides on which doors may be enabled, left and right.
+    given: [bool; 2],
     /// Way against the reverser since the train last stood, m.
     against_m: f64,
     /// Since when each condition holds.
@@ -161,6 +163,7 @@ impl Monitor {
             asleep: Asleep::default(),
             blind: Blind::default(),
             sides: Lately::default(),
+            given: [false; 2],
             against_m: 0.0,
             since: Vec::new(),
         }
@@ -199,6 +202,12 @@ impl Monitor {
             left_given |= side == 1.0 || side == 3.0;
             right_given |= side == 2.0 || side == 3.0;
         }
+        // What was enabled so lasts until the doors are proved closed.
+        let open = !seen.on(Signal::Doors);
+        let [left_kept, right_kept] = self.given;
+        left_given |= left_kept && left && open;
+        right_given |= right_kept && right && open;
+        self.given = [left_given, right_given];
         let elsewhere = seen.to_stop_m.is_none_or(|m| m.abs() > AT_STOP_POINT_M);
         let ms = Duration::from_ms;
         [
