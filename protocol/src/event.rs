@@ -106,6 +106,7 @@ events! {
     FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
     CodeLost = 200 "code_lost" Info "-" "No valid speed code any more: most restrictive limit" "속도코드 상실" "";
     CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도코드 수신" "code rate, 0.01 Hz";
+    CodeFlickers = 202 "code_flickers" Minor "atp_receiver" "Speed codes do not stay long enough to be detected: the most restrictive one holds" "속도코드 불안정: 최저 제한속도 적용" "time for which the last one was heard within the hold time, ms";
     Overspeed = 210 "overspeed" Info "-" "Speed above limit and alarm margin" "과속 경보" "excess, cm/s";
     OverspeedFsb = 211 "overspeed_fsb" Info "-" "Overspeed: full service brake" "과속 상용전제동" "excess, cm/s";
     OverspeedEb = 212 "overspeed_eb" Major "-" "Overspeed: emergency brake" "과속 비상제동" "excess, cm/s";
@@ -113,6 +114,7 @@ events! {
     EbReleased = 214 "eb_released" Info "-" "Emergency brake released" "비상제동 완해" "";
     MovedAtStop = 215 "moved_at_stop" Minor "-" "Moved after it had stood under a stop code or none: full service brake" "정지신호 하에서 이동: 상용전제동" "speed, cm/s";
     EbReleaseRefused = 216 "eb_release_refused" Info "-" "Acknowledgement refused: the emergency brake's cause still holds" "비상제동 원인 지속: 완해 불허" "what holds, `EbCause`; 0 = the train moves";
+    LineOpened = 217 "line_opened" Info "-" "Emergency brake line opened by others: automatic run ended" "외부 비상제동 인통선 차단: 자동운전 종료" "1 = only TCMS tells it";
     TachoDisagree = 220 "tacho_disagree" Critical "-" "The two tachometers disagree" "속도센서 불일치" "difference, cm/s";
     TachoDead1 = 221 "tacho1_dead" Critical "speed_sensor_1" "No pulses on tachometer 1 while 2 turns" "속도센서 1 무신호" "speed 2, cm/s";
     TachoDead2 = 222 "tacho2_dead" Critical "speed_sensor_2" "No pulses on tachometer 2 while 1 turns" "속도센서 2 무신호" "speed 1, cm/s";
@@ -126,6 +128,9 @@ events! {
     EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 융착" "";
     EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
     WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
+    SpeedVanished = 233 "speed_vanished" Critical "io_board" "Speed fell faster than a train can slow: no tachometer is believed" "속도 신호 소실: 속도센서 전체 불신" "last speed that is believed, cm/s";
+    NoPulses = 234 "no_pulses" Major "io_board" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
+    SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, no tachometer does" "TCMS 속도와 속도센서 불일치" "";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     DoorNotEnabled = 242 "door_not_enabled" Critical "io_board" "Door open on a side that is not enabled" "허용되지 않은 쪽 출입문 열림" "sides";
@@ -133,6 +138,7 @@ events! {
     DoorObstructed = 244 "door_obstructed" Minor "-" "Doors not proved closed after the last try: departure refused" "출입문 닫힘 실패: 출발 불허" "sides";
     DoorOrderRefused = 245 "door_order_refused" Major "ato_cpu" "Doors ordered to open on a side that is not enabled: order stopped" "허용되지 않은 쪽 출입문 열림 지령 차단" "sides";
     DoorsStayClosed = 246 "doors_stay_closed" Major "io_board" "Doors that are enabled and ordered to open stay closed" "출입문 열림 지령에 무응답" "sides";
+    DoorChatters = 247 "door_chatters" Minor "door_contact" "A door line opens more often than doors can: a contact chatters" "출입문 접점 떨림" "openings within a second";
     MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
     MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
     MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";

@@ -99,6 +99,7 @@ impl Atp {
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),
             (running && self.sequence.forbidden(), FsbCause::NotPermitted),
+            (self.sequence.stops(), FsbCause::NotPermitted),
         ];
         causes
             .iter()

@@ -2,8 +2,9 @@
 
 use protocol::config::{ReceiverConfig, SpeedCode, UnitConfig};
 use protocol::event::Event;
-use protocol::{Duration, Instant, Speed};
+use protocol::{Duration, Instant, SCAN, Speed};
 
+use super::heard::Heard;
 use crate::kernel::EventLog;
 use crate::signals::AntennaSignal;
 use crate::timer::OnDelay;
@@ -19,14 +20,31 @@ pub enum Code {
     Known(u8),
 }
 
+/// A code that comes more often than this within the hold time flickers: twice it comes at a border that is crossed.
+const SELDOM: usize = 2;
+
 /// The decoder: a code counts once it has been steady, and stays in force for a hold time after the
-/// last time it was heard.
+/// last time it was confirmed: heard for as long as a detection takes within one hold time.
+///
+/// Of codes that alternate the most restrictive one holds: it takes over by the sum of its times, and one that comes
+/// back after it must be steady for the hold time.
 #[derive(Clone, Debug)]
 pub struct CodeDecoder {
     code: Code,
-    heard: Instant,
+    /// When the code in force was confirmed last.
+    confirmed: Instant,
     candidate: Code,
     steady: OnDelay,
+    /// Time for which the candidate must be steady.
+    patience: Duration,
+    heard: Heard,
+    /// When a more restrictive code took the place of another, or came back after it.
+    restricted: Option<Instant>,
+    /// The code in force was heard, and not for long enough, since it was confirmed.
+    unconfirmed: bool,
+    /// The code in force took over by the sum of its times.
+    by_sum: bool,
+    flicker_reported: bool,
     unknown: OnDelay,
     unknown_reported: bool,
 }
@@ -36,40 +54,88 @@ impl CodeDecoder {
     pub fn new() -> Self {
         Self {
             code: Code::None,
-            heard: Instant::ZERO,
+            confirmed: Instant::ZERO,
             candidate: Code::None,
             steady: OnDelay::default(),
+            patience: Duration::ZERO,
+            heard: Heard::default(),
+            restricted: None,
+            unconfirmed: false,
+            by_sum: false,
+            flicker_reported: false,
             unknown: OnDelay::default(),
             unknown_reported: false,
         }
     }
 
+    /// One scan. With `unconfirmed_holds`, an injected fault, a code in force is renewed by any scan in which it is heard.
     pub fn step(
         &mut self,
         now: Instant,
         signal: AntennaSignal,
+        unconfirmed_holds: bool,
         config: &UnitConfig,
         log: &mut EventLog,
     ) {
         let match_ = lookup(signal, config);
+        let receiver = &config.receiver;
+        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
+        let hold = Duration::from_ms(u64::from(receiver.hold_ms));
+        self.heard.note(now, match_, hold);
+        let stricter = |code: Code, than: Code| most_kmh(code, config) < most_kmh(than, config);
         if match_ != self.candidate {
+            if match_ != Code::None && match_ == self.code && stricter(match_, self.candidate) {
+                self.restricted = Some(now);
+            }
+            let comes_back = self.restricted.is_some_and(|at| now.since(at) < hold);
+            self.patience = match comes_back && stricter(self.code, match_) && !unconfirmed_holds {
+                true => hold,
+                false => detect,
+            };
             self.candidate = match_;
             self.steady.clear();
         }
-        let receiver = &config.receiver;
-        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
-        let steady = self.steady.update(now, match_ != Code::None, detect);
-        if steady || (match_ == self.code && match_ != Code::None) {
-            self.code = match_;
-            self.heard = now;
+        let steady = self.steady.update(now, match_ != Code::None, self.patience);
+        // A code that is steady is detected with the scan in which its time is over.
+        let enough = self.heard.time(match_) >= detect + SCAN || unconfirmed_holds;
+        let takes_over = enough && match_ != Code::None && stricter(match_, self.code);
+        if steady || takes_over && !unconfirmed_holds {
+            if stricter(match_, self.code) {
+                self.restricted = Some(now);
+            }
+            self.by_sum = !steady;
+            self.flicker_reported &= !steady;
+            self.confirm(now, match_);
+        } else if match_ == self.code && match_ != Code::None {
+            match enough {
+                true => self.confirm(now, match_),
+                false => self.unconfirmed = true,
+            }
         }
-        let hold = Duration::from_ms(u64::from(receiver.hold_ms));
-        if self.code != Code::None && now.since(self.heard) > hold {
+        let often = match_ == self.code && self.heard.times(match_) > SELDOM;
+        self.flickers(now, self.by_sum && often, log);
+        if self.code != Code::None && now.since(self.confirmed) > hold {
             self.code = Code::None;
+            self.flickers(now, self.unconfirmed, log);
             log.push(now, Event::CodeLost, 0);
         }
         let strange = match_ == Code::None && in_level(signal, receiver);
         self.report_unknown(now, strange, signal, detect + hold, log);
+    }
+
+    fn confirm(&mut self, now: Instant, code: Code) {
+        self.code = code;
+        self.confirmed = now;
+        self.unconfirmed = false;
+    }
+
+    /// Logs once that codes do not stay long enough, until one is steady.
+    fn flickers(&mut self, now: Instant, does: bool, log: &mut EventLog) {
+        if does && !self.flicker_reported {
+            self.flicker_reported = true;
+            let heard = self.heard.time(self.candidate).as_ms();
+            log.push(now, Event::CodeFlickers, heard as i32);
+        }
     }
 
     fn report_unknown(
@@ -115,6 +181,17 @@ impl Default for CodeDecoder {
 
 fn in_level(signal: AntennaSignal, receiver: &ReceiverConfig) -> bool {
     signal.level_mv >= receiver.level_min_mv && signal.level_mv <= receiver.level_max_mv
+}
+
+/// The limit that a code stands for, km/h; none and a stop permit nothing.
+fn most_kmh(code: Code, config: &UnitConfig) -> f64 {
+    match code {
+        Code::Known(index) => config
+            .codes
+            .get(usize::from(index))
+            .map_or(0.0, |code| code.limit_kmh),
+        Code::None | Code::AbsoluteStop => 0.0,
+    }
 }
 
 /// The code that a signal stands for.
@@ -170,6 +247,7 @@ mod tests {
         config: UnitConfig,
         log: EventLog,
         now: Instant,
+        unconfirmed_holds: bool,
     }
 
     impl Receiver {
@@ -180,6 +258,7 @@ mod tests {
                 config: UnitConfig::from_toml(text).unwrap(),
                 log: EventLog::default(),
                 now: Instant::from_ms(5000),
+                unconfirmed_holds: false,
             }
         }
 
@@ -187,8 +266,13 @@ mod tests {
         fn hear(&mut self, signal: AntennaSignal, ms: u64) -> Vec<(u64, Code)> {
             let (begin, mut before, mut changes) = (self.now, self.decoder.code(), Vec::new());
             while self.now < begin + Duration::from_ms(ms) {
-                self.decoder
-                    .step(self.now, signal, &self.config, &mut self.log);
+                self.decoder.step(
+                    self.now,
+                    signal,
+                    self.unconfirmed_holds,
+                    &self.config,
+                    &mut self.log,
+                );
                 if self.decoder.code() != before {
                     before = self.decoder.code();
                     changes.push((self.now.since(begin).as_ms(), before));
@@ -227,18 +311,88 @@ mod tests {
         assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
     }
 
-    /// A code in force that is heard for one scan only is in force for another hold time; another one is not.
+    /// What is heard now and then renews no code, nor does any other.
     #[test]
-    fn one_scan_renews_the_code_in_force_and_no_other() {
-        let scan_ms = SCAN.as_ms();
-        for (rate_hz, lost) in [(15.0, false), (12.0, true)] {
+    fn a_scan_now_and_then_renews_no_code() {
+        for rate_hz in [15.0, 12.0] {
             let mut receiver = Receiver::new();
             receiver.hear(CODE_55, 1000);
-            receiver.hear(SILENCE, 600);
-            receiver.hear(signal(3000.0, rate_hz, 500.0), scan_ms);
-            receiver.hear(SILENCE, 600);
-            assert_eq!(receiver.decoder.code() == Code::None, lost, "{rate_hz} Hz");
+            receiver.hear(SILENCE, 700);
+            receiver.hear(signal(3000.0, rate_hz, 500.0), SCAN.as_ms());
+            receiver.hear(SILENCE, 400);
+            assert_eq!(receiver.decoder.code(), Code::None, "{rate_hz} Hz");
         }
+    }
+
+    const CODE_25: AntennaSignal = signal(3000.0, 29.0, 500.0);
+    const STOP: AntennaSignal = signal(3000.0, 0.0, 500.0);
+    const CODE_75: AntennaSignal = signal(3000.0, 10.0, 500.0);
+
+    /// Goal: no code stays in force that is not there for long enough, and of codes that alternate the most restrictive
+    /// holds. Method: 75 for a while, then two signals by turns, each for its time, for eight seconds.
+    #[test]
+    fn codes_that_alternate_are_this_table() {
+        let (known_25, known_75) = (Code::Known(1), Code::Known(6));
+        for (one, one_ms, two, two_ms, code) in [
+            (CODE_25, 100, CODE_75, 100, known_25),
+            (CODE_25, 380, CODE_75, 10, known_25),
+            (CODE_25, 450, CODE_75, 450, known_25),
+            (CODE_25, 900, CODE_75, 900, known_25),
+            (CODE_25, 10, CODE_75, 10, known_25),
+            (
+                signal(3000.0, 36.0, 500.0),
+                100,
+                CODE_75,
+                100,
+                Code::Known(0),
+            ),
+            (STOP, 100, CODE_75, 100, Code::AbsoluteStop),
+            (STOP, 330, CODE_75, 20, Code::AbsoluteStop),
+            (SILENCE, 330, CODE_75, 20, Code::None),
+            (SILENCE, 880, CODE_75, 20, Code::None),
+            (SILENCE, 100, CODE_75, 200, known_75),
+            (CODE_25, 10, CODE_75, 380, known_75),
+        ] {
+            let mut receiver = Receiver::new();
+            receiver.hear(CODE_75, 3000);
+            let mut after = alloc::vec![];
+            for _ in 0..8000 / (one_ms + two_ms) {
+                receiver.hear(one, one_ms);
+                after.push(receiver.decoder.code());
+                receiver.hear(two, two_ms);
+                after.push(receiver.decoder.code());
+            }
+            let settled = &after[after.len() / 2..];
+            let what = (one, one_ms, two, two_ms);
+            assert!(
+                settled.iter().all(|held| *held == code),
+                "{what:?}: {settled:?}"
+            );
+            let told = receiver.events().iter().any(|(event, _)| *event == 202);
+            // Each is detected for itself where it stays for 450 ms of 900.
+            assert_eq!(told, code != known_75 && one_ms != 450, "{what:?}");
+        }
+    }
+
+    #[test]
+    fn a_code_that_was_taken_for_a_moment_is_back_after_the_hold_time() {
+        let mut receiver = Receiver::new();
+        receiver.hear(CODE_75, 3000);
+        assert_eq!(receiver.hear(CODE_25, 500), [(400, Code::Known(1))]);
+        assert_eq!(receiver.hear(CODE_75, 1500), [(1000, Code::Known(6))]);
+        receiver.hear(CODE_25, 3000);
+        assert_eq!(
+            receiver.hear(CODE_75, 1500),
+            [(400, Code::Known(6))],
+            "for long"
+        );
+        receiver.unconfirmed_holds = true;
+        receiver.hear(CODE_75, 300);
+        for _ in 0..20 {
+            receiver.hear(CODE_25, 100);
+            receiver.hear(CODE_75, 100);
+        }
+        assert_eq!(receiver.decoder.code(), Code::Known(6), "the fault");
     }
 
     #[test]

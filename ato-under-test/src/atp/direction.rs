@@ -1,4 +1,4 @@
-//! Rollback: distance run against the reverser.
+//! Rollback: distance run against the reverser, or without a direction.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -6,6 +6,40 @@ use protocol::message::TrainLines;
 
 use crate::kernel::EventLog;
 use crate::timer::Edge;
+
+/// Where the reverser lets the train go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Towards {
+    Forward,
+    Backward,
+    /// In neutral, or its contacts contradict each other: no way is permitted.
+    Nowhere,
+    /// Nothing is supervised: test signals in neutral, as a train in a depot is left, or an injected fault.
+    Anywhere,
+}
+
+impl Towards {
+    pub fn of(lines: TrainLines, tested: [bool; 2], neutral_dead: bool) -> Self {
+        let forward = lines.contains(TrainLines::FORWARD);
+        let backward = lines.contains(TrainLines::BACKWARD);
+        match (forward, backward) {
+            (true, false) => Self::Forward,
+            (false, true) => Self::Backward,
+            _ if neutral_dead || tested.contains(&true) => Self::Anywhere,
+            _ => Self::Nowhere,
+        }
+    }
+
+    /// Way that is not permitted, m; negative makes some of it good.
+    fn wrong_m(self, moved_m: f64) -> f64 {
+        match self {
+            Self::Forward => -moved_m,
+            Self::Backward => moved_m,
+            Self::Nowhere => libm::fabs(moved_m),
+            Self::Anywhere => 0.0,
+        }
+    }
+}
 
 /// Adds up the distance run against the reverser.
 #[derive(Clone, Debug, Default)]
@@ -22,22 +56,15 @@ impl Rollback {
         &mut self,
         now: Instant,
         moved_m: [f64; 2],
-        lines: TrainLines,
+        towards: Towards,
         anew: bool,
         allowed_m: f64,
         log: &mut EventLog,
     ) -> bool {
-        let forward = lines.contains(TrainLines::FORWARD);
-        let backward = lines.contains(TrainLines::BACKWARD);
-        let sign = match (forward, backward) {
-            (true, false) => -1.0,
-            (false, true) => 1.0,
-            _ => 0.0,
-        };
         for (against_m, moved_m) in self.against_m.iter_mut().zip(moved_m) {
             *against_m = match anew {
                 true => 0.0,
-                false => (*against_m + sign * moved_m).max(0.0),
+                false => (*against_m + towards.wrong_m(moved_m)).max(0.0),
             };
         }
         let farthest_m = self.against_m[0].max(self.against_m[1]);

@@ -15,6 +15,10 @@ use crate::timer::{Edge, OnDelay};
 /// standstill.
 const SETTLES: Duration = Duration::from_ms(200);
 
+/// Doors that are told to open as often in this time are opened by nobody: a contact chatters.
+const CHATTER_OPENINGS: i32 = 4;
+const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
+
 /// What the door supervision looks at.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
@@ -46,6 +50,31 @@ pub struct Doors {
     contradict: OnDelay,
     contradiction: Edge,
     holds: bool,
+    unproved: Edge,
+    chatter: Chatter,
+}
+
+/// Openings of the doors in [`CHATTER_SPAN`].
+#[derive(Clone, Debug, Default)]
+struct Chatter {
+    openings: i32,
+    since: Instant,
+    reported: Edge,
+}
+
+impl Chatter {
+    fn step(&mut self, now: Instant, opens: bool, log: &mut EventLog) {
+        if now.since(self.since) > CHATTER_SPAN {
+            self.since = now;
+            self.openings = 0;
+            self.reported.rises(false);
+        }
+        self.openings += i32::from(opens);
+        let chatters = self.openings >= CHATTER_OPENINGS || self.reported.value();
+        if self.reported.rises(chatters) {
+            log.push(now, Event::DoorChatters, self.openings);
+        }
+    }
 }
 
 impl Doors {
@@ -60,6 +89,8 @@ impl Doors {
         let moving = !inputs.standstill && inputs.speed > Speed::ZERO;
         let span = Duration::from_ms(u64::from(config.open_moving_ms));
         let closed = inputs.lines.is_none_or(DoorLines::closed);
+        let opens = self.unproved.rises(!closed);
+        self.chatter.step(now, opens, log);
         let open_moving = self.open_moving.update(now, moving && !closed, span);
         if self.tripped.rises(open_moving) {
             log.push(now, Event::DoorOpenMoving, i32::from(inputs.speed.to_cms()));
@@ -71,10 +102,17 @@ impl Doors {
             log.push(now, Event::DoorEnableRefused, 0);
         }
         let enables = [Outputs::DOOR_ENABLE_LEFT, Outputs::DOOR_ENABLE_RIGHT];
-        self.enable = match stopped && inputs.aligned {
+        // What was enabled lasts until the doors are proved closed: data of the next section, which come while doors
+        // close, must not keep an obstacle from opening them again.
+        let kept = match inputs.standstill && !closed {
+            true => self.enable,
+            false => Outputs::empty(),
+        };
+        let given = match stopped && inputs.aligned {
             true => contacts(inputs.side, enables),
             false => Outputs::empty(),
         };
+        self.enable = given | kept;
         self.supervise(now, inputs, config, log);
         open_moving
     }
@@ -210,14 +248,21 @@ mod tests {
     }
 
     #[test]
-    fn an_enable_that_goes_while_doors_are_open_holds_the_train_and_blames_no_door() {
+    fn an_enable_lasts_until_the_doors_are_proved_closed() {
         let mut train = Train::new();
         assert!(!train.has(PROVED, DoorSide::Right));
         assert!(!train.has(RIGHT_OPEN, DoorSide::Right));
-        assert!(train.has(RIGHT_OPEN, DoorSide::None));
+        assert!(
+            !train.has(RIGHT_OPEN, DoorSide::None),
+            "data of the next section"
+        );
+        assert_eq!(train.doors.enable(), Outputs::DOOR_ENABLE_RIGHT);
         assert_eq!(train.logged(), []);
-        assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::Right));
+        assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::None));
         assert_eq!(train.logged(), [(242, 1)], "the other side");
+        assert!(!train.has(PROVED, DoorSide::None));
+        assert_eq!(train.doors.enable(), Outputs::empty());
+        assert!(train.has(RIGHT_OPEN, DoorSide::None), "opened again");
     }
 
     #[test]
@@ -226,6 +271,36 @@ mod tests {
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
         assert_eq!(train.logged(), [(243, 0)]);
+    }
+
+    #[test]
+    fn a_contact_that_chatters_is_told_once_and_doors_that_open_twice_are_none() {
+        let mut train = Train::new();
+        let config = DoorConfig {
+            aligned_m: 0.3,
+            open_moving_ms: 100,
+            lines_ms: 500,
+        };
+        for (openings, events) in [(2, 0), (10, 1)] {
+            for scan in 0..20 * openings {
+                let lines = if scan % 20 < 9 { RIGHT_OPEN } else { PROVED };
+                let inputs = DoorInputs {
+                    lines: Some(DoorLines::new(lines)),
+                    supervised: true,
+                    standstill: false,
+                    aligned: false,
+                    at_platform: false,
+                    side: DoorSide::None,
+                    speed: Speed::ZERO,
+                };
+                train.doors.step(train.now, inputs, &config, &mut train.log);
+                train.now += protocol::SCAN;
+            }
+            train.now += Duration::from_ms(2_000);
+            let told = train.logged();
+            let told = told.iter().filter(|event| event.0 == 247).count();
+            assert!((events..=2 * events).contains(&told), "{openings}: {told}");
+        }
     }
 
     /// Side given and what is enabled at the platform; a side that is not known enables none.

@@ -1,6 +1,6 @@
 //! The emergency brake: applied by any cause, latched until standstill and acknowledgement.
 //!
-//! An acknowledgement releases it only when nothing of its cause is left: no cause holds, the train stands, the
+//! An acknowledgement releases it only when nothing of its cause is left: no cause holds, no wheel makes a pulse, the
 //! doors that opened on the way are closed, somebody is in the cab. Otherwise it is refused, and what holds is logged.
 
 use protocol::Instant;
@@ -22,6 +22,8 @@ pub struct BrakeInputs {
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
     pub standstill: bool,
+    /// No pulse for the time of standstill.
+    pub still: bool,
     pub doors_closed: bool,
     pub acknowledge: bool,
     /// An acknowledgement is not compared with the cause: an injected fault.
@@ -32,6 +34,8 @@ pub struct BrakeInputs {
 pub struct EmergencyBrake {
     cause: EbCause,
     acknowledge: Edge,
+    /// Acknowledged at standstill, when the last pulse was not long enough ago: it counts as long as it is given.
+    awaits_stillness: bool,
 }
 
 impl EmergencyBrake {
@@ -40,6 +44,7 @@ impl EmergencyBrake {
         Self {
             cause: EbCause::NotReleased,
             acknowledge: Edge::default(),
+            awaits_stillness: false,
         }
     }
 
@@ -51,8 +56,11 @@ impl EmergencyBrake {
             self.cause = EbCause::NotReleased;
         }
         if self.cause == EbCause::None {
+            self.awaits_stillness = false;
             return;
         }
+        let given_up = self.awaits_stillness && !inputs.acknowledge;
+        let acknowledged = acknowledged || self.awaits_stillness;
         let holds = match inputs.release_guard_dead && acknowledged {
             true => None,
             false => self.holds(&inputs),
@@ -62,7 +70,11 @@ impl EmergencyBrake {
                 self.cause = EbCause::None;
                 log.push(now, Event::EbReleased, 0);
             }
+            Some(EbCause::None) if acknowledged && inputs.standstill && !given_up => {
+                self.awaits_stillness = true;
+            }
             Some(cause) if acknowledged => {
+                self.awaits_stillness = false;
                 log.push(now, Event::EbReleaseRefused, i32::from(cause.code()));
             }
             _ => {}
@@ -76,7 +88,7 @@ impl EmergencyBrake {
             (inputs.cause != EbCause::None, inputs.cause),
             (!inputs.may_release, EbCause::NotReleased),
             (open, EbCause::DoorOpen),
-            (!inputs.standstill, EbCause::None),
+            (!inputs.still, EbCause::None),
         ]
         .into_iter()
         .find_map(|(holds, cause)| holds.then_some(cause))

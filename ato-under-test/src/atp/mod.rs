@@ -1,6 +1,7 @@
 //! ATP: automatic train protection. [`Atp::scan`] runs every 10 ms, in order: speed code, speed, limit,
 //! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
+mod belief;
 mod brake_proof;
 mod causes;
 mod code;
@@ -9,6 +10,7 @@ mod door_lines;
 mod door_order;
 mod doors;
 mod emergency;
+mod heard;
 mod jog_guard;
 mod mode;
 mod overspeed;
@@ -23,10 +25,11 @@ use protocol::{Instant, Speed};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
-use direction::Rollback;
+use direction::{Rollback, Towards};
 use door_order::{DoorOrders, enabled_sides};
 use jog_guard::{JogGuard, JogInputs};
 
+pub use belief::Witness;
 pub use brake_proof::{BrakeProof, Demand, Proof};
 pub use code::{Code, CodeDecoder, lookup};
 pub use door_lines::DoorLines;
@@ -58,6 +61,12 @@ pub struct ScanContext {
     pub jogs_backward: Option<bool>,
     /// Distance past the stop point, m, where the section's last marker proves it.
     pub overrun_m: Option<f64>,
+    /// TCMS tells that the axles it measures turn, or stand; `None` = it does not tell.
+    pub tcms_moves: Option<bool>,
+    /// TCMS holds the train, or cuts its power.
+    pub tcms_holds: bool,
+    /// ATO asks for power.
+    pub ato_powers: bool,
     /// Guards that an injected fault has put out of action.
     pub dead_guards: DeadGuards,
 }
@@ -73,6 +82,14 @@ pub struct DeadGuards {
     pub release: bool,
     /// ATO jogs as fast and as far as it likes.
     pub jog: bool,
+    /// A code in force is renewed whenever it is heard, however shortly.
+    pub code: bool,
+    /// Motion with the reverser in neutral is not noticed.
+    pub neutral: bool,
+    /// A speed that falls faster than a train can slow is believed.
+    pub speed: bool,
+    /// The emergency brake is released at a speed that counts as standing.
+    pub stillness: bool,
 }
 
 /// State of the protection functions from scan to scan.
@@ -129,8 +146,11 @@ impl Atp {
         config: &UnitConfig,
         log: &mut EventLog,
     ) {
-        self.decoder.step(now, inputs.signal, config, log);
-        self.tachometers.step(now, inputs, config, log);
+        let unconfirmed = context.dead_guards.code;
+        self.decoder
+            .step(now, inputs.signal, unconfirmed, config, log);
+        let witness = self.witness(inputs, context);
+        self.tachometers.step(now, inputs, witness, config, log);
         self.limit = self.limit_in_force(config);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
         let motion = SupervisedMotion {
@@ -178,9 +198,10 @@ impl Atp {
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
         // Way that was permitted is no roll back when the permission has gone.
         let anew = still || self.jog.ended();
+        let towards = Towards::of(inputs.lines, inputs.test_speed, context.dead_guards.neutral);
         let rollback = self
             .rollback
-            .step(now, moved_m, inputs.lines, anew, allowed_m, log);
+            .step(now, moved_m, towards, anew, allowed_m, log);
         let found = [
             (rollback, EbCause::Rollback),
             (wrong_way, EbCause::Jog),
@@ -195,6 +216,7 @@ impl Atp {
             proof,
             may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
+            still: still || context.dead_guards.stillness && standstill,
             doors_closed: self.doors_closed,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             release_guard_dead: context.dead_guards.release,
@@ -262,6 +284,24 @@ impl Atp {
             || !self.doors_closed
             || self.limit == Speed::ZERO
             || self.jog.refuses()
+            || self.tachometers.cuts_power()
+    }
+
+    /// What the speed is held against.
+    fn witness(&self, inputs: &Inputs, context: ScanContext) -> Witness {
+        let notch = match self.sequence.mode() {
+            Mode::AutomaticRun => context.ato_powers,
+            Mode::Off => false,
+            _ => inputs.controller > 0,
+        };
+        let held = self.power_cut() || context.tcms_holds;
+        Witness {
+            tcms_moves: context.tcms_moves,
+            powers: notch && !held,
+            acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
+            tested: false,
+            dead: context.dead_guards.speed,
+        }
     }
 
     /// Cab at automatic or driverless.

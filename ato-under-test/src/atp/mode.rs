@@ -7,6 +7,9 @@
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
 //! given began the run that failed. So it does after a run that ended away from its stop point. It departs once its
 //! doors have been served, too.
+//!
+//! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
+//! again the service brake goes on stopping the train, and a driverless one waits for a departure that is given anew.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -47,6 +50,8 @@ pub struct ModeInputs {
     pub arrived: bool,
     /// It stands away from the stop point, and ATO has given that up.
     pub gave_up: bool,
+    /// Others than the unit have opened the emergency brake line.
+    pub line_open: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -59,6 +64,8 @@ pub struct ModeSequence {
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
+    /// The line has ended a run on the way: the train is stopped.
+    stops: bool,
     refusals: Refusals,
 }
 
@@ -66,6 +73,7 @@ impl ModeSequence {
     pub fn step(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
         let pressed = self.start.rises(inputs.start);
         self.keep_failure(&inputs);
+        self.stop_after_line(now, &inputs, log);
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
         let departing = inputs.departure
@@ -114,8 +122,27 @@ impl ModeSequence {
         self.departs_anew &= !departs;
     }
 
+    /// A run that the line ends: the train is stopped, and does not go on by itself.
+    fn stop_after_line(&mut self, now: Instant, inputs: &ModeInputs, log: &mut EventLog) {
+        if self.mode == Mode::AutomaticRun && inputs.line_open {
+            self.departs_anew = true;
+            self.stops = true;
+            log.push(now, Event::LineOpened, 0);
+        }
+        let by_ato = matches!(
+            inputs.switch,
+            ModeSwitch::Automatic | ModeSwitch::Driverless
+        );
+        self.stops &= by_ato && inputs.lacking.contains(Refusals::NOT_STANDSTILL);
+    }
+
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// The service brake stops a train whose run the line has ended.
+    pub fn stops(&self) -> bool {
+        self.stops
     }
 
     /// ATO has failed in a run, or could not go on with it, and nobody has acknowledged it.
@@ -177,7 +204,67 @@ mod tests {
         acknowledge: false,
         arrived: false,
         gave_up: false,
+        line_open: false,
     };
+
+    #[test]
+    fn a_line_that_others_opened_ends_the_run_and_the_next_departs_anew() {
+        for (switch, start) in [
+            (ModeSwitch::Automatic, true),
+            (ModeSwitch::Driverless, false),
+        ] {
+            let mut sequence = ModeSequence::default();
+            let mut log = EventLog::default();
+            let mut after = |inputs| {
+                (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+                (sequence.mode(), sequence.stops())
+            };
+            let given = ModeInputs {
+                switch,
+                start,
+                ..GOOD
+            };
+            after(ModeInputs {
+                start: false,
+                departure: false,
+                ..given
+            });
+            assert_eq!(after(given).0, Mode::AutomaticRun);
+            let open = ModeInputs {
+                lacking: Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL,
+                line_open: true,
+                start: false,
+                ..given
+            };
+            assert_eq!(after(open), (Mode::Manual, true));
+            let moving = ModeInputs {
+                lacking: Refusals::NOT_STANDSTILL,
+                start: false,
+                ..given
+            };
+            assert_eq!(
+                after(moving),
+                (Mode::Manual, true),
+                "closed again on the way"
+            );
+            let stands = ModeInputs {
+                start: false,
+                ..given
+            };
+            assert_eq!(after(stands), (Mode::Automatic, false));
+            let anew = match start {
+                true => given,
+                false => {
+                    after(ModeInputs {
+                        departure: false,
+                        ..stands
+                    });
+                    stands
+                }
+            };
+            assert_eq!(after(anew).0, Mode::AutomaticRun);
+        }
+    }
 
     #[test]
     fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {

@@ -1,9 +1,11 @@
-//! Compares two tachometers: speed, distance, direction and standstill, and which of the two has failed.
+//! Compares two tachometers: speed, distance, direction and standstill, which of the two has failed, and whether both
+//! are believed.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
+use crate::atp::belief::{Belief, Witness};
 use crate::atp::speedometer::Speedometer;
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
@@ -37,6 +39,7 @@ pub struct Tachometers {
     /// Way by each channel in this scan, m, backward negative.
     ways_m: [f64; 2],
     distance_channel: usize,
+    belief: Belief,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -66,10 +69,18 @@ impl Tachometers {
             loose_mps2: None,
             ways_m: [0.0; 2],
             distance_channel: 0,
+            belief: Belief::default(),
         }
     }
 
-    pub fn step(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
+    pub fn step(
+        &mut self,
+        now: Instant,
+        inputs: &Inputs,
+        witness: Witness,
+        config: &UnitConfig,
+        log: &mut EventLog,
+    ) {
         self.loose_mps2 = None;
         let metres_per_pulse = config.metres_per_pulse();
         self.ways_m = inputs.pulses.map(|pulses| pulses.way_m(metres_per_pulse));
@@ -92,10 +103,20 @@ impl Tachometers {
         // By channel 1, by channel 2 when only that turns.
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
-        let slow = self.speed().kmh() <= config.tacho.standstill_kmh;
+        let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
+        let witness = Witness {
+            tested: inputs.test_speed.contains(&true),
+            ..witness
+        };
+        let speeds = [0, 1].map(|i| self.meters[i].speed());
+        self.belief
+            .step(now, speeds, !silent, witness, &config.tacho, log);
+        let told = witness.tcms_moves == Some(true) && !witness.tested && !witness.dead;
+        let doubted = self.belief.doubted().is_some();
+        let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
-        let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
+        let silent = silent && !told && !doubted;
         self.still = self.silent.update(now, silent, span);
         for (crept_m, way_m) in self.crept_m.iter_mut().zip(self.ways_m) {
             *crept_m = match slow && !self.still {
@@ -137,9 +158,20 @@ impl Tachometers {
         self.faulty = faulty;
     }
 
-    /// The safe speed: the greater of the two.
-    pub fn speed(&self) -> Speed {
+    /// The greater of the two.
+    fn measured(&self) -> Speed {
         self.meters[0].speed().max(self.meters[1].speed())
+    }
+
+    /// The safe speed: the greater of the two, or what the train may still have where they are not believed.
+    pub fn speed(&self) -> Speed {
+        self.measured()
+            .max(self.belief.doubted().unwrap_or(Speed::ZERO))
+    }
+
+    /// Power moves nothing: it is cut.
+    pub fn cuts_power(&self) -> bool {
+        self.belief.cuts_power()
     }
 
     /// Speed of channel 0 or 1.
@@ -147,9 +179,9 @@ impl Tachometers {
         self.meters[i].speed()
     }
 
-    /// The channels cannot both be right.
+    /// The channels cannot both be right, or neither is believed.
     pub fn faulty(&self) -> bool {
-        self.faulty
+        self.faulty || self.belief.doubted().is_some()
     }
 
     pub fn standstill(&self) -> bool {

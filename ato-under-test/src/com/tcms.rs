@@ -111,6 +111,12 @@ impl TcmsLink {
         )
     }
 
+    /// The axles that TCMS measures turn, or stand; `None` = it does not tell.
+    pub fn moves(&self) -> Option<bool> {
+        let tells = self.says(TcmsToAtcBits::TELLS_MOTION);
+        tells.then(|| self.says(TcmsToAtcBits::MOVES))
+    }
+
     /// TCMS reads the head control relay of the unit's cab as dropped.
     pub fn reads_cab_unmanned(&self) -> bool {
         self.says(TcmsToAtcBits::TELLS_LINES) && !self.says(TcmsToAtcBits::CAB_MANNED)

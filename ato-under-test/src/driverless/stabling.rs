@@ -3,7 +3,8 @@
 //! A train that is put away is in mode off with its emergency brake applied; speed codes and departures are not acted
 //! on, TWC is answered. It wakes by the wayside's order, or by somebody at the cab, who turns the mode switch away from
 //! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released, as
-//! at power-up. An old departure counts no more.
+//! at power-up; with one that failed the train stays put away, until it is woken again or somebody at the cab takes it.
+//! An old departure counts no more.
 //!
 //! Who is put away stays so over a power-up: the stored event log says it.
 
@@ -99,6 +100,11 @@ impl Stabling {
         matches!(self.stage, Stage::PutAway | Stage::Waking)
     }
 
+    /// It is, or was woken with a self-test that failed: put away until proved sound.
+    pub fn sleeps(&self) -> bool {
+        self.asleep() || self.stage == Stage::Failed
+    }
+
     /// Only a wake-up makes something of it.
     pub fn can_wake(&self) -> bool {
         matches!(self.stage, Stage::PutAway | Stage::Failed)
@@ -106,7 +112,7 @@ impl Stabling {
 
     /// No run may begin.
     pub fn bars_run(&self) -> bool {
-        self.asleep() || self.stage == Stage::Failed
+        self.sleeps()
     }
 
     /// State of the order; `None` = the train is awake, and none of these concerns it.

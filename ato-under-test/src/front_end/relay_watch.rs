@@ -13,6 +13,8 @@ use crate::timer::OnDelay;
 pub struct RelayWatch {
     welded: OnDelay,
     open: OnDelay,
+    due: OnDelay,
+    line_due: bool,
     sound: bool,
     feedback: Duration,
 }
@@ -23,6 +25,8 @@ impl RelayWatch {
         Self {
             welded: OnDelay::default(),
             open: OnDelay::default(),
+            due: OnDelay::default(),
+            line_due: false,
             sound: true,
             feedback,
         }
@@ -40,6 +44,8 @@ impl RelayWatch {
         let alive = line(TrainLines::EB_LOOP);
         let welded = !energised && alive;
         let open = energised && line(TrainLines::EB_LOOP_FED) && !alive;
+        let due = energised && line(TrainLines::EB_LOOP_FED);
+        self.line_due = self.due.update(now, due, self.feedback);
         let welded = self.welded.update(now, welded, self.feedback);
         let open = self.open.update(now, open, self.feedback);
         if (welded || open) && self.sound {
@@ -51,6 +57,11 @@ impl RelayWatch {
             };
             log.push(now, event, 0);
         }
+    }
+
+    /// The line must be energised: the relay is, and the line is fed, for as long as it may take to follow.
+    pub fn line_due(&self) -> bool {
+        self.line_due
     }
 
     /// The relay has followed ever since power-up; one failure is not forgotten before the next.

@@ -33,6 +33,11 @@ impl PulseSensor {
         let before = self.last_count.replace(count).unwrap_or(count);
         pulses.count = u32::from(count.wrapping_sub(before));
         self.turned = pulses.count;
+        // What feeds both.
+        let place = match faults.dead(Place::SpeedSensors) {
+            true => Place::SpeedSensors,
+            false => place,
+        };
         match faults.at(place) {
             Some(Effect::Dead) => pulses.count = 0,
             Some(Effect::Gain { factor }) => {

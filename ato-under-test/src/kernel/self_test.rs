@@ -9,7 +9,7 @@ use alloc::{vec, vec::Vec};
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 use protocol::message::{MeasureUnit, Message, SelfTest, SelfTestEnd, SelfTestItem};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, SCAN};
 
 use crate::timer::OnDelay;
 
@@ -41,6 +41,8 @@ pub struct SelfTestInputs {
     pub tcms_link_hears: bool,
     pub board_answers: bool,
     pub line_energised: bool,
+    /// It should be: the relay is energised for long enough, and the line is fed.
+    pub line_due: bool,
     /// Cells of the tested memory that do not keep what is written.
     pub bad_cells: usize,
 }
@@ -62,6 +64,8 @@ struct Run {
     tcms_link_frames: u16,
     energised_since: Option<Instant>,
     energised: Duration,
+    /// The line had to be energised when the test began: the relay was, and nothing else opened the line.
+    line_due: bool,
     relay_off: bool,
 }
 
@@ -149,6 +153,7 @@ impl SelfTester {
             run.twc_cpu_frames += u16::from(inputs.twc_cpu_hands_on);
             run.tcms_link_frames += u16::from(inputs.tcms_link_hears);
         }
+        run.line_due |= now == run.begun && inputs.line_due;
         run.watch_line(now, inputs.line_energised);
         if now < run.ends {
             return None;
@@ -223,6 +228,7 @@ impl Run {
             tcms_link_frames: 0,
             energised_since: None,
             energised: Duration::ZERO,
+            line_due: false,
             relay_off: true,
         }
     }
@@ -235,7 +241,8 @@ impl Run {
         }
         if energised {
             let since = *self.energised_since.get_or_insert(now);
-            self.energised = self.energised.max(now.since(since));
+            // A scan counts whole: a line that follows at once was energised for one.
+            self.energised = self.energised.max(now.since(since) + SCAN);
         } else {
             self.energised_since = None;
         }
@@ -281,7 +288,12 @@ impl Run {
             ),
             (
                 SelfTest::EB_RELAY,
-                (whole(self.energised), 0, LINE_ENERGISED_MS),
+                (
+                    whole(self.energised),
+                    // A relay that was never energised has dropped nothing.
+                    i32::from(self.line_due && self.request.is_some()),
+                    LINE_ENERGISED_MS,
+                ),
                 Milliseconds,
             ),
             (

@@ -116,7 +116,14 @@ impl Functions {
                 release: around.faults.dead(Place::ReleaseGuard),
                 doors: around.faults.dead(Place::DoorGuard),
                 jog: around.faults.dead(Place::JogGuard),
+                code: around.faults.dead(Place::CodeConfirmation),
+                neutral: around.faults.dead(Place::NeutralGuard),
+                speed: around.faults.dead(Place::SpeedGuard),
+                stillness: around.faults.dead(Place::ReleaseStandstill),
             },
+            tcms_moves: around.tcms.moves(),
+            tcms_holds: around.tcms.overrides(),
+            ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,
             // Behind its last marker alone; wheels may be wrong by more than an overrun.
             overrun_m: self
@@ -268,7 +275,11 @@ impl Functions {
             Refusals::CONTROLLER_NOT_NEUTRAL,
             self.inputs.controller != 0,
         );
-        lacking.set(Refusals::EB_APPLIED, self.atp.brake().applied());
+        let line_open = self.line_open(around) && !around.faults.dead(Place::LineGuard);
+        lacking.set(
+            Refusals::EB_APPLIED,
+            self.atp.brake().applied() || line_open,
+        );
         lacking.set(Refusals::TCMS_NOT_READY, !around.tcms.ready());
         lacking.set(Refusals::ATO_NOT_READY, !self.ato_outputs.ready);
         lacking.set(Refusals::TRA_FAILED, !around.tra.ok());
@@ -276,7 +287,7 @@ impl Functions {
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
         lacking.set(Refusals::ORDERED, self.ordered_to_stay());
         let dead = |place| around.faults.dead(place);
-        let asleep = self.stabling.asleep() && !dead(Place::PutAwayBrake);
+        let asleep = self.stabling.sleeps() && !dead(Place::PutAwayBrake);
         let given_up = self.cabs.handed_over() && dead(Place::HandOverBrake);
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
@@ -293,6 +304,13 @@ impl Functions {
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
             gave_up: self.ato.gave_up(),
+            line_open: line_open && !self.atp.brake().applied(),
         }
+    }
+
+    /// The emergency brake line is open, as it is read back or TCMS tells it.
+    fn line_open(&self, around: &Surroundings<'_>) -> bool {
+        let read = self.inputs.alive && !self.inputs.lines.contains(TrainLines::EB_LOOP);
+        read || around.tcms.emergency_brake_applied() == Some(true)
     }
 }

@@ -149,7 +149,7 @@ pub fn to_tcms(unit: &Unit, now: Instant) -> Message {
     bits.set(AtcToTcmsBits::BRAKE, effort < 0);
     bits.set(AtcToTcmsBits::HOLDING_BRAKE, train.holds());
     bits.set(AtcToTcmsBits::CHANGE_OF_CABS, train.cabs.asks());
-    bits.set(AtcToTcmsBits::PUT_AWAY, train.stabling.asleep());
+    bits.set(AtcToTcmsBits::PUT_AWAY, train.stabling.sleeps());
     bits.set(AtcToTcmsBits::ATO_READY, ato.ready);
     bits.set(
         AtcToTcmsBits::ATO_FAILED,

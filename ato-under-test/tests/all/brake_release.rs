@@ -3,7 +3,7 @@
 use crate::common::{Bench, fault};
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::message::{EbCause, TrainLines};
+use protocol::message::{EbCause, Outputs, TrainLines};
 
 /// Parameters of the refusals logged so far.
 fn refusals(bench: &mut Bench) -> Vec<i32> {
@@ -77,7 +77,7 @@ fn an_acknowledgement_while_the_cause_holds_is_refused_with_it_under_every_cause
         assert!(bench.braking(), "{cause:?}: released while it holds");
         let holds = i32::from(cause.code());
         assert_eq!(refusals(&mut bench), [holds], "{cause:?}");
-        bench.speeds = [0.0; 2];
+        bench.stop();
         bench.run(2.0);
         assert!(bench.braking(), "{cause:?}: released by itself");
         bench.acknowledge();
@@ -95,6 +95,26 @@ fn a_train_that_still_rolls_is_not_released() {
     bench.acknowledge();
     assert!(bench.braking());
     assert_eq!(refusals(&mut bench), [i32::from(EbCause::None.code())]);
+}
+
+/// Goal: the brake is released at standstill, which is no pulse for a while, not a speed that is low enough for one.
+/// Method: wheels that turn at 0.9 km/h, below the 1.08 of standstill; then they stop while the button is pressed.
+#[test]
+fn a_train_that_creeps_is_not_released_and_one_that_comes_to_rest_is() {
+    let mut bench = overspeed();
+    assert!(bench.until(5.0, Bench::braking).is_some());
+    bench.speed_kmh(0.9);
+    bench.run(2.0);
+    assert!(bench.has(Outputs::STANDSTILL));
+    bench.acknowledge();
+    assert!(bench.braking());
+    assert_eq!(refusals(&mut bench), [i32::from(EbCause::None.code())]);
+    bench.input.lines.insert(TrainLines::ACKNOWLEDGE);
+    bench.stop();
+    bench.run(0.2);
+    assert!(bench.braking());
+    bench.run(0.5);
+    assert!(!bench.braking());
 }
 
 #[test]

@@ -331,9 +331,10 @@ fn doors_are_enabled_only_aligned_on_the_right_side() {
         }
         bench.marker(i as u8 + 1);
     }
-    let remaining = section.stop_m - section.markers_m[3] - 5.0 / 3.6 * 0.1;
-    bench.run(remaining / (5.0 / 3.6));
-    bench.speeds = [0.0; 2];
+    let mps = 5.0 / 3.6;
+    let remaining = section.stop_m - section.markers_m[3] - mps * 0.1 - mps * mps / (2.0 * 3.0);
+    bench.run(remaining / mps);
+    bench.stop();
     bench.station = Some(protocol::message::TwcWayside {
         station: section.to_station,
         next_station: section.to_station + 1,

@@ -141,7 +141,6 @@ fn what_tcms_does_by_itself_is_not_the_units_fault() {
     for bits in [
         TcmsToAtcBits::FULL_SERVICE_BRAKE | TcmsToAtcBits::POWERING_CUT,
         TcmsToAtcBits::POWERING_CUT,
-        TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED | TcmsToAtcBits::POWERING_CUT,
         TcmsToAtcBits::HOLDING_BRAKE_APPLIED | TcmsToAtcBits::POWERING_CUT,
     ] {
         let mut journey = Journey::new(&[]).until_position(100.0);
@@ -169,6 +168,32 @@ fn what_tcms_does_by_itself_is_not_the_units_fault() {
         faults.retain(|event| *event != "door_enable_refused");
         assert_eq!(faults, [""; 0], "{bits:?}");
     }
+}
+
+/// Goal: a brake line that others open ends the run, and no train goes on by itself when it is closed again. Method: TCMS
+/// tells that the line is open in mid-run, then no more; departure stays given.
+#[test]
+fn a_line_that_tcms_tells_to_be_open_ends_the_run() {
+    let mut journey = Journey::new(&[]).until_position(100.0);
+    let open = TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED | TcmsToAtcBits::POWERING_CUT;
+    says(&mut journey.bench, open);
+    journey.by_tcms_mps2 = Some(-3.5 / 3.6);
+    (0..100).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.mode, Mode::Manual);
+    says(&mut journey.bench, TcmsToAtcBits::empty());
+    (0..20).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.fsb_cause, FsbCause::NotPermitted);
+    (0..4000).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.mode, Mode::Automatic);
+    assert_eq!(journey.bench.status.speed1_cms, 0);
+    if let Some(station) = &mut journey.bench.station {
+        station.departure = 1;
+    }
+    (0..50).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.mode, Mode::Automatic);
+    journey.bench.input.lines.insert(TrainLines::START);
+    (0..200).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.mode, Mode::AutomaticRun);
 }
 
 /// A train that gives a tenth of what it is sent: told by TCMS it is the train's, a brake that is missing

@@ -103,6 +103,8 @@ impl TcmsPort {
             (TcmsToAtcBits::TELLS_LINES, true),
             (TcmsToAtcBits::DOORS_CLOSED, seen.doors_closed),
             (TcmsToAtcBits::CAB_MANNED, seen.hcr),
+            (TcmsToAtcBits::TELLS_MOTION, true),
+            (TcmsToAtcBits::MOVES, view.moves),
         ] {
             bits.set(bit, on);
         }

@@ -53,6 +53,10 @@ impl UnitConfig {
             tacho.creep_m: 0.05, 5.0;
             tacho.adhesion: 0.05, 0.6;
             tacho.share: 0.005, 0.2;
+            tacho.fall_kmh: 0.5, 20.0;
+            tacho.fall_ms: 20.0, 5000.0;
+            tacho.least_brake_mps2: 0.1, 1.5;
+            tacho.no_pulses_ms: 500.0, 60000.0;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
             overspeed.eb_margin_kmh: 0.0, 30.0;

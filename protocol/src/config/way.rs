@@ -21,6 +21,20 @@ pub struct TachoConfig {
     /// Adhesion on a dry rail: a wheel whose speed changes faster than it gives the train spins or slides.
     #[serde(default = "TachoConfig::default_adhesion")]
     pub adhesion: f64,
+    /// Speed, km/h, by which both tachometers must have fallen faster than adhesion lets a train slow, where they then
+    /// give no pulses, so that they are not believed.
+    #[serde(default = "TachoConfig::default_fall_kmh")]
+    pub fall_kmh: f64,
+    /// How long that must last, ms.
+    #[serde(default = "TachoConfig::default_fall_ms")]
+    pub fall_ms: u32,
+    /// Deceleration that the emergency brake has at the least, m/s²: a train whose speed is not believed stands after
+    /// a stop at it.
+    #[serde(default = "TachoConfig::default_least_brake_mps2")]
+    pub least_brake_mps2: f64,
+    /// Time for which power may be asked for before a tachometer gives a pulse, ms.
+    #[serde(default = "TachoConfig::default_no_pulses_ms")]
+    pub no_pulses_ms: u32,
     /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
     #[serde(default = "TachoConfig::default_share")]
     pub share: f64,
@@ -39,6 +53,22 @@ impl TachoConfig {
     /// Those of `sg100`, for configurations without the keys.
     const fn default_creep_m() -> f64 {
         0.5
+    }
+
+    const fn default_fall_kmh() -> f64 {
+        2.0
+    }
+
+    const fn default_fall_ms() -> u32 {
+        100
+    }
+
+    const fn default_least_brake_mps2() -> f64 {
+        0.8
+    }
+
+    const fn default_no_pulses_ms() -> u32 {
+        6000
     }
 
     const fn default_adhesion() -> f64 {

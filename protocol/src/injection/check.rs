@@ -68,6 +68,12 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::ReleaseGuard
         | Place::MarkerDebounce
         | Place::JogGuard
+        | Place::CodeConfirmation
+        | Place::LineGuard
+        | Place::NeutralGuard
+        | Place::SpeedGuard
+        | Place::ReleaseStandstill
+        | Place::SpeedSensors
         | Place::ArmStandstill
         | Place::ArmBrakes
         | Place::MotionGuard

@@ -120,6 +120,18 @@ pub enum Place {
     StopGuard,
     /// Comparison of an acknowledgement with the emergency brake's cause.
     ReleaseGuard,
+    /// Confirmation of the speed code in force.
+    CodeConfirmation,
+    /// Supervision of a brake line that others open.
+    LineGuard,
+    /// Supervision of motion with the reverser in neutral.
+    NeutralGuard,
+    /// Comparison of a speed that falls with what a train can do, and with TCMS's.
+    SpeedGuard,
+    /// Standstill as a condition of release of the emergency brake: no pulse.
+    ReleaseStandstill,
+    /// Supply of both speed sensors.
+    SpeedSensors,
     /// Debouncing of marker pulses.
     MarkerDebounce,
     /// Supervision of ATO's jogging: speed, way and direction.

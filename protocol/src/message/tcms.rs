@@ -27,6 +27,11 @@ wire_bits! {
         DOORS_CLOSED = 8,
         /// TCMS reads the head control relay of the unit's cab as picked up.
         CAB_MANNED = 9,
+        /// TCMS tells by the bit below whether the axles that it measures itself turn; else it says nothing of them.
+        TELLS_MOTION = 10,
+        /// The mean of the motor cars' axles is faster than a standing train's: a second, coarse opinion on the
+        /// tachometers.
+        MOVES = 11,
     }
 }
 

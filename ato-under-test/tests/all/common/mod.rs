@@ -200,6 +200,14 @@ impl Bench {
         self.speeds = [goal; 2];
     }
 
+    /// Both wheels to a stop at 3 m/s².
+    pub fn stop(&mut self) {
+        while self.speeds != [0.0; 2] {
+            self.speeds = self.speeds.map(|speed| speed - speed.clamp(-0.03, 0.03));
+            self.scan();
+        }
+    }
+
     pub fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds * 100.0).round() as u64 {
             self.scan();

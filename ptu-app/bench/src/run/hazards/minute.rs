@@ -2,10 +2,12 @@
 
 use btu_rig::lever::Lever;
 use btu_rig::rig::{Bench, Random};
-use btu_rig::stimulus::{StationData, Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
-use protocol::injection::FaultMode;
+use btu_rig::stimulus::{
+    OrderData, StationData, Stimulus, TachoCondition, TcmsCondition, TrainSwitch, WaysideCondition,
+};
+use protocol::injection::{FaultMode, Place};
 use protocol::line::Section;
-use protocol::message::{DoorSide, ModeSwitch, RunningMode};
+use protocol::message::{DoorSide, ModeSwitch, RunningMode, TrainOrder};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, Speed};
 
@@ -19,6 +21,9 @@ const STARTED: Duration = Duration::from_ms(4_000);
 
 /// Time in which the bench notices that the unit has restarted.
 const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
+
+/// Time for which a start button that was pressed may begin a run.
+const PRESSED: Duration = Duration::from_ms(800);
 
 /// A hazard in a minute.
 #[derive(Debug)]
@@ -46,6 +51,13 @@ pub struct Minute<'a> {
     station: StationData,
     reverser: i8,
     powered: bool,
+    /// Codes that come by turns, each for its time; the present one first.
+    flicker: Option<[(Stimulus, Duration); 2]>,
+    flicker_due: Instant,
+    /// When the start button was pressed last.
+    started: Option<Instant>,
+    /// TCMS's link is as the minute's faults have it.
+    tcms_good: bool,
     acts: Vec<(Instant, String)>,
 }
 
@@ -76,6 +88,10 @@ impl<'a> Minute<'a> {
             random,
             reverser: 1,
             powered: true,
+            flicker: None,
+            flicker_due: Instant::ZERO,
+            started: None,
+            tcms_good: true,
             acts: Vec::new(),
         }
     }
@@ -95,20 +111,24 @@ impl<'a> Minute<'a> {
                 next_act = now + Duration::from_ms(wait_ms);
                 self.act();
             }
+            self.turn_code(now);
             self.bench.tick().expect("the embedded unit answers");
-            if !self.powered {
+            // Without TCMS nothing tells of motion that no tachometer sees.
+            if !self.powered || self.blind() && !self.tcms_good {
                 seen_from = now + STARTED;
             }
             let rig = self.bench.rig();
             let truth = rig.truth();
             let observed = Observed {
                 now,
+                blind: self.blind(),
                 sample: rig.sample(),
                 speed_mps: truth.speed_mps,
                 accel_mps2: truth.accel_mps2,
                 to_stop_m: truth.to_stop_m,
                 traction_n: truth.traction_n,
                 reverser: self.reverser,
+                start: self.started.is_some_and(|at| now.since(at) < PRESSED),
             };
             let restarts = rig.unit_restarts();
             let hazard = monitor.step(observed).filter(|_| now >= seen_from);
@@ -204,7 +224,7 @@ impl<'a> Minute<'a> {
     }
 
     fn act(&mut self) {
-        let act = self.random.below(24);
+        let act = self.random.below(28);
         match act {
             0..=2 => self.change_code(),
             3 => {
@@ -241,7 +261,10 @@ impl<'a> Minute<'a> {
                 self.apply(Stimulus::ModeSwitch(switch));
             }
             10 | 11 => self.change_station(),
-            12 => self.apply(Stimulus::Start),
+            12 => {
+                self.started = Some(self.bench.now());
+                self.apply(Stimulus::Start);
+            }
             13 | 14 => self.apply(Stimulus::Acknowledge),
             15 => self.change_wayside(),
             16 => self.change_tachometer(),
@@ -266,14 +289,54 @@ impl<'a> Minute<'a> {
                 let on = self.chance(0.6);
                 self.apply(Stimulus::TrainDriven { on });
             }
-            _ => self.change_power(),
+            23 => self.change_power(),
+            24 | 25 => self.let_code_flicker(),
+            26 => self.open_line(),
+            _ => self.give_order(),
         }
     }
 
     fn change_code(&mut self) {
+        self.flicker = None;
         if self.chance(0.4) {
             return self.apply(Stimulus::CodesAlong { on: true });
         }
+        let code = self.any_code();
+        self.apply(code);
+    }
+
+    /// Two codes by turns, or one and none, that stay from 10 ms to a second.
+    fn let_code_flicker(&mut self) {
+        let mut one = || {
+            let ms = self.one_of(&[10, 20, 50, 100, 200, 380, 450, 900]);
+            (self.any_code(), Duration::from_ms(ms))
+        };
+        let turns = [one(), one()];
+        let [(first, _), (second, _)] = turns;
+        let now = self.bench.now();
+        self.acts.push((
+            now,
+            format!(
+                "{first} and {second} by turns, {:?} and {:?}",
+                turns[0].1, turns[1].1
+            ),
+        ));
+        self.flicker = Some(turns);
+        self.flicker_due = now;
+    }
+
+    fn turn_code(&mut self, now: Instant) {
+        let Some(turns) = self.flicker.as_mut().filter(|_| now >= self.flicker_due) else {
+            return;
+        };
+        turns.reverse();
+        let (code, stays) = turns[0];
+        self.flicker_due = now + stays;
+        let refused = self.bench.rig_mut().apply(now, &code);
+        refused.expect("any code can be put in");
+    }
+
+    fn any_code(&mut self) -> Stimulus {
         let config = &self.setup.config.content;
         let code = config.codes[self.random.below(config.codes.len())].clone();
         let level_mv = config.receiver.level_nominal_mv;
@@ -283,10 +346,50 @@ impl<'a> Minute<'a> {
             level_mv,
         };
         match self.random.below(8) {
-            0 => self.apply(Stimulus::CodeOff),
-            1 => self.apply(signal(0.0)),
-            _ => self.apply(signal(code.rate_hz)),
+            0 => Stimulus::CodeOff,
+            1 => signal(0.0),
+            _ => signal(code.rate_hz),
         }
+    }
+
+    /// Somebody else than the unit opens the emergency brake line, or lets it close again.
+    fn open_line(&mut self) {
+        let switch = self.one_of(&[
+            TrainSwitch::Button1,
+            TrainSwitch::Button2,
+            TrainSwitch::MainReservoirLow,
+        ]);
+        let on = self.chance(0.4);
+        for switch in [
+            TrainSwitch::Button1,
+            TrainSwitch::Button2,
+            TrainSwitch::MainReservoirLow,
+        ] {
+            self.apply(Stimulus::Switch { switch, on: false });
+        }
+        if on {
+            self.apply(Stimulus::Switch { switch, on });
+        }
+    }
+
+    /// The wayside puts the train away, wakes it, or orders nothing.
+    fn give_order(&mut self) {
+        let order = self.one_of(&[
+            TrainOrder::PutAway,
+            TrainOrder::WakeUp,
+            TrainOrder::WakeUp,
+            TrainOrder::None,
+        ]);
+        let orders = OrderData::of_section(order, None, 0.0);
+        self.apply(Stimulus::Orders(Some(orders)));
+    }
+
+    /// No tachometer gives pulses.
+    fn blind(&self) -> bool {
+        let sample = self.bench.rig().sample();
+        let dead = |signal| sample.get(signal) == Some(1.0);
+        let unfed = |fault: &FaultMode| fault.place == Place::SpeedSensors;
+        dead(Signal::Tacho1) && dead(Signal::Tacho2) || self.faults.iter().any(unfed)
     }
 
     fn change_station(&mut self) {
@@ -335,22 +438,24 @@ impl<'a> Minute<'a> {
             TcmsCondition::Silent,
             TcmsCondition::Stale,
         ]);
+        self.tcms_good = tcms == TcmsCondition::Good;
         self.apply(Stimulus::Tcms(tcms));
         let on = self.chance(0.8);
         self.apply(Stimulus::AtoEnable { on });
     }
 
-    /// A fault of the first tachometer, and its repair.
+    /// A fault of the first tachometer, or both die at once; and its repair.
     fn change_tachometer(&mut self) {
         let good = self.chance(0.3);
-        let condition = match self.random.below(3) {
+        let condition = match self.random.below(4) {
             _ if good => TachoCondition::Good,
-            0 => TachoCondition::Dead,
-            1 => TachoCondition::Noisy { per_s: 50.0 },
+            0 | 1 => TachoCondition::Dead,
+            2 => TachoCondition::Noisy { per_s: 50.0 },
             _ => TachoCondition::Scaled {
                 factor: 0.8 + 0.4 * self.random.unit(),
             },
         };
+        let both = good || condition == TachoCondition::Dead && self.chance(0.5);
         if !good && !self.scaled {
             if self.budget == 0 {
                 return;
@@ -358,10 +463,9 @@ impl<'a> Minute<'a> {
             self.budget -= 1;
             self.scaled = true;
         }
-        self.apply(Stimulus::Tacho {
-            channel: 1,
-            condition,
-        });
+        for channel in 1..=1 + u8::from(both) {
+            self.apply(Stimulus::Tacho { channel, condition });
+        }
     }
 
     fn change_cab(&mut self) {

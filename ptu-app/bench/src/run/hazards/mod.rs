@@ -3,6 +3,7 @@
 //! A hazard is explained by a fault mode that its row of `docs/protection.md` names, or by faults of both tachometers.
 //! Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one minute.
 
+mod memory;
 mod minute;
 mod monitor;
 

@@ -7,6 +7,8 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
+use super::memory::{Asleep, Blind, Confirmed, Lately, Runs};
+
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
 const MOVES_KMH: f64 = 1.08 + 0.4;
 /// Wheels slower than this stand, km/h: a pulse every 27 mm tells no more within half a second.
@@ -20,8 +22,10 @@ const CODE_HELD: Duration = Duration::from_ms(1_900);
 const SLACK: Duration = Duration::from_ms(300);
 /// Wheels that slow the train by less do not, m/s².
 const SLOWS_MPS2: f64 = 0.3;
+/// Share of the time of detection for which a code is there before the unit may count it.
+const NEARLY: f64 = 0.8;
 /// Traction that is none, N: what an inverter still gives while its order fades.
-const NO_POWER_N: f64 = 10_000.0;
+pub(super) const NO_POWER_N: f64 = 10_000.0;
 /// Place that the unit may take for the stop point's, m: its tolerance, and what its position may be off.
 const AT_STOP_POINT_M: f64 = 0.3 + 0.9;
 /// Speed of a jog, km/h.
@@ -56,6 +60,14 @@ pub enum Hazard {
     RolledBack,
     /// A jog that is fast, and no brake.
     JogTooFast,
+    /// Faster than any code lets it that was there long enough to be detected.
+    UnconfirmedCode,
+    /// Power by ATO after the open brake line has ended its run, and nobody began another.
+    DrivesOnByItself,
+    /// Motion of a train that is put away, or was woken with a self-test that failed.
+    SleepingMoves,
+    /// Motion with the reverser in neutral.
+    RollsNeutral,
 }
 
 impl Hazard {
@@ -73,6 +85,10 @@ impl Hazard {
             Self::PowerUnderBrake => "power_under_brake",
             Self::RolledBack => "rolled_back",
             Self::JogTooFast => "jog_too_fast",
+            Self::UnconfirmedCode => "unconfirmed_code",
+            Self::DrivesOnByItself => "drives_on_by_itself",
+            Self::SleepingMoves => "sleeping_moves",
+            Self::RollsNeutral => "rolls_neutral",
         }
     }
 }
@@ -92,33 +108,23 @@ pub struct Observed<'a> {
     pub traction_n: f64,
     /// Reverser: 1, 0, -1.
     pub reverser: i8,
+    /// The start button is pressed, or was a moment ago.
+    pub start: bool,
+    /// No tachometer gives pulses.
+    pub blind: bool,
 }
 
 impl Observed<'_> {
-    fn on(&self, signal: Signal) -> bool {
+    pub(super) fn on(&self, signal: Signal) -> bool {
         self.value(signal) > 0.5
     }
 
-    fn value(&self, signal: Signal) -> f64 {
+    pub(super) fn value(&self, signal: Signal) -> f64 {
         self.sample.get(signal).unwrap_or(0.0)
     }
 
-    fn kmh(&self) -> f64 {
+    pub(super) fn kmh(&self) -> f64 {
         self.speed_mps.abs() * 3.6
-    }
-}
-
-/// Remembers values that were there lately.
-#[derive(Default)]
-struct Lately(Vec<(f64, Instant)>);
-
-impl Lately {
-    /// Values of the last `span`, with the present one.
-    fn note(&mut self, now: Instant, value: f64, span: Duration) -> impl Iterator<Item = f64> {
-        self.0
-            .retain(|(old, at)| *old != value && now.since(*at) < span);
-        self.0.push((value, now));
-        self.0.iter().map(|(value, _)| *value)
     }
 }
 
@@ -128,7 +134,13 @@ pub struct Monitor {
     yard_kmh: f64,
     emergency_kmh: f64,
     limits: Lately,
+    confirmed: Confirmed,
+    runs: Runs,
+    asleep: Asleep,
+    blind: Blind,
     sides: Lately,
+    /// Sides on which doors may be enabled, left and right.
+    given: [bool; 2],
     /// Way against the reverser since the train last stood, m.
     against_m: f64,
     /// Since when each condition holds.
@@ -143,7 +155,15 @@ impl Monitor {
             yard_kmh: config.overspeed.yard_kmh,
             emergency_kmh: config.overspeed.emergency_kmh,
             limits: Lately::default(),
+            confirmed: Confirmed::new(
+                Duration::from_secs(NEARLY * f64::from(config.receiver.detect_ms) / 1e3),
+                Duration::from_ms(u64::from(config.receiver.hold_ms)),
+            ),
+            runs: Runs::default(),
+            asleep: Asleep::default(),
+            blind: Blind::default(),
             sides: Lately::default(),
+            given: [false; 2],
             against_m: 0.0,
             since: Vec::new(),
         }
@@ -164,22 +184,30 @@ impl Monitor {
         found
     }
 
-    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 11] {
-        let limit_kmh = self.most_permitted_kmh(seen);
+    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 15] {
+        let (limit_kmh, confirmed_kmh) = self.most_permitted_kmh(seen);
         let (eb, fsb) = (seen.on(Signal::EbLoop), seen.on(Signal::Fsb));
         let (left, right) = (
             seen.on(Signal::DoorEnableLeft),
             seen.on(Signal::DoorEnableRight),
         );
         let kmh = seen.kmh();
-        let moves = kmh > MOVES_KMH;
-        let above = |margin_kmh| limit_kmh > 0.0 && kmh > limit_kmh + margin_kmh + SPEED_OFF_KMH;
+        let blind = self.blind.note(seen);
+        let moves = kmh > MOVES_KMH && !blind;
+        let above =
+            |margin_kmh| limit_kmh > 0.0 && kmh > limit_kmh + margin_kmh + SPEED_OFF_KMH && !blind;
         let side = seen.value(Signal::WaysideDoorSide);
         let (mut left_given, mut right_given) = (false, false);
         for side in self.sides.note(seen.now, side, Duration::from_ms(2_500)) {
             left_given |= side == 1.0 || side == 3.0;
             right_given |= side == 2.0 || side == 3.0;
         }
+        // What was enabled so lasts until the doors are proved closed.
+        let open = !seen.on(Signal::Doors);
+        let [left_kept, right_kept] = self.given;
+        left_given |= left_kept && left && open;
+        right_given |= right_kept && right && open;
+        self.given = [left_given, right_given];
         let elsewhere = seen.to_stop_m.is_none_or(|m| m.abs() > AT_STOP_POINT_M);
         let ms = Duration::from_ms;
         [
@@ -225,19 +253,40 @@ impl Monitor {
             ),
             (
                 Hazard::RolledBack,
-                self.rolled_back(seen, fsb) && !eb,
+                seen.reverser != 0 && self.rolled_back(seen, fsb) && !eb && !blind,
                 ms(0),
             ),
             (
                 Hazard::JogTooFast,
-                jogs_back(seen) && kmh > JOG_KMH + SPEED_OFF_KMH && !eb && !fsb,
+                jogs_back(seen) && kmh > JOG_KMH + SPEED_OFF_KMH && !eb && !fsb && !blind,
                 ms(300),
+            ),
+            (
+                Hazard::UnconfirmedCode,
+                moves && kmh > confirmed_kmh + 3.0 + SPEED_OFF_KMH && !eb && !fsb,
+                ms(500),
+            ),
+            (
+                Hazard::DrivesOnByItself,
+                self.runs.goes_on(seen, eb),
+                ms(200),
+            ),
+            (
+                Hazard::SleepingMoves,
+                self.asleep.note(seen) && moves && !eb,
+                ms(500),
+            ),
+            (
+                Hazard::RollsNeutral,
+                seen.reverser == 0 && self.rolled_back(seen, fsb) && !eb && !blind,
+                ms(0),
             ),
         ]
     }
 
-    /// The greatest limit that may still be in force, km/h.
-    fn most_permitted_kmh(&mut self, seen: Observed<'_>) -> f64 {
+    /// The greatest limit that may still be in force, km/h: of what was there at all, and of what was there for as long
+    /// as a detection takes.
+    fn most_permitted_kmh(&mut self, seen: Observed<'_>) -> (f64, f64) {
         let limit_kmh = match seen.value(Signal::ModeSwitch) as u8 {
             1 => self.yard_kmh,
             2..=4 => self.code_limit_kmh(seen),
@@ -245,7 +294,9 @@ impl Monitor {
             _ => 0.0,
         };
         let lately = self.limits.note(seen.now, limit_kmh, CODE_HELD);
-        lately.fold(0.0, f64::max)
+        let most_kmh = lately.fold(0.0, f64::max);
+        let confirmed_kmh = self.confirmed.note(seen.now, limit_kmh, CODE_HELD);
+        (most_kmh, confirmed_kmh)
     }
 
     /// Limit of the code in the antenna, km/h; near its tolerances it may count.
@@ -267,7 +318,10 @@ impl Monitor {
     /// A jog back does not count, nor does what its brake takes to stop the train.
     fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool) -> bool {
         let jogs = jogs_back(seen) && (seen.kmh() <= JOG_KMH + SPEED_OFF_KMH || fsb);
-        let way_m = -f64::from(seen.reverser) * seen.speed_mps * 0.01;
+        let way_m = match seen.reverser {
+            0 => seen.speed_mps.abs() * 0.01,
+            towards => -f64::from(towards) * seen.speed_mps * 0.01,
+        };
         let against_m = if jogs { 0.0 } else { way_m };
         self.against_m = (self.against_m + against_m).max(0.0);
         // A brake that was released at standstill begins anew.

@@ -1,0 +1,354 @@
+//! Whether the speed of both tachometers can be true: what no train does is not believed.
+//!
+//! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply of
+//! both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as long as
+//! a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells, says that its own
+//! axles stand. So it does while TCMS tells that they turn and no tachometer does. From rest, power that is asked for and
+//! moves nothing is cut.
+
+use protocol::config::TachoConfig;
+use protocol::event::Event;
+use protocol::{Duration, Instant, SCAN, Speed};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, OnDelay};
+
+const GRAVITY_MPS2: f64 = 9.81;
+/// A speed below this is of no pulse, or of one.
+const NO_PULSES: Speed = Speed::from_kmh(1.0);
+/// Time for which TCMS must tell of motion that no tachometer sees: frames, its own lag, and the tachometers' window.
+const CONTRADICTS: Duration = Duration::from_ms(800);
+/// Time for which pulses must be back.
+const BACK: Duration = Duration::from_ms(1_000);
+
+/// What the speed is held against in a scan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Witness {
+    /// TCMS tells that the axles it measures turn, or stand; `None` = it does not tell.
+    pub tcms_moves: Option<bool>,
+    /// Power is asked for, and nothing that ATP knows of holds the train.
+    pub powers: bool,
+    /// The start of the train is awaited anew: somebody acknowledges.
+    pub acknowledge: bool,
+    /// The speeds are of test signals, which change as a tester likes.
+    pub tested: bool,
+    /// Nothing is compared: an injected fault.
+    pub dead: bool,
+}
+
+/// Compares from scan to scan.
+#[derive(Clone, Debug, Default)]
+pub struct Belief {
+    /// Speed that follows the measured one as fast as adhesion lets a train, m/s.
+    reference_mps: f64,
+    /// The same for each tachometer.
+    each_mps: [f64; 2],
+    /// The greatest that it was since it was last near the measured one, m/s.
+    last_mps: f64,
+    falls: OnDelay,
+    vanishes: OnDelay,
+    contradicts: OnDelay,
+    back: OnDelay,
+    /// Speed that the train may still have, m/s; `None` = what is measured is believed.
+    doubted_mps: Option<f64>,
+    powerless: OnDelay,
+    cut: bool,
+    told: Edge,
+}
+
+impl Belief {
+    /// One scan with the speeds of both tachometers.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        speeds: [Speed; 2],
+        pulses: bool,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        let speed = speeds[0].max(speeds[1]);
+        if witness.dead || witness.tested {
+            *self = Self {
+                reference_mps: speed.mps(),
+                last_mps: speed.mps(),
+                each_mps: speeds.map(Speed::mps),
+                ..Self::default()
+            };
+            return;
+        }
+        if self.one_rolls_on(speeds, config) && self.doubted_mps.is_none() {
+            self.reference_mps = speed.mps();
+        }
+        self.follow(now, speed, config, log);
+        let stands = speed < NO_PULSES;
+        let contradicts = stands && witness.tcms_moves == Some(true);
+        if self.contradicts.update(now, contradicts, CONTRADICTS) && self.doubted_mps.is_none() {
+            self.doubted_mps = Some(0.0);
+            log.push(now, Event::SpeedContradicted, 0);
+        }
+        self.settle(now, speed, witness, config);
+        self.await_start(now, pulses, witness, config, log);
+    }
+
+    /// A tachometer turns, and does not fall faster than adhesion lets it: what the other one did was its own fault.
+    fn one_rolls_on(&mut self, speeds: [Speed; 2], config: &TachoConfig) -> bool {
+        let most_mps = config.adhesion * GRAVITY_MPS2 * SCAN.as_secs();
+        let mut rolls = false;
+        for (each_mps, speed) in self.each_mps.iter_mut().zip(speeds) {
+            *each_mps = speed
+                .mps()
+                .clamp(*each_mps - most_mps, *each_mps + most_mps);
+            let fallen_kmh = (*each_mps - speed.mps()) * 3.6;
+            rolls |= speed >= NO_PULSES && fallen_kmh <= config.fall_kmh;
+        }
+        rolls
+    }
+
+    /// Notices a speed that falls faster than adhesion lets it.
+    fn follow(&mut self, now: Instant, speed: Speed, config: &TachoConfig, log: &mut EventLog) {
+        let most_mps = config.adhesion * GRAVITY_MPS2 * SCAN.as_secs();
+        let low_mps = self.reference_mps - most_mps;
+        self.reference_mps = speed.mps().clamp(low_mps, self.reference_mps + most_mps);
+        let fallen_kmh = (self.reference_mps - speed.mps()) * 3.6;
+        if fallen_kmh <= config.fall_kmh {
+            self.last_mps = self.reference_mps;
+        }
+        let delay = Duration::from_ms(u64::from(config.fall_ms));
+        let silent = speed < NO_PULSES && fallen_kmh > config.fall_kmh;
+        let vanishes = self.vanishes.update(now, silent, delay);
+        let span = Duration::from_ms(u64::from(config.difference_ms));
+        let falls = self
+            .falls
+            .update(now, fallen_kmh > config.difference_kmh, span);
+        if (vanishes || falls) && self.doubted_mps.is_none() {
+            self.doubted_mps = Some(self.last_mps);
+            log.push(
+                now,
+                Event::SpeedVanished,
+                libm::round(self.last_mps * 100.0) as i32,
+            );
+        }
+    }
+
+    /// Ends the doubt: the train must have stopped by now, or pulses are back.
+    fn settle(&mut self, now: Instant, speed: Speed, witness: Witness, config: &TachoConfig) {
+        let Some(doubted_mps) = &mut self.doubted_mps else {
+            return;
+        };
+        // The emergency brake is applied meanwhile.
+        *doubted_mps = (*doubted_mps - config.least_brake_mps2 * SCAN.as_secs()).max(0.0);
+        let stopped = *doubted_mps == 0.0 && witness.tcms_moves != Some(true);
+        let turns = speed.kmh() > config.standstill_kmh && self.reference_mps <= speed.mps();
+        if stopped || self.back.update(now, turns, BACK) {
+            self.doubted_mps = None;
+            self.back.clear();
+            self.reference_mps = speed.mps();
+        }
+    }
+
+    /// Cuts power that moves nothing, until it does or somebody acknowledges.
+    fn await_start(
+        &mut self,
+        now: Instant,
+        pulses: bool,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        if pulses {
+            self.powerless.clear();
+            self.cut = false;
+        }
+        let span = Duration::from_ms(u64::from(config.no_pulses_ms));
+        let waits = witness.powers && !pulses && !self.cut;
+        self.cut |= self.powerless.update(now, waits, span);
+        self.cut &= !witness.acknowledge;
+        if self.told.rises(self.cut) {
+            log.push(now, Event::NoPulses, config.no_pulses_ms as i32);
+        }
+    }
+
+    /// Speed that the train may still have beside what is measured.
+    pub fn doubted(&self) -> Option<Speed> {
+        self.doubted_mps.map(Speed::from_mps)
+    }
+
+    /// Power is cut: it moves nothing.
+    pub fn cuts_power(&self) -> bool {
+        self.cut
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::config::UnitConfig;
+
+    struct Train {
+        belief: Belief,
+        config: UnitConfig,
+        log: EventLog,
+        now: Instant,
+        speed: f64,
+    }
+
+    impl Train {
+        fn at(kmh: f64) -> Self {
+            let text = include_str!("../../../scripts/units/sg100.toml");
+            let mut train = Self {
+                belief: Belief::default(),
+                config: UnitConfig::from_toml(text).unwrap(),
+                log: EventLog::default(),
+                now: Instant::ZERO,
+                speed: 0.0,
+            };
+            train.go(kmh / 3.6, 1.0, Witness::default());
+            train.run(1.0, Witness::default());
+            train
+        }
+
+        fn run(&mut self, seconds: f64, witness: Witness) {
+            for _ in 0..(seconds * 100.0) as u32 {
+                self.now += SCAN;
+                let speed = Speed::from_mps(self.speed);
+                let config = &self.config.tacho;
+                self.belief.step(
+                    self.now,
+                    [speed; 2],
+                    self.speed > 0.0,
+                    witness,
+                    config,
+                    &mut self.log,
+                );
+            }
+        }
+
+        /// To a speed at this rate, m/s and m/s².
+        fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
+            while (self.speed - to).abs() > 1e-9 {
+                let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);
+                self.speed += step;
+                self.run(0.01, witness);
+            }
+        }
+
+        fn doubts(&self) -> bool {
+            self.belief.doubted().is_some()
+        }
+    }
+
+    #[test]
+    fn a_train_that_brakes_is_believed_and_one_whose_pulses_vanish_is_not() {
+        for kmh in [5.0, 15.0, 60.0] {
+            let mut train = Train::at(kmh);
+            train.go(0.0, 3.3, Witness::default());
+            train.run(3.0, Witness::default());
+            assert!(!train.doubts(), "{kmh}");
+            let mut train = Train::at(kmh);
+            train.go(0.0, 100.0, Witness::default());
+            train.run(0.2, Witness::default());
+            assert!(train.doubts(), "{kmh}");
+            // As long as a stop takes at the least rate, 0.8 m/s².
+            train.run(kmh / 3.6 / 0.8 - 0.5, Witness::default());
+            assert!(train.doubts(), "{kmh}");
+            let moves = Witness {
+                tcms_moves: Some(true),
+                ..Witness::default()
+            };
+            train.run(2.0, moves);
+            assert!(train.doubts(), "TCMS says that it moves");
+            train.run(0.02, Witness::default());
+            assert!(!train.doubts(), "{kmh}");
+        }
+    }
+
+    /// One that counted too much is in order again while the train brakes: the other one tells.
+    #[test]
+    fn noise_that_ends_is_no_fall() {
+        let mut train = Train::at(30.0);
+        for scan in 0..400 {
+            let mps = (30.0 / 3.6 - 0.03 * f64::from(scan)).max(0.0);
+            let noise = if scan < 20 { 3.0 } else { 0.0 };
+            let speeds = [mps + noise, mps].map(Speed::from_mps);
+            train.now += SCAN;
+            let config = &train.config.tacho;
+            let witness = Witness::default();
+            train.belief.step(
+                train.now,
+                speeds,
+                mps > 0.0,
+                witness,
+                config,
+                &mut train.log,
+            );
+            assert!(!train.doubts(), "{scan}");
+        }
+    }
+
+    #[test]
+    fn half_of_the_speed_gone_at_once_is_not_believed_either() {
+        let mut train = Train::at(60.0);
+        train.go(30.0 / 3.6, 100.0, Witness::default());
+        train.run(0.7, Witness::default());
+        assert!(train.doubts());
+        train.run(5.0, Witness::default());
+        assert!(!train.doubts(), "pulses are back");
+    }
+
+    #[test]
+    fn tcms_that_tells_of_motion_is_believed() {
+        let mut train = Train::at(0.0);
+        let moves = Witness {
+            tcms_moves: Some(true),
+            ..Witness::default()
+        };
+        train.run(0.7, moves);
+        assert!(!train.doubts());
+        train.run(0.2, moves);
+        assert!(train.doubts());
+        train.run(0.1, Witness::default());
+        assert!(!train.doubts());
+    }
+
+    #[test]
+    fn power_that_moves_nothing_is_cut_until_it_is_acknowledged() {
+        let mut train = Train::at(0.0);
+        let powers = Witness {
+            powers: true,
+            ..Witness::default()
+        };
+        let ms = f64::from(train.config.tacho.no_pulses_ms);
+        train.run(ms / 1e3 - 0.1, powers);
+        assert!(!train.belief.cuts_power());
+        train.run(0.2, powers);
+        assert!(train.belief.cuts_power());
+        train.run(1.0, Witness::default());
+        assert!(train.belief.cuts_power());
+        train.run(
+            0.1,
+            Witness {
+                acknowledge: true,
+                ..Witness::default()
+            },
+        );
+        assert!(!train.belief.cuts_power());
+    }
+
+    #[test]
+    fn test_signals_and_a_dead_guard_are_not_compared() {
+        for (tested, dead) in [(true, false), (false, true)] {
+            let mut train = Train::at(60.0);
+            let witness = Witness {
+                tested,
+                dead,
+                powers: true,
+                tcms_moves: Some(true),
+                ..Witness::default()
+            };
+            train.go(0.0, 100.0, witness);
+            train.run(10.0, witness);
+            assert!(!train.doubts() && !train.belief.cuts_power());
+        }
+    }
+}
