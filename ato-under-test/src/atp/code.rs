@@ -115,8 +115,10 @@ impl CodeDecoder {
         let often = match_ == self.code && self.heard.times(match_) > SELDOM;
         self.flickers(now, self.by_sum && often, log);
         if self.code != Code::None && now.since(self.confirmed) > hold {
+            // One silence that has just ended is no flicker.
+            let back = match_ == self.code && self.heard.came_back(self.code);
             self.code = Code::None;
-            self.flickers(now, self.unconfirmed, log);
+            self.flickers(now, self.unconfirmed && !back, log);
             log.push(now, Event::CodeLost, 0);
         }
         let strange = match_ == Code::None && in_level(signal, receiver);
@@ -309,6 +311,17 @@ mod tests {
         // Another code meanwhile begins the time anew, too.
         assert_eq!(receiver.hear(signal(3000.0, 12.0, 500.0), 300), []);
         assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
+    }
+
+    /// It is lost, as it was not there for long enough within the hold time, and detected again.
+    #[test]
+    fn one_long_silence_is_no_flicker() {
+        let mut receiver = Receiver::new();
+        receiver.hear(CODE_55, 1000);
+        receiver.hear(SILENCE, 760);
+        let lost_and_found = [(240, Code::None), (400, Code::Known(4))];
+        assert_eq!(receiver.hear(CODE_55, 1000), lost_and_found);
+        assert_eq!(receiver.events(), [event(Event::CodeLost, 0)]);
     }
 
     /// What is heard now and then renews no code, nor does any other.

@@ -46,6 +46,12 @@ impl Heard {
         spells.count()
     }
 
+    /// Whether a code is heard again after one silence, and no other code was heard within the span.
+    pub fn came_back(&self, code: Code) -> bool {
+        let other = |spell: &Spell| spell.code != code && spell.code != Code::None;
+        self.times(code) == 1 && !self.spells.iter().any(other)
+    }
+
     /// Time for which a code was heard; a scan counts whole.
     pub fn time(&self, code: Code) -> Duration {
         let spells = self.spells.iter().filter(|spell| spell.code == code);

@@ -22,7 +22,7 @@ use crate::procedure::report::{RunEvent, StepResult};
 /// How often a step is begun at most.
 pub const ATTEMPTS: u32 = 3;
 /// After set-up the unit says within this time how much it has logged.
-const LOG_SETTLES: Duration = Duration::from_ms(200);
+const LOG_SETTLES: Duration = Duration::from_ms(600);
 /// And its log is read within this time, or the steps begin all the same.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 /// How often clean-up is begun at most.

@@ -92,11 +92,11 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
 }
 
 /// Goal: a step that is repeated after a new set-up finds the state it needs: it says if it continues from the one
-/// before. Method: each procedure on a good unit, and the computer stands still in each of its steps, early, after
-/// a third of a second and after a second.
+/// before. Method: each procedure on a good unit, and the computer stands still in each of its steps, early or after a
+/// second.
 #[test]
 fn every_step_can_be_repeated() {
-    for after in [1, 33, 100] {
+    for after in [1, 100] {
         every_step_repeated(after);
     }
 }
