@@ -15,6 +15,9 @@ use crate::schema;
 /// An unfinished file that nobody wrote to for this long is abandoned.
 const GIVEN_UP: Duration = Duration::from_secs(3_600);
 
+/// Ends of the names of unfinished files, and of what SQLite keeps beside one while it fills it.
+const ENDINGS: [&[u8]; 4] = [b".part", b".part-journal", b".part-wal", b".part-shm"];
+
 /// An unfinished file. Dropped before [`replace`](Self::replace) or [`publish_as`](Self::publish_as), it is
 /// removed.
 #[derive(Debug)]
@@ -158,8 +161,12 @@ impl AtomicFile {
 
 impl Drop for AtomicFile {
     fn drop(&mut self) {
-        // After publishing this is the second link, if it exists.
-        let _ = std::fs::remove_file(&self.beside);
+        // After publishing the first is the second link, if it exists; the others are there where SQLite failed.
+        for end in ["", "-journal", "-wal", "-shm"] {
+            let mut name = self.beside.as_os_str().to_owned();
+            name.push(end);
+            let _ = std::fs::remove_file(name);
+        }
     }
 }
 
@@ -181,7 +188,7 @@ fn left_in(folder: &Path) -> Vec<PathBuf> {
 /// The process that writes an unfinished file, from the end of its name: the process namespace, and its
 /// number.
 fn maker(name: &[u8]) -> Option<(u32, u32)> {
-    let name = name.strip_suffix(b".part")?;
+    let name = ENDINGS.iter().find_map(|end| name.strip_suffix(*end))?;
     let end = name.iter().rposition(|byte| *byte == b'.')?;
     let (process, name) = std::str::from_utf8(&name[end + 1..])
         .ok()?
@@ -236,7 +243,15 @@ mod tests {
             path
         };
         let here = processes();
-        let mut dead = [name("b.db", u32::MAX, here), name("a.pdf", u32::MAX, here)];
+        let journal = dir
+            .path()
+            .join(format!("c.db.{}-{here:08x}01234567.part-journal", u32::MAX));
+        std::fs::write(&journal, "half").expect("written");
+        let mut dead = [
+            name("b.db", u32::MAX, here),
+            name("a.pdf", u32::MAX, here),
+            journal,
+        ];
         name("b.db", std::process::id(), here);
         name("b.db", u32::MAX, here ^ 1);
         std::fs::write(dir.path().join("mine.part"), "whole").expect("written");

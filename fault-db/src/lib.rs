@@ -51,6 +51,7 @@ mod schema_guard;
 mod seal;
 mod server;
 mod sql_functions;
+mod statistics;
 mod store;
 mod text_enum;
 pub mod trace;
@@ -73,7 +74,8 @@ pub use query::{
     ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary,
     LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail, RunFault,
     RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
-    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit, code_number,
+    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit,
+    code_number,
 };
 pub use record::{
     CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,

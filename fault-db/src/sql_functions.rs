@@ -9,6 +9,7 @@ use crate::full_text::{Search, words};
 use crate::packed::PackRows;
 use crate::record::{RepairRecord, part_name};
 use crate::server::derived_columns;
+use crate::statistics;
 use crate::units;
 
 /// Microseconds of a day.
@@ -25,6 +26,7 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
         Ok(units::with(context.get_raw(0).as_blob()?, context.get(1)?))
     })?;
     conn.create_aggregate_function("unit_set", 1, flags, UnitSet)?;
+    statistics::register(conn, flags)?;
     conn.create_aggregate_function("packed_rows", -1, flags, PackRows)?;
     conn.create_scalar_function("part_of", 1, flags, |context| {
         Ok(part_of(context.get_raw(0).as_str()?))

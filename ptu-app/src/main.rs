@@ -3,8 +3,10 @@
 use std::process::ExitCode;
 
 use ptu_app::cli::Cli;
+use ptu_bench::stop::survive_file_limit;
 
 fn main() -> ExitCode {
+    survive_file_limit();
     match Cli::asked().and_then(Cli::run) {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {

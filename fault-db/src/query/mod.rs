@@ -29,4 +29,4 @@ pub use sql::{QueryBounds, QueryResult, SqlValue};
 pub use stats::{FaultStat, StatKey, StatQuery};
 pub use trace_read::TraceHead;
 pub use traces::TraceSummary;
-pub use trend::{TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit};
+pub use trend::{TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit};

@@ -25,6 +25,8 @@ pub struct TrendQuery {
     pub train: Option<String>,
     /// The procedure that measured it: each may have its own limits.
     pub procedure: Option<String>,
+    /// The step that measured it: each may have its own limits, too.
+    pub step: Option<String>,
     /// In a run that started at this time or later.
     pub since_us: Option<i64>,
     /// In a run that started before this time.
@@ -84,6 +86,19 @@ pub struct TrendUnit {
     pub slope_per_day: Option<f64>,
 }
 
+/// A step that measures it, with the limits it had in one of the latest runs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrendStep {
+    /// The procedure.
+    pub procedure: String,
+    /// The step.
+    pub step: String,
+    /// Lowest allowed value.
+    pub low: Option<f64>,
+    /// Highest allowed value.
+    pub high: Option<f64>,
+}
+
 /// The limits of the latest value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendLimits {
@@ -128,7 +143,10 @@ impl Store {
     /// # Errors
     /// As [`trend`](Self::trend).
     pub fn trend_by_day(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
-        let is_fleet = query.unit.is_none() && query.line.is_none() && query.train.is_none();
+        let is_fleet = query.unit.is_none()
+            && query.line.is_none()
+            && query.train.is_none()
+            && query.step.is_none();
         // Counts are kept for whole days; at both ends of the span an incomplete day may remain.
         let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
         let high = query.until_us.map_or(i64::MAX, utc_day);
@@ -191,7 +209,7 @@ impl Store {
             ..query.clone()
         };
         let mut conditions = self.measured(&query)?;
-        let is_kept = query.line.is_none() && query.train.is_none();
+        let is_kept = query.line.is_none() && query.train.is_none() && query.step.is_none();
         let sql = match self.backend() {
             Backend::File(_) if is_kept => {
                 conditions = Conditions::default();
@@ -251,6 +269,30 @@ impl Store {
                 unit: row.get(0)?,
                 low: row.get(1)?,
                 high: row.get(2)?,
+            })
+        })
+    }
+
+    /// The steps that measured it in the latest runs, with their limits.
+    ///
+    /// # Errors
+    /// As [`trend`](Self::trend).
+    pub fn trend_steps(&self, query: &TrendQuery) -> Result<Vec<TrendStep>, StoreError> {
+        const LATEST_VALUES: u32 = 500;
+        let conditions = self.measured(query)?;
+        let sql = format!(
+            "SELECT DISTINCT s.procedure, s.name, latest.low, latest.high
+             FROM (SELECT m.run, m.step_index, m.low, m.high FROM run r CROSS JOIN measurement m {}
+                ORDER BY r.started_at_us DESC, m.step_index DESC LIMIT {LATEST_VALUES}) AS latest
+             JOIN step s ON s.run = latest.run AND s.step_index = latest.step_index ORDER BY 1, 2",
+            conditions.sql()
+        );
+        self.select("listing steps", &sql, conditions.values(), |row| {
+            Ok(TrendStep {
+                procedure: row.get(0)?,
+                step: row.get(1)?,
+                low: row.get(2)?,
+                high: row.get(3)?,
             })
         })
     }
@@ -318,6 +360,11 @@ impl Store {
             "EXISTS (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index
                 AND s.procedure = ?)",
             query.procedure.clone(),
+        );
+        conditions.add(
+            "EXISTS (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index
+                AND s.name = ?)",
+            query.step.clone(),
         );
         conditions.add("r.started_at_us >= ?", query.since_us);
         conditions.add("r.started_at_us < ?", query.until_us);

@@ -43,6 +43,27 @@ pub(crate) fn event_digest(backend: &Backend, event: i64, payload: &str) -> SqlR
     Ok(hash.finish())
 }
 
+/// Whether an event belongs to the fault it was sealed for, with no more occurrences known than sealed.
+pub(crate) fn is_of_its_fault(
+    backend: &Backend,
+    event: i64,
+    payload: Option<&EventPayload>,
+) -> SqlResult<bool> {
+    let Some((payload, of)) =
+        payload.and_then(|payload| Some((payload, payload.fault.parse::<Id>().ok()?)))
+    else {
+        return Ok(false);
+    };
+    let same = backend.first(
+        "SELECT 1 FROM fault_event e JOIN fault f ON f.seq = e.fault
+         WHERE e.seq = ?1 AND e.seen <= ?3
+            AND (f.id = ?2 OR EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = ?2 AND a.fault = f.seq))",
+        &values![event, of, payload.occurrences_known],
+        |_| Ok(()),
+    )?;
+    Ok(same.is_some())
+}
+
 /// Seals an event of this fault; `fields` as given, in the order of [`EVENT`], without those of the fault.
 pub(crate) fn event(
     backend: &Backend,

@@ -61,6 +61,36 @@ const BAD_FAULT: &str =
 /// and two.
 const POISONED: &[(&str, &str, [usize; 4])] = &[
     (
+        "UPDATE fault_event SET who = 'lee' WHERE fault = {fault} AND kind = 'repair'",
+        "changed after it was sealed",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE fault_event SET body = replace(body, 'relay', 'coil') WHERE fault = {fault} AND kind = 'repair'",
+        "changed after it was sealed",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE fault_event SET state = 'closed' WHERE fault = {fault} AND kind = 'repair'",
+        "changed after it was sealed",
+        [2, 2, 3, 2],
+    ),
+    (
+        "UPDATE run_note SET text = 'x' WHERE run = {run}",
+        "changed after it was sealed",
+        [2, 2, 4, 1],
+    ),
+    (
+        "UPDATE trace SET t0_us = t0_us + 1 WHERE run = {run}",
+        "changed after it was sealed",
+        [2, 1, 4, 2],
+    ),
+    (
+        "UPDATE recording SET procedure = 'x' WHERE run = {run}",
+        "changed after it was sealed",
+        [2, 2, 4, 2],
+    ),
+    (
         "UPDATE run SET verdict = 'passed' WHERE seq = {run}",
         "changed after it was sealed",
         [1, 1, 2, 1],

@@ -99,6 +99,21 @@ impl Stop {
     }
 }
 
+/// Lets a write beyond the largest size that files may have (`ulimit -f`) fail with the system's words, where the
+/// process would end without any. For good, from before this returns.
+pub fn survive_file_limit() {
+    /// Of Linux, macOS and the BSDs.
+    const SIGXFSZ: i32 = 25;
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_io()
+        .build();
+    if let Ok(runtime) = runtime {
+        let kind = tokio::signal::unix::SignalKind::from_raw(SIGXFSZ);
+        // What is installed stays when this is dropped.
+        drop(runtime.block_on(async { tokio::signal::unix::signal(kind) }));
+    }
+}
+
 /// Waits for a signal, for ever if there is none to wait for.
 async fn received(signal: Option<&mut tokio::signal::unix::Signal>) {
     match signal {

@@ -84,15 +84,23 @@ impl Database {
         }
     }
 
-    /// Opens it for writing; the user's own data directory is made if need be.
+    /// Opens one that is there for writing: a name that is mistyped makes none.
     pub(in crate::cli) fn open(&self) -> Result<Store, Failure> {
+        match self.place()? {
+            DatabasePlace::File(path) if !path.exists() => Err(StoreError::Missing { path }.into()),
+            _ => self.open_or_make(),
+        }
+    }
+
+    /// Opens it for writing, and makes a file if need be: for what brings runs in.
+    pub(in crate::cli) fn open_or_make(&self) -> Result<Store, Failure> {
         match self.place()? {
             DatabasePlace::File(_) => self.open_file(),
             DatabasePlace::Server(address) => Ok(Store::connect(&address, clock::ids())?),
         }
     }
 
-    /// The same, of a file: for runs.
+    /// The same, of a file; the user's own data directory is made if need be: for runs.
     pub(in crate::cli) fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
         if self.named().is_none() {

@@ -30,6 +30,38 @@ fn changed(place: &Place, change: &str) -> String {
     db
 }
 
+/// Goal: a name that is mistyped makes no database. Method: all verbs that bring no runs in.
+#[test]
+fn only_what_brings_runs_in_makes_a_database() {
+    let place = Place::new();
+    let db = place.text_path("mistyped.db");
+    for arguments in [
+        &["db", "rebuild"][..],
+        &["db", "prune", "--older-than", "1d"],
+        &["db", "prune", "--older-than", "1d", "--dry-run"],
+        &["db", "check"],
+        &["db", "query", "SELECT 1"],
+        &["runs", "list"],
+        &["runs", "note", "latest", "seen"],
+        &["faults", "note", "12345678", "seen"],
+        &["faults", "state", "12345678", "closed"],
+        &["faults", "repair", "12345678", "--part", "tra"],
+        &["faults", "cause", "12345678", "tra"],
+    ] {
+        let said = place.ptu(&[arguments, &["--db", &db]].concat());
+        assert!(
+            matches!(said.code, Some(2 | 3)),
+            "{arguments:?}: {}",
+            said.all()
+        );
+        assert!(!Path::new(&db).exists(), "{arguments:?}");
+    }
+    place
+        .ptu(&["db", "rebuild", "--db", &db])
+        .exits(3)
+        .explains(&["there is no database", "mistyped.db"]);
+}
+
 #[test]
 fn a_text_file_is_refused_and_left_as_it_is() {
     let place = Place::new();

@@ -67,7 +67,7 @@ fn runs_are_listed_newest_first_and_filtered() {
         (["--verdict", "failed"], 1),
         (["--since", "1d"], 2),
         (["--limit", "1"], 1),
-        (["--unit", "NONE"], 0),
+        (["--since", "2999-01"], 0),
     ] {
         let found = place.json(&[&["runs", "list", "--json"], &filter[..]].concat());
         assert_eq!(list(&found).len(), count, "{filter:?}");

@@ -2,12 +2,24 @@
 
     read_trace.py FILE.csv|FILE.parquet|FILE.mcap
 
-{"about": …, "times_s": […], "utc_us": […] or null, "units": {…}, "columns": {name: [sample or null]}}
+{"about": …, "times_s": […], "utc_us": […] or null, "units": {…}, "columns": {name: [sample or null]},
+ "headings": [the names in the file, in order]}
 """
 
 import csv
 import json
 import sys
+
+
+def number(channel, cell):
+    """A cell as a number: of an enumeration its word's, or a number that has no word."""
+    if cell is None or cell == "":
+        return None
+    if "enum" in channel["kind"]:
+        numbers = {word: float(n) for n, word in channel["kind"]["enum"]["labels"].items()}
+        assert cell in numbers or float(cell) not in numbers.values(), cell
+        return numbers[cell] if cell in numbers else float(cell)
+    return float(cell)
 
 
 def read_csv(path):
@@ -17,16 +29,16 @@ def read_csv(path):
         rows = list(csv.reader(table))
     headings = [column["titles"] for column in description["tableSchema"]["columns"]]
     assert rows[0] == headings, (rows[0], headings)
-    names = [column["name"] for column in description["tableSchema"]["columns"]]
-    number = lambda cell: float(cell) if cell else None
-    columns = {
-        name: [number(row[place]) for row in rows[1:]]
-        for place, name in enumerate(names)
-    }
-    times = columns.pop("time_s")
+    assert headings == [column["name"] for column in description["tableSchema"]["columns"]]
+    assert headings.pop(0) == "time_s"
     about = description["notes"][0]
+    times = [float(row[0]) for row in rows[1:]]
+    columns = {
+        channel["name"]: [number(channel, row[place + 1]) for row in rows[1:]]
+        for place, channel in enumerate(about["channels"])
+    }
     units = {channel["name"]: channel["unit"] for channel in about["channels"]}
-    return about, times, None, units, columns
+    return about, times, None, units, columns, headings
 
 
 def read_parquet(path):
@@ -39,22 +51,20 @@ def read_parquet(path):
     columns.pop("time_utc")
     assert str(table.schema.field("time_utc").type) == "timestamp[us, tz=UTC]"
     utc = table.column("time_utc").cast("int64").to_pylist()
-    for channel in about["channels"]:
+    headings = list(columns)
+    for channel, heading in zip(about["channels"], headings, strict=True):
         name, kind = channel["name"], channel["kind"]
-        type_name = str(table.schema.field(name).type)
+        type_name = str(table.schema.field(heading).type)
+        values = columns.pop(heading)
         if kind == "bit":
             assert type_name == "bool", type_name
-            columns[name] = [None if v is None else float(v) for v in columns[name]]
         elif "enum" in kind:
-            # Words, or a number that has none.
             assert type_name == "string", type_name
-            numbers = {word: float(n) for n, word in kind["enum"]["labels"].items()}
-            value = lambda word: numbers[word] if word in numbers else float(word)
-            columns[name] = [None if v is None else value(v) for v in columns[name]]
         else:
             assert type_name == "double", type_name
+        columns[name] = [number(channel, value) for value in values]
     units = {channel["name"]: channel["unit"] for channel in about["channels"]}
-    return about, times, utc, units, columns
+    return about, times, utc, units, columns, headings
 
 
 def read_mcap(path):
@@ -68,28 +78,35 @@ def read_mcap(path):
         columns = {name: [] for name in names}
         utc = []
         units = {}
-        for schema, channel, message in reader.iter_messages():
-            assert channel.topic == "trace" and channel.message_encoding == "json"
+        for schema, topic, message in reader.iter_messages():
+            assert topic.topic == "trace" and topic.message_encoding == "json"
             assert schema.encoding == "jsonschema"
             fields = json.loads(schema.data)["properties"]
-            units = {name: fields[name].get("unit", "") for name in names}
             sample = json.loads(message.data)
-            for name in names:
-                value = sample[name]
-                columns[name].append(None if value is None else float(value))
+            headings = list(sample)
+            for channel, heading in zip(about["channels"], headings, strict=True):
+                units[channel["name"]] = fields[heading].get("unit", "")
+                columns[channel["name"]].append(number(channel, sample[heading]))
             assert message.log_time % 1000 == 0
             utc.append(message.log_time // 1000)
     trigger = about["t0_us"] + (about["trigger_row"] or 0) * about["period_us"]
     times = [(at - trigger) / 1e6 for at in utc]
-    return about, times, utc, units, columns
+    return about, times, utc, units, columns, headings
 
 
 def main():
     path = sys.argv[1]
     readers = {"csv": read_csv, "parquet": read_parquet, "mcap": read_mcap}
-    about, times, utc, units, columns = readers[path.rsplit(".", 1)[1]](path)
+    about, times, utc, units, columns, headings = readers[path.rsplit(".", 1)[1]](path)
     json.dump(
-        {"about": about, "times_s": times, "utc_us": utc, "units": units, "columns": columns},
+        {
+            "about": about,
+            "times_s": times,
+            "utc_us": utc,
+            "units": units,
+            "columns": columns,
+            "headings": headings,
+        },
         sys.stdout,
     )
 

@@ -7,7 +7,7 @@ use super::{Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::events_and_notes::{
-    EarlierPayload, EventPayload, SealedTable, earlier, event_digest, note_digest,
+    EarlierPayload, EventPayload, SealedTable, earlier, event_digest, is_of_its_fault, note_digest,
 };
 use crate::seal::run::RunPayload;
 use crate::seal::{
@@ -230,27 +230,6 @@ fn check_traces_and_recordings(
         }
     }
     Ok(())
-}
-
-/// Whether an event belongs to the fault it was sealed for, with no more occurrences known than sealed.
-fn is_of_its_fault(
-    backend: &Backend,
-    event: i64,
-    payload: Option<&EventPayload>,
-) -> SqlResult<bool> {
-    let Some((payload, of)) =
-        payload.and_then(|payload| Some((payload, payload.fault.parse::<Id>().ok()?)))
-    else {
-        return Ok(false);
-    };
-    let same = backend.first(
-        "SELECT 1 FROM fault_event e JOIN fault f ON f.seq = e.fault
-         WHERE e.seq = ?1 AND e.seen <= ?3
-            AND (f.id = ?2 OR EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = ?2 AND a.fault = f.seq))",
-        &values![event, of, payload.occurrences_known],
-        |_| Ok(()),
-    )?;
-    Ok(same.is_some())
 }
 
 /// Checks the rows that were there before seals covered them one by one.

@@ -19,7 +19,10 @@ use crate::event_graph::{fault_of, settle};
 use crate::id::Id;
 use crate::recurrence::HighWaterMark;
 use crate::seal::BY_IMPORT;
-use trust::{is_same, is_unwritten_remainder, seal_mismatch};
+use trust::{
+    event_mismatch, is_same, is_unwritten_remainder, note_mismatch, recordings_mismatch,
+    seal_mismatch, trace_mismatch,
+};
 
 /// The result of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -216,7 +219,7 @@ impl<'a> Merge<'a> {
                 self.different_runs.insert(id);
                 (self.counts.different).push(Difference { what: "run", id });
             }
-            set.read(theirs, TableId::Recording, entry.seq)?;
+            self.recordings(set, entry)?;
             return Ok(true);
         }
         let refers_to_nothing = self.of_nothing.contains(&entry.seq);
@@ -235,11 +238,39 @@ impl<'a> Merge<'a> {
             }
         })?;
         if is_taken {
-            set.read(theirs, TableId::Recording, entry.seq)?;
+            self.recordings(set, entry)?;
         } else {
             self.refused_runs.insert(entry.seq);
         }
         Ok(is_taken)
+    }
+
+    /// Reads the recordings of a run, if they fit its seal.
+    fn recordings(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<()> {
+        let theirs = self.theirs;
+        let refused = set.whole(|set| {
+            set.read(theirs, TableId::Recording, entry.seq)?;
+            match !set.refused.is_empty() {
+                true => Ok(()),
+                false => fits(
+                    TableId::Recording,
+                    entry,
+                    recordings_mismatch(theirs, entry.seq)?,
+                ),
+            }
+        })?;
+        if let Some(refusal) = refused {
+            let what = format!("recordings of run {}", shown_id(&entry.id));
+            self.counts.refused.add(what, refusal.reason);
+        }
+        Ok(())
+    }
+
+    /// Whether the entry is here already: it stays as it is, and the other file's seal of it is compared with it.
+    fn is_known(&self, of: TableId, entry: &Entry) -> SqlResult<bool> {
+        let known = format!("SELECT 1 FROM {} WHERE id = ?1", of.table().name);
+        let known = (self.ours).first(&known, &values![&entry.id[..]], |_| Ok(()))?;
+        Ok(known.is_some())
     }
 
     /// Applies the other ids that a fault has there.
@@ -264,15 +295,21 @@ impl<'a> Merge<'a> {
 
     fn event(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
-        match self.fault_here(entry.parent)? {
-            LocalFault::Known => self.take(set, TableId::Event, entry, |set| {
-                set.read(theirs, TableId::Event, entry.seq)
-            }),
-            LocalFault::SeenByNobody => self.take(set, TableId::Event, entry, |set| {
-                set.event(theirs, entry.seq)
-            }),
-            LocalFault::LeftOut => Ok(false),
+        let is_known = self.is_known(TableId::Event, entry)?;
+        let here = self.fault_here(entry.parent)?;
+        if here == LocalFault::LeftOut {
+            return Ok(false);
         }
+        self.take(set, TableId::Event, entry, |set| {
+            match here {
+                LocalFault::Known => set.read(theirs, TableId::Event, entry.seq)?,
+                _ => set.event(theirs, entry.seq)?,
+            }
+            match is_known || !set.refused.is_empty() {
+                true => Ok(()),
+                false => fits(TableId::Event, entry, event_mismatch(theirs, entry)?),
+            }
+        })
     }
 
     /// Whether a fault of theirs is here: it was, or it came with a run.
@@ -303,16 +340,38 @@ impl<'a> Merge<'a> {
 
     fn note(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
-        let read = |set: &mut ChangeSet| set.read(theirs, TableId::Note, entry.seq);
+        let is_known = self.is_known(TableId::Note, entry)?;
+        let read = |set: &mut ChangeSet| {
+            set.read(theirs, TableId::Note, entry.seq)?;
+            match is_known || !set.refused.is_empty() {
+                true => Ok(()),
+                false => fits(TableId::Note, entry, note_mismatch(theirs, entry)?),
+            }
+        };
         Ok(!self.refused_runs.contains(&entry.parent)
             && self.take(set, TableId::Note, entry, read)?)
     }
 
     fn trace(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
         let theirs = self.theirs;
-        let read = |set: &mut ChangeSet| set.trace(theirs, entry.seq);
+        let is_known = self.is_known(TableId::Trace, entry)?;
+        let read = |set: &mut ChangeSet| {
+            set.trace(theirs, entry.seq)?;
+            match is_known || !set.refused.is_empty() {
+                true => Ok(()),
+                false => fits(TableId::Trace, entry, trace_mismatch(theirs, entry)?),
+            }
+        };
         Ok(!self.refused_runs.contains(&entry.parent)
             && self.take(set, TableId::Trace, entry, read)?)
+    }
+}
+
+/// Refuses an entry for the reason why it does not fit its seal, if there is one.
+fn fits(of: TableId, entry: &Entry, why: Option<String>) -> SqlResult<()> {
+    match why {
+        Some(reason) => Err(Refusal::of(of.table().name, shown_id(&entry.id), reason)),
+        None => Ok(()),
     }
 }
 

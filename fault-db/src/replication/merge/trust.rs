@@ -1,10 +1,13 @@
 //! Which runs of a file to be merged are accepted: those that match their seals, refer to rows that are there, and are
 //! the same as here.
 
-use super::Merge;
+use super::{Entry, Merge};
 use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::id::Id;
 use crate::replication::tables::TABLES;
-use crate::seal::{DIGEST_VERSION, run_digest, version1};
+use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
+use crate::seal::run::RunPayload;
+use crate::seal::{DIGEST_VERSION, hex, run_digest, trace, version1};
 
 impl Merge<'_> {
     /// Names rows whose parent does not exist, and marks the runs that they are part of.
@@ -67,10 +70,91 @@ pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<Stri
             if fits {
                 return Ok(None);
             }
-            "it was changed after it was sealed"
+            CHANGED
         }
     };
     Ok(Some(reason.to_owned()))
+}
+
+/// What is said of a row that does not fit its seal.
+const CHANGED: &str = "it was changed after it was sealed";
+
+/// Why an event of theirs is not taken, if it does not fit a seal that it has there.
+pub(super) fn event_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
+    for (payload, digest) in seals_of(theirs, "event", &entry.id)? {
+        let fits = event_digest(theirs, entry.seq, &payload)? == digest[..];
+        if !fits || !is_of_its_fault(theirs, entry.seq, EventPayload::of(&payload).as_ref())? {
+            return Ok(Some(CHANGED.to_owned()));
+        }
+    }
+    Ok(None)
+}
+
+/// The same of a note on a run.
+pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
+    for (payload, digest) in seals_of(theirs, "note", &entry.id)? {
+        if note_digest(theirs, entry.seq, &payload)? != digest[..] {
+            return Ok(Some(CHANGED.to_owned()));
+        }
+    }
+    Ok(None)
+}
+
+/// The same of a trace, whose digest the seal of its run has.
+pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
+    let (seq, run) = (entry.seq, entry.parent);
+    let read = "SELECT id, recording FROM trace WHERE seq = ?1";
+    let read = theirs.first(read, &values![seq], |row| {
+        Ok((row.get::<Id>(0)?, row.get::<Option<i64>>(1)?))
+    })?;
+    let (Some((id, recording)), sealed) = (read, payloads(theirs, run)?) else {
+        return Ok(None);
+    };
+    for payload in sealed {
+        let said = payload.traces.into_iter().find(|t| t.id == id.to_string());
+        let fits = match said {
+            Some(said) => {
+                said.recording == recording && hex(&trace::digest(theirs, seq)?) == said.sha256
+            }
+            None => false,
+        };
+        if !fits {
+            return Ok(Some(CHANGED.to_owned()));
+        }
+    }
+    Ok(None)
+}
+
+/// The same of the recordings of a run, which come together.
+pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
+    let sealed = payloads(theirs, run)?;
+    for ordinal in trace::recordings(theirs, run)? {
+        for payload in &sealed {
+            let said = payload.recordings.iter().find(|r| r.ordinal == ordinal);
+            let sha256 = hex(&trace::recording_digest(theirs, run, ordinal)?);
+            if said.is_none_or(|said| said.sha256 != sha256) {
+                return Ok(Some(format!("recording {ordinal}: {CHANGED}")));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// What the seals of a run say of its traces and recordings; those of earlier versions say nothing.
+fn payloads(theirs: &Backend, run: i64) -> SqlResult<Vec<RunPayload>> {
+    let sealed = seals(theirs, run)?.into_iter();
+    let known = sealed.filter(|seal| seal.covers == DIGEST_VERSION);
+    Ok(known
+        .filter_map(|seal| RunPayload::of(&seal.payload))
+        .collect())
+}
+
+fn seals_of(theirs: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<(String, Vec<u8>)>> {
+    theirs.select(
+        "SELECT says, digest FROM seal WHERE what = ?1 AND id = ?2",
+        &values![what, id],
+        |row| Ok((row.get(0)?, row.get(1)?)),
+    )
 }
 
 /// A seal of a run; files that shared the run before there were seals have each sealed it.

@@ -50,6 +50,9 @@ pub struct ImportedLog {
     pub imported: Imported,
 }
 
+/// The stored name of a unit configuration that is not known here.
+const UNKNOWN_CONFIG: &str = "unknown";
+
 impl AskedUnit {
     /// Reads the unit's log; with `rows`, its stored run record, too.
     ///
@@ -87,9 +90,15 @@ impl AskedUnit {
             ));
         }
         warnings.extend(of_reading(&read));
+        // What a unit says is no name of a configuration until one of that name is known here.
+        let named = unit_text::config_name(identity);
+        let is_known = directory.unit_config_names().contains(&named);
         let source = Source {
             endpoint: self.endpoint.to_string(),
-            config_name: unit_text::config_name(identity),
+            config_name: match is_known {
+                true => named,
+                false => UNKNOWN_CONFIG.to_owned(),
+            },
             unit_config_sha256: if same_config {
                 config.sha256
             } else {

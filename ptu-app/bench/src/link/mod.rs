@@ -2,6 +2,7 @@
 
 mod delayed;
 mod pace;
+mod port_lock;
 pub mod ports;
 mod sim;
 mod wire;

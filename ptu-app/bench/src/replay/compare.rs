@@ -38,7 +38,7 @@ const LEFT_ROWS: i64 = 20;
 const COUNTERS: [&str; 3] = ["train_position", "position", "marker_count"];
 /// Counts of frames, which are left out where one of the units is on a wire: each end sends at its own
 /// times, and a busy line loses some.
-const FRAME_COUNTS: [&str; 3] = ["rejected_frames", "twc_received", "twc_answers"];
+const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers", "twc_sent"];
 
 /// What counts as a deviation. Numbers deviate by more than their smallest step and the tolerance, words
 /// and bits by any difference, a known value from an unknown one always.
@@ -95,6 +95,15 @@ pub struct Comparison {
     pub missing_expected: Vec<String>,
     /// Seconds from the trigger to the first and last row compared.
     pub window_s: (f64, f64),
+}
+
+impl Comparison {
+    /// Deviations that say something of the unit: counts of frames alone are none, because they depend on when each
+    /// end of a link began to send.
+    pub fn evidence(&self) -> usize {
+        let of_link = |deviation: &&Deviation| !FRAME_COUNTS.contains(&deviation.signal.as_str());
+        self.deviations.iter().filter(of_link).count()
+    }
 }
 
 impl Rule {

@@ -117,12 +117,7 @@ pub fn rerun(
     let (again, serial, cut_short) = play(original, &mut setup, stop)?;
     let from_original = compare(&again.trace, &original.trace, &again.rule, &[])?;
     let from_twin = compare(&again.trace, &twin, &again.rule, &[])?;
-    let likeness = match (from_original.deviations.len(), from_twin.deviations.len()) {
-        (0, 0) => ReplayMatch::Sound,
-        (0, _) => ReplayMatch::Reproduced,
-        (_, 0) => ReplayMatch::AsTwin,
-        _ => ReplayMatch::Otherwise,
-    };
+    let likeness = likeness(&from_original, &from_twin);
     let first_again = first_again(&expected, &from_twin);
     let record = run_record(original, &setup, &serial, rerunning, started_at_us);
     let mut writer = RunWriter::begin(store, &record)?;
@@ -164,6 +159,20 @@ pub fn rerun(
             Verdict::Aborted => Exit::Aborted,
         },
     })
+}
+
+/// By what deviates and is evidence. A replay that differs from its good twin in counts of frames alone, as its original
+/// does, has reproduced that.
+fn likeness(from_original: &Comparison, from_twin: &Comparison) -> ReplayMatch {
+    match (from_original.evidence(), from_twin.evidence()) {
+        (0, 0) if from_original.deviations.is_empty() && !from_twin.deviations.is_empty() => {
+            ReplayMatch::Reproduced
+        }
+        (0, 0) => ReplayMatch::Sound,
+        (0, _) => ReplayMatch::Reproduced,
+        (_, 0) => ReplayMatch::AsTwin,
+        _ => ReplayMatch::Otherwise,
+    }
 }
 
 /// The signal that deviated first in the original, and whether the replay has it leave the good twin's

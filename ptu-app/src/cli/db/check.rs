@@ -1,14 +1,20 @@
 //! `ptu db check`: checks that the file is intact and that its content is what was recorded.
 
-use fault_db::{CheckReport, SealHead};
+use std::path::{Path, PathBuf};
+
+use fault_db::{CheckReport, SealHead, Store, StoreError};
 
 use crate::cli::{Database, answered, print_json, print_out};
+use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
 
 impl Database {
     pub(super) fn check(&self, json: bool) -> Result<Exit, Failure> {
-        let report = self.open_read_only()?.check()?;
+        let report = match self.open_read_only() {
+            Err(failure) if self.has_older_schema() => self.check_updated_copy(failure)?,
+            store => store?.check()?,
+        };
         let told = if json {
             print_json(&report)
         } else if report.problems.is_empty() {
@@ -26,6 +32,42 @@ impl Database {
             false => Exit::Bench,
         };
         answered(told, exit)
+    }
+
+    /// Whether it is a file of an earlier version, which is read once it is brought up to date.
+    fn has_older_schema(&self) -> bool {
+        let opened = self.file().map(|path| Store::open_read_only(&path));
+        matches!(opened, Ok(Err(StoreError::OlderSchema { .. })))
+    }
+
+    /// Checks a copy that is brought up to date; the file stays as it is. Bringing it up to date changes nothing that
+    /// its seals cover.
+    fn check_updated_copy(&self, failure: Failure) -> Result<CheckReport, Failure> {
+        let path = self.file()?;
+        let cannot = |error: std::io::Error| {
+            Failure::bench(format!(
+                "{failure}; and it cannot be copied to be checked: {error}"
+            ))
+        };
+        let folder = tempfile::tempdir().map_err(cannot)?;
+        let copy = folder.path().join("copy.db");
+        std::fs::copy(&path, &copy).map_err(cannot)?;
+        let beside = |path: &Path, end: &str| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(end);
+            PathBuf::from(name)
+        };
+        if beside(&path, "-wal").exists() {
+            std::fs::copy(beside(&path, "-wal"), beside(&copy, "-wal")).map_err(cannot)?;
+        }
+        let store = Store::open(&copy, clock::open_options())?;
+        let mut report = store.check()?;
+        store.close()?;
+        report.remarks.push(format!(
+            "{} is of an earlier version of this program: a copy that was brought up to date was checked",
+            path.display()
+        ));
+        Ok(report)
     }
 }
 

@@ -51,7 +51,7 @@ impl Database {
 
     pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
         let from = only_file(from)?;
-        let store = self.open()?;
+        let store = self.open_or_make()?;
         let counts = store.import(from);
         let counts = counts.map_err(|error| of_named_file(from, error))?;
         // What was known before needs no telling again; what came just now may be a rival of it.

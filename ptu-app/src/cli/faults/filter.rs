@@ -29,7 +29,7 @@ pub struct FilterArguments {
     lru: Option<String>,
     /// Only coming from this part, as a diagnosis or a person has told; without either, pointing at it
     #[arg(long, value_name = "PART")]
-    cause: Option<String>,
+    pub cause: Option<String>,
     /// Only this severity
     #[arg(long, ignore_case = true, value_parser = Severity::OF_FAULTS.map(Severity::label))]
     severity: Option<String>,

@@ -13,7 +13,7 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
 
 /// Keys of a row, in their order.
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 21] = [
     "key",
     "name",
     "faults",
@@ -32,6 +32,9 @@ const KEYS: [&str; 18] = [
     "no_fault_found",
     "no_fault_found_rate",
     "course",
+    "rate_ratio",
+    "rate_ratio_low",
+    "rate_ratio_high",
 ];
 
 /// A course over time is shown in so many bars at most: the last ones.
@@ -96,6 +99,8 @@ impl StatsArguments {
             GroupBy::Cause => StatKey::Cause,
             GroupBy::Unit => StatKey::Unit,
             GroupBy::Line => StatKey::Line,
+            // Of one cause its cases are counted, as without months.
+            GroupBy::Month if self.filter.cause.is_some() => StatKey::Cause,
             GroupBy::Month => StatKey::All,
         };
         let query = StatQuery {
@@ -128,10 +133,14 @@ impl StatsArguments {
 
     /// What shares are of: cases of a cause, else occurrences.
     fn counted(&self, stat: &FaultStat) -> u64 {
-        match self.by {
-            GroupBy::Cause => u64::from(stat.faults),
-            _ => stat.occurrences,
+        match self.counts_cases() {
+            true => u64::from(stat.faults),
+            false => stat.occurrences,
         }
+    }
+
+    fn counts_cases(&self) -> bool {
+        self.by == GroupBy::Cause || self.by == GroupBy::Month && self.filter.cause.is_some()
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -143,9 +152,9 @@ impl StatsArguments {
             GroupBy::Line => "LINE",
             GroupBy::Month => "MONTH",
         };
-        let (counted, other) = match self.by {
-            GroupBy::Cause => ("CASES", "SEEN"),
-            _ => ("SEEN", "FAULTS"),
+        let (counted, other) = match self.counts_cases() {
+            true => ("CASES", "SEEN"),
+            false => ("SEEN", "FAULTS"),
         };
         let mut headings = vec![heading, counted];
         if self.by != GroupBy::Month {
@@ -162,7 +171,7 @@ impl StatsArguments {
             "LAST SEEN",
         ]);
         if self.by != GroupBy::Month {
-            headings.push("COURSE");
+            headings.extend(["COURSE", "LATER/EARLIER"]);
         }
         headings
     }
@@ -170,7 +179,7 @@ impl StatsArguments {
     fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
         let is_course = self.by != GroupBy::Month;
         let headings = self.headings();
-        let numbers = 1..headings.len() - 1 - usize::from(is_course);
+        let numbers = 1..headings.len() - 1 - 2 * usize::from(is_course);
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;
         let more = stats.len().saturating_sub(self.limit as usize);
@@ -193,9 +202,9 @@ impl StatsArguments {
                     false => String::new(),
                 });
             }
-            let other = match self.by {
-                GroupBy::Cause => stat.occurrences,
-                _ => u64::from(stat.faults),
+            let other = match self.counts_cases() {
+                true => stat.occurrences,
+                false => u64::from(stat.faults),
             };
             row.extend([
                 other.to_string(),
@@ -211,6 +220,7 @@ impl StatsArguments {
             if is_course {
                 let first = stat.course.len().saturating_sub(BARS);
                 row.push(sparkline(&stat.course[first..]));
+                row.push(RateRatio::of(&stat.course).map_or_else(dash, |ratio| ratio.text()));
             }
             table.row(row);
         }
@@ -240,7 +250,11 @@ impl StatsArguments {
         let course = match (self.by, by_day) {
             (GroupBy::Month, _) => "",
             (_, 0..=1) => "",
-            _ => "; course by day or month, the last 24",
+            _ => {
+                "; course by day or month, the last 24; LATER/EARLIER: occurrences of the later half of the course \
+                 over the earlier half, with what it is in 95 of 100 cases; \"worse\" or \"better\" where that is \
+                 above or below 1"
+            }
         };
         format!(
             "{span}; BACK: within {} days of the repair{course}",
@@ -284,6 +298,7 @@ fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure>
 }
 
 fn entry(stat: &FaultStat, (counted, of): (u64, u64)) -> Value {
+    let ratio = RateRatio::of(&stat.course);
     let rate = |part: u32, all: u32| (all > 0).then(|| f64::from(part) / f64::from(all));
     json!({
         "key": stat.key, "name": stat.name, "faults": stat.faults,
@@ -296,7 +311,51 @@ fn entry(stat: &FaultStat, (counted, of): (u64, u64)) -> Value {
         "closed": stat.closed, "no_fault_found": stat.no_fault_found,
         "no_fault_found_rate": rate(stat.no_fault_found, stat.closed),
         "course": stat.course,
+        "rate_ratio": ratio.as_ref().map(|ratio| ratio.ratio),
+        "rate_ratio_low": ratio.as_ref().map(|ratio| ratio.low),
+        "rate_ratio_high": ratio.as_ref().map(|ratio| ratio.high),
     })
+}
+
+/// How many times as often something was seen in the later half of a course as in the earlier half.
+struct RateRatio {
+    ratio: f64,
+    /// 95 % interval.
+    low: f64,
+    high: f64,
+}
+
+impl RateRatio {
+    /// Of counts by day or month; of an odd number of them the one in the middle counts for neither half. Where
+    /// neither half has anything there is no ratio.
+    ///
+    /// The logarithm of a ratio of two Poisson counts is nearly normal with variance `1/a + 1/b`; half a count is
+    /// added to each, so that none divides by zero (Haldane, Anscombe).
+    fn of(course: &[u64]) -> Option<Self> {
+        let half = course.len() / 2;
+        let earlier: u64 = course[..half].iter().sum();
+        let later: u64 = course[course.len() - half..].iter().sum();
+        if earlier + later == 0 {
+            return None;
+        }
+        let (earlier, later) = (earlier as f64 + 0.5, later as f64 + 0.5);
+        let ratio = later / earlier;
+        let off = (1.96 * (1.0 / earlier + 1.0 / later).sqrt()).exp();
+        Some(Self {
+            ratio,
+            low: ratio / off,
+            high: ratio * off,
+        })
+    }
+
+    fn text(&self) -> String {
+        let said = match (self.low > 1.0, self.high < 1.0) {
+            (true, _) => " worse",
+            (_, true) => " better",
+            _ => "",
+        };
+        format!("{:.1} ({:.1}–{:.1}){said}", self.ratio, self.low, self.high)
+    }
 }
 
 fn dash() -> String {
@@ -320,5 +379,24 @@ fn days(days: f64) -> String {
         hours if hours < 2.0 => format!("{:.1} h", 24.0 * days),
         days if days < 100.0 => format!("{days:.1} d"),
         days => format!("{days:.0} d"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 4.5 to 10.5 is 2.33 times; 1.96 × √(1/4.5 + 1/10.5) is 1.104, and e to that 3.02.
+    #[test]
+    fn a_rate_ratio_has_the_interval_of_two_counts() {
+        let ratio = RateRatio::of(&[1, 3, 50, 4, 6]).expect("something was seen");
+        let near = |a: f64, b: f64| (a - b).abs() < 0.01;
+        assert!(near(ratio.ratio, 2.33) && near(ratio.low, 0.77) && near(ratio.high, 7.05));
+        assert_eq!(ratio.text(), "2.3 (0.8–7.0)");
+        let worse = RateRatio::of(&[2, 40]).expect("something was seen");
+        assert!(worse.text().ends_with(" worse"), "{}", worse.text());
+        let better = RateRatio::of(&[40, 2]).expect("something was seen");
+        assert!(better.text().ends_with(" better"), "{}", better.text());
+        assert!(RateRatio::of(&[0, 0]).is_none() && RateRatio::of(&[7]).is_none());
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use diagnosis::process::{Process, Sample};
-use fault_db::{Store, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendUnit};
+use fault_db::{Store, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit};
 use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
@@ -22,6 +22,7 @@ use ptu_bench::failure::{Exit, Failure, did_you_mean};
 ///
 /// Examples:
 ///   ptu faults trend eb_reaction --procedure atp/overspeed
+///   ptu faults trend eb_reaction --step "code 55: alarm, FSB, EB"
 ///   ptu faults trend eb_reaction --unit SG-0142 --when 180d --plot creep.html
 ///   ptu faults trend eb_reaction --unit SG-0142 --since-repair eb_relay
 #[derive(Debug, Args)]
@@ -35,6 +36,9 @@ pub struct TrendArguments {
     /// Only as measured by this procedure; another may have other limits
     #[arg(long, value_name = "PROCEDURE")]
     procedure: Option<String>,
+    /// Only as measured by this step; without one, values of steps with other limits are shown without limits
+    #[arg(long, value_name = "STEP")]
+    step: Option<String>,
     /// Only on this line
     #[arg(long, value_name = "LINE")]
     line: Option<String>,
@@ -69,6 +73,8 @@ pub struct Trend {
     pub process: Option<Process>,
     /// Procedures that measure it.
     pub procedures: Vec<String>,
+    /// Steps that measured it in the latest runs, with their limits.
+    pub steps: Vec<TrendStep>,
 }
 
 /// Values over time.
@@ -114,6 +120,7 @@ impl TrendArguments {
             line: self.line.clone(),
             train: self.train.clone(),
             procedure: self.procedure.clone(),
+            step: self.step.clone(),
             since_us: span.since_us,
             until_us: span.until_us,
         };
@@ -123,9 +130,14 @@ impl TrendArguments {
                 Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
             })?);
         }
-        let Some(limits) = store.trend_limits(&query)? else {
+        let Some(mut limits) = store.trend_limits(&query)? else {
             return Err(Failure::usage(self.nothing(store, &query, &procedures)?));
         };
+        let steps = store.trend_steps(&query)?;
+        if limits_differ(&steps) {
+            // None holds for all values.
+            (limits.low, limits.high) = (None, None);
+        }
         let course = match query.unit {
             Some(_) => TimeSeries::Points(store.trend(&query)?),
             None => TimeSeries::Days(store.trend_by_day(&query)?, store.trend_by_unit(&query)?),
@@ -135,6 +147,7 @@ impl TrendArguments {
             limits,
             course,
             procedures,
+            steps,
             query,
         })
     }
@@ -157,6 +170,17 @@ impl TrendArguments {
                 "{what} by \"{procedure}\"; it was measured by {}",
                 procedures.join(", ")
             ));
+        }
+        if let Some(step) = &self.step {
+            let known = store.trend_steps(&TrendQuery {
+                step: None,
+                ..query.clone()
+            })?;
+            let known = || known.iter().map(|known| known.step.as_str());
+            if !known().any(|known| known == step) && known().next().is_some() {
+                let hint = did_you_mean(step, known());
+                return Ok(format!("{what} by a step \"{step}\"{hint}"));
+            }
         }
         let span = Span {
             since_us: query.since_us,
@@ -188,6 +212,13 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
         Some("html" | "htm") => Ok(file),
         _ => Err("a trend is drawn on a page, in a file that ends in .html".to_owned()),
     }
+}
+
+fn limits_differ(steps: &[TrendStep]) -> bool {
+    let limits = |step: &TrendStep| (step.low, step.high);
+    steps
+        .windows(2)
+        .any(|pair| limits(&pair[0]) != limits(&pair[1]))
 }
 
 impl TimeSeries {
@@ -227,6 +258,11 @@ impl TimeSeries {
 }
 
 impl Trend {
+    /// The values are of steps with several limits.
+    pub fn limits_differ(&self) -> bool {
+        limits_differ(&self.steps)
+    }
+
     /// Keys of the values, or of the days, in their order.
     fn keys(&self) -> &'static [&'static str] {
         match self.course {
@@ -273,6 +309,7 @@ impl Trend {
         let mut value = json!({
             "measurement": self.query.measurement, "unit": self.limits.unit,
             "low": self.limits.low, "high": self.limits.high, "procedures": self.procedures,
+            "steps": self.steps,
         });
         match &self.course {
             TimeSeries::Points(_) => value["points"] = self.rows().into(),

@@ -1,7 +1,7 @@
 //! A trend as text: the last values or months, the tests on them, and the units that stand out.
 
 use diagnosis::process::{Process, Sign};
-use fault_db::{TrendDay, TrendPoint, TrendUnit};
+use fault_db::{TrendDay, TrendPoint, TrendStep, TrendUnit};
 
 use super::trend::{TimeSeries, Trend};
 use crate::sparkline::sparkline_of;
@@ -37,8 +37,27 @@ pub fn text(trend: &Trend, limit: usize) -> String {
             "\nmeasured by {}, each with limits of its own: choose one with --procedure",
             trend.procedures.join(", ")
         );
+    } else if trend.limits_differ() {
+        text += "\nmeasured with several limits: choose a step with --step\n";
+        text += &steps_table(&trend.steps, &trend.limits.unit);
     }
     text
+}
+
+fn steps_table(steps: &[TrendStep], unit: &str) -> String {
+    let mut table = Table::new(&["PROCEDURE", "STEP", "LOW", "HIGH"]).right([2, 3]);
+    let limit = |value: Option<f64>| {
+        value.map_or_else(|| "-".into(), |value| format!("{} {unit}", short(value)))
+    };
+    for step in steps {
+        table.row([
+            step.procedure.clone(),
+            step.step.clone(),
+            limit(step.low),
+            limit(step.high),
+        ]);
+    }
+    table.render()
 }
 
 fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
@@ -133,6 +152,7 @@ fn process_text(trend: &Trend, process: &Process) -> String {
         (Some(low), Some(high)) => format!("allowed {} .. {}", short(low), value(high)),
         (Some(low), None) => format!("allowed from {}", value(low)),
         (None, Some(high)) => format!("allowed up to {}", value(high)),
+        (None, None) if trend.limits_differ() => "limits differ from step to step".to_owned(),
         (None, None) => "no limits".to_owned(),
     };
     let fit = process.capability(limits.low, limits.high).map(|fit| {
