@@ -149,7 +149,11 @@ impl Twc {
         true
     }
 
-    pub fn step(&mut self, now: Instant, log: &mut EventLog) {
+    /// One cycle. Between loops nothing is heard: station data last, and silence counts from the next loop on.
+    pub fn step(&mut self, now: Instant, between_loops: bool, log: &mut EventLog) {
+        if between_loops && self.up && self.valid {
+            self.heard = self.heard.map(|_| now);
+        }
         if self.up
             && self
                 .heard
@@ -266,7 +270,7 @@ mod tests {
             self.twc
                 .take(self.now, data, own, line, faults, &mut self.log);
             self.now += Duration::from_ms(250);
-            self.twc.step(self.now, &mut self.log);
+            self.twc.step(self.now, false, &mut self.log);
         }
 
         fn logged(&self, event: Event) -> usize {

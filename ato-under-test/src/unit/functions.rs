@@ -83,7 +83,8 @@ impl Functions {
 
     /// One cycle.
     pub fn cycle(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
-        self.twc.step(now, log);
+        let between_loops = self.between_loops(around);
+        self.twc.step(now, between_loops, log);
         if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
             let standstill = self.atp.tachometers().standstill();
             self.locator.locate(data, &around.setup.line, standstill);
@@ -192,6 +193,18 @@ impl Functions {
     pub(super) fn at_platform(&self) -> bool {
         let on_loop = self.twc.data().zip(self.locator.section());
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
+    }
+
+    /// No loop lies where the train is, by data of its section.
+    fn between_loops(&self, around: &Surroundings<'_>) -> bool {
+        let here = self.locator.section().zip(self.twc.data());
+        here.is_some_and(|(section, data)| {
+            let own = data.section == section.section || data.station == section.to_station;
+            own && around
+                .setup
+                .line
+                .between_loops(section, self.locator.position_m())
+        })
     }
 
     /// What the train says of itself to the wayside.

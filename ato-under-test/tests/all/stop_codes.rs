@@ -166,8 +166,25 @@ fn on_the_way(faults: &[FaultMode], act: impl Fn(&mut Bench)) -> Bench {
     journey.bench
 }
 
+/// In the loop that it departs from.
 fn twc_lost() -> Bench {
-    on_the_way(&[], |bench| bench.station = None)
+    let mut bench = Journey::new(&[]).until_position(12.0).bench;
+    bench.station = None;
+    bench
+}
+
+/// TWC is a loop at stations: what is not heard between them is no fault, and station data last.
+#[test]
+fn silence_between_loops_brakes_nobody_and_in_the_next_loop_it_does() {
+    let mut journey = Journey::new(&[]).until_position(200.0);
+    journey.bench.station = None;
+    let arrival_loop_m = journey.section.stop_m - 170.0;
+    while journey.x_m < arrival_loop_m - 5.0 {
+        journey.step();
+        assert!(!journey.bench.has(Outputs::FSB), "{} m", journey.x_m);
+    }
+    (0..300).for_each(|_| journey.step());
+    assert_eq!(journey.bench.status.fsb_cause, FsbCause::TwcLost);
 }
 
 fn tcms_lost() -> Bench {

@@ -35,6 +35,7 @@ pub enum LineError {
 struct File {
     name: String,
     checksum: Option<Spanned<String>>,
+    loops_m: Option<[f64; 2]>,
     sections: Vec<Section>,
 }
 
@@ -43,6 +44,7 @@ pub(super) fn read(text: &str) -> Result<Line, LineError> {
     let file: File = toml::from_str(text).map_err(|e| LineError::Syntax(e.to_string()))?;
     let line = Line {
         name: file.name,
+        loops_m: file.loops_m,
         sections: file.sections,
     };
     line.check().map_err(|broken| located(text, broken))?;

@@ -84,6 +84,10 @@ pub struct Section {
 pub struct Line {
     /// Name, for instance `line8`.
     pub name: String,
+    /// How far the TWC loop of a station reaches before and behind the place where the head of a train stands there, m;
+    /// `None` = loops lie all along the line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loops_m: Option<[f64; 2]>,
     /// Sections in running order.
     pub sections: Vec<Section>,
 }
@@ -103,6 +107,13 @@ impl Line {
     /// The first rule broken.
     pub fn check(&self) -> Result<(), Broken> {
         rules::check(self)
+    }
+
+    /// Whether no loop lies at a position of a section, m from its start: nothing is heard there.
+    pub fn between_loops(&self, section: &Section, position_m: f64) -> bool {
+        self.loops_m.is_some_and(|[before_m, behind_m]| {
+            position_m > section.start_m + behind_m && position_m < section.stop_m - before_m
+        })
     }
 
     /// The section numbered `number`.

@@ -39,6 +39,13 @@ pub(super) fn check(line: &Line) -> Result<(), Broken> {
             reason: "a line needs at least one section".into(),
         });
     }
+    let reach = line.loops_m.unwrap_or_default();
+    if !reach.iter().all(|m| (0.0..=1_000.0).contains(m)) {
+        return Err(Broken {
+            place: None,
+            reason: format!("loops_m {reach:?}: a loop reaches 0 to 1000 m"),
+        });
+    }
     for (at, section) in line.sections.iter().enumerate() {
         let rules = Rules { at, section };
         rules.numbers()?;
