@@ -26,9 +26,13 @@ impl ScanDeadlines {
         self.due.max(now + MAKE_UP.times(self.slower))
     }
 
-    /// Counts `pause`, in the time of the bench, as no time.
-    pub fn put_off(&mut self, pause: Duration) {
-        self.due += pause.times(self.slower);
+    /// The next scans are due so many µs of the bench later, or earlier.
+    pub fn shift(&mut self, later_us: i64) {
+        let by = Duration::from_us(later_us.unsigned_abs()).times(self.slower);
+        self.due = match later_us >= 0 {
+            true => self.due + by,
+            false => self.due.back(by),
+        };
     }
 
     /// How far the last scan, or what came after it, is behind its time, in the time of the bench.

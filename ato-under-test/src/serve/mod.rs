@@ -84,7 +84,8 @@ pub fn in_real_time(
         let count = wire.read(&mut read)?;
         received.clear();
         // A computer that held up the tester as well gives the unit no time without inputs.
-        deadlines.put_off(backlog.share(&read[..count], behind, &mut received));
+        let pause = backlog.share(&read[..count], behind, &mut received);
+        deadlines.shift(pause.as_us() as i64);
         to_send.clear();
         let flow = served.scan(&received, &mut to_send);
         wire.write(&to_send)?;

@@ -33,6 +33,9 @@ pub trait UnitLink {
     fn take_pause(&mut self) -> Duration {
         Duration::ZERO
     }
+
+    /// The bench's clock goes on from another time by the wall: so many µs later, or earlier.
+    fn shift_clock(&mut self, _later_us: i64) {}
 }
 
 /// A rig with its unit. Time is virtual; over a port the caller paces the ticks.

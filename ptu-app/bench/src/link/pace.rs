@@ -39,10 +39,10 @@ impl Pace {
         }
     }
 
-    /// Counts `pause` as no time: nothing went on meanwhile.
-    pub fn put_off(&mut self, pause: Duration) {
+    /// The next scans are due so many µs of the bench later, or earlier.
+    pub fn shift(&mut self, later_us: i64) {
         if let Self::Real { deadlines, .. } = self {
-            deadlines.put_off(pause);
+            deadlines.shift(later_us);
         }
     }
 

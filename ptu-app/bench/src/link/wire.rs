@@ -181,16 +181,6 @@ impl WireLink {
     }
 }
 
-impl WireLink {
-    /// Time in which both ends stood still is none.
-    fn put_off(&mut self, pause: BenchDuration) {
-        self.pause += pause;
-        if let Some((began, _)) = &mut self.began {
-            *began += Duration::from_micros(pause.as_us()) * self.slower;
-        }
-    }
-}
-
 fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
     // The lock keeps others out: what this crate does would outlast a killed tester on a pseudo-terminal.
     let port = serialport::new(path, baud)
@@ -236,8 +226,7 @@ impl UnitLink for WireLink {
             Port::LockStep(port) => exchange_scan(port, to_unit, &mut self.read),
         };
         let behind = self.behind(now);
-        let pause = self.backlog.share(&self.read, behind, from_unit);
-        self.put_off(pause);
+        self.pause += self.backlog.share(&self.read, behind, from_unit);
         self.read.clear();
         exchanged.map_err(|reason| LinkFailure {
             link: self.name.clone(),
@@ -247,6 +236,16 @@ impl UnitLink for WireLink {
 
     fn take_pause(&mut self) -> BenchDuration {
         std::mem::take(&mut self.pause)
+    }
+
+    fn shift_clock(&mut self, later_us: i64) {
+        let by = Duration::from_micros(later_us.unsigned_abs()) * self.slower;
+        if let Some((began, _)) = &mut self.began {
+            match later_us >= 0 {
+                true => *began += by,
+                false => *began = began.checked_sub(by).unwrap_or(*began),
+            }
+        }
     }
 }
 

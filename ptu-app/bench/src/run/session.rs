@@ -1,5 +1,6 @@
 //! A bench with its pace, its recorder and its stop: scans it, keeps up with a unit in real time, makes it safe.
 
+mod in_step;
 mod procedure;
 
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
+use self::in_step::InStep;
 use super::RunControl;
 use super::fault_watch::{self, FaultSeen};
 use super::trace_data::trace_data;
@@ -34,6 +36,7 @@ pub struct Session<L: UnitLink> {
     max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
+    in_step: InStep,
     fresh_unit: bool,
     run_control: Option<Arc<dyn RunControl>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
@@ -64,6 +67,7 @@ impl<L: UnitLink> Session<L> {
             link_error: None,
             max_lag: None,
             stalled: None,
+            in_step: InStep::default(),
             fresh_unit,
             run_control: None,
             with_person: false,
@@ -192,7 +196,7 @@ impl<L: UnitLink> Session<L> {
         if let Err(failure) = self.bench.tick() {
             self.link_error.get_or_insert(failure.to_string());
         }
-        self.put_off();
+        self.keep_in_step();
         let behind = self.behind();
         if self.max_lag.is_some_and(|max_lag| behind > max_lag) {
             self.stalled = self.stalled.max(Some(behind));
@@ -210,17 +214,6 @@ impl<L: UnitLink> Session<L> {
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);
         }
-    }
-
-    /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
-    fn put_off(&mut self) {
-        let pause = self.bench.link_mut().take_pause();
-        if pause == Duration::ZERO {
-            return;
-        }
-        self.pace.put_off(pause);
-        let now = self.bench.now();
-        self.bench.rig_mut().note_pause(now, pause);
     }
 
     /// Judges what the unit logged during bring-up: nothing was provoked yet, so each fault event counts.
