@@ -10,7 +10,7 @@ use protocol::{Backlog, Duration as BenchDuration, Instant};
 use serialport::SerialPort;
 
 use super::Pace;
-use super::port_lock::PortLock;
+use super::port_lock;
 use crate::failure::Failure;
 
 /// Baud rate when none is given.
@@ -113,8 +113,6 @@ pub struct WireLink {
     began: Option<(std::time::Instant, Instant)>,
     read: Vec<u8>,
     backlog: Backlog,
-    /// Of a serial port, until it is closed.
-    _lock: Option<PortLock>,
 }
 
 enum Port {
@@ -129,10 +127,6 @@ impl WireLink {
     /// # Errors
     /// The port is missing or in use; the message says what to do next.
     pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
-        let mut lock = match endpoint {
-            Endpoint::Serial { path, .. } | Endpoint::LockStep(path) => PortLock::take(path)?,
-            Endpoint::Sim | Endpoint::Tcp(_) => None,
-        };
         let port = match endpoint {
             Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
             Endpoint::Serial { path, baud } => {
@@ -141,13 +135,9 @@ impl WireLink {
             Endpoint::LockStep(path) => Port::LockStep(open_serial(path, BAUD, STEP)?),
             Endpoint::Tcp(address) => connect(address)?,
         };
-        if let (Some(lock), Endpoint::Serial { path, .. }) = (&mut lock, endpoint) {
-            lock.close_to_others(path);
-        }
         Ok(Self {
             name: endpoint.to_string(),
             port,
-            _lock: lock,
             slower: 1,
             began: None,
             read: Vec::new(),
@@ -179,16 +169,7 @@ impl WireLink {
 }
 
 fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
-    // The lock keeps others out: what this crate does would outlast a killed tester on a pseudo-terminal.
-    let port = serialport::new(path, baud)
-        .timeout(waits)
-        .exclusive(false)
-        .open()
-        .map_err(|error| {
-            Failure::bench(format!(
-                "cannot open port {path}: {error}; check the cable, or choose one of `ptu ports`"
-            ))
-        })?;
+    let port = port_lock::open(path, baud, waits)?;
     let _ = port.clear(serialport::ClearBuffer::All);
     Ok(port)
 }
