@@ -62,6 +62,24 @@ fn only_what_brings_runs_in_makes_a_database() {
         .explains(&["there is no database", "mistyped.db"]);
 }
 
+/// Goal: a file of an earlier version is checked, and nothing is changed in it. Method: one of the first version.
+#[test]
+fn a_file_of_an_earlier_version_is_checked_and_stays_as_it_is() {
+    let place = Place::new();
+    let db = place.text_path("old.db");
+    let connection = Connection::open(&db).expect("made");
+    let first = include_str!("../../../fault-db/src/schema/0001.sql");
+    connection.execute_batch(first).expect("the first version");
+    connection
+        .pragma_update(None, "user_version", 1)
+        .expect("its number");
+    drop(connection);
+    let before = std::fs::read(&db).expect("the file");
+    let said = place.ptu(&["db", "check", "--db", &db]).exits(0).out;
+    assert!(said.contains("of an earlier version"), "{said}");
+    assert_eq!(std::fs::read(&db).expect("the file"), before);
+}
+
 #[test]
 fn a_text_file_is_refused_and_left_as_it_is() {
     let place = Place::new();

@@ -111,7 +111,7 @@ fn what_others_wrote_acts_on_no_terminal() {
         (&["db", "query", &sql, "--json"], 0),
         (&["saved"], 0),
         (&["saved", serial], 2),
-        (&["runs", "list", "--unit", ACTS], 0),
+        (&["runs", "list", "--unit", ACTS], 2),
         (&["run", "--list", "says.star"], 0),
         (&["run", "--line", ACTS], 2),
         (&["trace", "diff", "latest", ACTS], 2),
@@ -270,7 +270,7 @@ fn unknown_records_and_wrong_times_are_refused() {
         ),
         (
             &["faults", "trend", "loss_time", "--unit", "X-1"],
-            &["\"loss_time\"", "X-1", "`ptu runs list`"],
+            &["no unit \"X-1\"", "`ptu runs list`"],
         ),
         (&["trace", "show", "latest"], &["no trace"]),
         (&["trace", "export", "latest", "--to", "x.txt"], &[".csv"]),

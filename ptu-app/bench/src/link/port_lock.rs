@@ -4,69 +4,63 @@
 //! that ends. A port of hardware is closed to all other programs besides; a pseudo-terminal is not, because that would
 //! outlast a killed tester as long as the other end is open.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions};
 use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
-use std::path::Path;
+use std::time::Duration;
 
 use rustix::fs::{OFlags, major, minor};
-use rustix::termios::{ioctl_tiocexcl, ioctl_tiocnxcl};
+use rustix::termios::ioctl_tiocnxcl;
+use serialport::SerialPort;
 
 use crate::failure::Failure;
 
-/// Held as long as it lives.
-pub(super) struct PortLock {
-    file: File,
-    is_closed: bool,
+/// Opens a port and locks it until it is closed.
+///
+/// # Errors
+/// It is not there, or another program holds it, which is named where the system tells.
+pub(super) fn open(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
+    let beside = is_pseudo_terminal(path)
+        .then(|| open_beside(path))
+        .flatten();
+    let opened = serialport::new(path, baud)
+        .timeout(waits)
+        .exclusive(true)
+        .open();
+    let port = opened.map_err(|error| {
+        Failure::bench(match holder(path) {
+            Some(who) => format!(
+                "another program holds the port {path}: {who}; end it, or choose one of `ptu ports`"
+            ),
+            None => format!(
+                "cannot open port {path}: {error}; check the cable, or choose one of `ptu ports`"
+            ),
+        })
+    })?;
+    if let Some(beside) = beside {
+        // The lock stays.
+        let _ = ioctl_tiocnxcl(&beside);
+    }
+    Ok(port)
 }
 
-impl PortLock {
-    /// Locks the port of this path; none if it cannot be opened, which whoever opens it to use it says better.
-    ///
-    /// # Errors
-    /// Another program holds it; it is named where the system tells.
-    pub fn take(path: &str) -> Result<Option<Self>, Failure> {
-        let flags = OFlags::NOCTTY | OFlags::NONBLOCK;
-        let flags = i32::try_from(flags.bits()).unwrap_or_default();
-        let opened = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .custom_flags(flags)
-            .open(path);
-        let Ok(file) = opened else { return Ok(None) };
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(Failure::bench(format!(
-                "another program holds the port {path}: {}; end it, or choose one of `ptu ports`",
-                holder(&file).unwrap_or_else(|| "which one, the system does not tell".to_owned())
-            ))),
-            // A system without such locks has ports nevertheless.
-            Err(TryLockError::Error(_)) | Ok(()) => Ok(Some(Self {
-                file,
-                is_closed: false,
-            })),
-        }
-    }
-
-    /// Closes the port to other programs; to be called once it is open here.
-    pub fn close_to_others(&mut self, path: &str) {
-        let real = std::fs::canonicalize(path).unwrap_or_default();
-        if !real.starts_with(Path::new("/dev/pts")) {
-            self.is_closed = ioctl_tiocexcl(&self.file).is_ok();
-        }
-    }
+fn is_pseudo_terminal(path: &str) -> bool {
+    std::fs::canonicalize(path).is_ok_and(|real| real.starts_with("/dev/pts"))
 }
 
-impl Drop for PortLock {
-    fn drop(&mut self) {
-        if self.is_closed {
-            // It ends with the last that has the port open, too.
-            let _ = ioctl_tiocnxcl(&self.file);
-        }
-    }
+/// The same device once more, without waiting for it or becoming its terminal.
+fn open_beside(path: &str) -> Option<File> {
+    let flags = (OFlags::NOCTTY | OFlags::NONBLOCK).bits();
+    OpenOptions::new()
+        .read(true)
+        .write(true)
+        .custom_flags(i32::try_from(flags).ok()?)
+        .open(path)
+        .ok()
 }
 
-/// Name and number of the process that holds a lock on this file, by the kernel's list of locks.
-fn holder(file: &File) -> Option<String> {
-    let about = file.metadata().ok()?;
+/// Name and number of the process that holds a lock on this port, by the kernel's list of locks.
+fn holder(path: &str) -> Option<String> {
+    let about = std::fs::metadata(path).ok()?;
     let (device, inode) = (about.dev(), about.ino());
     let place = format!("{:02x}:{:02x}:{inode}", major(device), minor(device));
     let locks = std::fs::read_to_string("/proc/locks").ok()?;
@@ -84,28 +78,36 @@ fn holder(file: &File) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use serialport::{SerialPort as _, TTYPort};
+    use std::path::Path;
+
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
     use super::*;
 
+    /// Goal: a second tester is told who has the port, and has it when the first has left it. Method: a
+    /// pseudo-terminal whose other end stays open.
     #[test]
     fn a_port_is_held_by_one_and_the_other_is_told_by_whom() {
-        let (_unit, port) = TTYPort::pair().expect("a pseudo-terminal");
-        let path = port.name().expect("a name");
-        let mut first = PortLock::take(&path).expect("free").expect("opened");
-        first.close_to_others(&path);
-        let Err(refused) = PortLock::take(&path) else {
-            panic!("it is taken");
-        };
-        let told = format!("process {}", std::process::id());
-        let knows = Path::new("/proc/locks").exists();
-        assert!(
-            !knows || refused.message.contains(&told),
-            "{}",
-            refused.message
-        );
-        drop(first);
-        assert!(PortLock::take(&path).expect("free again").is_some());
-        assert!(PortLock::take("/dev/none").expect("not there").is_none());
+        let unit = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
+        grantpt(&unit).expect("granted");
+        unlockpt(&unit).expect("unlocked");
+        let path = ptsname(&unit, Vec::new()).expect("a name");
+        let path = path.to_str().expect("a path");
+        let opened = || open(path, 115_200, Duration::ZERO);
+        for _ in 0..2 {
+            let first = opened().expect("free");
+            let Err(refused) = opened() else {
+                panic!("it is taken");
+            };
+            let told = format!("process {}", std::process::id());
+            let knows = Path::new("/proc/locks").exists();
+            assert!(
+                !knows || refused.message.contains(&told),
+                "{}",
+                refused.message
+            );
+            drop(first);
+        }
+        assert!(open("/dev/none", 115_200, Duration::ZERO).is_err());
     }
 }

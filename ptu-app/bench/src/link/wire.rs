@@ -10,7 +10,7 @@ use protocol::{Backlog, Duration as BenchDuration, Instant};
 use serialport::SerialPort;
 
 use super::Pace;
-use super::port_lock::PortLock;
+use super::port_lock;
 use crate::failure::Failure;
 
 /// Baud rate when none is given.
@@ -115,8 +115,6 @@ pub struct WireLink {
     backlog: Backlog,
     /// How long both ends stood still.
     pause: BenchDuration,
-    /// Of a serial port, until it is closed.
-    _lock: Option<PortLock>,
 }
 
 enum Port {
@@ -131,10 +129,6 @@ impl WireLink {
     /// # Errors
     /// The port is missing or in use; the message says what to do next.
     pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
-        let mut lock = match endpoint {
-            Endpoint::Serial { path, .. } | Endpoint::LockStep(path) => PortLock::take(path)?,
-            Endpoint::Sim | Endpoint::Tcp(_) => None,
-        };
         let port = match endpoint {
             Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
             Endpoint::Serial { path, baud } => {
@@ -143,13 +137,9 @@ impl WireLink {
             Endpoint::LockStep(path) => Port::LockStep(open_serial(path, BAUD, STEP)?),
             Endpoint::Tcp(address) => connect(address)?,
         };
-        if let (Some(lock), Endpoint::Serial { path, .. }) = (&mut lock, endpoint) {
-            lock.close_to_others(path);
-        }
         Ok(Self {
             name: endpoint.to_string(),
             port,
-            _lock: lock,
             slower: 1,
             began: None,
             read: Vec::new(),
@@ -182,16 +172,7 @@ impl WireLink {
 }
 
 fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
-    // The lock keeps others out: what this crate does would outlast a killed tester on a pseudo-terminal.
-    let port = serialport::new(path, baud)
-        .timeout(waits)
-        .exclusive(false)
-        .open()
-        .map_err(|error| {
-            Failure::bench(format!(
-                "cannot open port {path}: {error}; check the cable, or choose one of `ptu ports`"
-            ))
-        })?;
+    let port = port_lock::open(path, baud, waits)?;
     let _ = port.clear(serialport::ClearBuffer::All);
     Ok(port)
 }

@@ -128,3 +128,18 @@ fn within_one_report_the_order_along_the_signal_path_decides() {
     assert_eq!(order([&STEP, &LATE]), ["speed1", "eb"]);
     assert_eq!(order([&STEP, &LATER]), ["eb", "speed1"]);
 }
+
+/// Goal: when each end of a link began to send is no evidence of what a unit does. Method: a count of frames that
+/// differs, and a brake.
+#[test]
+fn a_count_of_frames_deviates_and_is_no_evidence() {
+    let number = ChannelKind::Number { lsb: 1.0 };
+    let sent = |column| trace("twc_sent", number.clone(), "", column);
+    let found = compare(&sent(&LATE), &sent(&STEP), &Rule::exact(), &[]).expect("compared");
+    assert_eq!((found.deviations.len(), found.evidence()), (1, 0));
+    let clock = compare(&sent(&LATER), &sent(&STEP), &Rule::wall_clock(), &[]).expect("compared");
+    assert_eq!(clock.deviations, []);
+    let brake = |column| trace("eb", ChannelKind::Bit, "", column);
+    let found = compare(&brake(&LATE), &brake(&STEP), &Rule::exact(), &[]).expect("compared");
+    assert_eq!(found.evidence(), 1);
+}
