@@ -129,7 +129,7 @@ events! {
     EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
     WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
     SpeedVanished = 233 "speed_vanished" Critical "io_board" "Speed fell faster than a train can slow: no tachometer is believed" "속도 신호 소실: 속도센서 전체 불신" "last speed that is believed, cm/s";
-    NoPulses = 234 "no_pulses" Major "io_board" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
+    NoPulses = 234 "no_pulses" Major "-" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
     SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, no tachometer does" "TCMS 속도와 속도센서 불일치" "";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
