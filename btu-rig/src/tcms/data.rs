@@ -171,6 +171,7 @@ mod tests {
             ("not_following_after_s", "61.0"),
             ("silent_after_s", "-1.0"),
             ("slip_kmh", "0.0"),
+            ("moves_kmh", "0.4"),
             ("cab_change_s", "61.0"),
         ] {
             let error = TrainData::from_toml(&with(key, value)).unwrap_err();

@@ -59,7 +59,7 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
 /// Whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
-const CASES: [(&str, Shows); 29] = [
+const CASES: [(&str, Shows); 30] = [
     ("inverter.dead", |bench| inverter_silent(bench, 2)),
     ("inverter.regeneration_lost", |bench| {
         let [_, released] = braked_and_released(bench);
@@ -95,6 +95,12 @@ const CASES: [(&str, Shows); 29] = [
         signal(bench, Signal::ControllerVolts) == 0.0
     }),
     ("door_contact.open", doors_say_open),
+    ("door_contact.chatters", |bench| {
+        (0..100).any(|_| {
+            bench.run_ms(10);
+            doors_say_open(bench)
+        })
+    }),
     ("door_contact.bridged", |bench| {
         bench.apply(Stimulus::Doors { closed: false });
         bench.run_ms(20);
