@@ -98,13 +98,14 @@ fn many_runs_are_the_same_on_any_number_of_threads_and_one_by_one() {
 }
 
 /// Goal: wherever a train came to stand counts, however it did. Method: wheels a tenth larger than
-/// the unit is told, and rails of 0.05 on which no service brake slows a train enough.
+/// the unit is told, and rails of 0.05 on which no service brake slows a train enough. One of the three spins there when it
+/// starts, and is braked at once: a speed that falls faster than adhesion lets a train is not believed.
 #[test]
 fn every_standstill_is_in_the_percentiles_and_those_far_past_are_counted() {
     let place = Place::new();
     for (option, value, past, ending) in [
         ("--wheel", "1.1", 3.0, "stopped"),
-        ("--adhesion", "0.05", 3.0, "emergency brake"),
+        ("--adhesion", "0.05", 2.0, "emergency brake"),
     ] {
         let all = driven(
             &place,

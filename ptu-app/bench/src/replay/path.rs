@@ -66,7 +66,6 @@ const PATH: [&str; 119] = [
     "ato_ready",
     "started",
     // What it decides.
-    "refusals",
     "mode",
     "ato_state",
     "target",
@@ -79,6 +78,7 @@ const PATH: [&str; 119] = [
     "fsb",
     "eb_cause",
     "eb",
+    "refusals",
     "healthy",
     "holding_brake",
     "door_enable_left",
