@@ -54,10 +54,6 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "doors that seem open for moments: by the input or by a contact, in the same steps",
     ),
     (
-        "twc_cpu.hangs",
-        "station data that are lost for moments, at the board or at its modem",
-    ),
-    (
         "atp_cpu.given_up_released",
         "a change of cabs that is not as it should be, by the unit or by TCMS: one step sees both",
     ),
@@ -335,6 +331,8 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let train_is_broken = of_train(mode.lru.as_str());
     let blamed = list(&run.report["faults"])
         .iter()
+        // An event that names no part suspects nobody.
+        .filter(|fault| fault["lru"] != "unknown")
         .filter(|fault| of_train(text(&fault["lru"])) != train_is_broken)
         .map(|fault| format!("suspects the other side: {fault}"));
     let failed = list(&run.report["steps"])
