@@ -69,7 +69,7 @@ pub fn in_real_time(
     let clock = || Instant::from_us(began.elapsed().as_micros() as u64);
     let mut deadlines = ScanDeadlines::new(clock(), slower);
     let mut now = Instant::ZERO;
-    let mut read = [0u8; 4096];
+    let (mut chunk, mut arrived) = ([0u8; 4096], Vec::with_capacity(4096));
     let mut backlog = Backlog::default();
     let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);
@@ -81,10 +81,17 @@ pub fn in_real_time(
             backlog = Backlog::default();
             served.reset_connection();
         }
-        let count = wire.read(&mut read)?;
+        // A chunk for each of the scans in which it came.
+        arrived.clear();
+        for _ in 0..=behind.as_us() / SCAN.as_us() {
+            match wire.read(&mut chunk)? {
+                0 => break,
+                count => arrived.extend_from_slice(&chunk[..count]),
+            }
+        }
         received.clear();
         // A computer that held up the tester as well gives the unit no time without inputs.
-        let pause = backlog.share(&read[..count], behind, &mut received);
+        let pause = backlog.share(&arrived, behind, &mut received);
         deadlines.shift(pause.as_us() as i64);
         to_send.clear();
         let flow = served.scan(&received, &mut to_send);

@@ -3,6 +3,7 @@
 mod as_written;
 mod ato_inputs;
 mod automatic_operation;
+mod by_the_clock;
 mod brake_release;
 mod command_line;
 mod common;

@@ -1,4 +1,4 @@
-//! What the program promises, tried as its users do, in virtual time.
+//! What the program promises, tried as its users do: in virtual time or lock step but for [`on_ports`] and [`by_the_clock`].
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -8,17 +8,22 @@ mod bad_database;
 mod bad_input;
 mod bad_scripts;
 mod bench_page;
+mod by_the_clock;
 mod care;
 mod cases;
 mod diagnose;
 mod diagnose_matrix;
 mod documents;
 mod drive;
+mod drive_by_hand;
 mod fault_months;
 mod faults;
 mod figures;
 mod history;
 mod history_page;
+mod lock_step;
+mod no_unit;
+mod on_ports;
 mod questions;
 mod report;
 mod report_page;
@@ -28,4 +33,6 @@ mod server;
 mod suite;
 mod trace_files;
 mod traces_page;
+mod train_faults;
 mod twin;
+mod window;

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each of the two test programs uses its part")]
 
+pub mod display;
 pub mod proxy;
 pub mod served;
 pub mod terminal;

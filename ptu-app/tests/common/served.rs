@@ -9,7 +9,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use protocol::link::{End, Link};
-use protocol::message::{KeepAlive, Message};
+use protocol::message::{KeepAlive, Message, StatusBits};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use serialport::SerialPort;
@@ -267,4 +267,16 @@ impl Observer {
         }
         panic!("{what} was not seen within {within:?}");
     }
+}
+
+/// No session holds the unit and no test signal is made.
+pub fn released(message: &Message) -> bool {
+    matches!(message, Message::Status(status)
+        if !status.bits.contains(StatusBits::ARMED) && status.test_signals.is_empty())
+}
+
+/// A short run on the unit passes.
+#[track_caller]
+pub fn passes(place: &Place, unit: &Unit, procedure: &str) {
+    Running::start(place, unit, &[procedure]).finish().exits(0);
 }

@@ -185,3 +185,34 @@ impl Window {
             .collect()
     }
 }
+
+pub fn settings(page: Page) -> Settings {
+    Settings {
+        page,
+        ..Settings::default()
+    }
+}
+
+/// What the database holds of the latest run.
+pub fn latest(window: &Window) -> serde_json::Value {
+    window.place.json(&["runs", "show", "latest", "--json"])
+}
+
+/// A scripts directory with the shipped units, lines and trains and one procedure of its own.
+pub fn own_scripts(place: &Place, script: &str) -> std::path::PathBuf {
+    let folder = place.path("scripts");
+    std::fs::create_dir_all(folder.join("own")).expect("folder");
+    for shared in [
+        "units",
+        "lines",
+        "trains",
+        "bench_scatter.toml",
+        "diagnosis.toml",
+        "dictionary.zst",
+    ] {
+        let shipped = scripts().canonicalize().expect("scripts").join(shared);
+        std::os::unix::fs::symlink(shipped, folder.join(shared)).expect("link");
+    }
+    std::fs::write(folder.join("own/own.star"), script).expect("script");
+    folder
+}

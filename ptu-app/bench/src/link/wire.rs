@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::frame::SCAN_END;
-use protocol::{Backlog, Duration as BenchDuration, Instant};
+use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
 use super::Pace;
@@ -201,12 +201,13 @@ impl UnitLink for WireLink {
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkFailure> {
+        let behind = self.behind(now);
+        let scans = 1 + behind.as_us() / SCAN.as_us();
         let exchanged = match &mut self.port {
-            Port::Serial(port) => exchange(port, to_unit, &mut self.read),
-            Port::Tcp(stream) => exchange(stream, to_unit, &mut self.read),
+            Port::Serial(port) => exchange(port, to_unit, &mut self.read, scans),
+            Port::Tcp(stream) => exchange(stream, to_unit, &mut self.read, scans),
             Port::LockStep(port) => exchange_scan(port, to_unit, &mut self.read),
         };
-        let behind = self.behind(now);
         self.pause += self.backlog.share(&self.read, behind, from_unit);
         self.read.clear();
         exchanged.map_err(|reason| LinkFailure {
@@ -230,19 +231,22 @@ impl UnitLink for WireLink {
     }
 }
 
-/// Reads what is there and writes what the port takes; a full buffer is a slow line, and the link's
-/// own checks see it.
+/// Reads what is there, a chunk for each of the scans in which it came, and writes what the port takes; a full buffer is a
+/// slow line, and the link's own checks see it.
 fn exchange(
     port: &mut (impl Read + Write),
     to_unit: &[u8],
     from_unit: &mut Vec<u8>,
+    scans: u64,
 ) -> Result<(), String> {
     let mut chunk = [0; 4096];
-    match port.read(&mut chunk) {
-        Ok(0) => return Err("closed at the other end".into()),
-        Ok(count) => from_unit.extend_from_slice(&chunk[..count]),
-        Err(error) if is_nothing(&error) => {}
-        Err(error) => return Err(format!("reading failed: {error}")),
+    for _ in 0..scans {
+        match port.read(&mut chunk) {
+            Ok(0) => return Err("closed at the other end".into()),
+            Ok(count) => from_unit.extend_from_slice(&chunk[..count]),
+            Err(error) if is_nothing(&error) => break,
+            Err(error) => return Err(format!("reading failed: {error}")),
+        }
     }
     match port.write(to_unit) {
         Ok(_) => Ok(()),

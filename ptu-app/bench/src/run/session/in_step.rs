@@ -10,42 +10,58 @@ use super::Session;
 const AFTER: Duration = Duration::from_us(3 * SCAN.as_us());
 /// What a frame's way may differ by, ms.
 const JITTER_MS: i64 = 20;
+/// The most that the unit stands still for longer than the bench, ms.
+const MOST_MS: i64 = 1000;
 
 /// The unit's clock beside the bench's.
 #[derive(Debug, Default)]
 pub(super) struct InStep {
     /// Bench's clock less the unit's, ms, as last heard.
     offset_ms: Option<i64>,
-    /// When unit and bench stood still, and the offset before.
-    pause: Option<(Instant, i64)>,
+    pause: Option<Pause>,
+}
+
+/// Unit and bench stood still, as it seems.
+#[derive(Clone, Copy, Debug)]
+struct Pause {
+    since: Instant,
+    /// The offset before.
+    before_ms: i64,
+    took_ms: i64,
 }
 
 impl InStep {
     /// How much later the bench's next scans are due, µs, so that the unit's clock is where it was beside the bench's.
-    /// The unit's `stamp` came with a frame heard at that time of the bench.
+    /// The unit's `stamp` came with a frame heard at that time of the bench. A unit that went on, and whose frames were lost
+    /// meanwhile, is as far ahead as the pause was long: the bench then has all of it to make up.
     fn correction_us(&mut self, stamp: Option<(Instant, u32)>) -> i64 {
         let Some((at, stamp_ms)) = stamp else {
             return 0;
         };
         let offset_ms = i64::from(at.stamp_ms().wrapping_sub(stamp_ms) as i32);
-        let Some((since, before_ms)) = self.pause else {
+        let Some(pause) = self.pause else {
             self.offset_ms = Some(offset_ms);
             return 0;
         };
-        if at < since + AFTER {
+        if at < pause.since + AFTER {
             return 0;
         }
         self.pause = None;
-        let ahead_ms = offset_ms - before_ms;
+        let ahead_ms = offset_ms - pause.before_ms;
         // A unit that started again has another clock.
-        match (JITTER_MS..=1000).contains(&ahead_ms.abs()) {
+        let of_the_pause = -(pause.took_ms + JITTER_MS)..=MOST_MS;
+        match of_the_pause.contains(&ahead_ms) && ahead_ms.abs() >= JITTER_MS {
             true => ahead_ms * 1000,
             false => 0,
         }
     }
 
-    fn begin(&mut self, now: Instant) {
-        self.pause = self.offset_ms.map(|before_ms| (now, before_ms));
+    fn begin(&mut self, now: Instant, took: Duration) {
+        self.pause = self.offset_ms.map(|before_ms| Pause {
+            since: now,
+            before_ms,
+            took_ms: took.as_ms() as i64,
+        });
     }
 }
 
@@ -56,7 +72,7 @@ impl<L: UnitLink> Session<L> {
         let now = self.bench.now();
         if pause > Duration::ZERO {
             self.bench.rig_mut().note_pause(now, pause);
-            self.in_step.begin(now);
+            self.in_step.begin(now, pause);
             self.shift(pause.as_us() as i64);
         }
         if self.max_lag.is_some() {
@@ -84,13 +100,27 @@ mod tests {
         let later = |ms, unit_ms| Some((Instant::from_ms(ms), unit_ms));
         let mut clocks = InStep::default();
         assert_eq!(clocks.correction_us(at(1000)), 0);
-        clocks.begin(Instant::from_ms(1000));
+        let took = Duration::from_ms(300);
+        clocks.begin(Instant::from_ms(1000), took);
         assert_eq!(clocks.correction_us(later(1010, 850)), 0, "of before");
         assert_eq!(clocks.correction_us(later(1040, 870)), 70_000);
         assert_eq!(clocks.correction_us(later(1050, 880)), 0);
-        clocks.begin(Instant::from_ms(1100));
+        clocks.begin(Instant::from_ms(1100), took);
         assert_eq!(clocks.correction_us(later(1200, 1130)), -100_000);
-        clocks.begin(Instant::from_ms(1300));
+        clocks.begin(Instant::from_ms(1300), took);
         assert_eq!(clocks.correction_us(later(1400, 5)), 0, "started again");
+    }
+
+    #[test]
+    fn a_unit_that_went_on_leaves_the_whole_pause_to_make_up() {
+        let took = Duration::from_ms(3_000);
+        let ahead_by = |ms: u32| {
+            let mut clocks = InStep::default();
+            clocks.correction_us(Some((Instant::from_ms(1000), 900)));
+            clocks.begin(Instant::from_ms(1000), took);
+            clocks.correction_us(Some((Instant::from_ms(1100), 1000 + ms)))
+        };
+        assert_eq!(ahead_by(2_990), -2_990_000);
+        assert_eq!(ahead_by(60_000), 0, "no clock of that unit");
     }
 }

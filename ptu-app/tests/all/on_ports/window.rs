@@ -1,10 +1,11 @@
-//! The window on the unit of a train, without the bench harness: the whole way from the connection to the part that
-//! failed, the unit's log and its run record, in both languages.
+//! The window on a unit on a port: one that dies, and that of a train, without the bench harness, the whole way from the
+//! connection to the part that failed, the unit's log and its run record, in both languages.
 
 use crate::common::served::Unit;
-use crate::common::window::Window;
+use crate::common::window::{Window, latest, settings};
 use crate::common::{Place, scripts};
 use ptu_app::gui::{Page, Settings};
+use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{Language, Words};
 
 /// Something that begins with `first` and ends with the last words of `pattern` is shown.
@@ -106,4 +107,31 @@ fn the_whole_way_on_a_train_is_clicked_through() {
 #[test]
 fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
     the_whole_way(Language::Korean);
+}
+
+#[test]
+fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
+    let mut unit = Unit::on_pty(&[]);
+    let mut settings = settings(Page::Procedures);
+    settings.language = Language::Korean;
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("연결");
+    window.until("the unit", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
+    });
+    window.click("시험 시작");
+    window.until("a step", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.done > 0)
+    });
+    unit.kill();
+    window.wait_for_part("유닛과의 링크가 끊어졌습니다");
+    window.wait_for_part("시험 종료: 오류");
+    window.until("disconnected", |window| {
+        window.app().units().chosen().phase() == Phase::Offline
+    });
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "error");
+    assert_eq!(run["run"]["state"], "finished");
 }

@@ -1,31 +1,18 @@
 //! The technician's window, driven by the names of what is shown: the whole way from connecting to
 //! the part that failed, and what goes wrong on it.
 
-use crate::common::served::Unit;
-use crate::common::window::Window;
+use crate::common::window::{Window, latest, own_scripts, settings};
 use crate::common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
 use ptu_app::gui::{Page, Settings};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::Language;
 
-fn settings(page: Page) -> Settings {
-    Settings {
-        page,
-        ..Settings::default()
-    }
-}
-
 /// Runs on the embedded unit take as long as on a real one.
 fn realtime(page: Page) -> Settings {
     let mut settings = settings(page);
     settings.unit.realtime = true;
     settings
-}
-
-/// What the database holds of the latest run.
-fn latest(window: &Window) -> serde_json::Value {
-    window.place.json(&["runs", "show", "latest", "--json"])
 }
 
 fn running(window: &Window) -> bool {
@@ -213,38 +200,6 @@ fn letting_go_in_a_run_closes_its_record_first() {
 }
 
 #[test]
-fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
-    let place = Place::new();
-    let scripts = own_scripts(
-        &place,
-        "procedure(title = \"Lamp\", suspect = \"-\")\n\
-         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
-    );
-    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-    window.click("Connect");
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for("Does the lamp light?");
-    window.key(Page::Faults.key());
-    window.wait_for("a script asks");
-    let now = |window: &Window| window.app().units().chosen().bench.live().now;
-    let (began, before) = (std::time::Instant::now(), now(&window));
-    for _ in 0..100 {
-        window.step();
-    }
-    let bench_s = now(&window).since(before).as_secs();
-    let clock_s = began.elapsed().as_secs_f64();
-    // A bench that was held up makes up for the scans it missed, and is faster than the clock then.
-    assert!(
-        bench_s < clock_s + 0.5,
-        "{bench_s} s on the bench in {clock_s} s"
-    );
-    window.click("a script asks");
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
-}
-
-#[test]
 fn reaching_a_unit_can_be_given_up() {
     // It never answers, so that it is still being reached however slowly the window is drawn.
     let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
@@ -308,33 +263,6 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     window.click("Reload scripts");
     window.click("Run");
     window.wait_for_part("Run over: passed");
-}
-
-#[test]
-fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
-    let mut unit = Unit::on_pty(&[]);
-    let mut settings = settings(Page::Procedures);
-    settings.language = Language::Korean;
-    settings.unit.endpoint = unit.address.clone();
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("연결");
-    window.until("the unit", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
-    });
-    window.click("시험 시작");
-    window.until("a step", |window| {
-        let run = window.app().units().chosen().run.as_ref();
-        run.is_some_and(|run| run.done > 0)
-    });
-    unit.kill();
-    window.wait_for_part("유닛과의 링크가 끊어졌습니다");
-    window.wait_for_part("시험 종료: 오류");
-    window.until("disconnected", |window| {
-        window.app().units().chosen().phase() == Phase::Offline
-    });
-    let run = latest(&window);
-    assert_eq!(run["run"]["verdict"], "error");
-    assert_eq!(run["run"]["state"], "finished");
 }
 
 #[test]
@@ -495,23 +423,4 @@ fn tab_and_space_are_enough_to_connect() {
         modifiers: Default::default(),
     });
     window.wait_for("SIM-0001");
-}
-
-/// A scripts directory with the shipped units, lines and trains and one procedure of its own.
-fn own_scripts(place: &Place, script: &str) -> std::path::PathBuf {
-    let folder = place.path("scripts");
-    std::fs::create_dir_all(folder.join("own")).expect("folder");
-    for shared in [
-        "units",
-        "lines",
-        "trains",
-        "bench_scatter.toml",
-        "diagnosis.toml",
-        "dictionary.zst",
-    ] {
-        let shipped = scripts().canonicalize().expect("scripts").join(shared);
-        std::os::unix::fs::symlink(shipped, folder.join(shared)).expect("link");
-    }
-    std::fs::write(folder.join("own/own.star"), script).expect("script");
-    folder
 }

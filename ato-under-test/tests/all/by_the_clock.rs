@@ -1,4 +1,4 @@
-//! The unit served on a TCP socket: one client at a time, others are told, and who falls silent is let go.
+//! The unit served on a TCP socket, by the clock: one client at a time, others are told, and who falls silent is let go.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -201,8 +201,8 @@ fn who_follows_on_a_connection_of_its_own_is_heard_at_once() {
 fn kept_for(at_most: Duration, act: impl Fn(&mut Client)) -> (Duration, Duration) {
     let unit = Unit::serve();
     let mut client = Client::connect(&unit);
-    assert!(client.is_answered(Duration::from_secs(2)));
     let (mut kept, began) = (Duration::ZERO, Instant::now());
+    assert!(client.is_answered(Duration::from_secs(2)));
     while kept < at_most && !client.closed {
         act(&mut client);
         client.hear_for(EVERY);

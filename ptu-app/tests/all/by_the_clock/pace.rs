@@ -1,0 +1,149 @@
+//! What takes how long, and what goes at the pace of the clock.
+
+use std::time::{Duration, Instant};
+
+use crate::common::proxy::{frames, proxy, unchanged};
+use crate::common::served::{Running, Unit};
+use crate::common::window::{Window, own_scripts, settings};
+use crate::common::{Place, number, scripts, text};
+use protocol::message::{Channel, LogEntry, Message};
+use ptu_app::gui::Page;
+
+/// What a run may take beside its bench time.
+const BESIDE_S: f64 = 2.0;
+
+/// Goal: nobody waits for what is not measured. Method: a short run on both kinds of port, the second right after
+/// the first.
+#[test]
+fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
+    for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
+        let place = Place::new();
+        for _ in 0..2 {
+            let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+            said.exits(0);
+            let run = &report["run"];
+            let beside_s = number(&run["wall_time_s"]) - number(&run["bench_time_s"]);
+            assert!(beside_s < BESIDE_S, "{beside_s} s on {}", unit.address);
+        }
+    }
+}
+
+#[test]
+fn a_unit_with_another_configuration_is_told_at_once() {
+    let place = Place::new();
+    let read = |name: &str| std::fs::read_to_string(scripts().join(name)).expect(name);
+    for folder in ["units", "lines"] {
+        std::fs::create_dir(place.path(folder)).expect("a folder");
+    }
+    place.write(
+        "units/sg100.toml",
+        &(read("units/sg100.toml") + "# another\n"),
+    );
+    place.write("lines/line8.toml", &read("lines/line8.toml"));
+    let unit = Unit::in_lock_step(&["--scripts", &place.text_path("")]);
+    place
+        .ptu(&["run", "tcms/link", "--unit", &unit.address])
+        .exits(3)
+        .explains(&["unit configuration", "checksum", "--unit-config"]);
+    let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
+    assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
+}
+
+/// Goal: a log without end costs neither the disk nor the time. Method: a unit without stored memory, which from
+/// the first question for its log on sends 4 000 entries a second beyond those it has.
+#[test]
+fn a_log_without_end_is_read_within_its_time_and_bounded() {
+    let unit = Unit::on_tcp(&[]);
+    let mut logged = 0;
+    let mut asked = false;
+    let endless = frames(Channel::Ptu, move |message, out| match message {
+        Message::Status(mut status) if asked => {
+            let entries = (logged..logged + 200).map(|index| LogEntry {
+                index,
+                code: 221,
+                at_ms: index,
+                ..LogEntry::default()
+            });
+            status.events = logged + 100_000;
+            out.push(status.into());
+            out.extend(entries.map(Message::from));
+            logged += 200;
+        }
+        Message::LogEntry(_) | Message::LogEnd(_) => asked = true,
+        Message::StoredEntry(_) | Message::StoredClock(_) | Message::StoredEnd(_) => {}
+        other => out.push(other),
+    });
+    let address = proxy(&unit, unchanged(), endless);
+    let place = Place::new();
+    let began = Instant::now();
+    let said = place.ptu(&["faults", "import", "--unit", &address, "--json"]);
+    let took = began.elapsed();
+    let said = said.exits(3);
+    assert!(took < Duration::from_secs(70), "{took:?}");
+    let imported: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!(imported["complete"], false);
+    assert!(number(&imported["not_stored"]) >= 256.0, "{imported}");
+    assert!(
+        number(&imported["entries"]) <= 256.0 + 60.0 * 40.0,
+        "{imported}"
+    );
+    let id = text(&imported["run_id"]).to_owned();
+    assert_eq!(place.run_ids(), [id]);
+}
+
+#[test]
+fn a_tester_slower_than_the_unit_is_told() {
+    let unit = Unit::on_pty(&[]);
+    let place = Place::new();
+    Running::start(&place, &unit, &["tcms/link", "--slower", "2"])
+        .finish()
+        .exits(3)
+        .explains(&["times as fast", "--slower"]);
+    let as_slow = Unit::on_pty(&["--slower", "2"]);
+    Running::start(&place, &as_slow, &["tcms/link", "--slower", "2"])
+        .finish()
+        .exits(0);
+}
+
+#[test]
+fn the_embedded_unit_can_be_run_at_the_wall_clocks_pace() {
+    let (said, report) = Place::new().run(&["tcms/link", "--realtime"]);
+    said.exits(0);
+    let (bench, wall) = (
+        &report["run"]["bench_time_s"],
+        &report["run"]["wall_time_s"],
+    );
+    assert!(number(wall) >= number(bench), "{wall} s for {bench} s");
+}
+
+#[test]
+fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Lamp\", suspect = \"-\")\n\
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+    );
+    let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for("Does the lamp light?");
+    window.key(Page::Faults.key());
+    window.wait_for("a script asks");
+    let now = |window: &Window| window.app().units().chosen().bench.live().now;
+    let (began, before) = (std::time::Instant::now(), now(&window));
+    for _ in 0..100 {
+        window.step();
+    }
+    let bench_s = now(&window).since(before).as_secs();
+    let clock_s = began.elapsed().as_secs_f64();
+    // A bench that was held up makes up for the scans it missed, and is faster than the clock then.
+    assert!(
+        bench_s < clock_s + 0.5,
+        "{bench_s} s on the bench in {clock_s} s"
+    );
+    window.click("a script asks");
+    window.click("Yes");
+    window.wait_for_part("Run over: passed");
+}
