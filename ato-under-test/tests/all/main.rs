@@ -3,8 +3,8 @@
 mod as_written;
 mod ato_inputs;
 mod automatic_operation;
-mod by_the_clock;
 mod brake_release;
+mod by_the_clock;
 mod command_line;
 mod common;
 mod driverless;

@@ -9,6 +9,9 @@ use crate::common::{Place, number, scripts, text};
 use protocol::message::{Channel, LogEntry, Message};
 use ptu_app::gui::Page;
 
+/// A procedure of two seconds.
+const SHORT: &str =
+    "procedure(title = \"Short\", suspect = \"tcms\")\nstep(\"lasts\", do = wait(s(2)))\n";
 /// What a run may take beside its bench time.
 const BESIDE_S: f64 = 2.0;
 
@@ -18,8 +21,9 @@ const BESIDE_S: f64 = 2.0;
 fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
     for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
         let place = Place::new();
+        place.write("short.star", SHORT);
         for _ in 0..2 {
-            let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
+            let (said, report) = place.run(&["short.star", "--unit", &unit.address]);
             said.exits(0);
             let run = &report["run"];
             let beside_s = number(&run["wall_time_s"]) - number(&run["bench_time_s"]);
@@ -95,19 +99,22 @@ fn a_log_without_end_is_read_within_its_time_and_bounded() {
 fn a_tester_slower_than_the_unit_is_told() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
-    Running::start(&place, &unit, &["tcms/link", "--slower", "2"])
+    place.write("short.star", SHORT);
+    Running::start(&place, &unit, &["short.star", "--slower", "2"])
         .finish()
         .exits(3)
         .explains(&["times as fast", "--slower"]);
     let as_slow = Unit::on_pty(&["--slower", "2"]);
-    Running::start(&place, &as_slow, &["tcms/link", "--slower", "2"])
+    Running::start(&place, &as_slow, &["short.star", "--slower", "2"])
         .finish()
         .exits(0);
 }
 
 #[test]
 fn the_embedded_unit_can_be_run_at_the_wall_clocks_pace() {
-    let (said, report) = Place::new().run(&["tcms/link", "--realtime"]);
+    let place = Place::new();
+    place.write("short.star", SHORT);
+    let (said, report) = place.run(&["short.star", "--realtime"]);
     said.exits(0);
     let (bench, wall) = (
         &report["run"]["bench_time_s"],

@@ -6,6 +6,8 @@ use crate::common::served::{Observer, Running, Unit, passes, released};
 use crate::common::{Place, list, number, text};
 use protocol::message::{Message, Outputs, StatusBits};
 
+/// Steps of a second or two.
+const FEW_STEPS: [&str; 3] = ["atp/limit_speed", "--step", "code ?5 gives*"];
 /// A killed tester's unit is safe again within this time.
 const SAFE_WITHIN: Duration = Duration::from_millis(1000);
 
@@ -22,7 +24,7 @@ fn eb_applied(message: &Message) -> bool {
 fn a_unit_that_stood_still_has_heard_its_inputs_all_the_while() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
-    let arguments = ["atp/limit_speed", "--report", "report.json"];
+    let arguments = [&FEW_STEPS[..], &["--report", "report.json"]].concat();
     let mut run = Running::start(&place, &unit, &arguments);
     run.recorded_steps(2);
     unit.stand_still(Duration::from_millis(420));
@@ -45,14 +47,14 @@ fn a_unit_that_stood_still_has_heard_its_inputs_all_the_while() {
 fn a_step_in_which_the_tester_stood_still_is_repeated_and_no_fault_of_the_unit() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
-    let arguments = [
-        "atp/limit_speed",
+    let report = [
         "tcms/link",
         "--report",
         "report.json",
         "--report",
         "report.junit.xml",
     ];
+    let arguments = [&FEW_STEPS[..], &report].concat();
     let mut run = Running::start(&place, &unit, &arguments);
     run.recorded_steps(1);
     run.stand_still(Duration::from_millis(3000));
