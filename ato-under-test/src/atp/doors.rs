@@ -26,6 +26,8 @@ pub struct DoorInputs {
     pub lines: Option<DoorLines>,
     /// Doors that open without being enabled are supervised: a cab is active, and nothing is wrong with the function.
     pub supervised: bool,
+    /// Enables last until the doors are proved closed: nothing is wrong with that.
+    pub latched: bool,
     pub standstill: bool,
     pub aligned: bool,
     /// The train stands on the arrival station's loop with valid station data.
@@ -104,7 +106,7 @@ impl Doors {
         let enables = [Outputs::DOOR_ENABLE_LEFT, Outputs::DOOR_ENABLE_RIGHT];
         // What was enabled lasts until the doors are proved closed: data of the next section, which come while doors
         // close, must not keep an obstacle from opening them again.
-        let kept = match inputs.standstill && !closed {
+        let kept = match inputs.latched && inputs.standstill && !closed {
             true => self.enable,
             false => Outputs::empty(),
         };
@@ -207,6 +209,7 @@ mod tests {
             let inputs = DoorInputs {
                 lines: Some(DoorLines::new(lines)),
                 supervised: true,
+                latched: true,
                 standstill: true,
                 aligned: true,
                 at_platform: true,
@@ -287,6 +290,7 @@ mod tests {
                 let inputs = DoorInputs {
                     lines: Some(DoorLines::new(lines)),
                     supervised: true,
+                    latched: true,
                     standstill: false,
                     aligned: false,
                     at_platform: false,
@@ -318,6 +322,7 @@ mod tests {
             let inputs = DoorInputs {
                 lines: Some(DoorLines::new(PROVED)),
                 supervised: true,
+                latched: true,
                 standstill: true,
                 aligned: true,
                 at_platform: true,

@@ -78,6 +78,8 @@ pub struct DeadGuards {
     pub stop: bool,
     /// Doors that open without being enabled are not noticed.
     pub doors: bool,
+    /// Door enables go with the station data that gave them.
+    pub enables: bool,
     /// An acknowledgement is not compared with the emergency brake's cause.
     pub release: bool,
     /// ATO jogs as fast and as far as it likes.
@@ -173,6 +175,7 @@ impl Atp {
         let door_inputs = DoorInputs {
             lines: inputs.alive.then_some(door_lines),
             supervised: !context.dead_guards.doors && self.sequence.mode() != Mode::Off,
+            latched: !context.dead_guards.enables,
             standstill,
             aligned: context.aligned,
             at_platform: context.at_platform,

@@ -4,7 +4,8 @@
 //! that must have come by now and has not leaves the position unsure: from there on
 //! [`Locator::ahead_m`] grows, the distance by which the train may be further than it seems. ATO stops by
 //! the most advanced position that can be believed, so that a train without markers stops short
-//! rather than beyond the platform. So it does after a marker that came too early to be believed.
+//! rather than beyond the platform. So it does after a marker that came too early to be believed. Doors are enabled
+//! where the last marker and the way from the one before agree on the stop point alone.
 
 use protocol::Instant;
 use protocol::config::{MarkerConfig, UnitConfig};
@@ -33,6 +34,8 @@ const STANDS_S: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Locator {
     config: MarkerConfig,
+    /// Tolerance of the stop point, m.
+    aligned_m: f64,
     odometer: Odometer,
     wheel: WheelCalibration,
     section: Option<Section>,
@@ -46,6 +49,13 @@ pub struct Locator {
     unsure_since_m: Option<f64>,
     /// Distance by which a marker that was not believed came early, m.
     early_m: f64,
+    /// Position by the way from the marker before, less the place of the last one, m, beyond what the wheels may be
+    /// wrong on that way; 0 where they slid, or where no marker was before.
+    by_way_m: f64,
+    /// The last markers agree with each other and not with one that was believed before.
+    contradicted: bool,
+    /// Markers are held against the way: nothing is wrong with that.
+    holds_markers: bool,
     wheel_reported: bool,
     /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
     span: Option<MarkerSpan>,
@@ -68,6 +78,7 @@ impl Locator {
                 config.ato.watch.wheel_error,
             ),
             config: marker,
+            aligned_m: config.doors.aligned_m,
             section: None,
             fix: PositionFix {
                 place_m: 0.0,
@@ -79,6 +90,9 @@ impl Locator {
             slid_m: 0.0,
             unsure_since_m: None,
             early_m: 0.0,
+            by_way_m: 0.0,
+            contradicted: false,
+            holds_markers: true,
             wheel_reported: false,
             span: None,
             last_marker: 0,
@@ -109,6 +123,8 @@ impl Locator {
             self.slid_m = 0.0;
             self.unsure_since_m = None;
             self.early_m = 0.0;
+            self.by_way_m = 0.0;
+            self.contradicted = false;
             self.wheel_reported = false;
         }
     }
@@ -190,6 +206,7 @@ impl Locator {
                 log.push(now, Event::MarkerMissing, i32::from(missing));
             }
         }
+        self.hold_against_the_way(now, place_m, &detection, log);
         // A span on sliding wheels tells nothing of their diameter.
         if let Some((from, from_m, distance_m)) =
             self.span_from(&detection).filter(|_| self.slid_m == 0.0)
@@ -209,6 +226,56 @@ impl Locator {
         self.slid_m = 0.0;
         self.unsure_since_m = None;
         self.early_m = 0.0;
+    }
+
+    /// Holds a marker that is believed against the way from the marker before. Both may be displaced, and then the stop
+    /// point is elsewhere.
+    fn hold_against_the_way(
+        &mut self,
+        now: Instant,
+        place_m: f64,
+        detection: &MarkerDetection,
+        log: &mut EventLog,
+    ) {
+        let wheels = self.wheels();
+        let run_m = wheels.run_m(detection.distance_m - self.fix.distance_m);
+        let by_fix_m = self.fix.place_m + run_m - place_m;
+        let agrees = libm::fabs(by_fix_m) <= window_m(&self.fix, run_m, &wheels, &self.config);
+        self.contradicted = !agrees && self.fix.marker != 0;
+        self.by_way_m = 0.0;
+        if !self.holds_markers {
+            self.contradicted = false;
+            return;
+        }
+        let Some((from_m, distance_m)) = self.before(detection, agrees) else {
+            return;
+        };
+        let run_m = wheels.scale * (detection.distance_m - distance_m);
+        let error_m = from_m + run_m - place_m;
+        // 2σ: doors that stay closed cost less than doors that open elsewhere.
+        let wrong_m = self.wheel.uncertainty() * libm::fabs(run_m);
+        self.by_way_m = libm::copysign((libm::fabs(error_m) - wrong_m).max(0.0), error_m);
+        if libm::fabs(self.by_way_m) > self.aligned_m {
+            let error_cm = libm::round(error_m * 100.0) as i32;
+            log.push(now, Event::MarkerPosition, error_cm);
+        }
+    }
+
+    /// Place and odometer's distance of the marker before, if the wheels have rolled since: the one of the fix, or the
+    /// one that the present marker agrees with and the fix does not.
+    fn before(&self, detection: &MarkerDetection, agrees: bool) -> Option<(f64, f64)> {
+        if agrees {
+            let rolled = self.fix.marker != 0 && self.slid_m == 0.0;
+            return rolled.then_some((self.fix.place_m, self.fix.distance_m));
+        }
+        let first = self.pending?;
+        let place_m = place_m(self.section.as_ref()?, first.marker)?;
+        (detection.slid_m == first.slid_m).then_some((place_m, first.distance_m))
+    }
+
+    /// Whether markers are held against the way from the one before.
+    pub fn hold_markers(&mut self, holds: bool) {
+        self.holds_markers = holds;
     }
 
     /// Where a span that ends at a believed marker begins, marker, place and distance told, m: at the marker of the
@@ -251,12 +318,14 @@ impl Locator {
         self.span
     }
 
-    /// Stopped within `tolerance_m` of the stop point, the last marker having been seen.
-    pub fn aligned(&self, tolerance_m: f64) -> bool {
+    /// Stopped within tolerance of the stop point, by the last marker and by the way from the marker before.
+    pub fn aligned(&self) -> bool {
+        let within = |distance_m: f64| libm::fabs(distance_m) <= self.aligned_m;
         self.passed_last_marker()
+            && !self.contradicted
             && self
                 .to_stop_m()
-                .is_some_and(|distance| libm::fabs(distance) <= tolerance_m)
+                .is_some_and(|to_stop_m| within(to_stop_m) && within(to_stop_m - self.by_way_m))
     }
 
     /// The section's last marker was seen: the stop point is known by it.
@@ -359,6 +428,65 @@ mod tests {
         };
         locator.step(Instant::ZERO, movement, pulse, &mut log);
         (locator.position_m(), section.markers_m[0])
+    }
+
+    /// Whether the doors of a train that stops at section 61's stop point by its last marker may be enabled: wheels as
+    /// configured, markers displaced by these, m.
+    fn aligned(displaced_m: [f64; 4]) -> bool {
+        let text = include_str!("../../../scripts/units/sg100.toml");
+        let config = UnitConfig::from_toml(text).unwrap();
+        let line = include_str!("../../../scripts/lines/line8.toml");
+        let line = Line::from_toml(line).unwrap();
+        let section = line.section(61).unwrap();
+        let mut locator = Locator::new(&config);
+        let departing = TwcWayside {
+            section: section.section,
+            loop_id: section.from_loop,
+            ..TwcWayside::default()
+        };
+        locator.locate(&departing, &line, true);
+        let mut log = EventLog::default();
+        let mut go = |moved_m, pulse| {
+            let movement = Movement {
+                moved_m,
+                edge_age_s: 0.01,
+                speed_mps: 5.0,
+                standstill: false,
+                driven: true,
+            };
+            locator.step(Instant::ZERO, movement, pulse, &mut log);
+        };
+        let mut at_m = section.start_m;
+        for (marker, (place_m, displaced_m)) in
+            (1..).zip(section.markers_m.iter().zip(displaced_m))
+        {
+            let to_m = place_m + displaced_m;
+            let mut rolled = to_m - at_m;
+            while rolled > 0.05 {
+                go(0.05, None);
+                rolled -= 0.05;
+            }
+            go(rolled, Some(MarkerPulse { marker, age_us: 0 }));
+            at_m = to_m;
+        }
+        let left_m = section.stop_m - section.markers_m[3];
+        go(left_m, None);
+        locator.aligned()
+    }
+
+    /// Goal: doors are enabled where markers and way agree alone. Method: one or two of the last markers displaced; the
+    /// train stops by what they tell, as far from the stop point as they are.
+    #[test]
+    fn markers_that_contradict_the_way_open_nothing() {
+        assert!(aligned([0.0; 4]));
+        assert!(aligned([0.05, -0.05, 0.05, -0.05]));
+        for by_m in [0.36, 0.46, -0.46, 3.0] {
+            assert!(!aligned([0.0, 0.0, 0.0, by_m]), "PSM4 by {by_m} m");
+        }
+        for by_m in [6.0, -6.0, 2.5] {
+            assert!(!aligned([0.0, 0.0, by_m, by_m]), "both by {by_m} m");
+        }
+        assert!(aligned([0.0, 0.0, 5.0, 0.0]), "PSM3 alone is not believed");
     }
 
     #[test]

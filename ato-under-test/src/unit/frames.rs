@@ -146,7 +146,7 @@ impl Unit {
         if sender.is_test() != self.board.modem().sends() {
             return;
         }
-        let Setup { line, config, .. } = &self.setup;
+        let Setup { line, .. } = &self.setup;
         let own = self.number.own();
         if !sender.is_test() {
             self.number.hear(data.train_number);
@@ -168,7 +168,7 @@ impl Unit {
                 &mut self.functions
             }
         };
-        let train = functions.train_state(config);
+        let train = functions.train_state();
         let echoes = faults.at(Place::TwcAnswer).is_some();
         let told = if echoes { data.train_number } else { own };
         let answer = functions.twc.answer(sender, &data, told, train);

@@ -101,7 +101,7 @@ impl Functions {
             vital_passed: around.self_tester.vital_passed(),
             started: around.self_tester.finished(),
             ever_alive: around.ever_heard,
-            aligned: self.aligned(&around.setup.config),
+            aligned: self.aligned(),
             at_platform: self.at_platform(),
             door_side: self
                 .twc
@@ -116,6 +116,7 @@ impl Functions {
                 stop: around.faults.dead(Place::StopGuard),
                 release: around.faults.dead(Place::ReleaseGuard),
                 doors: around.faults.dead(Place::DoorGuard),
+                enables: around.faults.dead(Place::EnableLatch),
                 jog: around.faults.dead(Place::JogGuard),
                 code: around.faults.dead(Place::CodeConfirmation),
                 neutral: around.faults.dead(Place::NeutralGuard),
@@ -160,6 +161,8 @@ impl Functions {
         let marker = self
             .debounce
             .take(now, self.inputs.marker, dead, config, log);
+        self.locator
+            .hold_markers(!around.faults.dead(Place::MarkerGuard));
         self.locator.step(now, movement, marker, log);
         self.compare_tachometers(now, marker, &around.setup.config.tacho, log);
     }
@@ -185,8 +188,8 @@ impl Functions {
         }
     }
 
-    pub fn aligned(&self, config: &UnitConfig) -> bool {
-        self.atp.tachometers().standstill() && self.locator.aligned(config.doors.aligned_m)
+    pub fn aligned(&self) -> bool {
+        self.atp.tachometers().standstill() && self.locator.aligned()
     }
 
     /// On the arrival station's loop, with valid station data.
@@ -198,7 +201,7 @@ impl Functions {
     /// No loop lies where the train is, by data of its section.
     fn between_loops(&self, around: &Surroundings<'_>) -> bool {
         let here = self.locator.section().zip(self.twc.data());
-        here.is_some_and(|(section, data)| {
+        !around.faults.dead(Place::LoopPlaces) && here.is_some_and(|(section, data)| {
             let own = data.section == section.section || data.station == section.to_station;
             own && around
                 .setup
@@ -208,12 +211,12 @@ impl Functions {
     }
 
     /// What the train says of itself to the wayside.
-    pub fn train_state(&self, config: &UnitConfig) -> TrainState {
+    pub fn train_state(&self) -> TrainState {
         let tachometers = self.atp.tachometers();
         TrainState {
             mode: self.atp.sequence().mode(),
             doors_closed: self.atp.doors_closed(),
-            aligned: self.aligned(config),
+            aligned: self.aligned(),
             standstill: tachometers.standstill(),
             speed: tachometers.speed(),
         }
@@ -312,7 +315,7 @@ impl Functions {
             },
             lacking,
             // At its stop point it has nowhere to run: data of the next section are still to come.
-            departure: self.departure(around) && !self.aligned(&around.setup.config),
+            departure: self.departure(around) && !self.aligned(),
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),

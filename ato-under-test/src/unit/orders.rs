@@ -39,8 +39,7 @@ impl Unit {
             .take_orders(now, orders, own, known, &self.faults, &mut self.log);
         if let Some(order) = order {
             let armed = self.test_mode.is_some();
-            let doors_m = setup.config.doors.aligned_m;
-            functions.obey(now, order, armed, doors_m, &mut self.log);
+            functions.obey(now, order, armed, &mut self.log);
         }
         let (received, refused, others) = functions.twc.counts();
         let report = TwcReport {
@@ -75,14 +74,7 @@ impl Unit {
 
 impl Functions {
     /// Begins what the wayside orders, if the train is in the state for it. What is under way already is no new order.
-    fn obey(
-        &mut self,
-        now: Instant,
-        order: TrainOrder,
-        armed: bool,
-        aligned_m: f64,
-        log: &mut EventLog,
-    ) {
+    fn obey(&mut self, now: Instant, order: TrainOrder, armed: bool, log: &mut EventLog) {
         let done = match order {
             TrainOrder::TurnBack => self.cabs.asks() || self.cabs.handed_over(),
             TrainOrder::PutAway => self.stabling.state() == Some(OrderState::PutAway),
@@ -92,7 +84,7 @@ impl Functions {
         if done {
             return;
         }
-        let lacks = self.lacks(order, armed, aligned_m);
+        let lacks = self.lacks(order, armed);
         if !lacks.is_empty() {
             log.push(now, Event::OrderRefused, i32::from(lacks.bits()));
             return;
@@ -105,7 +97,7 @@ impl Functions {
     }
 
     /// What an order needs and the train is not.
-    fn lacks(&self, order: TrainOrder, armed: bool, aligned_m: f64) -> OrderLacks {
+    fn lacks(&self, order: TrainOrder, armed: bool) -> OrderLacks {
         let mut lacks = OrderLacks::empty();
         lacks.set(OrderLacks::DISARMED, armed);
         if order == TrainOrder::WakeUp {
@@ -125,7 +117,7 @@ impl Functions {
         if order == TrainOrder::TurnBack {
             let here = self.twc.data().map(|data| data.station);
             let arrived = here == Some(self.twc.destination()) && self.at_platform();
-            let aligned = standstill && self.locator.aligned(aligned_m);
+            let aligned = standstill && self.locator.aligned();
             lacks.set(OrderLacks::AT_DESTINATION, !(arrived && aligned));
         }
         lacks

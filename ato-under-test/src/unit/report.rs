@@ -132,7 +132,7 @@ fn status_bits(unit: &Unit) -> StatusBits {
     bits.set(StatusBits::TWC_OK, tested.twc.up());
     bits.set(StatusBits::TCMS_OK, unit.tcms.alive());
     bits.set(StatusBits::STATION_VALID, tested.twc.valid());
-    bits.set(StatusBits::ALIGNED, tested.aligned(&unit.setup.config));
+    bits.set(StatusBits::ALIGNED, tested.aligned());
     bits.set(StatusBits::TRA_OK, unit.tra.ok());
     bits.set(StatusBits::ATO_READY, tested.ato_outputs.ready);
     bits.set(StatusBits::STARTED, unit.self_tester.finished());

@@ -358,8 +358,12 @@ fn a_self_test_that_fails_lets_nobody_run() {
     let bits = i32::from(SelfTest::TRA.bits());
     assert_eq!(wayside.parameters(Event::WokenUp), [bits]);
     wayside.bench.station = Some(onward(true));
-    wayside.run(2.0);
-    assert_ne!(wayside.bench.status.mode, Mode::AutomaticRun);
+    for _ in 0..200 {
+        wayside.run(0.1);
+        assert!(wayside.braked(), "it would roll");
+        assert!(wayside.asks(AtcToTcmsBits::PUT_AWAY), "the parking brake");
+        assert_eq!(wayside.bench.status.mode, Mode::Off);
+    }
 }
 
 /// Goal: nobody wakes a train by switching it off and on. Method: the flash of a unit that was put away is given to

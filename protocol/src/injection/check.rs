@@ -73,6 +73,9 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::NeutralGuard
         | Place::SpeedGuard
         | Place::ReleaseStandstill
+        | Place::MarkerGuard
+        | Place::EnableLatch
+        | Place::LoopPlaces
         | Place::SpeedSensors
         | Place::ArmStandstill
         | Place::ArmBrakes

@@ -130,6 +130,12 @@ pub enum Place {
     SpeedGuard,
     /// Standstill as a condition of release of the emergency brake: no pulse.
     ReleaseStandstill,
+    /// Comparison of a marker with the way from the one before.
+    MarkerGuard,
+    /// Door enables that last until the doors are proved closed.
+    EnableLatch,
+    /// The track database's places of the loops.
+    LoopPlaces,
     /// Supply of both speed sensors.
     SpeedSensors,
     /// Debouncing of marker pulses.

@@ -14,7 +14,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use serialport::SerialPort;
 
-use super::{Place, Said, list, scripts};
+use super::{Place, Said, scripts};
 
 /// How much more the system should care for who must keep time.
 const URGENT: [&str; 2] = ["-n", "-15"];
@@ -165,7 +165,7 @@ impl<'a> Running<'a> {
         Self { child, place }
     }
 
-    /// Waits until so many steps are recorded, and gives them.
+    /// Waits until so many steps are recorded, and gives them; attempts that are repeated do not count.
     pub fn recorded_steps(&mut self, count: usize) -> Vec<Value> {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
@@ -173,8 +173,10 @@ impl<'a> Running<'a> {
             assert!(ended.is_none(), "ptu ended before {count} steps: {ended:?}");
             let shown = self.place.ptu(&["runs", "show", "latest", "--json"]);
             let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
-            if run["steps"].as_array().is_some_and(|s| s.len() >= count) {
-                return list(&run["steps"]).to_vec();
+            let mut steps = run["steps"].as_array().cloned().unwrap_or_default();
+            steps.retain(|step| step["verdict"] != "skipped");
+            if steps.len() >= count {
+                return steps;
             }
             std::thread::sleep(Duration::from_millis(30));
         }
