@@ -13,11 +13,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
 use crate::operator::HOW_TO_ANSWER;
+use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
 use ptu_bench::stored::{outside_of, standing, was_repeated};
 use ptu_bench::table::{Table, cell};
+use ptu_report::coverage_text;
+use ptu_report::words::Language;
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
@@ -206,7 +209,7 @@ pub fn verdict_table(run: &RunDetail) -> String {
     let mut text = match run.steps[..] {
         // A unit's own log, imported, or a run that never began.
         [] => format!("{}, no steps", run.run.source),
-        _ => procedures(run).render(),
+        _ => part(run) + &procedures(run).render(),
     };
     let failed: Vec<_> = run
         .steps
@@ -303,4 +306,14 @@ fn summary(run: &RunDetail) -> String {
             .verdict
             .map_or("interrupted", |verdict| verdict.as_str())
     )
+}
+
+/// The first line, where steps were skipped.
+fn part(run: &RunDetail) -> String {
+    let coverage = coverage_text(&Coverage::of_run(&run.steps), Language::English.words());
+    let verdict = run
+        .run
+        .verdict
+        .map_or("interrupted", |verdict| verdict.as_str());
+    coverage.map_or_else(String::new, |part| format!("{verdict}: {part}\n\n"))
 }

@@ -255,7 +255,7 @@ impl Locator {
         // 2σ: doors that stay closed cost less than doors that open elsewhere.
         let wrong_m = self.wheel.uncertainty() * libm::fabs(run_m);
         self.by_way_m = libm::copysign((libm::fabs(error_m) - wrong_m).max(0.0), error_m);
-        if libm::fabs(self.by_way_m) > self.aligned_m {
+        if detection.marker == MARKERS && libm::fabs(self.by_way_m) > self.aligned_m {
             let error_cm = libm::round(error_m * 100.0) as i32;
             log.push(now, Event::MarkerPosition, error_cm);
         }
@@ -457,8 +457,7 @@ mod tests {
             locator.step(Instant::ZERO, movement, pulse, &mut log);
         };
         let mut at_m = section.start_m;
-        for (marker, (place_m, displaced_m)) in
-            (1..).zip(section.markers_m.iter().zip(displaced_m))
+        for (marker, (place_m, displaced_m)) in (1..).zip(section.markers_m.iter().zip(displaced_m))
         {
             let to_m = place_m + displaced_m;
             let mut rolled = to_m - at_m;

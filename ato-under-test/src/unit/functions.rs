@@ -201,13 +201,14 @@ impl Functions {
     /// No loop lies where the train is, by data of its section.
     fn between_loops(&self, around: &Surroundings<'_>) -> bool {
         let here = self.locator.section().zip(self.twc.data());
-        !around.faults.dead(Place::LoopPlaces) && here.is_some_and(|(section, data)| {
-            let own = data.section == section.section || data.station == section.to_station;
-            own && around
-                .setup
-                .line
-                .between_loops(section, self.locator.position_m())
-        })
+        !around.faults.dead(Place::LoopPlaces)
+            && here.is_some_and(|(section, data)| {
+                let own = data.section == section.section || data.station == section.to_station;
+                own && around
+                    .setup
+                    .line
+                    .between_loops(section, self.locator.position_m())
+            })
     }
 
     /// What the train says of itself to the wayside.

@@ -34,8 +34,9 @@ impl Connection {
     }
 }
 
-/// Why a procedure of a bench is not run on a train.
-const NEEDS_HARNESS: &str = "needs the bench harness, and only the maintenance port is connected";
+/// Why the steps of a procedure of a bench are skipped on a train.
+pub const NEEDS_HARNESS: &str =
+    "needs the bench harness, and only the maintenance port is connected";
 
 /// One check procedure: one script file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -19,6 +19,7 @@ pub mod aboard;
 pub mod bench_worker;
 pub mod campaign;
 pub mod clock;
+pub mod coverage;
 pub mod data;
 pub mod drive;
 pub mod failure;

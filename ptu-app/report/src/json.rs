@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use ptu_bench::clock::rfc3339;
+use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
 use ptu_bench::stored::{STEP, outside_of};
 
@@ -17,6 +18,7 @@ use ptu_bench::stored::{STEP, outside_of};
 pub fn run_json(run: &RunDetail) -> Value {
     json!({
         "run": run_summary_json(&run.run),
+        "coverage": coverage_json(&Coverage::of_run(&run.steps)),
         "scripts": run.scripts.iter().map(|script| json!({
             "path": script.path, "sha256": script.sha256,
         })).collect::<Vec<_>>(),
@@ -26,6 +28,13 @@ pub fn run_json(run: &RunDetail) -> Value {
             "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
         })).collect::<Vec<_>>(),
         "seal": run.seal,
+    })
+}
+
+fn coverage_json(coverage: &Coverage) -> Value {
+    json!({
+        "steps": coverage.of, "run": coverage.run, "passed": coverage.passed,
+        "need_bench": coverage.need_bench, "on_bench": coverage.on_bench,
     })
 }
 

@@ -8,6 +8,9 @@ use fault_db::{RunDetail, StepRecord, Verdict};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
+use crate::coverage_text;
+use crate::words::Language;
+use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
 use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
 
@@ -16,7 +19,9 @@ use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
 /// A run that did not pass has a case that did not: also one without a verdict, and one of a program that did not
 /// store what failed outside steps.
 pub fn junit(run: &RunDetail) -> Result<String, Failure> {
-    let mut report = Report::new(format!("ptu run {}", run.run.id));
+    let coverage = coverage_text(&Coverage::of_run(&run.steps), Language::English.words());
+    let part = coverage.map_or_else(String::new, |part| format!(": {part}"));
+    let mut report = Report::new(format!("ptu run {}{part}", run.run.id));
     let began_us = run.run.started_at_us;
     report.set_timestamp(utc(began_us));
     for steps in run.steps.chunk_by(|a, b| a.procedure == b.procedure) {

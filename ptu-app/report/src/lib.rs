@@ -8,6 +8,7 @@
 //! * [`words`]: the texts in two languages; [`fonts`]: the font for them; [`limits`]: values and limits.
 
 pub mod campaign;
+mod coverage;
 pub mod csv;
 pub mod diagnosis;
 pub mod drive;
@@ -25,6 +26,7 @@ pub mod trace_io;
 pub mod trace_view;
 pub mod words;
 
+pub use coverage::coverage_text;
 pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
 use target::page_text;
 pub use target::{Target, write, write_beside};

@@ -9,6 +9,7 @@ use btu_rig::procedure::{
 };
 use protocol::Duration;
 
+use crate::coverage::Coverage;
 use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, steps_of};
 
 /// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
@@ -104,6 +105,19 @@ impl Waiting {
 }
 
 impl Progress {
+    /// How much of what was chosen was run.
+    pub fn coverage(&self) -> Coverage {
+        let mut coverage = Coverage::default();
+        for procedure in &self.procedures {
+            let results = procedure.results.iter();
+            for step in results.filter(|step| !step.repeated && outside_place(step).is_none()) {
+                let verdict = crate::stored::stored(step.verdict);
+                coverage.note(&procedure.procedure.id, verdict, &step.message);
+            }
+        }
+        coverage
+    }
+
     /// Of a plan that has not begun, on this unit.
     pub fn new(plan: &RunPlan, unit: String) -> Self {
         let procedure = |task: &crate::run::Task| {

@@ -9,8 +9,10 @@ use super::diagnosis::diagnosis;
 use super::plots::plots;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
+use crate::coverage_text;
 use crate::words::{Language, Words, fill};
 use ptu_bench::clock::{local, local_zoned};
+use ptu_bench::coverage::Coverage;
 use ptu_bench::stored::outside_of;
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
@@ -48,10 +50,12 @@ fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (sheet.run.steps.iter()).partition(|step| outside_of(step).is_none());
     let not_passed = steps.iter().filter(|step| !passed(step.verdict)).count();
     let of = steps.len();
-    let mut counted = match (of, not_passed) {
-        (0, _) => report.no_steps.to_owned(),
-        (_, 0) => fill(report.all_passed, &[("of", &of)]),
-        (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
+    let coverage = coverage_text(&Coverage::of_run(&sheet.run.steps), words);
+    let mut counted = match (coverage, of, not_passed) {
+        (Some(part), ..) => part,
+        (None, 0, _) => report.no_steps.to_owned(),
+        (None, _, 0) => fill(report.all_passed, &[("of", &of)]),
+        (None, _, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
     };
     if !outside.is_empty() {
         let more = fill(report.outside_steps, &[("n", &outside.len())]);

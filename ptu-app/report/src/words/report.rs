@@ -13,6 +13,9 @@ wordings! {
         sheet: "Test sheet", "시험 성적서";
         of_unit: "Unit {serial}, run {run}", "유닛 {serial}, 시험 {run}";
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
+        part_passed: "{run} of {of} steps run, all passed; {skipped} skipped", "{of}개 단계 중 {run}개 수행, 모두 합격; {skipped}개 건너뜀";
+        part_not_passed: "{run} of {of} steps run, {n} did not pass; {skipped} skipped", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {skipped}개 건너뜀";
+        needs_bench: "; {n} need the bench harness: {what}", "; {n}개는 벤치 하네스 필요: {what}";
         all_passed: "{of} steps", "{of}개 단계";
         outside_steps: "Outside steps: {n}", "단계 외 미합격: {n}건";
         no_steps: "No steps were run.", "수행된 단계가 없습니다.";

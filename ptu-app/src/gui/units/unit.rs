@@ -13,6 +13,7 @@ use crate::gui::request::Request;
 use ptu_bench::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{BenchChoice, BenchSetup, SessionEvent};
+use ptu_report::coverage_text;
 use ptu_report::words::{Words, fill};
 
 /// Entries of a unit's log that are shown.
@@ -187,7 +188,10 @@ impl Unit {
             BenchEvent::RunEnded(outcome) => {
                 self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
-                said.note(fill(frame.run_ended, &[("verdict", &verdict)]));
+                let ended = fill(frame.run_ended, &[("verdict", &verdict)]);
+                let coverage = self.run.as_ref().map(Progress::coverage);
+                let part = coverage.and_then(|coverage| coverage_text(&coverage, words));
+                said.note(part.map_or(ended.clone(), |part| format!("{ended} ({part})")));
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
                 }
