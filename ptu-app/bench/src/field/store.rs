@@ -162,6 +162,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         unit_config_sha256: source.unit_config_sha256.clone(),
         injected: None,
         owner: crate::process_id::this_process(),
+        continues: None,
         scripts: Vec::new(),
     }
 }
