@@ -47,6 +47,12 @@ fn only_what_brings_runs_in_makes_a_database() {
         &["faults", "state", "12345678", "closed"],
         &["faults", "repair", "12345678", "--part", "tra"],
         &["faults", "cause", "12345678", "tra"],
+        &["db", "sync", "postgres://kim@127.0.0.1:1/h"],
+        &["campaign", "--faults", "eb_relay.open"],
+        &["record", "pull", "--unit", "tcp:127.0.0.1:1"],
+        &["run", "--resume", "latest"],
+        &["drive"],
+        &["gui"],
     ] {
         let said = place.ptu(&[arguments, &["--db", &db]].concat());
         assert!(
