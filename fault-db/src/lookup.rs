@@ -94,6 +94,12 @@ impl Store {
         let matches = self.matches(named, &digits.to_ascii_lowercase());
         let matches = matches.map_err(|error| self.failed(DOING, error))?;
         match matches[..] {
+            [] if let Some(run) = self.run_that_names(named, &digits.to_ascii_lowercase())? => {
+                Err(StoreError::TraceMissing {
+                    asked: asked.to_owned(),
+                    run,
+                })
+            }
             [] => Err(StoreError::NotFound {
                 what,
                 asked: asked.to_owned(),
@@ -105,6 +111,19 @@ impl Store {
                 matches,
             }),
         }
+    }
+
+    /// The run whose seal names a trace of this id that a file does not have.
+    fn run_that_names(&self, named: &NamedTable, digits: &str) -> Result<Option<Id>, StoreError> {
+        if named.table != "trace" || !matches!(self.backend(), Backend::File(_)) {
+            return Ok(None);
+        }
+        const SQL: &str = "SELECT s.id FROM seal s,
+                json_each(CASE WHEN json_valid(s.says) THEN s.says ELSE '{}' END, '$.traces') t
+            WHERE s.what = 'run' AND (
+                replace(t.value ->> 'id', '-', '') LIKE ?1 || '%'
+                OR replace(t.value ->> 'id', '-', '') LIKE '%' || ?1) LIMIT 1";
+        self.first(DOING, SQL, &[digits.into()], |row| row.get(0))
     }
 
     fn matches(&self, named: &NamedTable, digits: &str) -> SqlResult<Vec<Id>> {

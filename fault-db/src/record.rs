@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::id::Id;
 use crate::text_enum::text_enum;
 
 text_enum! {
@@ -74,6 +75,8 @@ pub struct RunRecord {
     pub owner: String,
     /// The procedure files used.
     pub scripts: Vec<ScriptRecord>,
+    /// The earlier run whose open procedures it runs.
+    pub continues: Option<Id>,
 }
 
 /// A run at its end.

@@ -24,6 +24,7 @@ const STEPS: &[&str] = &[
         include_str!("schema/0007.sql"),
         include_str!("schema/packed.sql")
     ),
+    include_str!("schema/0008.sql"),
 ];
 
 /// Recomputes the tables of counts.

@@ -57,6 +57,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         train: String::new(),
         scripts_sha256: String::new(),
         adaptive: None,
+        continues: None,
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();

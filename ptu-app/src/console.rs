@@ -17,7 +17,7 @@ use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_bench::stdio;
-use ptu_bench::stored::{outside_of, standing, was_repeated};
+use ptu_bench::stored::{of_procedure, outside_of, standing, was_repeated};
 use ptu_bench::table::{Table, cell};
 use ptu_report::coverage_text;
 use ptu_report::words::Language;
@@ -267,7 +267,7 @@ fn procedures(run: &RunDetail) -> Table {
         let time: i64 = mine.iter().map(|step| step.bench_time_us).sum();
         table.row([
             first.procedure.clone(),
-            worst(mine, run.run.verdict).into(),
+            of_procedure(mine, run.run.verdict).as_str().into(),
             of_script.to_string(),
             passed.to_string(),
             format!("{:.1} s", time as f64 / 1e6),
@@ -277,25 +277,14 @@ fn procedures(run: &RunDetail) -> Table {
     table
 }
 
-/// The verdict of a procedure. One that was broken off is an error, as its run is; in any other run a check
-/// that failed is said before one that could not be made.
-fn worst(steps: &[fault_db::StepRecord], run: Option<fault_db::Verdict>) -> &'static str {
-    use fault_db::Verdict::{Aborted, Error, Failed, Passed};
-    let order = match run {
-        Some(Error) => [Aborted, Error, Failed, Passed],
-        _ => [Aborted, Failed, Error, Passed],
-    };
-    order
-        .into_iter()
-        .find(|verdict| steps.iter().any(|step| step.verdict == *verdict))
-        .map_or("skipped", |verdict| verdict.as_str())
-}
-
 fn summary(run: &RunDetail) -> String {
     let bench_s = run.run.bench_time_us.unwrap_or(0) as f64 / 1e6;
     let wall_s = run.run.wall_time_us.unwrap_or(0) as f64 / 1e6;
+    let continued = (run.run.continues).map_or_else(String::new, |earlier| {
+        format!("\ncontinues run {}", earlier.short())
+    });
     format!(
-        "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s",
+        "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s{continued}",
         run.run.id.short(),
         display_text::line(&run.run.unit_serial),
         standing(&run.steps)

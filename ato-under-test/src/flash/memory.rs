@@ -24,8 +24,8 @@ const EVENT_BLOCKS: usize = 64;
 const PER_SCAN: usize = 4;
 /// Times that are stored in a power-up: more would push the events out.
 const CLOCKS: u8 = 32;
-/// The years 2000 to 2100, ms since 1970: others are of a tester whose own clock is not set.
-const UTC_MS: core::ops::Range<u64> = 946_684_800_000..4_102_444_800_000;
+/// The years 2000 to 2100, both included, ms since 1970: others are of a tester whose own clock is not set.
+const UTC_MS: core::ops::Range<u64> = 946_684_800_000..4_133_980_800_000;
 /// Numbers looked at in a cycle when damaged ones are passed over.
 const LOOKED_AT: u32 = 512;
 
@@ -152,7 +152,10 @@ impl Memory {
     /// # Errors
     /// Why it is not stored.
     pub fn set_clock(&mut self, now: Instant, told: SetClock) -> Result<(), SetClockError> {
-        if !UTC_MS.contains(&told.utc_ms) || self.clocks >= CLOCKS {
+        // However many were told, one at most half as uncertain as the best is stored: at most 17 more.
+        let best = self.clock.map_or(u16::MAX, |clock| clock.uncertainty_ms);
+        let is_too_many = self.clocks >= CLOCKS && told.uncertainty_ms >= best.div_ceil(2);
+        if !UTC_MS.contains(&told.utc_ms) || is_too_many {
             return Err(SetClockError::OutOfRange);
         }
         let rings = self.rings.as_ref().ok_or(SetClockError::Failed)?;
@@ -163,9 +166,12 @@ impl Memory {
             utc_ms: told.utc_ms,
             uncertainty_ms: told.uncertainty_ms,
         };
-        self.clocks += 1;
+        self.clocks = self.clocks.saturating_add(1);
         let stored = self.store(StoreKind::Events, &clock);
-        self.clock = Some(clock);
+        // Written again in each block: the best one, of equals the last.
+        if clock.uncertainty_ms <= best {
+            self.clock = Some(clock);
+        }
         stored.map_err(|_| SetClockError::Failed)
     }
 

@@ -266,6 +266,7 @@ fn run_record(fleet: &Fleet, visit: &Visit, chance: &mut Chance) -> RunRecord {
         unit_config_sha256: "cd".repeat(32),
         injected: None,
         owner: "history".to_owned(),
+        continues: None,
         scripts: if visit.of_log {
             Vec::new()
         } else {

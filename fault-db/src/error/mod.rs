@@ -146,6 +146,17 @@ pub enum StoreError {
         /// What was asked.
         asked: String,
     },
+    /// A run names the trace, which is not here.
+    #[error(
+        "trace {asked:?} of run {run} is not here: it was pruned, taken out, or refused by an import because it did \
+         not fit its seal; importing a whole copy of the file that recorded it brings it"
+    )]
+    TraceMissing {
+        /// What was asked.
+        asked: String,
+        /// The run.
+        run: Id,
+    },
     /// A partial id that fits more than one row.
     #[error("{asked:?} fits more than one {what}: {}; give more digits", list(.matches))]
     Ambiguous {

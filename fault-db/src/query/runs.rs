@@ -87,6 +87,8 @@ pub struct RunSummary {
     pub unit_config_sha256: String,
     /// Faults injected on purpose.
     pub injected: Option<String>,
+    /// The earlier run whose open procedures it ran.
+    pub continues: Option<Id>,
     /// Steps recorded, and what failed outside them.
     pub steps: u32,
     /// Of these, what failed, could not be tested or was stopped.
@@ -148,7 +150,7 @@ const SELECT_RUN: &str = "
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
         (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq, r.train
+        r.seq, r.train, r.continues
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -314,6 +316,7 @@ fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummar
         scripts_sha256: row.get(15)?,
         unit_config_sha256: row.get(16)?,
         injected: row.get(17)?,
+        continues: row.get(23)?,
         steps: row.get(18)?,
         steps_not_passed: row.get(19)?,
         faults: row.get(20)?,

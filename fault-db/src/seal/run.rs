@@ -73,6 +73,7 @@ pub(crate) struct RunDigest {
     measurements: CanonicalHash,
     occurrences: BTreeMap<Id, [u8; 32]>,
     payload: RunPayload,
+    continues: Option<Id>,
 }
 
 impl RunDigest {
@@ -113,6 +114,7 @@ impl RunDigest {
             measurements: CanonicalHash::new(),
             occurrences: BTreeMap::new(),
             payload: RunPayload::default(),
+            continues: record.continues,
         }
     }
 
@@ -191,6 +193,9 @@ impl RunDigest {
             end.bench_time_us,
             end.wall_time_us,
         ]);
+        if let Some(earlier) = self.continues {
+            run.values(&values![earlier]);
+        }
         let payload = self.payload.text();
         let parts = [
             self.scripts,
@@ -230,6 +235,9 @@ const RUN: &str =
         r.wall_time_us
      FROM run r JOIN unit u ON u.seq = r.unit WHERE r.seq = ?1";
 
+/// Of a run that continues no other it adds nothing.
+const CONTINUES: &str = "SELECT continues FROM run WHERE seq = ?1 AND continues IS NOT NULL";
+
 const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
     "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us, message,
@@ -264,6 +272,7 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
     parts[3] = joined(occurrences.values());
     let mut whole_run = CanonicalHash::of("run");
     take_rows(&mut whole_run, backend, RUN, &of_run)?;
+    take_rows(&mut whole_run, backend, CONTINUES, &of_run)?;
     Ok(whole(whole_run, parts, payload))
 }
 

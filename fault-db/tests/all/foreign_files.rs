@@ -289,6 +289,51 @@ fn an_invalid_row_is_reported_and_all_others_are_merged() {
     }
 }
 
+/// Goal: a person is told why a trace of a run that came is not there, and what brings it. Method: a damaged trace, then
+/// the good file.
+#[test]
+fn a_trace_that_an_import_refused_is_told_until_a_good_file_brings_it() {
+    let dir = tempdir().expect("a directory");
+    let (source, damaged) = (dir.path().join("source.db"), dir.path().join("damaged.db"));
+    let theirs = opened(&source, 1);
+    let run = whole_run(&theirs, "BAD");
+    let trace = theirs.resolve_trace("latest").expect("its trace");
+    theirs.close().expect("closed");
+    std::fs::copy(&source, &damaged).expect("copied");
+    change(&damaged, "UPDATE trace SET t0_us = t0_us + 1");
+    let ours = opened(&dir.path().join("ours.db"), 2);
+    assert_eq!(ours.import(&damaged).expect("imported").refused.count, 1);
+    let problems = ours.check().expect("a check").problems;
+    let [problem] = &problems[..] else {
+        panic!("{problems:?}")
+    };
+    for words in [&trace.to_string(), "refused", "import a whole copy"] {
+        assert!(problem.detail.contains(words), "{}", problem.detail);
+    }
+    for asked in [
+        trace.to_string(),
+        trace.short(),
+        trace.to_string()[..13].to_owned(),
+    ] {
+        let said = ours
+            .resolve_trace(&asked)
+            .expect_err("not here")
+            .to_string();
+        assert!(
+            said.contains("refused") && said.contains(&run.to_string()),
+            "{said}"
+        );
+    }
+    let other = ours.resolve_trace("ffffffff").expect_err("of no run");
+    assert!(
+        matches!(other, fault_db::StoreError::NotFound { .. }),
+        "{other}"
+    );
+    assert_eq!(ours.import(&source).expect("the good file").traces, 1);
+    assert_eq!(ours.resolve_trace(&trace.short()).expect("here"), trace);
+    assert_eq!(ours.check().expect("a check").problems, []);
+}
+
 /// Goal: nothing is sealed here that was not sealed there.
 #[test]
 fn runs_without_seals_are_not_merged() {

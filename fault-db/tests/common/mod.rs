@@ -99,6 +99,7 @@ pub fn run_record(serial: &str) -> RunRecord {
         unit_config_sha256: "cd".repeat(32),
         injected: None,
         owner: "pid 1 started 2".to_owned(),
+        continues: None,
         scripts: vec![ScriptRecord {
             path: "scripts/atp/speed.star".to_owned(),
             sha256: "ef".repeat(32),

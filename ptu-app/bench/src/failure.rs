@@ -81,6 +81,7 @@ impl From<StoreError> for Failure {
         // Asking for the wrong thing is the caller's mistake; a file that does not serve is not.
         let exit = match error {
             StoreError::NotFound { .. }
+            | StoreError::TraceMissing { .. }
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
             | StoreError::NoWords { .. }

@@ -92,6 +92,18 @@ pub fn was_repeated(steps: &[StepRecord], place: usize) -> bool {
             .any(|later| later.name == step.name && outside_of(later).is_none())
 }
 
+/// The verdict of a procedure by its records, in a run with this verdict. One that was broken off is an error, as its
+/// run is; in any other run a check that failed is said before one that could not be made.
+pub fn of_procedure(records: &[StepRecord], run: Option<fault_db::Verdict>) -> fault_db::Verdict {
+    use fault_db::Verdict::{Aborted, Error, Failed, Passed, Skipped};
+    let order = match run {
+        Some(Error) => [Aborted, Error, Failed, Passed],
+        _ => [Aborted, Failed, Error, Passed],
+    };
+    let is_there = |verdict: &fault_db::Verdict| records.iter().any(|r| r.verdict == *verdict);
+    order.into_iter().find(is_there).unwrap_or(Skipped)
+}
+
 /// Results of steps that stand, without attempts that were made again.
 pub fn standing(steps: &[StepRecord]) -> impl Iterator<Item = &StepRecord> {
     let places = (0..steps.len()).filter(|place| !was_repeated(steps, *place));

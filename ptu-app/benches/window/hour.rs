@@ -76,6 +76,7 @@ pub fn write(file: &Path) {
         unit_config_sha256: String::new(),
         injected: None,
         owner: String::new(),
+        continues: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &record).expect("a run");

@@ -56,6 +56,7 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
         "bench_time_s": run.bench_time_us.map(seconds),
         "wall_time_s": run.wall_time_us.map(seconds),
         "injected": run.injected,
+        "continues": run.continues.map(|earlier| earlier.to_string()),
         "app_version": run.app_version,
         "scripts_sha256": run.scripts_sha256,
         "unit_config_sha256": run.unit_config_sha256,

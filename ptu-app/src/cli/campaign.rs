@@ -109,6 +109,7 @@ impl CampaignArguments {
         for file in self.save.iter().chain(&self.runs) {
             ptu_bench::data::check_writable(file)?;
         }
+        self.database.check_named()?;
         let store = self.database.open_file()?;
         let stop = Stop::default();
         stop.listen();

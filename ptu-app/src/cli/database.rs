@@ -92,6 +92,16 @@ impl Database {
         }
     }
 
+    /// A file that was named has to be there, as the name may be mistyped; the user's own may be made.
+    pub(in crate::cli) fn check_named(&self) -> Result<(), Failure> {
+        match self.place()? {
+            DatabasePlace::File(path) if self.named().is_some() && !path.exists() => {
+                Err(StoreError::Missing { path }.into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Opens it for writing, and makes a file if need be: for what brings runs in.
     pub(in crate::cli) fn open_or_make(&self) -> Result<Store, Failure> {
         match self.place()? {

@@ -18,6 +18,7 @@ use ptu_report::words::Language;
 ///   ptu gui --lang ko           in Korean
 ///   ptu gui --page traces       with the traces in front
 ///   ptu gui --unit sim          connected to the embedded unit at once
+///   ptu gui --new --db b.db     with a database that is made
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct GuiArguments {
@@ -41,6 +42,9 @@ pub struct GuiArguments {
         requires = "unit"
     )]
     inject: Vec<String>,
+    /// Make the database that --db names if it is not there
+    #[arg(long)]
+    new: bool,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -63,6 +67,11 @@ impl GuiArguments {
 
     /// Opens it and stays until it is closed.
     pub fn run(self) -> Result<Exit, Failure> {
+        if !self.new {
+            self.database.check_named().map_err(|failure| {
+                Failure::bench(format!("{failure}; `ptu gui --new` makes it"))
+            })?;
+        }
         let settings_file = Settings::usual_file();
         let mut settings = settings_file
             .as_deref()

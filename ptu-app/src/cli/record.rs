@@ -28,7 +28,10 @@ impl RecordArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             // What is pulled is a run, and runs are recorded in a file.
-            Verb::Pull(arguments) => arguments.run(self.database.open_file()?),
+            Verb::Pull(arguments) => {
+                self.database.check_named()?;
+                arguments.run(self.database.open_file()?)
+            }
             Verb::Compare(arguments) => arguments.run(&self.database.open_read_only()?),
         }
     }

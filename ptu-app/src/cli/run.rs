@@ -1,5 +1,7 @@
 //! `ptu run`: check procedures.
 
+mod resume;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -25,6 +27,11 @@ use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
 use ptu_report::diagnosis::diagnosis_text;
 
+/// What is taken where nothing is named.
+const LINE: &str = "line8";
+const UNIT_CONFIG: &str = "sg100";
+const SEED: u64 = 1;
+
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
 /// Examples:
@@ -39,25 +46,26 @@ use ptu_report::diagnosis::diagnosis_text;
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
 ///   ptu run --report out.json --report out.junit.xml
+///   ptu run --resume latest                     what the latest run left without a verdict
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct RunArguments {
     /// Procedures: paths, folders or globs
     #[arg(value_name = "PATH|GLOB")]
     procedures: Vec<String>,
-    /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
-    #[arg(long, value_name = "UNIT", default_value = "sim")]
-    unit: Endpoint,
+    /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH [default: sim]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<Endpoint>,
     /// Whether the bench harness is connected: auto (found out), none (a laptop on a train) or bench; with `sim`,
     /// none is the embedded unit aboard a simulated train
     #[arg(long, value_name = "WHICH", default_value = "auto")]
     harness: Harness,
-    /// Line, lines/NAME.toml
-    #[arg(long, value_name = "NAME", default_value = "line8")]
-    line: String,
-    /// Unit configuration, units/NAME.toml
-    #[arg(long, value_name = "NAME", default_value = "sg100")]
-    unit_config: String,
+    /// Line, lines/NAME.toml [default: line8]
+    #[arg(long, value_name = "NAME")]
+    line: Option<String>,
+    /// Unit configuration, units/NAME.toml [default: sg100]
+    #[arg(long, value_name = "NAME")]
+    unit_config: Option<String>,
     /// Train around the unit, trains/NAME.toml or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
@@ -80,9 +88,9 @@ pub struct RunArguments {
     /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
-    /// Seed of everything random
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    /// Seed of everything random [default: 1]
+    #[arg(long)]
+    seed: Option<u64>,
     /// Draw by the seed what differs between good units, trains and benches: sensor noise, wheels, load,
     /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
@@ -123,6 +131,8 @@ pub struct RunArguments {
     #[arg(long, conflicts_with_all = ["check", "list", "step", "shuffle", "stop_on_fail"])]
     adaptive: bool,
     #[command(flatten)]
+    resume: resume::ResumeOption,
+    #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
     database: Database,
@@ -132,8 +142,9 @@ pub struct RunArguments {
 
 impl RunArguments {
     /// Loads, then checks, lists or runs.
-    pub fn run(self) -> Result<Exit, Failure> {
+    pub fn run(mut self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
+        let earlier = self.take_over()?;
         let mut setup = self.setup(&directory)?;
         let Suite {
             procedures,
@@ -163,6 +174,9 @@ impl RunArguments {
             }
             stdio::note(&format!("left out: {why}"));
         }
+        if let Some(earlier) = &earlier {
+            resume::tell_changes(earlier, &procedures, &setup);
+        }
         if self.check {
             let steps: usize = procedures
                 .iter()
@@ -189,18 +203,20 @@ impl RunArguments {
             train: self.train_no.clone(),
             scripts_sha256,
             adaptive: None,
+            continues: earlier.map(|earlier| earlier.run.id),
         };
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
     }
 
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
-        if self.unit != Endpoint::Sim && self.jobs > 1 {
+        let unit = self.unit.clone().unwrap_or(Endpoint::Sim);
+        if unit != Endpoint::Sim && self.jobs > 1 {
             return Err(Failure::usage(
                 "--jobs works on embedded units only; one port is one unit",
             ));
         }
-        if self.slower > 1 && self.unit == Endpoint::Sim && !self.realtime {
+        if self.slower > 1 && unit == Endpoint::Sim && !self.realtime {
             return Err(Failure::usage(
                 "--slower is for what goes by the clock: a unit on a port, or --realtime",
             ));
@@ -209,23 +225,31 @@ impl RunArguments {
             check_serial(serial)?;
         }
         BenchChoice {
-            endpoint: self.unit.to_string(),
+            endpoint: unit.to_string(),
             harness: self.harness,
-            line: self.line.clone(),
-            unit_config: self.unit_config.clone(),
+            line: self.line().to_owned(),
+            unit_config: (self.unit_config.as_deref().unwrap_or(UNIT_CONFIG)).to_owned(),
             train: self.train.clone(),
             settings: self.set.clone(),
             serial: self.serial_no.clone().unwrap_or_default(),
             software: self.software,
             train_no: self.train_no.clone(),
             faults: self.inject.clone(),
-            seed: self.seed,
+            seed: self.seed(),
             scatter: self.scatter.is_some(),
             scatter_file: self.scatter.clone().flatten(),
             realtime: self.realtime,
             slower: self.slower,
         }
         .setup(directory)
+    }
+
+    fn line(&self) -> &str {
+        self.line.as_deref().unwrap_or(LINE)
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed.unwrap_or(SEED)
     }
 
     /// All when some are named, else those that are not run on request only.
@@ -274,7 +298,7 @@ impl RunArguments {
             }
         }
         if self.shuffle {
-            select::shuffle(&mut tasks, self.seed);
+            select::shuffle(&mut tasks, self.seed());
         }
         Ok(tasks)
     }
@@ -302,7 +326,7 @@ impl RunArguments {
                 let prepare = |store: &Store, serial: &str, connection| {
                     let bench = Bench {
                         unit_config_sha256: &config,
-                        line: &self.line,
+                        line: self.line(),
                         train: &self.train,
                         connection,
                     };

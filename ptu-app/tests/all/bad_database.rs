@@ -47,6 +47,11 @@ fn only_what_brings_runs_in_makes_a_database() {
         &["faults", "state", "12345678", "closed"],
         &["faults", "repair", "12345678", "--part", "tra"],
         &["faults", "cause", "12345678", "tra"],
+        &["db", "sync", "postgres://kim@127.0.0.1:1/h"],
+        &["campaign", "--faults", "eb_relay.open"],
+        &["record", "pull", "--unit", "tcp:127.0.0.1:1"],
+        &["run", "--resume", "latest"],
+        &["gui"],
     ] {
         let said = place.ptu(&[arguments, &["--db", &db]].concat());
         assert!(
@@ -56,10 +61,17 @@ fn only_what_brings_runs_in_makes_a_database() {
         );
         assert!(!Path::new(&db).exists(), "{arguments:?}");
     }
-    place
-        .ptu(&["db", "rebuild", "--db", &db])
-        .exits(3)
-        .explains(&["there is no database", "mistyped.db"]);
+    for arguments in [
+        &["db", "rebuild"][..],
+        &["campaign", "--faults", "eb_relay.open"],
+        &["record", "pull", "--unit", "tcp:127.0.0.1:1"],
+        &["gui"],
+    ] {
+        place
+            .ptu(&[arguments, &["--db", &db]].concat())
+            .exits(3)
+            .explains(&["there is no database", "mistyped.db"]);
+    }
 }
 
 /// Goal: a file of an earlier version is checked, and nothing is changed in it. Method: one of the first version.

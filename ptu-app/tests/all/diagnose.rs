@@ -261,7 +261,7 @@ fn a_part_that_is_not_the_answer_is_told_with_what_speaks_against_it() {
 
 #[test]
 fn a_small_campaign_makes_a_dictionary_and_says_what_it_knows() {
-    let place = Place::new();
+    let place = Place::with_database();
     let arguments = [
         "campaign",
         "--faults",
@@ -306,7 +306,7 @@ fn a_small_campaign_makes_a_dictionary_and_says_what_it_knows() {
 /// A laptop alone sees less than a bench: it has a dictionary of its own, which its runs are compared with.
 #[test]
 fn a_campaign_on_the_maintenance_port_says_what_needs_the_bench_and_serves_its_runs() {
-    let place = Place::new();
+    let place = Place::with_database();
     let campaign = |faults: &str| {
         let sizes = ["--seeds", "1", "--held-out", "1", "--good", "1", "--json"];
         let begin = ["campaign", "--harness", "none", "--faults", faults];

@@ -36,6 +36,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
         unit_config_sha256: String::new(),
         injected: None,
         owner: String::new(),
+        continues: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(store, &record).expect("begun");

@@ -27,6 +27,7 @@ mod on_ports;
 mod questions;
 mod report;
 mod report_page;
+mod resume;
 mod saved_questions;
 mod scatter;
 mod server;

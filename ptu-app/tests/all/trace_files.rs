@@ -141,6 +141,7 @@ fn kept(place: &Place, trace: &TraceData) -> Id {
         unit_config_sha256: String::new(),
         injected: None,
         owner: String::new(),
+        continues: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &run).expect("begun");

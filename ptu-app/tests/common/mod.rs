@@ -38,6 +38,15 @@ impl Place {
         }
     }
 
+    /// One with a database in which nothing is recorded.
+    pub fn with_database() -> Self {
+        let place = Self::new();
+        let made =
+            fault_db::Store::open(&place.path("history.db"), ptu_bench::clock::open_options());
+        made.and_then(fault_db::Store::close).expect("a database");
+        place
+    }
+
     /// A file or folder of this name in the place.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)

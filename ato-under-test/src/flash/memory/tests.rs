@@ -130,3 +130,45 @@ fn a_device_that_fails_is_reported_once_and_read_no_more() {
     );
     assert!(events(&memory, 0).0.is_empty());
 }
+
+/// Goal: times that say little do not keep out one that says more. Method: as many as are stored, and the best one last.
+#[test]
+fn a_better_time_is_stored_however_many_bad_ones_came_before() {
+    let mut memory = Memory::power_up(Box::new(RamFlash::default()));
+    let mut tell = |utc_ms, uncertainty_ms| {
+        let told = SetClock {
+            utc_ms,
+            uncertainty_ms,
+        };
+        memory.set_clock(Instant::ZERO, told)
+    };
+    let (bad, good) = (1_600_000_000_000, 1_700_000_000_000);
+    for _ in 0..32 {
+        tell(bad, u16::MAX).expect("stored");
+    }
+    assert_eq!(tell(bad, u16::MAX), Err(SetClockError::OutOfRange));
+    tell(good, 500).expect("the better one");
+    assert_eq!(
+        tell(good, 400),
+        Err(SetClockError::OutOfRange),
+        "hardly better"
+    );
+    tell(good, 100).expect("much better");
+    let more = (0..=u16::MAX).rev().filter(|ms| tell(good, *ms).is_ok());
+    assert!(more.count() < 17, "bounded");
+    // The first and the last millisecond of the years that there are.
+    let mut fresh = Memory::power_up(Box::new(RamFlash::default()));
+    for (utc_ms, is_good) in [
+        (946_684_799_999, false),
+        (946_684_800_000, true),
+        (4_102_444_800_000, true),
+        (4_133_980_799_999, true),
+        (4_133_980_800_000, false),
+    ] {
+        assert_eq!(
+            fresh.set_clock(Instant::ZERO, told(utc_ms)).is_ok(),
+            is_good,
+            "{utc_ms}"
+        );
+    }
+}

@@ -1,6 +1,6 @@
 //! Checks each seal against the row it covers and against the seal before it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::seal_entry::{SEALS_PER_BATCH, Seal, position_error, seals_after};
 use super::{Findings, Remarks};
@@ -24,8 +24,8 @@ struct ChainSummary {
     by_earlier: u32,
     /// Runs, events and notes sealed as found, since they came without a seal.
     found: u32,
-    /// Traces and recordings named in a run's seal that do not exist.
-    missing: BTreeSet<(Id, Option<i64>)>,
+    /// Traces and recordings named in a run's seal that do not exist, and whether another file made the seal.
+    missing: BTreeMap<(Id, Option<i64>), bool>,
     /// Those deleted by a prune, with their digests.
     pruned: BTreeSet<(Id, Option<i64>, String)>,
     begun: Option<BegunPayload>,
@@ -60,11 +60,19 @@ pub(super) fn check(
     }
     if let Backend::File(_) = backend {
         let told: BTreeSet<_> = summary.pruned.iter().map(|(id, n, _)| (*id, *n)).collect();
-        for (id, recording) in summary.missing.difference(&told) {
-            found.add(match recording {
-                None => format!("trace {id} was taken out: no seal says that it was pruned"),
-                Some(n) => format!(
-                    "recording {n} of run {id} was taken out: no seal says that it was pruned"
+        for (missing, came) in &summary.missing {
+            if told.contains(missing) {
+                continue;
+            }
+            let what = match missing {
+                (id, None) => format!("trace {id}"),
+                (id, Some(n)) => format!("recording {n} of run {id}"),
+            };
+            found.add(match came {
+                false => format!("{what} was taken out: no seal says that it was pruned"),
+                true => format!(
+                    "{what} is missing: it was refused when its run came from another file, or taken out, and no \
+                     seal says that it was pruned; import a whole copy of that file, which brings it"
                 ),
             });
         }
@@ -113,7 +121,8 @@ fn check_entry(
             if seal.covers == DIGEST_VERSION {
                 let payload = RunPayload::of(&seal.payload).unwrap_or_default();
                 summary.found += u32::from(payload.found.is_some());
-                check_traces_and_recordings(backend, (id, run), &payload, summary, found)?;
+                let came = own != Some(seal.origin);
+                check_traces_and_recordings(backend, (id, run, came), &payload, summary, found)?;
             }
         }
         ("event", Some(event)) => {
@@ -160,7 +169,7 @@ fn check_entry(
 /// Checks the traces and recordings of a run against its seal.
 fn check_traces_and_recordings(
     backend: &Backend,
-    (id, run): (Id, i64),
+    (id, run, came): (Id, i64, bool),
     payload: &RunPayload,
     summary: &mut ChainSummary,
     found: &mut Findings<'_>,
@@ -188,7 +197,7 @@ fn check_traces_and_recordings(
                     .first(elsewhere, &values![of], |_| Ok(()))?
                     .is_none()
                 {
-                    summary.missing.insert((of, None));
+                    summary.missing.insert((of, None), came);
                 }
             }
             Some((seq, _, recording)) => {
@@ -211,7 +220,7 @@ fn check_traces_and_recordings(
     for said in &payload.recordings {
         let ordinal = said.ordinal;
         if !recordings.contains(&ordinal) {
-            summary.missing.insert((id, Some(ordinal)));
+            summary.missing.insert((id, Some(ordinal)), came);
         } else if hex(&trace::recording_digest(backend, run, ordinal)?) != said.sha256 {
             found.add(format!(
                 "recording {ordinal} of run {id} was changed after it was sealed"

@@ -23,7 +23,7 @@ use glob::Pattern;
 use protocol::injection::FaultMode;
 
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
-use kept_runs::KeptRuns;
+use kept_runs::{KeptRuns, RunsFile};
 use left_out::Evidence;
 pub use left_out::{LeftOut, OtherSpells, UnseenFigures};
 pub use pairs::PairFigures;
@@ -124,11 +124,20 @@ pub fn run(
     let kept = asked.kept.as_deref();
     let mut known = kept.map_or_else(
         || Ok(KeptRuns::default()),
-        |file| KeptRuns::read(file, &basis),
+        |file| KeptRuns::open(file, &basis),
     )?;
     let missing: Vec<&Sample> = samples.iter().filter(|sample| !known.has(sample)).collect();
     let before = samples.len() - missing.len();
-    let run_one = |i: usize| suite.run(missing[i], stop);
+    let run_one = |i: usize| {
+        let run = suite.run(missing[i], stop)?;
+        if let Some(file) = known.file()
+            && !file.append(missing[i], &run)
+        {
+            // What could not be kept is not gone on with.
+            stop.press();
+        }
+        Some(run)
+    };
     let made = pool::run(
         missing.len(),
         asked.jobs,
@@ -136,13 +145,13 @@ pub fn run(
         &mut |done| tell(before + done),
         run_one,
     );
+    if let Some(failure) = known.file().and_then(RunsFile::take_failure) {
+        return Err(failure);
+    }
     for (i, run) in made {
         if let Some(run) = run {
             known.put(missing[i], run);
         }
-    }
-    if let Some(file) = kept.filter(|_| !missing.is_empty()) {
-        known.write(file, &basis)?;
     }
     let Some(runs) = samples
         .iter()

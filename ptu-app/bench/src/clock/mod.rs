@@ -2,6 +2,7 @@
 
 mod span;
 
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use chrono::{DateTime, Datelike, Local, SecondsFormat, Timelike, Utc};
@@ -12,6 +13,45 @@ pub use span::{Span, months};
 /// A time that a unit is told may be wrong by so much, ms, a value of this program: a laptop that is set by the network now and then,
 /// and the way to the unit.
 pub const UNCERTAINTY_MS: u16 = 500;
+/// The uncertainty of a time of which nobody knows how far it may be wrong.
+pub const NOT_KNOWN_MS: u16 = u16::MAX;
+
+/// Where systemd-timesyncd says whether it has set the clock.
+const TIMESYNC: &str = "/run/systemd/timesync";
+
+/// Whether the computer's clock is kept right by others, as its system says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClockState {
+    /// It was set by the network since the computer was started.
+    Synchronised,
+    /// It was not.
+    NotSynchronised,
+    /// The system does not say.
+    Unknown,
+}
+
+impl ClockState {
+    /// As the system says it now.
+    pub fn now() -> Self {
+        Self::said_in(Path::new(TIMESYNC))
+    }
+
+    fn said_in(folder: &Path) -> Self {
+        match (folder.join("synchronized").exists(), folder.exists()) {
+            (true, _) => Self::Synchronised,
+            (false, true) => Self::NotSynchronised,
+            (false, false) => Self::Unknown,
+        }
+    }
+
+    /// How far a time of this clock may be wrong, ms.
+    pub fn uncertainty_ms(self) -> u16 {
+        match self {
+            Self::Synchronised => UNCERTAINTY_MS,
+            Self::NotSynchronised | Self::Unknown => NOT_KNOWN_MS,
+        }
+    }
+}
 
 /// Microseconds since 1970, UTC.
 pub fn now_us() -> i64 {
@@ -107,4 +147,21 @@ fn date(at_us: i64) -> Option<DateTime<Utc>> {
 
 fn no_date(at_us: i64) -> String {
     format!("no date ({at_us} µs)")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_is_right_only_if_the_system_says_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let said = |name: &str| ClockState::said_in(&folder.path().join(name));
+        assert_eq!(said("none"), ClockState::Unknown);
+        std::fs::create_dir(folder.path().join("timesync")).expect("made");
+        assert_eq!(said("timesync"), ClockState::NotSynchronised);
+        std::fs::write(folder.path().join("timesync/synchronized"), "").expect("written");
+        assert_eq!(said("timesync"), ClockState::Synchronised);
+        assert_eq!(ClockState::Unknown.uncertainty_ms(), NOT_KNOWN_MS);
+    }
 }

@@ -1,10 +1,12 @@
 //! Dates the entries of a unit's log from the unit's own clock, as far as it is known.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use btu_rig::procedure::UnitEvent;
 use protocol::event::Event;
 use protocol::message::StoredClock;
+
+use crate::clock::NOT_KNOWN_MS;
 
 /// An entry may be so much younger than the uptime it is dated by, ms: it was logged while the log was
 /// read.
@@ -25,7 +27,13 @@ const DRIFT: i64 = 10_000;
 /// What a store of the unit says of the times it was told.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
+    /// Those that are not disproved.
     clocks: Vec<StoredClock>,
+    /// Our own, if it is known to be right.
+    ours: Option<StoredClock>,
+    /// Power-ups whose times do not go together with others: nobody knows which is right.
+    doubtful: BTreeSet<u32>,
+    contradictions: Vec<String>,
 }
 
 /// The date of a stored entry.
@@ -33,71 +41,135 @@ pub struct StoredClocks {
 pub struct StoredDate {
     /// µs UTC.
     pub at_us: i64,
-    /// It may be wrong by so much, µs.
-    pub uncertainty_us: i64,
+    /// It may be wrong by so much, µs; none where nobody knows: it may be of any other day.
+    pub uncertainty_us: Option<i64>,
 }
 
 impl StoredClocks {
-    /// Clocks that the unit was told, and ours beside the present power-up's.
+    /// Clocks that the unit was told, and ours beside the present power-up's. What ours disproves, if it is known to
+    /// be right, dates nothing.
     pub fn new(told: &[StoredClock], ours: Option<StoredClock>) -> Self {
+        let known = ours.filter(|ours| ours.uncertainty_ms != NOT_KNOWN_MS);
+        let all: Vec<_> = told.iter().copied().chain(ours).collect();
+        let contradictions = contradictions(&all).into_values().collect();
+        let is_disproved = |clock: &StoredClock| known.is_some_and(|ours| disproves(&ours, clock));
+        let clocks: Vec<_> = all
+            .into_iter()
+            .filter(|clock| !is_disproved(clock))
+            .collect();
+        let doubtful = contradictions_of(&clocks).flat_map(|(a, b, _)| [a.power_up, b.power_up]);
         Self {
-            clocks: told.iter().copied().chain(ours).collect(),
+            doubtful: doubtful.collect(),
+            clocks,
+            ours: known,
+            contradictions,
         }
     }
 
-    /// The date of an entry, by the clock of its power-up that says it best; none where nobody told the time.
+    /// The date of an entry, by the clock of its power-up that says it best; none where nobody told the time, and
+    /// where the time that the unit is up since then disproves it.
     pub fn date(&self, power_up: u32, at_ms: u32) -> Option<StoredDate> {
         let of_power_up = self
             .clocks
             .iter()
             .filter(|clock| clock.power_up == power_up);
+        let is_doubtful = self.doubtful.contains(&power_up);
         let dates = of_power_up.map(|clock| {
             let later_us = (i64::from(at_ms) - i64::from(clock.at_ms)) * 1000;
-            StoredDate {
+            let uncertainty_us = uncertainty_us(clock).map(|us| us + later_us.abs() / DRIFT);
+            let date = StoredDate {
                 at_us: utc_us(clock).saturating_add(later_us),
-                uncertainty_us: i64::from(clock.uncertainty_ms) * 1000 + later_us.abs() / DRIFT,
-            }
+                uncertainty_us: uncertainty_us.filter(|_| !is_doubtful),
+            };
+            (uncertainty_us.unwrap_or(i64::MAX), date)
         });
         // Of equals the one told last.
-        dates.reduce(
-            |best, date| match date.uncertainty_us <= best.uncertainty_us {
-                true => date,
-                false => best,
-            },
-        )
+        let best = dates.reduce(|best, date| match date.0 <= best.0 {
+            true => date,
+            false => best,
+        });
+        let is_past = |date: &StoredDate| {
+            let ours = self.ours.filter(|ours| power_up < ours.power_up);
+            let allowed_us = date.uncertainty_us.unwrap_or(0);
+            ours.is_none_or(|ours| date.at_us - allowed_us <= began_us(&ours))
+        };
+        best.map(|(_, date)| date).filter(is_past)
     }
 
     /// What does not go together: times of one power-up further apart than their uncertainties, and a power-up that
     /// begins before the one that came before it.
     pub fn contradictions(&self) -> Vec<String> {
-        let mut found: BTreeMap<u32, String> = BTreeMap::new();
-        for pair in self.clocks.windows(2) {
-            let (before, clock) = (&pair[0], &pair[1]);
-            let told_later_us = utc_us(clock) - utc_us(before);
-            if before.power_up == clock.power_up {
-                let passed_us = (i64::from(clock.at_ms) - i64::from(before.at_ms)) * 1000;
-                let allowed_ms = i64::from(clock.uncertainty_ms) + i64::from(before.uncertainty_ms);
-                let apart_us = told_later_us - passed_us;
-                if apart_us.abs() > allowed_ms * 1000 + passed_us.abs() / DRIFT {
-                    found.entry(clock.power_up).or_insert(format!(
-                        "in power-up {} the unit was told times that are {:.1} s apart: its entries are dated by \
-                         the one with the least uncertainty",
-                        clock.power_up,
-                        apart_us as f64 / 1e6
-                    ));
-                }
-            } else if told_later_us < 0 {
-                found.entry(clock.power_up).or_insert(format!(
-                    "the time told in power-up {} is {:.1} s before that of power-up {}: a tester's clock was set \
-                     back or was wrong",
-                    clock.power_up,
-                    -told_later_us as f64 / 1e6,
-                    before.power_up
-                ));
-            }
-        }
-        found.into_values().collect()
+        self.contradictions.clone()
     }
+}
+
+/// Whether a clock that is right says that the other was wrong: at another time of the same power-up, or later than
+/// the power-up of the right one began.
+fn disproves(right: &StoredClock, other: &StoredClock) -> bool {
+    match right.power_up == other.power_up {
+        true => apart_us(other, right).is_some(),
+        false => {
+            let allowed_us = uncertainty_us(other).unwrap_or(0);
+            other.power_up < right.power_up && utc_us(other) - allowed_us > began_us(right)
+        }
+    }
+}
+
+/// The latest time at which the power-up of this clock began.
+fn began_us(clock: &StoredClock) -> i64 {
+    let up_us = i64::from(clock.at_ms) * 1000;
+    utc_us(clock) - up_us + i64::from(clock.uncertainty_ms) * 1000 + up_us / DRIFT
+}
+
+fn uncertainty_us(clock: &StoredClock) -> Option<i64> {
+    let known = Some(clock.uncertainty_ms).filter(|ms| *ms != NOT_KNOWN_MS);
+    known.map(|ms| i64::from(ms) * 1000)
+}
+
+/// How far two clocks, of which the second was told later, are apart, if that is more than they may be; negative of a
+/// time that fell.
+fn apart_us(before: &StoredClock, clock: &StoredClock) -> Option<i64> {
+    let told_later_us = utc_us(clock) - utc_us(before);
+    let allowed_us = (i64::from(clock.uncertainty_ms) + i64::from(before.uncertainty_ms)) * 1000;
+    if before.power_up != clock.power_up {
+        return Some(told_later_us).filter(|later_us| *later_us < -allowed_us);
+    }
+    let passed_us = (i64::from(clock.at_ms) - i64::from(before.at_ms)) * 1000;
+    let apart_us = told_later_us - passed_us;
+    Some(apart_us).filter(|apart_us| apart_us.abs() > allowed_us + passed_us.abs() / DRIFT)
+}
+
+/// Clocks, one after the other, that do not go together, and how far they are apart.
+fn contradictions_of(
+    clocks: &[StoredClock],
+) -> impl Iterator<Item = (&StoredClock, &StoredClock, i64)> {
+    let pairs = clocks.windows(2).map(|pair| (&pair[0], &pair[1]));
+    pairs.filter_map(|(before, clock)| {
+        apart_us(before, clock).map(|apart_us| (before, clock, apart_us))
+    })
+}
+
+fn contradictions(clocks: &[StoredClock]) -> BTreeMap<u32, String> {
+    let mut found: BTreeMap<u32, String> = BTreeMap::new();
+    for (before, clock, apart_us) in contradictions_of(clocks) {
+        let told = match before.power_up == clock.power_up {
+            true => format!(
+                "in power-up {} the unit was told times that are {:.1} s apart: its entries are dated by \
+                 the one with the least uncertainty, and none that another clock disproves",
+                clock.power_up,
+                apart_us as f64 / 1e6
+            ),
+            false => format!(
+                "the time told in power-up {} is {:.1} s before that of power-up {}: a tester's clock was set \
+                 back or was wrong",
+                clock.power_up,
+                -apart_us as f64 / 1e6,
+                before.power_up
+            ),
+        };
+        found.entry(clock.power_up).or_insert(told);
+    }
+    found
 }
 
 fn utc_us(clock: &StoredClock) -> i64 {
@@ -186,7 +258,7 @@ mod tests {
         assert_eq!(at_s(1, 0), Some(995));
         assert_eq!(
             clocks.date(1, 0).map(|date| date.uncertainty_us),
-            Some(56_000)
+            Some(Some(56_000))
         );
         assert_eq!(
             (at_s(2, 0), at_s(3, 7_000), at_s(4, 0)),
@@ -207,6 +279,49 @@ mod tests {
             panic!("one");
         };
         assert!(why.contains("10.0 s apart"), "{why}");
+    }
+
+    /// Goal: a laptop whose clock is a year behind, and that read first, dates nothing for one that is right. Method:
+    /// both in one power-up, and the wrong one knowing that it is not set, or not.
+    #[test]
+    fn the_better_date_replaces_the_worse() {
+        const YEAR_S: u64 = 31_536_000;
+        let right = |uncertainty_ms| told(1, 60_000, 2 * YEAR_S, uncertainty_ms);
+        for of_wrong in [NOT_KNOWN_MS, 500] {
+            let wrong = told(1, 5_000, YEAR_S, of_wrong);
+            let clocks = StoredClocks::new(&[wrong], Some(right(500)));
+            let date = clocks.date(1, 4_000).expect("a date");
+            assert_eq!(date.at_us / 1_000_000, (2 * YEAR_S - 56) as i64);
+            assert!(date.uncertainty_us.is_some());
+            assert_eq!(clocks.contradictions().len(), 1);
+            // Nobody knows which of two is right.
+            let clocks = StoredClocks::new(&[wrong], Some(right(NOT_KNOWN_MS)));
+            let date = clocks.date(1, 4_000).expect("a date");
+            assert_eq!(date.uncertainty_us, None);
+        }
+    }
+
+    #[test]
+    fn a_date_that_the_units_uptime_disproves_is_none() {
+        // Up for 100 s: what it logged in the power-up before is older.
+        let ours = told(2, 100_000, 9_000, 500);
+        let date = |before| StoredClocks::new(&[before], Some(ours)).date(1, 2_000);
+        assert_eq!(date(told(1, 1_000, 9_500, 500)), None, "told in the future");
+        assert_eq!(
+            date(told(1, 1_000, 8_950, 500)),
+            None,
+            "told while it was up"
+        );
+        let good = date(told(1, 1_000, 8_800, 500)).expect("a date");
+        assert_eq!(good.at_us, 8_801_000_000);
+        let unsure = StoredClocks::new(
+            &[told(1, 1_000, 9_500, 500)],
+            Some(told(2, 100_000, 9_000, NOT_KNOWN_MS)),
+        );
+        assert_eq!(
+            unsure.date(1, 2_000).map(|date| date.uncertainty_us),
+            Some(None)
+        );
     }
 
     /// Goal: no confident wrong date. Method: entries that the present power-up cannot have made.

@@ -72,7 +72,7 @@ pub fn judge(entries: &[Entry], tested: &[(i64, i64)], since_us: Option<i64>) ->
         let dated = |holds: &dyn Fn(i64) -> bool| entry.at_us.is_some_and(holds);
         let reason = if !is_fault(&entry.event) || left_loop(&entry.event) {
             &mut left_out.information
-        } else if dated(&|at| since_us.is_some_and(|since| at < since)) {
+        } else if entry.is_sure && dated(&|at| since_us.is_some_and(|since| at < since)) {
             &mut left_out.too_old
         } else if dated(&|at| {
             tested
@@ -192,6 +192,7 @@ mod tests {
             .map(|(index, code)| Entry {
                 event: event(index, *code, index * 500),
                 at_us: Some(i64::from(index) * 500_000),
+                is_sure: true,
                 stored: None,
             })
             .collect();
@@ -210,6 +211,7 @@ mod tests {
             let entry = Entry {
                 event,
                 at_us: None,
+                is_sure: true,
                 stored: None,
             };
             assert_eq!(judge(&[entry], &[], None).faults.len(), faults, "{mode:?}");
@@ -290,11 +292,13 @@ mod tests {
                 ..event(0, Event::FramesRejected, at_ms)
             },
             at_us: None,
+            is_sure: true,
             stored: None,
         };
         let lost = |at_ms| Entry {
             event: event(0, Event::TwcLost, at_ms),
             at_us: None,
+            is_sure: true,
             stored: None,
         };
         let bad_line = [
@@ -319,14 +323,21 @@ mod tests {
     }
 
     #[test]
-    fn only_dated_entries_can_be_too_old() {
-        let entry = |at_us| Entry {
+    fn only_entries_that_are_surely_dated_can_be_too_old() {
+        let entry = |at_us, is_sure| Entry {
             event: event(0, Event::TachoDead1, 0),
             at_us,
+            is_sure,
             stored: None,
         };
-        let judged = judge(&[entry(Some(1)), entry(Some(3)), entry(None)], &[], Some(2));
-        assert_eq!(judged.faults.len(), 2);
+        let entries = [
+            entry(Some(1), true),
+            entry(Some(3), true),
+            entry(None, true),
+            entry(Some(1), false),
+        ];
+        let judged = judge(&entries, &[], Some(2));
+        assert_eq!(judged.faults, entries[1..]);
         assert_eq!(judged.left_out.too_old, 1);
     }
 }

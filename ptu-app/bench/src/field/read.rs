@@ -6,7 +6,7 @@ use protocol::message::{Identity, Mode, StatusBits, StoredClock, StoredRow};
 use protocol::{Duration, Instant, SCAN};
 
 use super::date::{ClockPair, StoredClocks, dates};
-use crate::clock::UNCERTAINTY_MS;
+use crate::clock::NOT_KNOWN_MS;
 use crate::link::Pace;
 use crate::stop::Stop;
 
@@ -22,6 +22,8 @@ pub struct Entry {
     pub event: UnitEvent,
     /// When it was made, µs UTC; none where the unit's clock does not tell.
     pub at_us: Option<i64>,
+    /// The date is right within a known uncertainty: what is dated so may be left out by its date.
+    pub is_sure: bool,
     /// Where it is stored in the unit; none of a unit without stored memory.
     pub stored: Option<StoredPlace>,
 }
@@ -35,8 +37,8 @@ pub struct StoredPlace {
     pub sequence: u32,
     /// It was made not later than this, µs UTC: the date of the next entry that has one.
     pub not_after_us: Option<i64>,
-    /// Its date may be wrong by so much, µs.
-    pub uncertainty_us: i64,
+    /// Its date may be wrong by so much, µs; none where nobody knows.
+    pub uncertainty_us: Option<i64>,
 }
 
 /// What was read of the unit's stored memory.
@@ -79,7 +81,8 @@ pub struct LogRead {
 }
 
 /// Reads the log of the unit on `link`, over all power-ups if it stores it; with `rows`, its stored run record,
-/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is told.
+/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is told with its
+/// uncertainty.
 ///
 /// # Errors
 /// The unit did not say who it is: why.
@@ -89,13 +92,13 @@ pub fn read_log<L: UnitLink>(
     rows: bool,
     pace: &mut Pace,
     stop: &Stop,
-    clock: &dyn Fn() -> i64,
+    (clock, uncertainty_ms): (&dyn Fn() -> i64, u16),
 ) -> Result<LogRead, String> {
     let mut session = LogSession::new(rows);
     session.tell_time(TimeOfDay {
         at: from,
         utc_us: clock(),
-        uncertainty_ms: UNCERTAINTY_MS,
+        uncertainty_ms,
     });
     let mut entries = Vec::new();
     let mut since_power_up: Vec<UnitEvent> = Vec::new();
@@ -115,7 +118,7 @@ pub fn read_log<L: UnitLink>(
         if session.restarts() != restarts {
             // What was read before is of the clock before.
             restarts = session.restarts();
-            entries.extend(dated(&mut since_power_up, pair.take()));
+            entries.extend(dated(&mut since_power_up, pair.take(), uncertainty_ms));
         }
         if let Some((told_at, uptime_ms)) = session.uptime_ms()
             && told_at == now
@@ -143,14 +146,15 @@ pub fn read_log<L: UnitLink>(
             break Some(format!("the log does not end within {within}"));
         }
     };
-    entries.extend(dated(&mut since_power_up, pair));
+    entries.extend(dated(&mut since_power_up, pair, uncertainty_ms));
     let Some(identity) = session.identity().copied() else {
         return Err(broken_off.unwrap_or_default());
     };
     let stored = session.stored().map(|(events, rows)| {
         // Of a unit that started again meanwhile it is not known which power-up our clock stands beside: the time
         // that it was told, and stored, is.
-        let (dated, read) = from_store(events, rows, pair.filter(|_| restarts == 0));
+        let (dated, read) =
+            from_store(events, rows, pair.filter(|_| restarts == 0), uncertainty_ms);
         entries = dated;
         read
     });
@@ -168,13 +172,14 @@ pub fn read_log<L: UnitLink>(
     })
 }
 
-fn dated(events: &mut Vec<UnitEvent>, clock: Option<ClockPair>) -> Vec<Entry> {
+fn dated(events: &mut Vec<UnitEvent>, clock: Option<ClockPair>, uncertainty_ms: u16) -> Vec<Entry> {
     let dates = dates(events, clock);
     let events = events.drain(..).zip(dates);
     events
         .map(|(event, at_us)| Entry {
             event,
             at_us,
+            is_sure: uncertainty_ms != NOT_KNOWN_MS,
             stored: None,
         })
         .collect()
@@ -185,13 +190,14 @@ fn from_store(
     events: &StoredData,
     rows: Option<&StoredData>,
     pair: Option<ClockPair>,
+    uncertainty_ms: u16,
 ) -> (Vec<Entry>, StoredRead) {
     let ours = pair.map(|pair| StoredClock {
         sequence: u32::MAX,
         power_up: events.power_up,
         at_ms: pair.uptime_ms,
         utc_ms: u64::try_from(pair.at_us / 1000).unwrap_or(0),
-        uncertainty_ms: UNCERTAINTY_MS,
+        uncertainty_ms,
     });
     let clocks = StoredClocks::new(&events.clocks, ours);
     let mut not_after_us = None;
@@ -202,12 +208,13 @@ fn from_store(
             power_up: entry.power_up,
             sequence: entry.sequence,
             not_after_us,
-            uncertainty_us: date.map_or(0, |date| date.uncertainty_us),
+            uncertainty_us: date.and_then(|date| date.uncertainty_us),
         };
         not_after_us = at_us.or(not_after_us);
         Entry {
             event: UnitEvent::of_log(&entry.log_entry()),
             at_us,
+            is_sure: place.uncertainty_us.is_some(),
             stored: Some(place),
         }
     });

@@ -6,7 +6,7 @@ use protocol::Instant;
 use super::{
     Entry, Imported, JudgedLog, LogRead, Source, against_history, import, judge, read_log,
 };
-use crate::clock::now_us;
+use crate::clock::{ClockState, now_us};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::link::{Endpoint, WireLink};
@@ -37,6 +37,8 @@ pub struct UnitReading {
     pub read: LogRead,
     /// Where it came from.
     pub source: Source,
+    /// Whether our own clock was right then.
+    pub clock: ClockState,
     /// What a reader should know.
     pub warnings: Vec<String>,
 }
@@ -68,9 +70,17 @@ impl AskedUnit {
         let config = directory.unit_config(&self.unit_config)?;
         let line = directory.line(&self.line)?;
         let from_us = now_us();
+        let clock = ClockState::now();
         let mut link = WireLink::open(&self.endpoint)?;
         let mut pace = self.endpoint.pace(1);
-        let read = read_log(&mut link, Instant::ZERO, rows, &mut pace, stop, &now_us);
+        let read = read_log(
+            &mut link,
+            Instant::ZERO,
+            rows,
+            &mut pace,
+            stop,
+            (&now_us, clock.uncertainty_ms()),
+        );
         let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.endpoint)))?;
         let identity = &read.identity;
         unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
@@ -90,15 +100,16 @@ impl AskedUnit {
             ));
         }
         warnings.extend(of_reading(&read));
-        // What a unit says is no name of a configuration until one of that name is known here.
-        let named = unit_text::config_name(identity);
-        let is_known = directory.unit_config_names().contains(&named);
+        if clock == ClockState::NotSynchronised {
+            warnings.push(
+                "this computer's clock is not set by the network: dates by it may be wrong by any time; let it be \
+                 set, and read again"
+                    .to_owned(),
+            );
+        }
         let source = Source {
             endpoint: self.endpoint.to_string(),
-            config_name: match is_known {
-                true => named,
-                false => UNKNOWN_CONFIG.to_owned(),
-            },
+            config_name: known_config(directory, unit_text::config_name(identity)),
             unit_config_sha256: if same_config {
                 config.sha256
             } else {
@@ -115,6 +126,7 @@ impl AskedUnit {
         Ok(UnitReading {
             read,
             source,
+            clock,
             warnings,
         })
     }
@@ -139,7 +151,7 @@ impl AskedUnit {
 }
 
 impl UnitReading {
-    /// Stores the faults of the log that are new; entries dated before `since_us` are left out.
+    /// Stores the faults of the log that are new; entries that are surely of before `since_us` are left out.
     ///
     /// # Errors
     /// The database fails.
@@ -150,6 +162,17 @@ impl UnitReading {
         }
         let tested = store.tested_spans(&self.source.serial)?;
         let judged = judge(&self.read.entries, &tested, since_us);
+        let is_unsure = |entry: &&Entry| {
+            let date = entry.at_us.zip(since_us);
+            !entry.is_sure && date.is_some_and(|(at_us, since_us)| at_us < since_us)
+        };
+        let unsure = judged.faults.iter().filter(is_unsure).count();
+        if unsure > 0 {
+            self.warnings.push(format!(
+                "{unsure} faults are dated before the time asked for by a clock that nobody knows to be right: they \
+                 are not left out"
+            ));
+        }
         let imported = import(store, &self.source, &judged.faults)?;
         Ok(ImportedLog { judged, imported })
     }
@@ -165,6 +188,14 @@ impl UnitReading {
                 "{why}; the log was not read to its end, what was read is kept; read it again"
             ))),
         }
+    }
+}
+
+/// What a unit says is no name of a configuration until one of that name is known here.
+fn known_config(directory: &ScriptsDirectory, told: String) -> String {
+    match directory.unit_config_names().contains(&told) {
+        true => told,
+        false => UNKNOWN_CONFIG.to_owned(),
     }
 }
 
@@ -201,4 +232,35 @@ fn of_reading(read: &LogRead) -> Vec<String> {
         ),
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::scripts;
+
+    /// Goal: a name that a unit gives is stored, and later looked up, only if it is shipped. Method: names that lead
+    /// to other files, one of which is there.
+    #[test]
+    fn a_configuration_that_is_not_shipped_is_unknown() {
+        let scripts = scripts();
+        assert!(scripts.path().join("units/../fleet.toml").is_file());
+        for told in [
+            "../../etc/x",
+            "../fleet",
+            "/etc/x",
+            "units/sg100",
+            "sg100.toml",
+            "SG100",
+            "faults",
+            "",
+        ] {
+            assert_eq!(
+                known_config(&scripts, told.to_owned()),
+                UNKNOWN_CONFIG,
+                "{told}"
+            );
+        }
+        assert_eq!(known_config(&scripts, "sg100".to_owned()), "sg100");
+    }
 }

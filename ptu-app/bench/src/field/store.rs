@@ -162,6 +162,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         unit_config_sha256: source.unit_config_sha256.clone(),
         injected: None,
         owner: crate::process_id::this_process(),
+        continues: None,
         scripts: Vec::new(),
     }
 }
@@ -181,11 +182,16 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
     };
     let dated_by = match (entry.at_us, entry.stored) {
         (Some(_), None) => "the unit's clock".to_owned(),
-        (Some(_), Some(place)) => format!(
-            "the unit's clock, as it was told in power-up {}, within {:.1} s",
-            place.power_up,
-            place.uncertainty_us as f64 / 1e6
-        ),
+        (Some(_), Some(place)) => {
+            let within = place.uncertainty_us.map_or_else(
+                || "by a clock that nobody knows to be right".to_owned(),
+                |us| format!("within {:.1} s", us as f64 / 1e6),
+            );
+            format!(
+                "the unit's clock, as it was told in power-up {}, {within}",
+                place.power_up
+            )
+        }
         (None, None) => "the time of reading".to_owned(),
         (None, Some(place)) => format!(
             "power-up {} and {:.3} s after it, when nobody had told the unit the time: not later than this date",

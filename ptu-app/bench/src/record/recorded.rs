@@ -36,7 +36,7 @@ pub struct RecordedRun {
     /// Time since that power-up at its first row, ms.
     pub at_ms: u32,
     /// When it began, µs UTC, and by how much that may be wrong; none where nobody told the unit the time.
-    pub date: Option<(i64, i64)>,
+    pub date: Option<(i64, Option<i64>)>,
     /// Its rows.
     pub trace: TraceData,
     /// Rows before the first that is kept were overwritten or damaged: it does not begin where the run did.

@@ -55,7 +55,15 @@ fn driven(case: &Case) -> LogRead {
     let now = bench.now();
     let mut pace = Pace::Virtual;
     let stop = Stop::default();
-    read_log(bench.link_mut(), now, true, &mut pace, &stop, &|| NOW_US).expect("read")
+    read_log(
+        bench.link_mut(),
+        now,
+        true,
+        &mut pace,
+        &stop,
+        (&|| NOW_US, 500),
+    )
+    .expect("read")
 }
 
 fn only_run(read: &LogRead) -> RecordedRun {
@@ -141,6 +149,7 @@ fn pulling_a_record_again_adds_nothing_and_two_laptops_make_the_same_trace() {
             until_us,
             broken_off: false,
         },
+        clock: crate::clock::ClockState::Synchronised,
         warnings: Vec::new(),
     };
     let first = pull_reading(&a, &reading(2_000_000_000_000)).expect("stored");

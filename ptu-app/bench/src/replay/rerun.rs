@@ -251,6 +251,7 @@ fn run_record(
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
         owner: crate::process_id::this_process(),
+        continues: None,
         scripts: Vec::new(),
     }
 }

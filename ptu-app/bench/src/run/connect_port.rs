@@ -17,7 +17,7 @@ use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
 use super::settle::{READY_WITHIN, started};
 use super::unit_text;
-use crate::clock::{UNCERTAINTY_MS, now_us};
+use crate::clock::{ClockState, now_us};
 use crate::failure::{Exit, Failure};
 use crate::link::{Endpoint, WireLink};
 use crate::stop::Stop;
@@ -58,7 +58,7 @@ impl BenchSetup {
             bench.rig_mut().tell_time(TimeOfDay {
                 at: Instant::ZERO,
                 utc_us: now_us(),
-                uncertainty_ms: UNCERTAINTY_MS,
+                uncertainty_ms: ClockState::now().uncertainty_ms(),
             });
         }
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)

@@ -87,6 +87,7 @@ fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
         train: String::new(),
         scripts_sha256: String::new(),
         adaptive: None,
+        continues: None,
     }
 }
 

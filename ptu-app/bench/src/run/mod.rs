@@ -36,6 +36,7 @@ mod settle;
 mod store_thread;
 mod suite;
 mod trace_data;
+mod unfinished;
 pub mod unit_text;
 #[cfg(test)]
 mod untrusted_unit_tests;
@@ -65,6 +66,7 @@ pub(crate) use trace_data::channel;
 
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
+pub use unfinished::{Unfinished, unfinished};
 pub use workers::run_here;
 
 use crate::clock;
@@ -103,6 +105,8 @@ pub struct RunPlan {
     pub scripts_sha256: String,
     /// Isolates a fault by itself, instead of running all tasks in order.
     pub adaptive: Option<Adaptive>,
+    /// The earlier run whose open procedures these are.
+    pub continues: Option<fault_db::Id>,
 }
 
 /// A procedure and the events of its run.
@@ -308,6 +312,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
         owner: crate::process_id::this_process(),
+        continues: plan.continues,
         scripts: plan
             .tasks
             .iter()

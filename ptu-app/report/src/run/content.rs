@@ -271,6 +271,7 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         "" => "–",
         train => train,
     };
+    let continued = (run.continues).map(|earlier| (report.continues, earlier.to_string()));
     let facts = [
         (report.run_id, run.id.to_string()),
         (report.unit_serial, run.unit_serial.clone()),
@@ -295,7 +296,11 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
     ];
     vec![
         Block::Heading(report.the_run.into()),
-        Block::Facts(facts.map(|(name, value)| (sentence(name), value)).into()),
+        Block::Facts(
+            (facts.into_iter().chain(continued))
+                .map(|(name, value)| (sentence(name), value))
+                .collect(),
+        ),
     ]
 }
 

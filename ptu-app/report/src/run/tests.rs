@@ -89,6 +89,7 @@ fn run() -> RunRecord {
         unit_config_sha256: "cd".repeat(32),
         injected: None,
         owner: "nobody".into(),
+        continues: None,
         scripts: vec![ScriptRecord {
             path: "atp/overspeed.star".into(),
             sha256: "ef".repeat(32),

@@ -23,6 +23,7 @@ wordings! {
             "판정이 없는 시험입니다. 진행 중이거나 도중에 끊겼으며, 그때까지 기록된 내용만 실었습니다.";
         the_run: "Run", "시험 개요";
         run_id: "Run number", "시험 번호";
+        continues: "Continues run", "이어서 한 시험";
         unit_serial: "Serial number of the unit", "유닛 일련번호";
         unit_kind: "Kind of unit", "유닛 종류";
         unit_config: "Unit configuration", "유닛 구성";

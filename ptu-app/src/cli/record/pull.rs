@@ -58,7 +58,7 @@ fn document(reading: &UnitReading, pulled: &Pulled) -> Value {
         json!({
             "trace_id": run.id.to_string(), "power_up": run.power_up, "run": run.run,
             "at": run.date.map(|(at_us, _)| rfc3339(at_us)),
-            "uncertainty_s": run.date.map(|(_, uncertainty_us)| uncertainty_us as f64 / 1e6),
+            "uncertainty_s": run.date.and_then(|(_, us)| us).map(|us| us as f64 / 1e6),
             "unit_time_s": f64::from(run.at_ms) / 1e3, "rows": run.trace.rows(),
             "begins_late": run.is_cut, "gaps": run.trace.gaps,
         })

@@ -298,6 +298,7 @@ mod tests {
                 train: String::new(),
                 scripts_sha256: suite.sha256,
                 adaptive: None,
+                continues: None,
             },
             store: fault_db::Store::open(database, ptu_bench::clock::open_options())
                 .expect("a database"),

@@ -91,6 +91,7 @@ impl TestBench {
             train: String::new(),
             scripts_sha256: self.suite.sha256.clone(),
             adaptive: None,
+            continues: None,
         };
         let place = Place::new();
         let path = place.path("history.db");

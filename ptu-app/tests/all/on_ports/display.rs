@@ -107,7 +107,7 @@ fn a_window_closed_in_mid_run_leaves_a_closed_record() {
 
 #[test]
 fn without_a_display_it_says_so_and_ends() {
-    let place = Place::new();
+    let place = Place::with_database();
     let say = |arguments: &[&str], display: Option<&str>| {
         let mut ptu = place.command(arguments);
         ptu.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");

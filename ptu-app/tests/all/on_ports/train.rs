@@ -263,7 +263,7 @@ fn somebody_at_the_terminal_answers_what_a_script_asks() {
 /// a train without the harness, which nobody stated, and a dictionary for laptops of one fault mode.
 #[test]
 fn a_search_on_a_train_takes_the_dictionary_of_a_laptop() {
-    let place = Place::new();
+    let place = Place::with_database();
     let campaign = ["campaign", "--harness", "none", "--faults", "tra.dead"];
     place.ptu(&campaign).exits(0);
     let train = Unit::aboard(&["--inject", "tra.dead"]);

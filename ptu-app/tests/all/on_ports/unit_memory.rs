@@ -64,7 +64,7 @@ fn faults_of_an_earlier_power_up_are_imported_once() {
 #[test]
 fn a_unit_that_never_drove_has_no_run_to_pull() {
     let unit = Unit::on_tcp(&["--serial-no", "MEM-2"]);
-    let place = Place::new();
+    let place = Place::with_database();
     let pulled = place.json(&["record", "pull", "--unit", &unit.address, "--json"]);
     assert_eq!(
         (number(&pulled["rows"]), number(&pulled["pulled"])),

@@ -20,7 +20,7 @@ fn told(window: &Window, first: &str, pattern: &str) -> bool {
 /// the Bench page and a self-test by hand, identity and self-test as procedures, the part, log, run record, comparison.
 fn the_whole_way(language: Language) {
     let words: &Words = language.words();
-    let place = Place::new();
+    let place = Place::with_database();
     // What is known of this fault, whatever the age of the shipped dictionary.
     let campaign = ["campaign", "--harness", "none", "--faults", "eb_relay.slow"];
     place.ptu(&campaign).exits(0);

@@ -39,7 +39,14 @@ pub fn bench(faults: &[&str]) -> Session<Delayed<SimUnit>> {
 
 fn read<L: UnitLink>(link: &mut L, from: Instant) -> Result<LogRead, String> {
     let mut pace = Pace::Virtual;
-    read_log(link, from, false, &mut pace, &Stop::default(), &|| NOW_US)
+    read_log(
+        link,
+        from,
+        false,
+        &mut pace,
+        &Stop::default(),
+        (&|| NOW_US, 500),
+    )
 }
 
 const NOW_US: i64 = 1_000_000_000_000;

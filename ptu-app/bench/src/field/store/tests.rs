@@ -36,11 +36,12 @@ fn entries(until: u32) -> Vec<Entry> {
         Entry {
             event: event(sequence % 3, Event::TachoDead1, 1_000 * sequence),
             at_us,
+            is_sure: true,
             stored: Some(StoredPlace {
                 power_up,
                 sequence,
                 not_after_us: Some(1_000_001_800_000_000),
-                uncertainty_us: 500_000,
+                uncertainty_us: Some(500_000),
             }),
         }
     };

@@ -26,6 +26,7 @@ fn record() -> RunRecord {
         unit_config_sha256: String::new(),
         injected: None,
         owner: String::new(),
+        continues: None,
         scripts: Vec::new(),
     }
 }
@@ -179,4 +180,21 @@ fn records_that_a_busy_database_refuses_can_be_imported_later() {
     assert_eq!(found.run.verdict, Some(Verdict::Error));
     assert!(found.faults[0].trace_id.is_some());
     assert_eq!(store.check().expect("checked").problems, []);
+}
+
+/// Goal: what a killed program leaves is all that was finished a moment ago. Method: a run that goes on, as another
+/// program sees its file.
+#[test]
+fn a_finished_step_is_in_the_file_while_its_procedure_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("history.db");
+    let store = Store::open(&file, clock::open_options()).expect("a database");
+    let run = RunStore::begin(store, record(), None, &Stop::default()).expect("begun");
+    run.step(step(0));
+    // As long as it may take, and what a busy machine adds.
+    std::thread::sleep(2 * FLUSH);
+    let other = Connection::open(&file).expect("the database");
+    let steps = other.query_row("SELECT count(*) FROM step", [], |row| row.get::<_, u32>(0));
+    assert_eq!(steps.expect("counted"), 1);
+    run.finish(end(Verdict::Passed)).expect("kept");
 }

@@ -128,6 +128,7 @@ fn workers_start_only_a_limited_number_of_procedures_ahead() {
         train: String::new(),
         scripts_sha256: String::new(),
         adaptive: None,
+        continues: None,
     };
     let stop = Stop::default();
     let first_failure = FirstFailure::new(false);

@@ -105,6 +105,7 @@ pub fn order(
             train: choice.train_no.trim().to_owned(),
             scripts_sha256: suite.sha256.clone(),
             adaptive,
+            continues: None,
         },
         store,
         realtime: choice.realtime,

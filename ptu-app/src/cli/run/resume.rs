@@ -1,0 +1,141 @@
+//! `--resume` and `--retry-errors`: what an earlier run left open, as a new run linked to it.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
+use clap::Args;
+use fault_db::{RunDetail, RunState};
+
+use super::RunArguments;
+use ptu_bench::failure::Failure;
+use ptu_bench::link::Endpoint;
+use ptu_bench::process_id::is_alive;
+use ptu_bench::run::{BenchSetup, Unfinished, unfinished};
+use ptu_bench::stdio;
+
+/// Of units that were not reached.
+const UNKNOWN_SERIAL: &str = "unknown";
+
+/// Which earlier run.
+#[derive(Debug, Args)]
+pub struct ResumeOption {
+    /// Run what RUN left without a verdict (stopped, interrupted, not begun) as a new run linked to it. Unit, serial
+    /// number, train number, line, unit configuration, seed and injected faults are those of RUN where they are not
+    /// given; what a run does not store (--harness, --train, --set, --scatter, --step, --repeat) is to be given again
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["procedures", "retry_errors", "adaptive", "check"])]
+    resume: Option<String>,
+    /// The same with what could not be tested in RUN: its procedures that ended as errors
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["procedures", "adaptive", "check"])]
+    retry_errors: Option<String>,
+}
+
+impl RunArguments {
+    /// The earlier run, if one is named; what was not given is then as it was there.
+    pub(super) fn take_over(&mut self) -> Result<Option<RunDetail>, Failure> {
+        let (which, name) = match (&self.resume.resume, &self.resume.retry_errors) {
+            (Some(name), _) => (Unfinished::WithoutVerdict, name),
+            (_, Some(name)) => (Unfinished::Errors, name),
+            (None, None) => return Ok(None),
+        };
+        let store = self.database.open_read_only()?;
+        let earlier = store.run(store.resolve_run(name)?, &is_alive)?;
+        let (run, id) = (&earlier.run, earlier.run.id.short());
+        if run.state == RunState::Running {
+            return Err(Failure::usage(format!(
+                "run {id} is still under way; wait for its end, or stop it first"
+            )));
+        }
+        let open = unfinished(&earlier, which);
+        if open.is_empty() {
+            return Err(Failure::usage(match (earlier.scripts.len(), which) {
+                (0, _) => format!(
+                    "run {id} ({}) ran no procedures; name a run of `ptu run`, see `ptu runs list`",
+                    run.source
+                ),
+                (_, Unfinished::WithoutVerdict) => format!(
+                    "each procedure of run {id} has a verdict; `ptu runs show {id}` lists them, and \
+                     --retry-errors runs those again that could not be tested"
+                ),
+                (_, Unfinished::Errors) => format!(
+                    "no procedure of run {id} ended as an error; `ptu runs show {id}` lists their verdicts"
+                ),
+            }));
+        }
+        self.take_unit(&earlier)?;
+        self.procedures = open;
+        self.seed.get_or_insert(run.seed);
+        let line = self.line.get_or_insert_with(|| run.line.clone());
+        if *line != run.line {
+            stdio::note(&format!(
+                "run {id} was on {}; what is left is run on {line}",
+                run.line
+            ));
+        }
+        self.unit_config
+            .get_or_insert_with(|| run.unit_config_name.clone());
+        if self.train_no.is_empty() {
+            self.train_no.clone_from(&run.train);
+        }
+        if self.inject.is_empty() {
+            let injected = run.injected.as_deref().unwrap_or_default();
+            let names = injected.split(',').filter(|name| !name.is_empty());
+            self.inject = names.map(str::to_owned).collect();
+        }
+        Ok(Some(earlier))
+    }
+
+    /// The unit is that of the earlier run; its port may be another.
+    fn take_unit(&mut self, earlier: &RunDetail) -> Result<(), Failure> {
+        let (run, id) = (&earlier.run, earlier.run.id.short());
+        let place = match run.source.parse::<Endpoint>() {
+            Ok(place) => place,
+            Err(error) => {
+                return Err(Failure::usage(format!(
+                    "run {id} was on \"{}\", which is no unit to connect to: {error}",
+                    run.source
+                )));
+            }
+        };
+        let unit = self.unit.get_or_insert_with(|| place.clone());
+        if (*unit == Endpoint::Sim) != (place == Endpoint::Sim) {
+            return Err(Failure::usage(format!(
+                "run {id} was on {place}, and --unit says {unit}: another unit does not continue a run; \
+                 leave --unit out, or begin a new run"
+            )));
+        }
+        if run.unit_serial == UNKNOWN_SERIAL {
+            return Ok(());
+        }
+        let serial = self
+            .serial_no
+            .get_or_insert_with(|| run.unit_serial.clone());
+        if *serial != run.unit_serial {
+            return Err(Failure::usage(format!(
+                "run {id} tested unit {}, and --serial-no says {serial}: another unit does not continue a run; \
+                 leave --serial-no out, or begin a new run",
+                run.unit_serial
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// Tells what is not as it was in the earlier run.
+pub(super) fn tell_changes(earlier: &RunDetail, procedures: &[Arc<Procedure>], setup: &BenchSetup) {
+    let id = earlier.run.id.short();
+    let is_changed = |procedure: &&Arc<Procedure>| {
+        let mut before = earlier.scripts.iter();
+        before.any(|script| script.path == procedure.path && script.sha256 != procedure.sha256)
+    };
+    for procedure in procedures.iter().filter(is_changed) {
+        stdio::note(&format!(
+            "{} was changed since run {id}: its verdict is not that of the procedure that was due there",
+            procedure.path
+        ));
+    }
+    if setup.config.sha256 != earlier.run.unit_config_sha256 {
+        stdio::note(&format!(
+            "the unit configuration is not that of run {id}: what both came to does not add up to one test"
+        ));
+    }
+}

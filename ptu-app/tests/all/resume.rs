@@ -1,0 +1,149 @@
+//! A run that was interrupted, stopped or could not test is gone on with as a new run, linked to it.
+
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use crate::common::{Place, list, number, text};
+use serde_json::Value;
+
+/// A busy machine gets that far within this time.
+const SOON: Duration = Duration::from_secs(120);
+
+fn procedures(report: &Value) -> Vec<&str> {
+    let mut ids: Vec<_> = (list(&report["steps"]).iter())
+        .map(|step| text(&step["procedure"]))
+        .collect();
+    ids.dedup();
+    ids
+}
+
+/// Starts a run in real time and kills it in its second procedure, without any chance to put things in order.
+fn killed_run(place: &Place) -> Value {
+    let arguments = [
+        "run",
+        "ptu/identity",
+        "tcms/link",
+        "twc/exchange",
+        "--realtime",
+        "--seed",
+        "7",
+    ];
+    let mut run = (place.command(&arguments))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("ptu starts");
+    let begun = Instant::now();
+    let seen = loop {
+        assert!(
+            begun.elapsed() < SOON,
+            "no step of the second procedure was stored"
+        );
+        std::thread::sleep(Duration::from_millis(100));
+        let said = place.ptu(&["runs", "show", "latest", "--json"]);
+        let shown: Value = serde_json::from_str(&said.out).unwrap_or_default();
+        let of_second = |step: &&Value| step["procedure"] == "tcms/link";
+        let steps = shown["steps"]
+            .as_array()
+            .map_or(0, |s| s.iter().filter(of_second).count());
+        if steps >= 1 {
+            break list(&shown["steps"]).len();
+        }
+    };
+    run.kill().expect("killed");
+    run.wait().expect("over");
+    let left = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(left["run"]["state"], "interrupted", "{left}");
+    assert!(list(&left["steps"]).len() >= seen, "{left}");
+    left
+}
+
+/// Goal: what a run has finished survives a kill, and only the rest is run again.
+#[test]
+fn a_killed_run_keeps_its_steps_and_is_gone_on_with() {
+    let place = Place::new();
+    let killed = killed_run(&place);
+    let id = text(&killed["run"]["id"]);
+    assert_eq!(procedures(&killed), ["ptu/identity", "tcms/link"]);
+
+    let (said, report) = place.run(&["--resume", id]);
+    assert!(
+        said.out
+            .contains(&format!("continues run {}", &id[id.len() - 8..])),
+        "{}",
+        said.all()
+    );
+    said.exits(0);
+    // The one under way may not have been through: no row says so.
+    assert_eq!(procedures(&report), ["tcms/link", "twc/exchange"]);
+    assert_eq!(report["run"]["continues"], id);
+    assert_eq!(number(&report["run"]["seed"]), 7.0);
+    let shown = place
+        .ptu(&["runs", "show", "latest", "--report", "sheet.html"])
+        .exits(0);
+    assert!(shown.out.contains("continues run"), "{}", shown.all());
+    let sheet = place.read("sheet.html");
+    assert!(
+        sheet.contains("Continues run") && sheet.contains(id),
+        "the report says it"
+    );
+    place.ptu(&["db", "check"]).exits(0);
+
+    // All that was due has a verdict now.
+    place
+        .ptu(&["run", "--resume", "latest"])
+        .exits(2)
+        .explains(&["each procedure of run", "--retry-errors"]);
+}
+
+#[test]
+fn another_unit_does_not_continue_a_run_and_changed_scripts_are_told() {
+    let place = Place::new();
+    let head = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\"";
+    let step = "step(\"nothing\", expect = [holds(eb, \"applied\", for_ = s(1))])\n";
+    place.write(
+        "asks.star",
+        &format!("{head}, setup = [prompt(\"Is it on?\")])\n{step}"),
+    );
+    let (said, report) = place.run(&["asks.star", "tcms/link", "--serial-no", "A-1"]);
+    said.exits(3);
+    assert_eq!(report["run"]["verdict"], "error", "{report}");
+    let id = text(&report["run"]["id"]);
+
+    let refused: [(&[&str], &[&str]); 4] = [
+        (&["--serial-no", "B-2"], &["A-1", "B-2", "another unit"]),
+        (
+            &["--unit", "tcp:127.0.0.1:1"],
+            &["sim", "tcp:127.0.0.1:1", "another unit"],
+        ),
+        (&["tcms/link"], &["cannot be used with"]),
+        (&["--adaptive"], &["cannot be used with"]),
+    ];
+    for (more, words) in refused {
+        let arguments = [&["run", "--retry-errors", id], more].concat();
+        place.ptu(&arguments).exits(2).explains(words);
+    }
+    assert_eq!(place.run_ids().len(), 1, "nothing was run");
+
+    place.write("asks.star", &format!("{head})\n{step}"));
+    let (said, again) = place.run(&["--retry-errors", id]);
+    said.explains(&["asks.star was changed since run"]);
+    assert_eq!(procedures(&again), ["asks"]);
+    assert_eq!(again["run"]["unit_serial"], "A-1");
+    assert_eq!(again["run"]["continues"], id);
+    place
+        .ptu(&["run", "--retry-errors", "latest"])
+        .exits(2)
+        .explains(&["no procedure of run", "ended as an error"]);
+}
+
+#[test]
+fn what_ran_no_procedures_is_not_continued() {
+    let place = Place::new();
+    place
+        .ptu(&["run", "--resume", "latest"])
+        .exits(3)
+        .explains(&["there is no database"]);
+    place.recorded_run();
+    place.ptu(&["run", "--resume", "ffffffff"]).exits(2);
+}
