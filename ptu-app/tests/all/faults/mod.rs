@@ -46,10 +46,6 @@ const NOT_DIAGNOSED: &[(&str, &str)] = &[
         "a code that is lost for a moment, once in a suite: nothing tells whose moment it was",
     ),
     (
-        "head_control_relay.drops_out",
-        "an input that is lost for a moment, once in a suite: nothing tells whose moment it was",
-    ),
-    (
         "io_board.door_flickers",
         "doors that seem open for moments: by the input or by a contact, in the same steps",
     ),
@@ -81,6 +77,14 @@ const PART_NOT_NAMED: &[(&str, &str)] = &[
     (
         "ato_cpu.jog_direction_lost",
         "what is stored is the emergency brake of a train that goes the wrong way, whoever sends it there",
+    ),
+    (
+        "atp_cpu.enables_dropped",
+        "what is stored is a door that is not ordered open again, which ATO orders",
+    ),
+    (
+        "ato_cpu.loops_unknown",
+        "what is stored is the loss of the wayside, which the step looks for in TWC's processor",
     ),
     (
         "test_board.marker_dead",
