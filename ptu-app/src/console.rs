@@ -287,22 +287,21 @@ fn summary(run: &RunDetail) -> String {
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s{continued}",
         run.run.id.short(),
         display_text::line(&run.run.unit_serial),
-        standing(&run.steps)
-            .filter(|s| outside_of(s).is_none())
-            .count(),
+        Coverage::of_run(&run.steps).of,
         run.faults.len(),
-        run.run
-            .verdict
-            .map_or("interrupted", |verdict| verdict.as_str())
+        verdict_word(run)
     )
+}
+
+fn verdict_word(run: &RunDetail) -> &'static str {
+    let verdict = run.run.verdict;
+    verdict.map_or("interrupted", |verdict| verdict.as_str())
 }
 
 /// The first line, where steps were skipped.
 fn part(run: &RunDetail) -> String {
     let coverage = coverage_text(&Coverage::of_run(&run.steps), Language::English.words());
-    let verdict = run
-        .run
-        .verdict
-        .map_or("interrupted", |verdict| verdict.as_str());
-    coverage.map_or_else(String::new, |part| format!("{verdict}: {part}\n\n"))
+    coverage.map_or_else(String::new, |part| {
+        format!("{}: {part}\n\n", verdict_word(run))
+    })
 }

@@ -5,7 +5,7 @@
 //! [`Locator::ahead_m`] grows, the distance by which the train may be further than it seems. ATO stops by
 //! the most advanced position that can be believed, so that a train without markers stops short
 //! rather than beyond the platform. So it does after a marker that came too early to be believed. Doors are enabled
-//! where the last marker and the way from the one before agree on the stop point alone.
+//! only where the last marker and the way from the one before agree on the stop point.
 
 use protocol::Instant;
 use protocol::config::{MarkerConfig, UnitConfig};
@@ -207,13 +207,16 @@ impl Locator {
             }
         }
         self.hold_against_the_way(now, place_m, &detection, log);
-        // A span on sliding wheels tells nothing of their diameter.
-        if let Some((from, from_m, distance_m)) =
-            self.span_from(&detection).filter(|_| self.slid_m == 0.0)
-        {
-            let track_m = place_m - from_m;
-            self.span = Some(MarkerSpan { from, track_m });
-            self.wheel.learn(track_m, detection.distance_m - distance_m);
+        // Of a section's start only the distance is known; a span on sliding wheels tells nothing of their diameter.
+        let start = self.span_from(&detection, self.fix.marker != 0);
+        if let Some((start, _)) = start.filter(|_| self.slid_m == 0.0) {
+            let track_m = place_m - start.place_m;
+            self.span = Some(MarkerSpan {
+                from: start.marker,
+                track_m,
+            });
+            let wheel_m = detection.distance_m - start.distance_m;
+            self.wheel.learn(track_m, wheel_m);
             self.report_wheel(now, log);
         }
         self.fix = PositionFix {
@@ -241,17 +244,16 @@ impl Locator {
         let run_m = wheels.run_m(detection.distance_m - self.fix.distance_m);
         let by_fix_m = self.fix.place_m + run_m - place_m;
         let agrees = libm::fabs(by_fix_m) <= window_m(&self.fix, run_m, &wheels, &self.config);
-        self.contradicted = !agrees && self.fix.marker != 0;
+        self.contradicted = self.holds_markers && !agrees && self.fix.marker != 0;
         self.by_way_m = 0.0;
-        if !self.holds_markers {
-            self.contradicted = false;
-            return;
-        }
-        let Some((from_m, distance_m)) = self.before(detection, agrees) else {
+        // The way on sliding wheels contradicts nothing.
+        let start = self.span_from(detection, agrees);
+        let rolled = |slid_m| self.holds_markers && detection.slid_m == slid_m;
+        let Some((start, _)) = start.filter(|(_, slid_m)| rolled(*slid_m)) else {
             return;
         };
-        let run_m = wheels.scale * (detection.distance_m - distance_m);
-        let error_m = from_m + run_m - place_m;
+        let run_m = wheels.scale * (detection.distance_m - start.distance_m);
+        let error_m = start.place_m + run_m - place_m;
         // 2σ: doors that stay closed cost less than doors that open elsewhere.
         let wrong_m = self.wheel.uncertainty() * libm::fabs(run_m);
         self.by_way_m = libm::copysign((libm::fabs(error_m) - wrong_m).max(0.0), error_m);
@@ -261,33 +263,24 @@ impl Locator {
         }
     }
 
-    /// Place and odometer's distance of the marker before, if the wheels have rolled since: the one of the fix, or the
-    /// one that the present marker agrees with and the fix does not.
-    fn before(&self, detection: &MarkerDetection, agrees: bool) -> Option<(f64, f64)> {
-        if agrees {
-            let rolled = self.fix.marker != 0 && self.slid_m == 0.0;
-            return rolled.then_some((self.fix.place_m, self.fix.distance_m));
-        }
-        let first = self.pending?;
-        let place_m = place_m(self.section.as_ref()?, first.marker)?;
-        (detection.slid_m == first.slid_m).then_some((place_m, first.distance_m))
-    }
-
     /// Whether markers are held against the way from the one before.
     pub fn hold_markers(&mut self, holds: bool) {
         self.holds_markers = holds;
     }
 
-    /// Where a span that ends at a believed marker begins, marker, place and distance told, m: at the marker of the
-    /// fix, or, where only the distance from the section's start is known, at a marker that waits for
-    /// a second one to agree with.
-    fn span_from(&self, end: &MarkerDetection) -> Option<(u8, f64, f64)> {
-        if self.fix.marker != 0 {
-            return Some((self.fix.marker, self.fix.place_m, self.fix.distance_m));
+    /// Where a span that ends at a believed marker begins, and the distance slid from the fix until there, m: at the
+    /// marker of the fix, or at the one that waits for a second one to agree with.
+    fn span_from(&self, end: &MarkerDetection, at_fix: bool) -> Option<(PositionFix, f64)> {
+        if at_fix {
+            return (self.fix.marker != 0).then_some((self.fix, 0.0));
         }
         let first = self.pending.filter(|first| first.marker < end.marker)?;
-        let place_m = place_m(self.section.as_ref()?, first.marker)?;
-        Some((first.marker, place_m, first.distance_m))
+        let start = PositionFix {
+            place_m: place_m(self.section.as_ref()?, first.marker)?,
+            distance_m: first.distance_m,
+            marker: first.marker,
+        };
+        Some((start, first.slid_m))
     }
 
     fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {
@@ -397,104 +390,4 @@ impl Locator {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Position after PSM1 was heard at 0.2 m/s, ATP's standstill, 0.5 m before its place by the wheels.
-    fn position_after_psm1(driven: bool, edge_age_s: f64) -> (f64, f64) {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap();
-        let line = include_str!("../../../scripts/lines/line8.toml");
-        let line = Line::from_toml(line).unwrap();
-        let section = line.section(61).unwrap();
-        let mut locator = Locator::new(&config);
-        let departing = TwcWayside {
-            section: section.section,
-            loop_id: section.from_loop,
-            ..TwcWayside::default()
-        };
-        locator.locate(&departing, &line, true);
-        let mut log = EventLog::default();
-        let pulse = Some(MarkerPulse {
-            marker: 1,
-            age_us: 0,
-        });
-        let movement = Movement {
-            moved_m: section.markers_m[0] - section.start_m - 0.5,
-            edge_age_s,
-            speed_mps: 0.2,
-            standstill: true,
-            driven,
-        };
-        locator.step(Instant::ZERO, movement, pulse, &mut log);
-        (locator.position_m(), section.markers_m[0])
-    }
-
-    /// Whether the doors of a train that stops at section 61's stop point by its last marker may be enabled: wheels as
-    /// configured, markers displaced by these, m.
-    fn aligned(displaced_m: [f64; 4]) -> bool {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap();
-        let line = include_str!("../../../scripts/lines/line8.toml");
-        let line = Line::from_toml(line).unwrap();
-        let section = line.section(61).unwrap();
-        let mut locator = Locator::new(&config);
-        let departing = TwcWayside {
-            section: section.section,
-            loop_id: section.from_loop,
-            ..TwcWayside::default()
-        };
-        locator.locate(&departing, &line, true);
-        let mut log = EventLog::default();
-        let mut go = |moved_m, pulse| {
-            let movement = Movement {
-                moved_m,
-                edge_age_s: 0.01,
-                speed_mps: 5.0,
-                standstill: false,
-                driven: true,
-            };
-            locator.step(Instant::ZERO, movement, pulse, &mut log);
-        };
-        let mut at_m = section.start_m;
-        for (marker, (place_m, displaced_m)) in (1..).zip(section.markers_m.iter().zip(displaced_m))
-        {
-            let to_m = place_m + displaced_m;
-            let mut rolled = to_m - at_m;
-            while rolled > 0.05 {
-                go(0.05, None);
-                rolled -= 0.05;
-            }
-            go(rolled, Some(MarkerPulse { marker, age_us: 0 }));
-            at_m = to_m;
-        }
-        let left_m = section.stop_m - section.markers_m[3];
-        go(left_m, None);
-        locator.aligned()
-    }
-
-    /// Goal: doors are enabled where markers and way agree alone. Method: one or two of the last markers displaced; the
-    /// train stops by what they tell, as far from the stop point as they are.
-    #[test]
-    fn markers_that_contradict_the_way_open_nothing() {
-        assert!(aligned([0.0; 4]));
-        assert!(aligned([0.05, -0.05, 0.05, -0.05]));
-        for by_m in [0.36, 0.46, -0.46, 3.0] {
-            assert!(!aligned([0.0, 0.0, 0.0, by_m]), "PSM4 by {by_m} m");
-        }
-        for by_m in [6.0, -6.0, 2.5] {
-            assert!(!aligned([0.0, 0.0, by_m, by_m]), "both by {by_m} m");
-        }
-        assert!(aligned([0.0, 0.0, 5.0, 0.0]), "PSM3 alone is not believed");
-    }
-
-    #[test]
-    fn a_marker_passed_slowly_counts_and_a_test_marker_does_not() {
-        let (position_m, place_m) = position_after_psm1(true, 0.1);
-        assert!(libm::fabs(position_m - place_m) < 0.05, "{position_m}");
-        for (driven, edge_age_s) in [(false, 0.1), (true, 0.6)] {
-            let (position_m, place_m) = position_after_psm1(driven, edge_age_s);
-            assert!(position_m < place_m - 0.45, "{driven} {position_m}");
-        }
-    }
-}
+mod tests;

@@ -151,7 +151,7 @@ impl AskedUnit {
 }
 
 impl UnitReading {
-    /// Stores the faults of the log that are new; entries that are surely of before `since_us` are left out.
+    /// Stores the faults of the log that are new; entries that are surely older than `since_us` are left out.
     ///
     /// # Errors
     /// The database fails.

@@ -50,13 +50,12 @@ fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (sheet.run.steps.iter()).partition(|step| outside_of(step).is_none());
     let not_passed = steps.iter().filter(|step| !passed(step.verdict)).count();
     let of = steps.len();
-    let coverage = coverage_text(&Coverage::of_run(&sheet.run.steps), words);
-    let mut counted = match (coverage, of, not_passed) {
-        (Some(part), ..) => part,
-        (None, 0, _) => report.no_steps.to_owned(),
-        (None, _, 0) => fill(report.all_passed, &[("of", &of)]),
-        (None, _, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
-    };
+    let part = coverage_text(&Coverage::of_run(&sheet.run.steps), words);
+    let mut counted = part.unwrap_or_else(|| match (of, not_passed) {
+        (0, _) => report.no_steps.to_owned(),
+        (_, 0) => fill(report.all_passed, &[("of", &of)]),
+        (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
+    });
     if !outside.is_empty() {
         let more = fill(report.outside_steps, &[("n", &outside.len())]);
         counted = format!("{counted}   {more}");

@@ -188,10 +188,12 @@ impl Unit {
             BenchEvent::RunEnded(outcome) => {
                 self.runs_ended += 1;
                 let verdict = words.common.verdict(outcome.verdict);
-                let ended = fill(frame.run_ended, &[("verdict", &verdict)]);
+                let mut ended = fill(frame.run_ended, &[("verdict", &verdict)]);
                 let coverage = self.run.as_ref().map(Progress::coverage);
-                let part = coverage.and_then(|coverage| coverage_text(&coverage, words));
-                said.note(part.map_or(ended.clone(), |part| format!("{ended} ({part})")));
+                if let Some(part) = coverage.and_then(|coverage| coverage_text(&coverage, words)) {
+                    ended += &format!(" ({part})");
+                }
+                said.note(ended);
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
                 }

@@ -1,0 +1,93 @@
+use super::*;
+
+/// A train that departs into section 61.
+fn departed() -> (Locator, Section) {
+    let text = include_str!("../../../../scripts/units/sg100.toml");
+    let config = UnitConfig::from_toml(text).unwrap();
+    let line = include_str!("../../../../scripts/lines/line8.toml");
+    let line = Line::from_toml(line).unwrap();
+    let section = line.section(61).unwrap().clone();
+    let mut locator = Locator::new(&config);
+    let departing = TwcWayside {
+        section: section.section,
+        loop_id: section.from_loop,
+        ..TwcWayside::default()
+    };
+    locator.locate(&departing, &line, true);
+    (locator, section)
+}
+
+/// Position after PSM1 was heard at 0.2 m/s, ATP's standstill, 0.5 m before its place by the wheels.
+fn position_after_psm1(driven: bool, edge_age_s: f64) -> (f64, f64) {
+    let (mut locator, section) = departed();
+    let mut log = EventLog::default();
+    let pulse = Some(MarkerPulse {
+        marker: 1,
+        age_us: 0,
+    });
+    let movement = Movement {
+        moved_m: section.markers_m[0] - section.start_m - 0.5,
+        edge_age_s,
+        speed_mps: 0.2,
+        standstill: true,
+        driven,
+    };
+    locator.step(Instant::ZERO, movement, pulse, &mut log);
+    (locator.position_m(), section.markers_m[0])
+}
+
+/// Whether the doors of a train that stops at section 61's stop point by its last marker may be enabled: wheels as
+/// configured, markers displaced by these, m.
+fn aligned(displaced_m: [f64; 4]) -> bool {
+    let (mut locator, section) = departed();
+    let mut log = EventLog::default();
+    let mut go = |moved_m, pulse| {
+        let movement = Movement {
+            moved_m,
+            edge_age_s: 0.01,
+            speed_mps: 5.0,
+            standstill: false,
+            driven: true,
+        };
+        locator.step(Instant::ZERO, movement, pulse, &mut log);
+    };
+    let mut at_m = section.start_m;
+    for (marker, (place_m, displaced_m)) in (1..).zip(section.markers_m.iter().zip(displaced_m)) {
+        let to_m = place_m + displaced_m;
+        let mut rolled = to_m - at_m;
+        while rolled > 0.05 {
+            go(0.05, None);
+            rolled -= 0.05;
+        }
+        go(rolled, Some(MarkerPulse { marker, age_us: 0 }));
+        at_m = to_m;
+    }
+    let left_m = section.stop_m - section.markers_m[3];
+    go(left_m, None);
+    locator.aligned()
+}
+
+/// Goal: doors are enabled where markers and way agree alone. Method: one or two of the last markers displaced; the
+/// train stops by what they tell, as far from the stop point as they are.
+#[test]
+fn markers_that_contradict_the_way_open_nothing() {
+    assert!(aligned([0.0; 4]));
+    assert!(aligned([0.05, -0.05, 0.05, -0.05]));
+    for by_m in [0.36, 0.46, -0.46, 3.0] {
+        assert!(!aligned([0.0, 0.0, 0.0, by_m]), "PSM4 by {by_m} m");
+    }
+    for by_m in [6.0, -6.0, 2.5] {
+        assert!(!aligned([0.0, 0.0, by_m, by_m]), "both by {by_m} m");
+    }
+    assert!(aligned([0.0, 0.0, 5.0, 0.0]), "PSM3 alone is not believed");
+}
+
+#[test]
+fn a_marker_passed_slowly_counts_and_a_test_marker_does_not() {
+    let (position_m, place_m) = position_after_psm1(true, 0.1);
+    assert!(libm::fabs(position_m - place_m) < 0.05, "{position_m}");
+    for (driven, edge_age_s) in [(false, 0.1), (true, 0.6)] {
+        let (position_m, place_m) = position_after_psm1(driven, edge_age_s);
+        assert!(position_m < place_m - 0.45, "{driven} {position_m}");
+    }
+}
