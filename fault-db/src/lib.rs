@@ -71,11 +71,11 @@ pub use id::{Id, IdSource};
 pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
 pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
-    ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat, FaultSummary,
-    LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RunDetail, RunFault,
-    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
-    TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit,
-    code_number,
+    ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat,
+    FaultSummary, LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult,
+    RepairsOf, RunDetail, RunFault, RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US,
+    SqlValue, StatKey, StatQuery, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint,
+    TrendQuery, TrendStep, TrendUnit, code_number,
 };
 pub use record::{
     CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,
@@ -94,4 +94,5 @@ pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::Store;
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
+pub use verify::RepairToProve;
 pub use views::VIEWS_PAGE;

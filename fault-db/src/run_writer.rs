@@ -260,7 +260,7 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// Commits the buffered steps and the verdict, and verifies repairs that a passed run has proven. After
+    /// Commits the buffered steps and the verdict, and notes a run that passed at the repairs it speaks for. After
     /// an error it can be called again.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         const DOING: &str = "finishing a run";
@@ -288,7 +288,7 @@ impl<'a> RunWriter<'a> {
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
-            store.verify_proven((unit, run, id), known_events, end)?;
+            store.note_passed((unit, run, id), known_events, end)?;
             fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
         })?;
         self.waiting.clear();

@@ -1,21 +1,34 @@
-//! Verifies repairs by passing runs.
+//! Proves repairs by passing runs.
 //!
-//! A repaired fault becomes verified by a run that passed, began when the repair was known here, and passed
-//! the step that saw the fault last. With a fault that names the part which its case comes from, the consequences of
-//! that part are verified, provided that no other fault naming it is left. Any other fault that no step saw, for
-//! instance one read from a unit's log, has to be verified by a user.
+//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at the
+//! repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how often the fault
+//! showed while it was there: an intermittent one hides. Who knows the rate decides ([`Store::repairs_to_prove`],
+//! [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a person sets. A fault that no step saw,
+//! for instance one read from a unit's log, is verified by a person.
+
+use std::collections::BTreeMap;
 
 use crate::backend::{SqlError, values};
 use crate::cases::REST_OF_CASE;
 use crate::error::StoreError;
 use crate::fault_event::{NewEvent, insert_event};
-use crate::fault_state::{FaultAction, FaultState};
+use crate::fault_state::FaultState;
 use crate::id::Id;
+use crate::query::LOG_SOURCE;
 use crate::record::{RunEnd, Verdict};
 use crate::store::Store;
 
+/// Kind of the event that notes a passing run after a repair.
+pub(crate) const PASSED: &str = "passed";
+/// Kind of the event by which a run has proved a repair; by hand it is `verified`.
+pub(crate) const CONFIRMED: &str = "confirmed";
+/// What the note of such an event begins with, before the run's id.
+const IN_RUN: &str = "in run ";
+/// As many runs with the fault are evidence of its rate, the last ones.
+const MOST_RUNS: i64 = 8;
+
 /// Repaired faults of a unit whose last step passed in a run.
-const PROVEN: &str = "
+const SHOWN_GONE: &str = "
     SELECT f.seq, f.id FROM fault f
     WHERE f.unit = ?1 AND f.state = 'repaired'
         AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = f.seq AND e.state = 'repaired') <= ?3
@@ -28,14 +41,42 @@ const PROVEN: &str = "
                     WHERE o.fault = f.seq ORDER BY o.at_us DESC, o.seq DESC LIMIT 1))
     ORDER BY f.seq";
 
-/// The repaired consequences in the case of fault `?1`, which names the cause itself, if no such fault is left that is
-/// not verified.
-const PROVEN_WITH: &str = "
+/// The repaired consequences in the case of fault `?1`, which names the cause itself.
+const WITH_IT: &str = "
     AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
     AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = c.seq AND e.state = 'repaired') <= ?2
+    ORDER BY c.seq";
+
+/// Of those, the ones that a run has noted as passed, if no other fault naming the cause is left that is not
+/// verified.
+const PROVEN_WITH_IT: &str = "
+    AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
+    AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = c.seq AND e.kind = 'passed' AND e.body LIKE ?2)
     AND NOT EXISTS (SELECT 1 FROM fault other WHERE other.unit = f.unit AND other.cause = f.cause
         AND other.cause = lower(other.lru) AND other.state NOT IN ('verified', 'closed'))
     ORDER BY c.seq";
+
+/// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
+const THERE: &str = "
+    SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
+    WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2
+        AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o WHERE o.fault = f.seq AND o.at_us >
+            coalesce((SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.state = 'verified'), -1))
+        AND r.started_at_us <= (SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair')
+    ORDER BY r.started_at_us DESC, r.seq DESC LIMIT ?3";
+
+/// A repair that a run may have proved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RepairToProve {
+    /// The repaired fault.
+    pub fault: Id,
+    /// Its name.
+    pub code_name: String,
+    /// Runs of the unit in which the fault was there, oldest first: the last ones, from the one that saw it first.
+    pub there: Vec<Id>,
+    /// Runs that passed since the repair, oldest first; the last one is the run that was asked about.
+    pub passed: Vec<Id>,
+}
 
 impl Store {
     /// The number of the last event this file knows.
@@ -49,59 +90,157 @@ impl Store {
         Ok(found.unwrap_or_default())
     }
 
-    /// Verifies the repairs that a run proves, in the caller's transaction: those of its unit made no later
-    /// than the event of this number.
-    pub(crate) fn verify_proven(
+    /// Notes a run at the repaired faults of its unit that it shows to be gone, in the caller's transaction: those repaired
+    /// no later than the event of this number.
+    pub(crate) fn note_passed(
         &self,
         (unit, run, id): (i64, i64, Id),
         known_events: i64,
         end: &RunEnd,
-    ) -> Result<Vec<Id>, StoreError> {
+    ) -> Result<(), StoreError> {
+        const DOING: &str = "noting a run that passed";
         if end.verdict != Verdict::Passed {
-            return Ok(Vec::new());
+            return Ok(());
         }
-        let proven = self.select(
-            "verifying repairs",
-            PROVEN,
-            &values![unit, run, known_events],
-            |row| Ok((row.get::<i64>(0)?, row.get::<Id>(1)?)),
-        )?;
-        let note = format!("passed in run {}", id.short());
-        for (fault, _) in &proven {
-            self.verify(*fault, end.finished_at_us, &note)?;
-        }
-        let mut verified: Vec<Id> = proven.iter().map(|(_, id)| *id).collect();
-        let with = format!("SELECT c.seq, c.id FROM {REST_OF_CASE} {PROVEN_WITH}");
-        for (fault, id) in proven {
-            let note = format!("{note}, with fault {}", id.short());
-            let values = values![fault, known_events];
-            let consequences = self.select("verifying repairs", &with, &values, |row| {
-                Ok((row.get::<i64>(0)?, row.get::<Id>(1)?))
-            })?;
-            for (fault, id) in consequences {
-                self.verify(fault, end.finished_at_us, &note)?;
-                verified.push(id);
+        let values = values![unit, run, known_events];
+        let gone = self.select(DOING, SHOWN_GONE, &values, |row| {
+            Ok((row.get::<i64>(0)?, row.get::<Id>(1)?))
+        })?;
+        let mut notes = BTreeMap::new();
+        let note = format!("{IN_RUN}{id}");
+        let with = format!("SELECT c.seq FROM {REST_OF_CASE} {WITH_IT}");
+        for (fault, id) in &gone {
+            let values = values![*fault, known_events];
+            for consequence in self.select(DOING, &with, &values, |row| row.get::<i64>(0))? {
+                notes.insert(consequence, format!("{note}, with fault {}", id.short()));
             }
         }
-        Ok(verified)
+        notes.extend(gone.iter().map(|(fault, _)| (*fault, note.clone())));
+        for (fault, note) in notes {
+            self.proof_event(fault, PASSED, end.finished_at_us, &note, None)?;
+        }
+        Ok(())
     }
 
-    /// Marks a repaired fault as verified by a run.
-    fn verify(&self, fault: i64, at_us: i64, note: &str) -> Result<(), StoreError> {
+    /// The repaired faults that a run has shown to be gone, each with what tells how often such a fault hides.
+    ///
+    /// # Errors
+    /// There is no such run, or the file cannot be read.
+    pub fn repairs_to_prove(&self, run: Id) -> Result<Vec<RepairToProve>, StoreError> {
+        const DOING: &str = "looking for repairs to prove";
+        let mut repairs: BTreeMap<i64, RepairToProve> = BTreeMap::new();
+        let passed = self.select(
+            DOING,
+            "SELECT f.seq, f.id, f.code_name, e.body FROM run r JOIN fault f ON f.unit = r.unit
+             JOIN fault_event e ON e.fault = f.seq AND e.kind = 'passed'
+             WHERE r.id = ?1 AND f.state = 'repaired' AND e.seq > (SELECT max(x.seq) FROM fault_event x
+                WHERE x.fault = f.seq AND x.state = 'repaired')
+             ORDER BY f.seq, e.seq",
+            &values![run],
+            |row| {
+                let (fault, code_name) = (row.get::<Id>(1)?, row.get::<String>(2)?);
+                let passed = noted_run(row.get::<&str>(3)?);
+                Ok((row.get::<i64>(0)?, fault, code_name, passed))
+            },
+        )?;
+        for (row, fault, code_name, passed) in passed {
+            let repair = repairs.entry(row).or_insert(RepairToProve {
+                fault,
+                code_name,
+                there: Vec::new(),
+                passed: Vec::new(),
+            });
+            repair.passed.extend(passed);
+        }
+        repairs.retain(|_, repair| repair.passed.last() == Some(&run));
+        for (fault, repair) in &mut repairs {
+            repair.there = self.select(
+                DOING,
+                THERE,
+                &values![*fault, format!("{LOG_SOURCE}%"), MOST_RUNS],
+                |row| row.get::<Id>(0),
+            )?;
+            repair.there.reverse();
+            repair.there.retain(|run| !repair.passed.contains(run));
+        }
+        Ok(repairs.into_values().collect())
+    }
+
+    /// Marks repaired faults as verified by a run, each with the reason in words, and with a fault that names the part
+    /// which its case comes from the consequences, provided that no other fault naming it is left. Returns all that are
+    /// verified now.
+    ///
+    /// # Errors
+    /// There is no such run or fault, or the file does not take it.
+    pub fn confirm_repairs(&self, run: Id, proven: &[(Id, String)]) -> Result<Vec<Id>, StoreError> {
+        const DOING: &str = "verifying repairs";
+        let finished = self.first(
+            DOING,
+            "SELECT finished_at_us FROM run WHERE id = ?1",
+            &values![run],
+            |row| row.get::<Option<i64>>(0),
+        )?;
+        let Some(at_us) = finished.flatten() else {
+            return Err(StoreError::not_found("finished run", run));
+        };
+        self.change(DOING, |_| {
+            let mut rows = Vec::new();
+            for (fault, note) in proven {
+                let fault = self.fault_row(*fault)?;
+                if fault.state == FaultState::Repaired {
+                    self.confirm(fault.seq, at_us, note)?;
+                    rows.push((fault.seq, fault.id));
+                }
+            }
+            let mut verified: Vec<Id> = rows.iter().map(|(_, id)| *id).collect();
+            let with = format!("SELECT c.seq, c.id FROM {REST_OF_CASE} {PROVEN_WITH_IT}");
+            for (fault, id) in rows {
+                let noted = format!("{IN_RUN}{run}");
+                let note = format!("{noted}, with fault {}", id.short());
+                let values = values![fault, format!("{noted}%")];
+                let consequences = self.select(DOING, &with, &values, |row| {
+                    Ok((row.get::<i64>(0)?, row.get::<Id>(1)?))
+                })?;
+                for (fault, id) in consequences {
+                    self.confirm(fault, at_us, &note)?;
+                    verified.push(id);
+                }
+            }
+            Ok(verified)
+        })
+    }
+
+    fn confirm(&self, fault: i64, at_us: i64, note: &str) -> Result<(), StoreError> {
+        self.proof_event(fault, CONFIRMED, at_us, note, Some(FaultState::Verified))?;
+        let sql = "UPDATE fault SET state = ?2 WHERE seq = ?1";
+        (self.backend())
+            .execute(sql, &values![fault, FaultState::Verified])
+            .map_err(|error| self.failed("verifying repairs", error))?;
+        Ok(())
+    }
+
+    fn proof_event(
+        &self,
+        fault: i64,
+        kind: &str,
+        at_us: i64,
+        note: &str,
+        state: Option<FaultState>,
+    ) -> Result<(), StoreError> {
         let event = NewEvent {
             id: self.mint()?,
-            kind: FaultAction::Verify.event_kind(),
+            kind,
             at_us,
             who: "",
             body: note,
-            state: Some(FaultState::Verified),
+            state,
         };
-        let work = || -> Result<(), SqlError> {
-            insert_event(self.backend(), fault, &event)?;
-            let sql = "UPDATE fault SET state = ?2 WHERE seq = ?1";
-            (self.backend()).execute(sql, &values![fault, FaultState::Verified])?;
-            Ok(())
-        };
-        work().map_err(|error| self.failed("verifying repairs", error))
+        insert_event(self.backend(), fault, &event)
+            .map_err(|error: SqlError| self.failed("noting a proof", error))
     }
+}
+
+/// The run that a note says passed the fault's own step, rather than that of a fault beside it.
+fn noted_run(note: &str) -> Option<Id> {
+    note.strip_prefix(IN_RUN)?.parse().ok()
 }

@@ -84,8 +84,8 @@ impl<'m, 'd> Belief<'m, 'd> {
         };
         let outcome = StepOutcome::of(step);
         let mut ln = self.model.ln_likelihoods(place, step);
-        if self.shown.get(&place) == Some(&outcome) {
-            self.model.keep_what_comes_and_goes(place, &mut ln);
+        if let Some(before) = self.shown.get(&place) {
+            self.model.given_before(place, (before, step), &mut ln);
         }
         self.shown.insert(place, outcome);
         self.healthy += ln.healthy;

@@ -202,26 +202,13 @@ impl Dictionary {
         }
     }
 
-    /// Adds real runs with a fault of a part, as a mode of their own. They are few: checks that passed in all of them tell of
-    /// these units rather than of the fault, and count as they do under the other modes, in as many runs as those have.
+    /// Adds real runs with a fault of a part, as a mode of their own: so many runs are so many observations. Checks that
+    /// passed in all of them tell of these units rather than of the fault, and count as a healthy unit's.
     pub fn add_cases(&mut self, mode: &ModeName, runs: &[Observation]) {
-        let columns = self.modes.iter().flat_map(|mode| &mode.columns);
-        let mut counted: Vec<u32> = columns.map(|column| column.runs).collect();
-        counted.sort_unstable();
-        let usual = counted.get(counted.len() / 2).copied().unwrap_or(1);
         self.add(mode, CASES.into(), runs);
-        let added = self
-            .modes
-            .last_mut()
-            .and_then(|mode| mode.columns.last_mut());
-        if let Some(column) = added.filter(|column| column.runs > 0) {
+        let added = self.modes.last_mut();
+        if let Some(column) = added.and_then(|mode| mode.columns.last_mut()) {
             column.cells.retain(|_, cell| cell.shows_a_fault());
-            let times = usual.div_ceil(column.runs);
-            column
-                .signs
-                .iter_mut()
-                .for_each(|(_, shown)| *shown *= times);
-            column.runs *= times;
         }
     }
 

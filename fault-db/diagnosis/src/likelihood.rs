@@ -80,8 +80,12 @@ impl Expected<'_> {
 
     /// Probability of a result.
     pub fn result(&self, result: Verdict) -> f64 {
-        let share = self.share(self.cell.count(result));
-        self.smoothed(share, nothing_known(self.settings, result))
+        self.smoothed(self.counted(result), self.settings.of(result))
+    }
+
+    /// Share of the counted runs with a result.
+    pub fn counted(&self, result: Verdict) -> f64 {
+        self.share(self.cell.count(result))
     }
 
     /// Probability of a sign.
@@ -138,13 +142,15 @@ impl Expected<'_> {
     }
 }
 
-/// Probability of each verdict if nothing is known.
-const fn nothing_known(settings: &LikelihoodSettings, verdict: Verdict) -> f64 {
-    match verdict {
-        Verdict::Passed => settings.passed,
-        Verdict::Failed => settings.failed,
-        Verdict::Error => settings.error,
-        Verdict::Skipped | Verdict::Aborted => 0.0,
+impl LikelihoodSettings {
+    /// Probability of each verdict if nothing is known.
+    pub(super) const fn of(&self, verdict: Verdict) -> f64 {
+        match verdict {
+            Verdict::Passed => self.passed,
+            Verdict::Failed => self.failed,
+            Verdict::Error => self.error,
+            Verdict::Skipped | Verdict::Aborted => 0.0,
+        }
     }
 }
 
@@ -182,7 +188,7 @@ pub fn likelihood_of_anything<'s>(
 ) -> f64 {
     let measured = step.values.iter().filter(|(name, _)| scale(name).is_some());
     let values = settings.anywhere.powi(measured.count() as i32);
-    nothing_known(settings, step.result) * values
+    settings.of(step.result) * values
 }
 
 #[cfg(test)]

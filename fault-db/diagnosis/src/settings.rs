@@ -51,6 +51,8 @@ pub struct Settings {
     pub recurrence_factor: f64,
     /// Factor on a part's prior when it was replaced and the same fault came back.
     pub replaced_in_vain_factor: f64,
+    /// A repair is proven by runs that pass with at most this probability while the fault is still there.
+    pub hidden_fault: f64,
     /// How far back a unit's history counts, days.
     pub history_days: u32,
     /// Confirmed repairs of all units that weigh as much as the dictionary's own weights of the parts.
@@ -149,6 +151,7 @@ impl Settings {
             ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
+            ("hidden_fault", self.hidden_fault),
             ("foresight", self.foresight),
             ("otherwise", self.otherwise),
             ("otherwise_unseen", self.otherwise_unseen),
@@ -218,6 +221,7 @@ impl Default for Settings {
             second_fault: 1e-4,
             found_at: 0.95,
             healthy_at: 0.99,
+            hidden_fault: 0.05,
             least_gain_bits: 0.01,
             doubt_runs: 1.0,
             otherwise: 0.0001,

@@ -1,25 +1,57 @@
 //! Confirmed repairs of all units: what diagnosis learns from the depot.
 //!
-//! A repair is confirmed when its fault is verified or closed and has not come back.
+//! A repair is confirmed when a run has proved it and its fault has not come back. What a person has set to verified by hand
+//! is a claim, from which nothing is learnt.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::faults::json;
+use super::runs::RunSummary;
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::record::{CauseRecord, part_name};
 use crate::store::Store;
 
-/// Confirmed repairs `r` before `?1` of units of type `?2`: the text from `FROM` on.
-macro_rules! confirmed {
+/// Of which units repairs are asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct RepairsOf<'a> {
+    /// Confirmed before this time, µs since 1970.
+    pub before_us: i64,
+    /// Type of the units: the name of their configuration.
+    pub unit_type: &'a str,
+    /// Faults of simulated units, and those that were injected, count as well.
+    pub practice: bool,
+}
+
+/// A fault of practice, `f`: one that a run of practice saw (see [`RunSummary::is_practice`]).
+macro_rules! practised {
     () => {
-        "FROM repair r JOIN fault f ON f.seq = r.fault JOIN unit u ON u.seq = r.unit
-         WHERE f.state IN ('verified', 'closed') AND r.back_at_us IS NULL AND r.at_us < ?1 AND u.config_name = ?2"
+        "EXISTS (SELECT 1 FROM fault_occurrence o JOIN run x ON x.seq = o.run
+            WHERE o.fault = f.seq AND (x.source = 'sim' OR x.source LIKE 'lockstep:%' OR x.injected IS NOT NULL))"
     };
 }
 
-/// Confirmed repairs of a part. Work on one unit at one time for several faults is one repair.
+/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from `FROM` on.
+/// Of an opening of a fault that is the last repair, and none where parts of several names were changed at once: which of
+/// them helped is not known.
+macro_rules! confirmed {
+    () => {
+        concat!(
+            "FROM fault_event c JOIN fault f ON f.seq = c.fault JOIN unit u ON u.seq = f.unit
+             JOIN repair r ON r.fault = c.fault AND r.event = (SELECT max(x.event) FROM repair x
+                WHERE x.fault = c.fault AND x.event < c.seq)
+             WHERE c.kind = 'confirmed' AND f.state IN ('verified', 'closed') AND r.back_at_us IS NULL
+                AND c.at_us < ?1 AND u.config_name = ?2 AND (?3 = 1 OR NOT ",
+            practised!(),
+            ") AND NOT EXISTS (SELECT 1 FROM repair other WHERE other.fault = r.fault AND other.part <> r.part
+                AND other.opened_at_us = r.opened_at_us AND other.event < c.seq AND other.back_at_us IS NULL)"
+        )
+    };
+}
+
+/// Confirmed repairs of a part. What one run confirms of a part of one unit is one repair, however many faults it was for
+/// and however often it was written down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConfirmedRepairs {
     /// Of this part.
@@ -28,24 +60,48 @@ pub struct ConfirmedRepairs {
     pub named: u32,
     /// Of these, of the part itself.
     pub right: u32,
+    /// Repairs of this part after which the fault came back, each unit's once.
+    pub in_vain: u32,
+}
+
+/// A run that shows what a confirmed repair has settled.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ConfirmedCase {
+    /// The part that was repaired.
+    pub part: String,
+    /// The last run before it in which the fault showed.
+    pub run: Id,
+    /// Serial number of the unit.
+    pub unit: String,
+}
+
+impl RunSummary {
+    /// Whether it was practice: on a simulated unit, or with injected faults.
+    pub fn is_practice(&self) -> bool {
+        self.source == "sim" || self.source.starts_with("lockstep:") || self.injected.is_some()
+    }
 }
 
 impl Store {
-    /// The confirmed repairs of each part before a time, in units of a type (their configuration's name).
+    /// The confirmed repairs of each part.
+    ///
+    /// # Errors
+    /// The file cannot be read.
     pub fn confirmed_repairs(
         &self,
-        before_us: i64,
-        unit_type: &str,
+        of: RepairsOf<'_>,
     ) -> Result<BTreeMap<String, ConfirmedRepairs>, StoreError> {
+        const DOING: &str = "counting the confirmed repairs";
+        let values = values![of.before_us, of.unit_type, i64::from(of.practice)];
         let repairs = self.select(
-            "counting the confirmed repairs",
+            DOING,
             concat!(
-                "SELECT r.unit, r.at_us, r.part, (SELECT d.body FROM fault_event d
+                "SELECT r.unit, c.at_us, r.part, (SELECT d.body FROM fault_event d
                     WHERE d.fault = r.fault AND d.kind = 'diagnosed' AND d.at_us <= r.at_us
                     ORDER BY d.at_us DESC, d.seq DESC LIMIT 1) ",
                 confirmed!()
             ),
-            &values![before_us, unit_type],
+            &values,
             |row| {
                 let named = match row.get::<Option<&str>>(3)? {
                     Some(_) => Some(part_name(&json::<CauseRecord>(row, 3)?.part)),
@@ -68,33 +124,54 @@ impl Store {
                 counts.right += u32::from(named == part);
             }
         }
+        let in_vain = self.select(
+            DOING,
+            concat!(
+                "SELECT DISTINCT r.part, r.unit FROM repair r JOIN fault f ON f.seq = r.fault JOIN unit u ON u.seq = r.unit
+                 WHERE r.back_at_us < ?1 AND u.config_name = ?2 AND (?3 = 1 OR NOT ",
+                practised!(),
+                ")"
+            ),
+            &values,
+            |row| row.get::<String>(0),
+        )?;
+        for part in in_vain {
+            counted.entry(part).or_default().in_vain += 1;
+        }
         Ok(counted)
     }
 
-    /// The runs in which faults with a confirmed repair showed last before it, each with the part that was repaired; of
-    /// `most` repairs, the last ones.
+    /// The runs in which faults with a confirmed repair showed last before it, of `most` repairs, the last ones; in order.
+    ///
+    /// # Errors
+    /// The file cannot be read.
     pub fn confirmed_cases(
         &self,
-        before_us: i64,
-        unit_type: &str,
+        of: RepairsOf<'_>,
         most: u32,
-    ) -> Result<Vec<(String, Id)>, StoreError> {
+    ) -> Result<Vec<ConfirmedCase>, StoreError> {
         let found = self.select(
             "looking for confirmed cases",
             concat!(
                 "SELECT r.part, (SELECT x.id FROM fault_occurrence o JOIN run x ON x.seq = o.run
                     WHERE o.fault = r.fault AND o.at_us <= r.at_us AND x.verdict = 'failed'
-                    ORDER BY o.at_us DESC, o.seq DESC LIMIT 1) ",
+                    ORDER BY o.at_us DESC, o.seq DESC LIMIT 1), u.serial ",
                 confirmed!(),
-                " ORDER BY r.at_us DESC, r.event DESC LIMIT ?3"
+                " ORDER BY c.at_us DESC, r.event DESC LIMIT ?4"
             ),
-            &values![before_us, unit_type, i64::from(most)],
-            |row| Ok((row.get::<String>(0)?, row.get::<Option<Id>>(1)?)),
+            &values![
+                of.before_us,
+                of.unit_type,
+                i64::from(of.practice),
+                i64::from(most)
+            ],
+            |row| {
+                let (part, unit) = (row.get(0)?, row.get(2)?);
+                let run = row.get::<Option<Id>>(1)?;
+                Ok(run.map(|run| ConfirmedCase { part, run, unit }))
+            },
         )?;
-        let found = found
-            .into_iter()
-            .filter_map(|(part, run)| Some((part, run?)));
-        let mut cases: Vec<_> = found.collect();
+        let mut cases: Vec<_> = found.into_iter().flatten().collect();
         cases.sort();
         cases.dedup();
         Ok(cases)

@@ -92,7 +92,8 @@ pub struct Occurrence {
 pub struct FaultEvent {
     /// The event.
     pub id: Id,
-    /// opened, recurred, acknowledged, repair, repaired, verified, closed, reopened, note, cause or diagnosed.
+    /// opened, recurred, acknowledged, repair, repaired, passed, confirmed, verified, closed, reopened, note, cause or
+    /// diagnosed. A run `confirmed` what a person may have `verified`.
     pub kind: String,
     /// When.
     pub at_us: i64,

@@ -30,6 +30,12 @@ fn run(store: &Store, faults: &[FaultRecord], verdict: Verdict) -> Vec<Id> {
         .map(|fault| writer.fault(fault).expect("stored").fault);
     let seen = seen.collect();
     writer.finish(&end(verdict)).expect("finished");
+    let to_prove = store.repairs_to_prove(writer.id()).expect("read");
+    let proven: Vec<_> = to_prove
+        .iter()
+        .map(|repair| (repair.fault, "by the test".to_owned()))
+        .collect();
+    store.confirm_repairs(writer.id(), &proven).expect("stored");
     seen
 }
 
@@ -99,8 +105,8 @@ fn a_repair_and_its_proof_settle_the_consequences_and_nothing_else() {
         ["verified", "verified", "verified", "open"]
     );
     let events = store.fault(faults[2]).expect("there").events;
-    let proof = events.iter().find(|event| event.kind == "verified");
-    let proof = &proof.expect("verified").note;
+    let proof = events.iter().find(|event| event.kind == "confirmed");
+    let proof = &proof.expect("confirmed").note;
     assert!(
         proof.contains("with fault"),
         "{proof}: no step of its own proves it"

@@ -1,16 +1,24 @@
 //! A unit's own history: what counts for a part, and what does not.
 
-use crate::common::{T0_US, end, fault, open, run_record};
+use crate::common::{self, T0_US, end, fault, open};
 use std::collections::BTreeMap;
 
 use fault_db::{
-    CauseRecord, ConfirmedRepairs, FaultRecord, FaultState, Id, LOG_SOURCE, PartHistory,
-    RepairRecord, RunRecord, RunWriter, Store, Verdict,
+    CauseRecord, ConfirmedCase, ConfirmedRepairs, FaultRecord, FaultState, Id, LOG_SOURCE,
+    PartHistory, RepairRecord, RepairsOf, RunEnd, RunRecord, RunWriter, Store, Verdict,
 };
 
 const DAY_US: i64 = 86_400_000_000;
 const RELAY: &str = "eb_relay";
 const SENSOR: &str = "speed_sensor_1";
+
+/// A run on a unit on a port.
+fn run_record(serial: &str) -> RunRecord {
+    RunRecord {
+        source: "tcp:127.0.0.1:7000".into(),
+        ..common::run_record(serial)
+    }
+}
 
 /// A store with a run a day, the days counted from 1.
 struct History {
@@ -53,6 +61,27 @@ impl History {
         self.store
             .record_repair(fault, &repair, "kim", at_us)
             .expect("a repair");
+    }
+
+    /// A run of that day passes, and proves the repairs of these faults.
+    fn confirm(&self, unit: &str, faults: &[Id], day: i64) {
+        let mut writer = RunWriter::begin(&self.store, &run_record(unit)).expect("a run");
+        writer
+            .finish(&RunEnd {
+                finished_at_us: T0_US + day * DAY_US,
+                ..end(Verdict::Passed)
+            })
+            .expect("its end");
+        let proven: Vec<_> = faults.iter().map(|id| (*id, String::new())).collect();
+        let confirmed = self.store.confirm_repairs(writer.id(), &proven);
+        assert_eq!(confirmed.expect("confirmed"), faults);
+    }
+
+    /// Confirmed repairs of the relay before a day.
+    fn relays(&self, day: i64) -> ConfirmedRepairs {
+        let counted = self.store.confirmed_repairs(repairs_of("default", day));
+        let counted = counted.expect("counts");
+        counted.get(RELAY).copied().unwrap_or_default()
     }
 
     /// What is known of a part before the run of that day, of the 90 days before.
@@ -182,7 +211,7 @@ fn occurrences_and_times_under_test_are_known() {
         ..run_record("U-1")
     };
     history.run(0, on_port, &[naming(RELAY, 0)]);
-    history.run(1, run_record("U-1"), &[]);
+    history.run(1, common::run_record("U-1"), &[]);
     history.run(2, log_of_unit(), &[]);
     let spans = history.store.tested_spans("U-1").expect("spans");
     assert_eq!(spans, [(T0_US, T0_US + 5_000_000)]);
@@ -204,39 +233,89 @@ fn occurrences_and_times_under_test_are_known() {
     assert!(!known("U-2", 230, "on day 0", Some(at_us)));
 }
 
-/// Goal: one repair of one unit is counted once however many faults it was for, and only when it has been shown to help.
+/// Confirmed repairs of real units before a day.
+fn repairs_of(unit_type: &str, day: i64) -> RepairsOf<'_> {
+    RepairsOf {
+        before_us: T0_US + day * DAY_US,
+        unit_type,
+        practice: false,
+    }
+}
+
+/// Goal: one repair of one unit is counted once however many faults it was for and however often it was written down, and
+/// only when a run has shown it to help.
 #[test]
 fn confirmed_repairs_are_counted_by_part_and_those_in_vain_are_not() {
     let history = History::new();
     let faults = |day| [naming(RELAY, day), naming(SENSOR, day)];
     let (run, opened) = history.run(1, run_record("U-1"), &faults(1));
-    for fault in &opened {
+    for fault in opened.iter().cycle().take(60) {
         history.repair(*fault, RELAY, 1);
     }
-    let count = |day: i64| {
-        let before_us = T0_US + day * DAY_US;
-        let counted = history.store.confirmed_repairs(before_us, "default");
-        counted
-            .expect("counts")
-            .get(RELAY)
-            .map_or(0, |of| of.repairs)
-    };
-    assert_eq!(count(2), 0, "nobody has verified it");
-    for fault in &opened {
-        let at_us = T0_US + 2 * DAY_US;
-        let verified = history
-            .store
-            .set_state(*fault, FaultState::Verified, "kim", "", at_us);
-        verified.expect("verified");
-    }
-    assert_eq!((count(1), count(3)), (0, 1));
-    let before_us = T0_US + 3 * DAY_US;
-    let of_others = history.store.confirmed_repairs(before_us, "another type");
+    assert_eq!(history.relays(2).repairs, 0, "nobody has verified it");
+    history.confirm("U-1", &opened, 2);
+    assert_eq!(
+        (history.relays(2).repairs, history.relays(3).repairs),
+        (0, 1)
+    );
+    let of_others = history
+        .store
+        .confirmed_repairs(repairs_of("another type", 3));
     assert!(of_others.expect("counts").is_empty());
-    let cases = history.store.confirmed_cases(before_us, "default", 9);
-    assert_eq!(cases.expect("cases"), [(RELAY.to_owned(), run)]);
+    let cases = history.store.confirmed_cases(repairs_of("default", 3), 9);
+    let case = ConfirmedCase {
+        part: RELAY.to_owned(),
+        run,
+        unit: "U-1".to_owned(),
+    };
+    assert_eq!(cases.expect("cases"), [case]);
     history.run(4, run_record("U-1"), &faults(4));
-    assert_eq!(count(5), 0, "it came back");
+    let then = history.relays(5);
+    assert_eq!((then.repairs, then.in_vain), (0, 1), "it came back");
+}
+
+/// Goal: nothing is learnt from a claim: a state set by hand, a repair of two parts at once, practice.
+#[test]
+fn claims_are_not_learnt_from() {
+    let repaired = |record: RunRecord, parts: &[&str]| {
+        let history = History::new();
+        let (_, opened) = history.run(1, record, &[naming(RELAY, 1)]);
+        for part in parts {
+            history.repair(opened[0], part, 1);
+        }
+        (history, opened)
+    };
+    let practised = |change: fn(&mut RunRecord)| {
+        let mut record = run_record("U-1");
+        change(&mut record);
+        let (history, opened) = repaired(record, &[RELAY]);
+        history.confirm("U-1", &opened, 2);
+        let all = RepairsOf {
+            practice: true,
+            ..repairs_of("default", 3)
+        };
+        let all = history.store.confirmed_repairs(all).expect("counts");
+        assert_eq!(all[RELAY].repairs, 1, "practice learns from practice");
+        history.relays(3).repairs
+    };
+    assert_eq!(practised(|run| run.source = "sim".into()), 0);
+    assert_eq!(practised(|run| run.source = "lockstep:unit".into()), 0);
+    assert_eq!(
+        practised(|run| run.injected = Some("eb_relay.slow".into())),
+        0
+    );
+
+    let (history, opened) = repaired(run_record("U-1"), &[RELAY]);
+    let at_us = T0_US + 2 * DAY_US;
+    let by_hand = history
+        .store
+        .set_state(opened[0], FaultState::Verified, "kim", "", at_us);
+    assert_eq!(by_hand.expect("a person may"), FaultState::Verified);
+    assert_eq!(history.relays(3).repairs, 0, "by hand");
+
+    let (history, opened) = repaired(run_record("U-1"), &[SENSOR, RELAY]);
+    history.confirm("U-1", &opened, 2);
+    assert_eq!(history.relays(3).repairs, 0, "which of the two helped?");
 }
 
 /// Goal: it can be seen how often the part that a diagnosis found was the one whose repair helped.
@@ -258,20 +337,14 @@ fn parts_found_by_a_diagnosis_are_compared_with_those_repaired() {
             .attribute_diagnosed(&opened, &cause, at_us)
             .expect("attributed");
         history.repair(opened[0], repaired, 1);
-        let at_us = T0_US + 2 * DAY_US;
-        let verified = FaultState::Verified;
-        history
-            .store
-            .set_state(opened[0], verified, "kim", "", at_us)
-            .expect("verified");
+        history.confirm(unit, &opened, 2);
     }
-    let counted = history
-        .store
-        .confirmed_repairs(T0_US + 3 * DAY_US, "default");
+    let counted = history.store.confirmed_repairs(repairs_of("default", 3));
     let of = |repairs, named, right| ConfirmedRepairs {
         repairs,
         named,
         right,
+        in_vain: 0,
     };
     let relay = (RELAY.to_owned(), of(2, 3, 2));
     let sensor = (SENSOR.to_owned(), of(1, 0, 0));

@@ -2,7 +2,8 @@
 
 use crate::common::{T0_US, end, fault, open, run_record, step};
 use fault_db::{
-    FaultState, Id, RepairRecord, RunEnd, RunRecord, RunWriter, StepRecord, Store, Verdict,
+    FaultState, Id, RepairRecord, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord, Store,
+    Verdict,
 };
 use tempfile::TempDir;
 
@@ -63,27 +64,43 @@ impl Depot {
             .expect("finished");
     }
 
+    /// The last run proves what it may.
+    fn confirm(&self) {
+        let run = self.last_run();
+        let to_prove = self.store.repairs_to_prove(run).expect("read");
+        let proven: Vec<_> = to_prove
+            .iter()
+            .map(|repair| (repair.fault, "by the test".to_owned()))
+            .collect();
+        self.store.confirm_repairs(run, &proven).expect("stored");
+    }
+
+    fn last_run(&self) -> Id {
+        let runs = self.store.runs(&RunFilter::default(), &|_| true);
+        runs.expect("runs")[0].id
+    }
+
     fn state(&self) -> FaultState {
         self.store.fault(self.fault).expect("known").fault.state
     }
 }
 
 #[test]
-fn a_run_that_passes_the_step_verifies_the_repair() {
+fn a_run_that_passes_the_step_may_prove_the_repair() {
     let depot = Depot::with_fault();
     // The clock of the laptop that recorded the repair was a year ahead: what was known first counts.
     depot.repair(T0_US + 365 * DAY_US);
     depot.run("ATC-1", (step(3), Verdict::Passed));
+    assert_eq!(depot.state(), FaultState::Repaired, "a claim so far");
+    depot.confirm();
     assert_eq!(depot.state(), FaultState::Verified);
     let events = depot.store.fault(depot.fault).expect("known").events;
-    let verified = events
-        .iter()
-        .find(|event| event.kind == "verified")
-        .expect("an event");
+    let kinds: Vec<_> = events.iter().map(|event| event.kind.as_str()).collect();
     assert!(
-        verified.note.starts_with("passed in run "),
-        "{}",
-        verified.note
+        ["passed", "confirmed"]
+            .iter()
+            .all(|kind| kinds.contains(kind)),
+        "{kinds:?}"
     );
     let closed = depot
         .store
@@ -111,8 +128,30 @@ fn a_run_without_the_step_does_not_verify_the_repair() {
         let depot = Depot::with_fault();
         depot.repair(T0_US + DAY_US);
         depot.run(unit, run.clone());
+        depot.confirm();
         assert_eq!(depot.state(), FaultState::Repaired, "{unit} {run:?}");
     }
+}
+
+/// Goal: what decides on a proof is told in which runs the fault was there, and in which it has not shown since.
+#[test]
+fn runs_before_and_since_a_repair_are_told_apart() {
+    let depot = Depot::with_fault();
+    let first = depot.last_run();
+    depot.run("ATC-1", (step(3), Verdict::Passed));
+    depot.run("ATC-2", (step(3), Verdict::Passed));
+    depot.repair(T0_US + 3 * DAY_US);
+    let mut passed = Vec::new();
+    for _ in 0..2 {
+        depot.run("ATC-1", (step(3), Verdict::Passed));
+        passed.push(depot.last_run());
+    }
+    let to_prove = depot.store.repairs_to_prove(passed[1]).expect("read");
+    let [repair] = &to_prove[..] else {
+        panic!("one repair: {to_prove:?}");
+    };
+    assert_eq!((repair.fault, &repair.passed), (depot.fault, &passed));
+    assert_eq!((repair.there.len(), repair.there[0]), (2, first));
 }
 
 #[test]
@@ -122,6 +161,7 @@ fn a_run_that_began_before_the_repair_proves_nothing() {
     writer.step(step(3)).expect("kept");
     depot.repair(T0_US + 1);
     writer.finish(&end(Verdict::Passed)).expect("finished");
+    depot.confirm();
     assert_eq!(depot.state(), FaultState::Repaired);
 }
 
@@ -130,6 +170,7 @@ fn a_repaired_fault_that_occurs_again_is_reopened() {
     let depot = Depot::with_fault();
     depot.repair(T0_US + DAY_US);
     depot.run("ATC-1", (step(3), Verdict::Passed));
+    depot.confirm();
     let mut writer = RunWriter::begin(&depot.store, &run_record("ATC-1")).expect("begun");
     let seen = writer.fault(&fault(7, T0_US + 5 * DAY_US)).expect("stored");
     assert!(seen.reopened && seen.fault == depot.fault);

@@ -18,6 +18,7 @@ mod junit;
 mod left_out;
 pub mod limits;
 pub mod plot;
+mod proof;
 pub mod record;
 pub mod run;
 mod target;
@@ -28,5 +29,6 @@ pub mod words;
 
 pub use coverage::coverage_text;
 pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
+pub use proof::proof_text;
 use target::page_text;
 pub use target::{Target, write, write_beside};

@@ -22,10 +22,12 @@ use ptu_bench::run::{
     self, BenchChoice, BenchSetup, Outcome, RunControl, RunPlan, Suite, Task, check_serial, select,
     software_version,
 };
-use ptu_bench::run_diagnosis::{Answer, Bench, adaptive, diagnose_run};
+use ptu_bench::run_diagnosis::{Answer, Bench, RepairProof, adaptive, diagnose_run, prove_repairs};
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
 use ptu_report::diagnosis::diagnosis_text;
+use ptu_report::proof_text;
+use ptu_report::words::Language;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";
@@ -323,12 +325,14 @@ impl RunArguments {
             false => run::run(plan, setup, store, &stop, &mut console),
             true => {
                 let config = setup.config.sha256.clone();
+                let practice = setup.is_practice();
                 let prepare = |store: &Store, serial: &str, connection| {
                     let bench = Bench {
                         unit_config_sha256: &config,
                         line: self.line(),
                         train: &self.train,
                         connection,
+                        practice,
                     };
                     adaptive(store, directory, serial, &bench)
                 };
@@ -338,6 +342,10 @@ impl RunArguments {
         console.finish();
         let (store, outcome) = result?;
         let answer = self.diagnosis(&store, directory, &outcome);
+        let proofs = match outcome.exit {
+            Exit::Passed => prove_repairs(&store, directory, outcome.id),
+            _ => Ok(Vec::new()),
+        };
         // What the faults come from is stored before they are told of, and whatever a terminal takes.
         if let Some(Ok(answer)) = &answer
             && let Err(failure) = answer.attribute(&store)
@@ -347,7 +355,8 @@ impl RunArguments {
         let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
         // The database and the reports have it: what a terminal does not take changes no verdict.
         let said = print_out(&verdict_table(&detail))
-            .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)));
+            .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
+            .and_then(|()| say_proofs(&proofs?));
         if let Err(failure) = said {
             failure.tell();
         }
@@ -386,4 +395,13 @@ impl RunArguments {
         }
         Ok(())
     }
+}
+
+/// What a run that passed says of the repairs made before it.
+fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
+    let words = Language::English.words();
+    for proof in proofs {
+        print_out(&format!("{}\n", proof_text(proof, words)))?;
+    }
+    Ok(())
 }

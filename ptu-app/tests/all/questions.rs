@@ -44,7 +44,7 @@ fn a_repair_is_verified_by_the_run_that_passes_and_then_closed() {
     let id = text(&fault["id"]);
     let shown = place.ptu(&["faults", "show", id]).exits(0).out;
     assert!(
-        shown.contains("passed in run ") && shown.contains("R-17 → R/99_b"),
+        shown.contains("confirmed") && shown.contains("in run ") && shown.contains("R-17 → R/99_b"),
         "{shown}"
     );
     place

@@ -5,4 +5,5 @@ mod iscas;
 mod iscas_errors;
 mod matrix;
 mod matrix_reading;
+mod proof;
 mod published;

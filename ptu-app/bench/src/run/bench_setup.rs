@@ -104,6 +104,11 @@ impl BenchSetup {
         }
     }
 
+    /// Whether a run is practice: on a simulated unit, or with injected faults.
+    pub fn is_practice(&self) -> bool {
+        matches!(self.endpoint, Endpoint::Sim | Endpoint::LockStep(_)) || !self.faults.is_empty()
+    }
+
     /// Names of the injected faults.
     pub fn injected(&self) -> Option<String> {
         let names: Vec<_> = self.faults.iter().map(|fault| fault.id.as_str()).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation};
-use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
+use fault_db::{Id, RepairsOf, RunDetail, RunOccurrence, Store, Verdict};
 use protocol::LruId;
 
 use super::attribution::with_faults;
@@ -30,6 +30,8 @@ pub struct Bench<'a> {
     pub train: &'a str,
     /// How the unit is reached.
     pub connection: Connection,
+    /// The unit is a simulated one, or faults are injected into it.
+    pub practice: bool,
 }
 
 /// The diagnosis of a run.
@@ -115,8 +117,12 @@ pub fn diagnose(
         warnings.push("the run has no step and no fault that could be diagnosed".into());
     }
     let mut history = OwnHistory::before(&run, &occurrences, store, &settings)?;
-    let of_type = (run.run.started_at_us, run.run.unit_config_name.as_str());
-    take_confirmed((&mut history, &mut dictionary), store, of_type, &settings)?;
+    let of = RepairsOf {
+        before_us: run.run.started_at_us,
+        unit_type: &run.run.unit_config_name,
+        practice: run.run.is_practice(),
+    };
+    take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
     let model = Model::new(&dictionary, &settings, &history.factors);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
@@ -173,7 +179,10 @@ fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
 }
 
 /// How the unit of a run was reached, as a recording of it tells; without one it counts as on a bench.
-fn connection_of(store: &Store, occurrences: &[RunOccurrence]) -> Result<Connection, Failure> {
+pub(super) fn connection_of(
+    store: &Store,
+    occurrences: &[RunOccurrence],
+) -> Result<Connection, Failure> {
     let trace = occurrences.iter().find_map(|one| one.trace_id);
     let recording = trace.map(|trace| store.recording(trace)).transpose()?;
     Ok(match recording.flatten() {
@@ -218,7 +227,7 @@ pub fn adaptive(
         unit_config_sha256: &basis.unit_config_sha256,
         line: &basis.line,
         train: &basis.train,
-        connection: bench.connection,
+        ..*bench
     };
     if *bench != made_on {
         return Err(Failure::usage(format!(
@@ -233,8 +242,12 @@ pub fn adaptive(
     let settings = settings(directory)?;
     let mut history = OwnHistory::up_to_now(serial, store, &settings)?;
     let mut dictionary = chosen.dictionary;
-    let of_type = (now_us(), UNIT_CONFIG);
-    take_confirmed((&mut history, &mut dictionary), store, of_type, &settings)?;
+    let of = RepairsOf {
+        before_us: now_us(),
+        unit_type: UNIT_CONFIG,
+        practice: bench.practice,
+    };
+    take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
     Ok(Adaptive {
         dictionary,
         settings,

@@ -1,10 +1,10 @@
 //! What the confirmed repairs of a depot say in a diagnosis: how often each part fails, how often it was the one when it was
 //! named, and how the runs looked that a repair of it has settled.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{Dictionary, ModeName, Observation, Settings};
-use fault_db::{ConfirmedRepairs, Store};
+use fault_db::{ConfirmedRepairs, RepairsOf, Store};
 use protocol::LruId;
 use protocol::lru::from_stored;
 
@@ -18,18 +18,22 @@ const MOST_CASES: u32 = 20;
 /// Word for what confirmed cases of a part look like, in place of a mode's.
 const CONFIRMED: &str = "confirmed";
 
-/// Takes what was confirmed in units of one type before a time into a unit's history and, for one diagnosis, into the
-/// dictionary: the depot's own cases stand there beside the simulated ones, as a mode of their own.
+/// Takes what was confirmed in other units into a unit's history and, for one diagnosis, into the dictionary: the depot's
+/// own cases stand there beside the simulated ones, as a mode of their own for each part.
+///
+/// So many cases weigh like so many observations beside those that `repairs_like_prior` stands for: the more there are, the
+/// nearer such a mode comes to a usual mode of the dictionary, and never above it. Repairs of the part that did not help
+/// count against it.
 ///
 /// # Errors
 /// The database cannot be read.
 pub(super) fn take_confirmed(
     (history, dictionary): (&mut OwnHistory, &mut Dictionary),
     store: &Store,
-    (before_us, unit_type): (i64, &str),
+    of: RepairsOf<'_>,
     settings: &Settings,
 ) -> Result<(), Failure> {
-    let repairs = store.confirmed_repairs(before_us, unit_type)?;
+    let repairs = store.confirmed_repairs(of)?;
     if repairs.is_empty() {
         return Ok(());
     }
@@ -39,35 +43,49 @@ pub(super) fn take_confirmed(
             history.add_for(&part, was_right(*counts));
         }
     }
-    let mut cases: BTreeMap<LruId, Vec<Observation>> = BTreeMap::new();
-    for (part, run) in store.confirmed_cases(before_us, unit_type, MOST_CASES)? {
-        let Some(part) = from_stored(&part).filter(|part| dictionary.lrus().contains(&part)) else {
+    let mut cases: BTreeMap<LruId, Cases> = BTreeMap::new();
+    for case in store.confirmed_cases(of, MOST_CASES)? {
+        let Some(part) = from_stored(&case.part).filter(|part| dictionary.lrus().contains(&part))
+        else {
             continue;
         };
-        let run = store.run(run, &crate::process_id::is_alive)?;
+        let run = store.run(case.run, &crate::process_id::is_alive)?;
         let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
         let seen = comparable(&run, seen, dictionary, &mut Vec::new());
         if run.run.unit_config_sha256 == dictionary.basis.unit_config_sha256 && seen.shows_a_fault()
         {
-            cases.entry(part).or_default().push(seen);
+            let of_part = cases.entry(part).or_default();
+            of_part.runs.push(seen);
+            of_part.units.insert(case.unit);
         }
     }
-    let of_all: f64 = dictionary.modes.iter().map(|mode| mode.name.weight).sum();
-    for (part, runs) in cases {
+    let weights: f64 = dictionary.modes.iter().map(|mode| mode.name.weight).sum();
+    let usual = weights / dictionary.modes.len().max(1) as f64;
+    for (part, Cases { runs, units }) in cases {
+        let in_vain = repairs.get(part.as_str()).map_or(0, |of| of.in_vain);
+        let (helped, in_vain) = (runs.len() as f64, f64::from(in_vain));
+        let units: Vec<_> = units.into_iter().collect();
         let name = ModeName {
             id: format!("{part}.{CONFIRMED}"),
             text: match runs.len() {
-                1 => "as in 1 confirmed case".into(),
-                n => format!("as in {n} confirmed cases"),
+                1 => format!("as in 1 confirmed case, of {}", units.join(", ")),
+                n => format!("as in {n} confirmed cases, of {}", units.join(", ")),
             },
             lru: part,
             kind: CONFIRMED.into(),
             unsafe_: false,
-            weight: of_all * runs.len() as f64 / settings.repairs_like_prior,
+            weight: usual * helped / (helped + in_vain + settings.repairs_like_prior),
         };
         dictionary.add_cases(&name, &runs);
     }
     Ok(())
+}
+
+/// The confirmed cases of a part.
+#[derive(Default)]
+struct Cases {
+    runs: Vec<Observation>,
+    units: BTreeSet<String>,
 }
 
 fn was_right(of: ConfirmedRepairs) -> String {

@@ -13,6 +13,7 @@ fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
         line: &choice.line,
         train: &choice.train,
         connection: choice.connection(),
+        practice: true,
     };
     let serial = setup.expected_serial();
     let (_folder, store) = store();

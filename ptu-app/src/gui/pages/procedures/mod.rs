@@ -18,7 +18,8 @@ use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use prepare::{Prepared, RunSettings, ShownSuite};
 use ptu_bench::run::{BenchChoice, Suite};
-use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_bench::run_diagnosis::{diagnose_run, prove_repairs};
+use ptu_report::proof_text;
 use ptu_report::words::fill;
 use results::ResultsView;
 use selection::Selection;
@@ -257,7 +258,7 @@ impl ProceduresPage {
         }
     }
 
-    /// Requests the diagnosis of a run that failed.
+    /// Requests the diagnosis of a run that failed, and of one that passed what it says of repairs.
     fn conclude(&mut self, context: &PageContext<'_>) {
         self.conclusion.poll();
         let run = context.units.chosen().run.as_ref();
@@ -280,6 +281,17 @@ impl ProceduresPage {
                         // The part is known all the same.
                         Err(failure) => format!("{conclusion} ({failure})"),
                     })
+                }))
+            }
+            ptu_bench::failure::Exit::Passed => {
+                let words = context.words;
+                Request::Pending(context.queries.run(move |paths| {
+                    let proofs = prove_repairs(&paths.open()?, &paths.scripts, id)?;
+                    let said: Vec<_> = proofs
+                        .iter()
+                        .map(|proof| proof_text(proof, words))
+                        .collect();
+                    Ok(said.join("\n"))
                 }))
             }
             _ => Request::Idle,

@@ -86,6 +86,7 @@ pub fn order(
                 line: &choice.line,
                 train: &choice.train,
                 connection,
+                practice: setup.is_practice(),
             };
             Some(run_diagnosis::adaptive(
                 &store,

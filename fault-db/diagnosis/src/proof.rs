@@ -1,0 +1,66 @@
+//! Whether runs that passed prove a repair: how probable they are while the fault is still there.
+//!
+//! An intermittent fault hides in a part of all runs. What is known of its rate are the runs in which it was there, held
+//! against the fault dictionary: the faults that explain them, each with its spells, say how often a run like the last passes
+//! all the same.
+
+use super::belief::{Belief, ln_sum};
+use super::model::{Model, NO_FAULT};
+use super::observation::Observation;
+
+/// More runs than these are not asked for: the fault does not show in such runs.
+const MOST_RUNS: u32 = 20;
+
+/// What runs that passed after a repair say of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proof {
+    /// Probability that a unit which still has the fault passes all of them.
+    pub hidden: f64,
+    /// The same of the last run, after those before it.
+    pub hidden_in_last: f64,
+    /// How many more runs like the last have to pass until `hidden` is at most the limit; `None`: more than anybody makes.
+    pub more: Option<u32>,
+}
+
+impl Proof {
+    /// Of the runs in which the fault was there and those that passed after the repair, each in order; `limit` is
+    /// the greatest probability of a hidden fault at which the repair counts as proven. `None` without a run that passed.
+    pub fn of(
+        model: &Model<'_>,
+        there: &[Observation],
+        passed: &[Observation],
+        limit: f64,
+    ) -> Option<Self> {
+        let (last, before_last) = passed.split_last()?;
+        let mut belief = Belief::new(model);
+        let mut see = |run: &Observation| {
+            for (number, step) in run.steps.iter().enumerate() {
+                belief.see(number, step);
+            }
+            against_healthy(&belief)
+        };
+        let start = there.iter().fold(0.0, |_, run| see(run));
+        let before = before_last.iter().fold(start, |_, run| see(run));
+        let after = see(last);
+        let hidden = |ln: f64| (ln - start).exp().min(1.0);
+        let more = (0..=MOST_RUNS).find(|more| {
+            let ln = if *more == 0 { after } else { see(last) };
+            hidden(ln) <= limit
+        });
+        Some(Self {
+            hidden: hidden(after),
+            hidden_in_last: (after - before).exp().min(1.0),
+            more,
+        })
+    }
+}
+
+/// Logarithm of how much likelier the evidence is with any fault than without.
+fn against_healthy(belief: &Belief<'_, '_>) -> f64 {
+    let ln = belief.ln();
+    let faults = ln
+        .iter()
+        .enumerate()
+        .filter(|(place, _)| *place != NO_FAULT);
+    ln_sum(faults.map(|(_, ln)| *ln)) - ln[NO_FAULT]
+}
