@@ -4,30 +4,47 @@ use ptu_bench::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 
-/// One sentence: that the repair is proven, or what is missing.
-pub fn proof_text(proof: &RepairProof, words: &Words) -> String {
+/// One sentence for the repairs that are proven, and one for those that are not, by what is missing; empty without any.
+/// Several faults share a sentence, which tells the least favourable figures.
+pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
     let report = &words.report;
-    let wording = match (proof.is_proven, proof.says.more) {
-        (true, _) => report.repair_proven,
-        (false, Some(_)) => report.repair_claimed,
-        (false, None) => report.repair_not_shown,
+    let groups: [(&str, fn(&RepairProof) -> bool); 3] = [
+        (report.repair_proven, |proof| proof.is_proven),
+        (report.repair_claimed, |proof| {
+            !proof.is_proven && proof.says.more.is_some()
+        }),
+        (report.repair_not_shown, |proof| {
+            !proof.is_proven && proof.says.more.is_none()
+        }),
+    ];
+    let sentence = |(wording, of_group): (&str, fn(&RepairProof) -> bool)| {
+        let group: Vec<_> = proofs.iter().filter(|proof| of_group(proof)).collect();
+        let first = group.first()?;
+        let hidden = group.iter().map(|proof| match proof.is_proven {
+            true => proof.says.hidden,
+            false => proof.says.hidden_in_last,
+        });
+        let mut faults = format!("{} {}", first.fault.short(), first.code_name);
+        if group.len() > 1 {
+            faults += &fill(report.and_others, &[("n", &(group.len() - 1))]);
+        }
+        let passed = group.iter().map(|proof| proof.passed).min();
+        let more = group.iter().filter_map(|proof| proof.says.more).max();
+        Some(fill(
+            wording,
+            &[
+                ("fault", &faults),
+                ("passed", &passed.unwrap_or_default()),
+                (
+                    "hidden",
+                    &format!("{:.0}", 100.0 * hidden.fold(0.0, f64::max)),
+                ),
+                ("more", &more.unwrap_or_default()),
+            ],
+        ))
     };
-    let hidden = match proof.is_proven {
-        true => proof.says.hidden,
-        false => proof.says.hidden_in_last,
-    };
-    fill(
-        wording,
-        &[
-            (
-                "fault",
-                &format!("{} {}", proof.fault.short(), proof.code_name),
-            ),
-            ("passed", &proof.passed),
-            ("hidden", &format!("{:.0}", 100.0 * hidden)),
-            ("more", &proof.says.more.unwrap_or_default()),
-        ],
-    )
+    let sentences: Vec<_> = groups.into_iter().filter_map(sentence).collect();
+    sentences.join("\n")
 }
 
 #[cfg(test)]
@@ -54,16 +71,20 @@ mod tests {
             },
             is_proven: false,
         };
-        let english = proof_text(&proof, Language::English.words());
-        for part in ["check_failed", "hides in 33 of 100 such runs", "2 more"] {
+        let english = proof_text(&[proof.clone(), proof.clone()], Language::English.words());
+        for part in [
+            "check_failed and 1 other",
+            "hides in 33 of 100 such runs",
+            "2 more",
+        ] {
             assert!(english.contains(part), "{english}");
         }
-        let korean = proof_text(&proof, Language::Korean.words());
+        let korean = proof_text(&[proof.clone()], Language::Korean.words());
         for part in ["check_failed", "100회 중 33회", "2회 더"] {
             assert!(korean.contains(part), "{korean}");
         }
         proof.is_proven = true;
-        let proven = proof_text(&proof, Language::English.words());
+        let proven = proof_text(&[proof.clone(), proof.clone()], Language::English.words());
         assert!(proven.contains("verified"), "{proven}");
     }
 }

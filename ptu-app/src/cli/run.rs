@@ -399,9 +399,9 @@ impl RunArguments {
 
 /// What a run that passed says of the repairs made before it.
 fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
-    let words = Language::English.words();
-    for proof in proofs {
-        print_out(&format!("{}\n", proof_text(proof, words)))?;
+    if !proofs.is_empty() {
+        let said = proof_text(proofs, Language::English.words());
+        print_out(&format!("{said}\n"))?;
     }
     Ok(())
 }

@@ -287,11 +287,7 @@ impl ProceduresPage {
                 let words = context.words;
                 Request::Pending(context.queries.run(move |paths| {
                     let proofs = prove_repairs(&paths.open()?, &paths.scripts, id)?;
-                    let said: Vec<_> = proofs
-                        .iter()
-                        .map(|proof| proof_text(proof, words))
-                        .collect();
-                    Ok(said.join("\n"))
+                    Ok(proof_text(&proofs, words))
                 }))
             }
             _ => Request::Idle,
