@@ -13,7 +13,7 @@ use crate::coverage_text;
 use crate::words::{Language, Words, fill};
 use ptu_bench::clock::{local, local_zoned};
 use ptu_bench::coverage::Coverage;
-use ptu_bench::stored::outside_of;
+use ptu_bench::stored::{outside_of, standing};
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
@@ -46,18 +46,17 @@ fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
 
 fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let (run, report) = (&sheet.run.run, &words.report);
-    let (steps, outside): (Vec<_>, Vec<_>) =
-        (sheet.run.steps.iter()).partition(|step| outside_of(step).is_none());
-    let not_passed = steps.iter().filter(|step| !passed(step.verdict)).count();
-    let of = steps.len();
-    let part = coverage_text(&Coverage::of_run(&sheet.run.steps), words);
-    let mut counted = part.unwrap_or_else(|| match (of, not_passed) {
+    let outside = sheet.run.steps.iter().filter_map(outside_of).count();
+    let coverage = Coverage::of_run(&sheet.run.steps);
+    let part = coverage_text(&coverage, words);
+    let of = coverage.of;
+    let mut counted = part.unwrap_or_else(|| match (of, of - coverage.passed) {
         (0, _) => report.no_steps.to_owned(),
         (_, 0) => fill(report.all_passed, &[("of", &of)]),
         (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
     });
-    if !outside.is_empty() {
-        let more = fill(report.outside_steps, &[("n", &outside.len())]);
+    if outside > 0 {
+        let more = fill(report.outside_steps, &[("n", &outside)]);
         counted = format!("{counted}   {more}");
     }
     let who: [(&str, &dyn std::fmt::Display); 2] =
@@ -102,7 +101,7 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
         Column::new(name, 0.2, Align::Left)
     });
     let counts = all.map(|verdict| {
-        let of_script = steps.iter().filter(|step| outside_of(step).is_none());
+        let of_script = standing(steps).filter(|step| outside_of(step).is_none());
         let count = of_script.filter(|step| step.verdict == verdict).count();
         let tone = if count == 0 {
             Tone::Soft
