@@ -78,7 +78,7 @@ fn the_test_board_is_for_an_armed_unit_only() {
     assert!(!window.enabled("Test code: 55"));
     assert!(!window.enabled("Test marker: PSM1"));
     assert!(!window.enabled("Clear event log"));
-    window.click("Arm");
+    window.hold("Arm", 1.3);
     window.wait_for("ARMED: test signals act");
     window.click("Test code: 55");
     window.wait_for("limit: 55.0 km/h");
@@ -129,7 +129,7 @@ fn a_laptop_has_no_harness() {
     assert!(!window.enabled("Speed code: 55"));
     window.harness().get_by_label("Speed code: 55").hover();
     window.wait_for("Goes through the bench harness; only the maintenance port is connected");
-    window.click("Arm");
+    window.hold("Arm", 1.3);
     window.click("Test code: 45");
     window.wait_for("limit: 45.0 km/h");
 }
@@ -150,4 +150,22 @@ fn the_page_speaks_korean() {
     fold(&mut window, &["ATP 신호", "속도", "인통선"]);
     window.click("TEST 보드");
     window.wait_for("시험 코드: 55");
+}
+
+/// Goal: a unit is armed on purpose, and disarmed by a nervous hand, too. Method: clicks on Arm, which is held; a double
+/// click on Disarm, in whose place Arm comes.
+#[test]
+fn a_unit_is_armed_by_holding_and_disarmed_by_any_click() {
+    let mut window = connected(on_bench());
+    window.double_click("Arm");
+    window.hold("Arm", 0.5);
+    assert!(!window.shows("ARMED: test signals act"));
+    window.hold("Arm", 1.3);
+    window.wait_for("ARMED: test signals act");
+    window.double_click("Disarm");
+    window.wait_for("disarmed");
+    for _ in 0..20 {
+        window.step();
+    }
+    assert!(window.shows("disarmed"));
 }

@@ -25,7 +25,7 @@ fn connects_arms_and_stops_everything_with_one_key() {
     window.click("Connect");
     window.wait_for("SIM-0001");
     window.wait_for("disarmed");
-    window.click("Arm");
+    window.hold("Arm", 1.3);
     window.wait_for("ARMED: test signals act");
     window.key(Key::F12);
     window.wait_for("disarmed");

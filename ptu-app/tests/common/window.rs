@@ -14,6 +14,8 @@ use super::{Place, scripts};
 
 /// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// A person takes longer between two things that are meant, s.
+const MOMENT_S: f64 = 0.7;
 const STEP: Duration = Duration::from_millis(15);
 
 /// A window in a place of its own.
@@ -105,34 +107,79 @@ impl Window {
 
     /// Clicks what has this name, once it is there and enabled.
     pub fn click(&mut self, label: &str) {
-        self.click_once_still(label, |places| places.first().copied());
+        self.click_once_still(label, |places| places.first().copied(), 1);
+    }
+
+    /// Clicks it twice within 180 ms, as many do.
+    pub fn double_click(&mut self, label: &str) {
+        self.click_once_still(label, |places| places.first().copied(), 2);
     }
 
     /// Clicks the last of several of this name.
     pub fn click_last(&mut self, label: &str) {
-        self.click_once_still(label, |places| places.last().copied());
+        self.click_once_still(label, |places| places.last().copied(), 1);
     }
 
     /// Clicks what has been in the same place for two frames. The whole click is of the next frame, which
     /// finds what is clicked by the frame that was looked at: what another thread answers in between would
     /// move it away from under the pointer.
-    fn click_once_still(&mut self, label: &str, choose: impl Fn(&[Rect]) -> Option<Rect>) {
-        let mut before = None;
-        self.until(&format!("{label} (enabled and still)"), |window| {
-            let now = choose(&window.places(label));
-            now.is_some() && now == std::mem::replace(&mut before, now)
-        });
-        let pos = before.expect("just seen").center();
+    fn click_once_still(
+        &mut self,
+        label: &str,
+        choose: impl Fn(&[Rect]) -> Option<Rect>,
+        clicks: usize,
+    ) {
+        let pos = self.still(label, choose).center();
         let button = |pressed| Event::PointerButton {
             pos,
             button: PointerButton::Primary,
             pressed,
             modifiers: Modifiers::default(),
         };
-        let click = [Event::PointerMoved(pos), button(true), button(false)];
-        self.harness.input_mut().events.extend(click);
+        self.pass(MOMENT_S);
+        for _ in 0..clicks {
+            let click = [Event::PointerMoved(pos), button(true), button(false)];
+            self.harness.input_mut().events.extend(click);
+            self.pass(0.18);
+        }
         self.harness.step();
+    }
+
+    /// A frame in which the window's clock moves by so much, s.
+    fn pass(&mut self, by_s: f64) {
+        let now_s = self.harness.ctx.input(|input| input.time);
+        self.harness.input_mut().time = Some(now_s + by_s);
         self.harness.step();
+        self.harness.input_mut().time = None;
+    }
+
+    /// Holds what has this name down for so long, s.
+    pub fn hold(&mut self, label: &str, for_s: f64) {
+        let pos = self.still(label, |places| places.first().copied()).center();
+        let button = |pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::default(),
+        };
+        self.pass(MOMENT_S);
+        let press = [Event::PointerMoved(pos), button(true)];
+        self.harness.input_mut().events.extend(press);
+        for _ in 0..10 {
+            self.pass(for_s / 10.0);
+        }
+        self.harness.input_mut().events.push(button(false));
+        self.pass(0.02);
+    }
+
+    /// Where something of this name has been for two frames.
+    fn still(&mut self, label: &str, choose: impl Fn(&[Rect]) -> Option<Rect>) -> Rect {
+        let mut before = None;
+        self.until(&format!("{label} (enabled and still)"), |window| {
+            let now = choose(&window.places(label));
+            now.is_some() && now == std::mem::replace(&mut before, now)
+        });
+        before.expect("just seen")
     }
 
     /// Where what has this name and can be clicked is.

@@ -16,7 +16,7 @@ wordings! {
         run_has_bench: "A run has the bench: stop it first", "시험이 벤치를 사용 중입니다. 먼저 시험을 멈추십시오";
         needs_harness: "Goes through the bench harness; only the maintenance port is connected", "벤치 하네스로 주는 신호입니다. 정비 포트만 연결되어 있습니다";
         in_cab: "A person in the cab does this; only the maintenance port is connected", "운전실에서 사람이 조작합니다. 정비 포트만 연결되어 있습니다";
-        not_armed: "The unit is not armed: press Arm first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 누르십시오";
+        not_armed: "The unit is not armed: hold Arm down first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 1초 동안 누르십시오";
         key_off: "The maintenance key is off", "정비 키가 꺼져 있습니다";
 
         // What every value can be.

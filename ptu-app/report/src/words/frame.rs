@@ -60,6 +60,7 @@ wordings! {
         add_unit: "Add a unit", "유닛 추가";
         remove_unit: "Remove", "제거";
         arm: "Arm", "시험 허가";
+        arm_hint: "Hold it down for a second", "1초 동안 누르고 계십시오";
         disarm: "Disarm", "시험 허가 해제";
         about: "About", "정보";
         versions: "software {software}, unit configuration {config}, track database {line}",

@@ -7,7 +7,7 @@ use protocol::signal::{Sample, Signal};
 
 use super::keys::STOP_ALL;
 use super::setup::Setup;
-use crate::gui::parts::chip;
+use crate::gui::parts::{ActionPlace, chip};
 use crate::gui::{Page, PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{self, Words, fill};
@@ -64,21 +64,24 @@ fn units(ui: &mut Ui, context: &mut PageContext<'_>) {
 fn connect(ui: &mut Ui, context: &mut PageContext<'_>) {
     let frame = &context.words.frame;
     let unit = context.units.chosen_mut();
-    match unit.phase() {
+    let phase = unit.phase();
+    let offline = (phase == Phase::Offline, phase == Phase::Connecting);
+    let place = ActionPlace::new(ui, "connection", (unit.id, offline));
+    match phase {
         Phase::Offline => {
-            if ui.button(RichText::new(frame.connect).strong()).clicked() {
+            if place.clicked(&ui.button(RichText::new(frame.connect).strong())) {
                 unit.connect(context.queries);
             }
         }
         Phase::Connecting => {
             ui.spinner();
             ui.label(frame.connecting);
-            if ui.button(context.words.common.cancel).clicked() {
+            if place.clicked(&ui.button(context.words.common.cancel)) {
                 unit.disconnect();
             }
         }
         Phase::Idle | Phase::Running | Phase::MakingSafe => {
-            if ui.button(frame.disconnect).clicked() {
+            if place.clicked(&ui.button(frame.disconnect)) {
                 unit.disconnect();
             }
         }
@@ -178,18 +181,17 @@ fn arming(ui: &mut Ui, context: &mut PageContext<'_>) {
     if matches!(phase, Phase::Offline | Phase::Connecting) {
         return;
     }
+    let place = ActionPlace::new(ui, "arming", (unit.id, unit.is_armed()));
     if unit.is_armed() {
         let may = unit.bench.permits(&Stimulus::PtuDisarm).is_ok();
-        if ui.add_enabled(may, Button::new(frame.disarm)).clicked() {
+        if place.clicked(&ui.add_enabled(may, Button::new(frame.disarm))) {
             // Refused only while a run has the bench, when the button is not enabled.
             let _ = unit.bench.apply(Stimulus::PtuDisarm);
         }
         armed_sign(ui, frame.armed);
     } else {
-        if ui
-            .add_enabled(phase == Phase::Idle, Button::new(frame.arm))
-            .clicked()
-        {
+        let idle = phase == Phase::Idle;
+        if place.held(ui, Button::new(frame.arm), idle, frame.arm_hint) {
             unit.bench.arm();
         }
         ui.label(RichText::new(frame.disarmed).color(Palette::of(ui).quiet));

@@ -3,7 +3,7 @@
 use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
 
 use super::about::About;
-use crate::gui::parts::named_combo;
+use crate::gui::parts::{ActionPlace, named_combo};
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::gui::{Page, PageContext};
 use ptu_report::words::Language;
@@ -30,12 +30,15 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, about: &mut About) {
 fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
     let frame = &context.words.frame;
     let settings = &mut *context.settings;
+    // The scale moves all of them under the pointer.
+    let state = (settings.zoom.to_bits(), settings.dark);
+    let place = ActionPlace::new(ui, "look", state);
     let smaller = ui.button("A-").on_hover_text(frame.scale);
-    if smaller.clicked() {
+    if place.clicked(&smaller) {
         settings.zoom = (settings.zoom - STEP).max(SMALLEST_ZOOM);
     }
     let larger = ui.button("A+").on_hover_text(frame.scale);
-    if larger.clicked() {
+    if place.clicked(&larger) {
         settings.zoom = (settings.zoom + STEP).min(LARGEST_ZOOM);
     }
     let light = if settings.dark {
@@ -43,7 +46,7 @@ fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
     } else {
         frame.dark
     };
-    if ui.button(light).clicked() {
+    if place.clicked(&ui.button(light)) {
         settings.dark = !settings.dark;
     }
     let combo = ComboBox::from_id_salt("language").selected_text(settings.language.name());

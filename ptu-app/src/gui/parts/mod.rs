@@ -1,6 +1,7 @@
 //! Widgets that several pages use.
 
 mod chip;
+mod deliberate;
 mod edit;
 mod file;
 pub mod lane;
@@ -12,6 +13,7 @@ mod run_note;
 mod share_bar;
 
 pub use chip::{chip, verdict_chip};
+pub use deliberate::ActionPlace;
 pub use edit::{name_edit, note_edit};
 pub use file::usual_folder;
 pub use limit_bar::{limit_bar, value_text};

@@ -41,7 +41,7 @@ fn the_whole_way(language: Language) {
     assert!(!window.enabled(&test_code));
     window.wait_for(words.bench.run_self_test);
     assert!(!window.enabled(words.bench.run_self_test));
-    window.click(words.frame.arm);
+    window.hold(words.frame.arm, 1.3);
     window.wait_for(words.frame.armed);
     window.click(words.bench.run_self_test);
     let failed = format!(", {}", words.common.failed);

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
-use crate::gui::parts::{name_edit, note_edit};
+use crate::gui::parts::{ActionPlace, name_edit, note_edit};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock::now_us;
@@ -40,6 +40,24 @@ impl Form {
         Self {
             of: Some(of),
             ..Self::default()
+        }
+    }
+}
+
+impl Form {
+    /// What has to be written before a person brings the fault to a state: why it is verified without a run, or which
+    /// part was put in or what was done instead.
+    fn missing_reason(&self, to: FaultState, words: &Words) -> Option<&'static str> {
+        let nothing = |text: &String| text.trim().is_empty();
+        if !nothing(&self.note) {
+            return None;
+        }
+        match to {
+            FaultState::Verified => Some(words.faults.verify_reason),
+            FaultState::Repaired if nothing(&self.serial_old) && nothing(&self.serial_new) => {
+                Some(words.faults.repair_reason)
+            }
+            _ => None,
         }
     }
 }
@@ -101,18 +119,23 @@ impl Change {
             });
         }
         let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
+        let place = ActionPlace::new(ui, "fault", (fault.id, fault.state.as_str()));
         ui.add_enabled_ui(may, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for state in TOWARDS {
-                    if fault.state.next(FaultAction::towards(state)).is_ok()
-                        && ui.button(name(state, words)).clicked()
-                    {
+                    if fault.state.next(FaultAction::towards(state)).is_err() {
+                        continue;
+                    }
+                    let reason = self.form.missing_reason(state, words);
+                    let button = ui.add_enabled(reason.is_none(), Button::new(name(state, words)));
+                    let button = button.on_disabled_hover_text(reason.unwrap_or_default());
+                    if place.clicked(&button) {
                         self.bring(context, fault, state, &who);
                     }
                 }
                 let written = !self.form.note.trim().is_empty();
                 let add = ui.add_enabled(written, Button::new(words.faults.add_note));
-                if add.clicked() {
+                if place.clicked(&add) {
                     let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
                     self.under_way = Request::Pending(context.queries.run(move |paths| {
                         paths.open()?.add_note(id, &who, &note, now_us())?;

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
-use crate::gui::parts::name_edit;
+use crate::gui::parts::{ActionPlace, name_edit};
 use crate::gui::request::Request;
 use crate::gui::units::Unit;
 use crate::gui::{PageContext, Palette};
@@ -16,27 +16,42 @@ const MOST: u32 = 10_000;
 impl ProceduresPage {
     pub(super) fn controls(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.horizontal_wrapped(|ui| {
-            let phase = context.units.chosen().phase();
+            let unit = context.units.chosen();
+            let phase = unit.phase();
+            let live_state = unit.bench.live_state();
+            let state = (
+                unit.id,
+                phase == Phase::Running,
+                live_state.paused(),
+                unit.bench.stop_presses(),
+            );
+            let place = ActionPlace::new(ui, "run", state);
             if phase == Phase::Running {
-                running(ui, context);
+                running(ui, context, &place);
             } else {
-                self.begin(ui, context, phase);
+                self.begin(ui, context, phase, &place);
             }
         });
     }
 
-    fn begin(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, phase: Phase) {
+    fn begin(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        phase: Phase,
+        place: &ActionPlace,
+    ) {
         let words = &context.words.procedures;
         let sound = matches!(&self.suite, Request::Ready(suite) if suite.errors.is_empty());
         let may = context.units.chosen().may_run() && sound && self.orders.is_empty();
         let run = Button::new(RichText::new(words.run).strong().size(17.0));
         let run = ui.add_enabled(may, run);
         let why_not = why_not(context.units.chosen(), words);
-        if run.on_disabled_hover_text(why_not).clicked() {
+        if place.clicked(&run.on_disabled_hover_text(why_not)) {
             self.order(context.units.chosen().id, false, context);
         }
         let find = ui.add_enabled(may, Button::new(words.find_part));
-        if find.on_hover_text(words.find_part_hint).clicked() {
+        if place.clicked(&find.on_hover_text(words.find_part_hint)) {
             self.order(context.units.chosen().id, true, context);
         }
         if context.units.count() > 1 {
@@ -44,7 +59,7 @@ impl ProceduresPage {
             let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
             let may = sound && !ready.is_empty() && self.orders.is_empty();
             let all = ui.add_enabled(may, Button::new(words.run_all));
-            if all.clicked() {
+            if place.clicked(&all) {
                 for unit in ready {
                     self.order(unit, false, context);
                 }
@@ -73,13 +88,13 @@ pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
     }
 }
 
-fn running(ui: &mut Ui, context: &mut PageContext<'_>) {
+fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     let words = &context.words.procedures;
     let worker = &context.units.chosen().bench;
     let live_state = worker.live_state();
     let paused = live_state.paused();
     let pause = if paused { words.resume } else { words.pause };
-    if ui.button(pause).clicked() {
+    if place.clicked(&ui.button(pause)) {
         live_state.pause(!paused);
     }
     if ui
@@ -94,7 +109,7 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>) {
         words.stop_again
     };
     let stop = Button::new(RichText::new(stop).strong());
-    if ui.add(stop).clicked() {
+    if place.clicked(&ui.add(stop)) {
         worker.stop_run();
     }
 }

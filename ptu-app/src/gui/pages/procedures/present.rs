@@ -8,7 +8,7 @@ use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::gui::Palette;
-use crate::gui::parts::verdict_chip;
+use crate::gui::parts::{ActionPlace, verdict_chip};
 use ptu_bench::bench_worker::{Progress, RunPosition};
 use ptu_report::words::{Words, fill};
 
@@ -103,6 +103,7 @@ fn waits(ui: &mut Ui, words: &Words, present: &RunPosition) {
 
 fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
     let prompt = present.prompt.as_ref()?;
+    let place = ActionPlace::new(ui, "prompt", &prompt.what);
     let mut answer = None;
     let warn = Palette::of(ui).warn;
     Frame::new()
@@ -113,13 +114,11 @@ fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
             ui.label(RichText::new(words.procedures.asked).color(warn).small());
             ui.label(RichText::new(&prompt.what).size(17.0));
             ui.horizontal(|ui| {
-                if ui
-                    .button(RichText::new(words.procedures.yes).strong())
-                    .clicked()
-                {
+                let yes = ui.button(RichText::new(words.procedures.yes).strong());
+                if place.clicked(&yes) {
                     answer = Some(true);
                 }
-                if ui.button(words.procedures.no).clicked() {
+                if place.clicked(&ui.button(words.procedures.no)) {
                     answer = Some(false);
                 }
                 ui.label(format!("{:.0} s", prompt.left_s()));

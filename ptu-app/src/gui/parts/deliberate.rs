@@ -1,0 +1,91 @@
+//! Actions that are meant: a double click acts once, and what came under the pointer a moment ago is not clicked.
+
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher, Hash};
+
+use eframe::egui::{Button, Id, Key, Response, Sense, Ui};
+
+/// A click so soon after the place changed or acted was meant for what was there before, s.
+pub const MOMENT_S: f64 = 0.6;
+/// What arms is held so long, s.
+pub const HOLD_S: f64 = 1.0;
+
+/// A place on the screen where one action follows another: buttons that a click replaces by others.
+pub struct ActionPlace {
+    id: Id,
+    now_s: f64,
+    ready: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Remembered {
+    state: u64,
+    /// When it appeared, its state changed, or an action began.
+    at_s: f64,
+    /// Frame in which it was shown last.
+    frame: u64,
+}
+
+impl ActionPlace {
+    /// The place named `name`; `state` is what its actions depend on.
+    pub fn new(ui: &Ui, name: &str, state: impl Hash) -> Self {
+        let id = Id::unique("action place").with(name);
+        let state = BuildHasherDefault::<DefaultHasher>::default().hash_one(state);
+        let now_s = ui.input(|input| input.time);
+        let frame = ui.ctx().cumulative_frame_nr();
+        let known = ui.data(|data| data.get_temp::<Remembered>(id));
+        let same = |known: &Remembered| known.state == state && known.frame + 1 >= frame;
+        let at_s = known.filter(same).map_or(now_s, |known| known.at_s);
+        let remembered = Remembered { state, at_s, frame };
+        ui.data_mut(|data| data.insert_temp(id, remembered));
+        Self {
+            id,
+            now_s,
+            ready: now_s - remembered.at_s >= MOMENT_S,
+        }
+    }
+
+    /// Whether an action of this place was clicked and meant. From then on the place takes no click for a moment.
+    pub fn clicked(&self, response: &Response) -> bool {
+        let meant = response.clicked() && self.ready;
+        if meant {
+            self.acted(response);
+        }
+        meant
+    }
+
+    /// A button that has to be held down, by pointer or by key: true once it was long enough. Meanwhile a bar in it grows.
+    pub fn held(&self, ui: &mut Ui, button: Button<'_>, enabled: bool, hint: &str) -> bool {
+        // What is only clicked is not down any more after a while.
+        let button = button.sense(Sense::click_and_drag());
+        let response = ui.add_enabled(enabled, button).on_hover_text(hint);
+        let id = self.id.with("held since");
+        let by_key = response.has_focus()
+            && ui.input(|input| input.key_down(Key::Space) || input.key_down(Key::Enter));
+        if !(response.enabled() && self.ready && (response.is_pointer_button_down_on() || by_key)) {
+            ui.data_mut(|data| data.remove_temp::<f64>(id));
+            return false;
+        }
+        let since_s = ui.data_mut(|data| *data.get_temp_mut_or(id, self.now_s));
+        let share = ((self.now_s - since_s) / HOLD_S).min(1.0) as f32;
+        let mut bar = response.rect;
+        bar.set_top(bar.bottom() - 4.0);
+        bar.set_width(bar.width() * share);
+        ui.painter()
+            .rect_filled(bar, 2.0, ui.visuals().selection.stroke.color);
+        ui.ctx().request_repaint();
+        if share >= 1.0 {
+            ui.data_mut(|data| data.remove_temp::<f64>(id));
+            self.acted(&response);
+        }
+        share >= 1.0
+    }
+
+    fn acted(&self, response: &Response) {
+        response.ctx.data_mut(|data| {
+            if let Some(mut known) = data.get_temp::<Remembered>(self.id) {
+                known.at_s = self.now_s;
+                data.insert_temp(self.id, known);
+            }
+        });
+    }
+}
