@@ -75,7 +75,8 @@ pub(crate) fn insert_steps(
 ) -> rusqlite::Result<()> {
     let mut insert = conn.prepare_cached(
         "INSERT INTO step(run, step_index, procedure, name, verdict, started_bench_us,
-            bench_time_us, message, script_line) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+            bench_time_us, message, script_line, limit_source)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
     )?;
     for step in steps {
         insert.execute(params![
@@ -88,6 +89,7 @@ pub(crate) fn insert_steps(
             step.bench_time_us,
             step.message,
             step.script_line,
+            step.limit_source,
         ])?;
         insert_measurements(conn, run, step.index, &step.measurements)?;
     }
@@ -104,12 +106,22 @@ fn insert_measurements(
         return Ok(());
     }
     let mut insert = conn.prepare_cached(
-        "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+        "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict,
+            limit_source)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
     )?;
     for (ordinal, m) in measurements.iter().enumerate() {
         let values = params![
-            run, step_index, ordinal, m.name, m.value, m.unit, m.low, m.high, m.verdict
+            run,
+            step_index,
+            ordinal,
+            m.name,
+            m.value,
+            m.unit,
+            m.low,
+            m.high,
+            m.verdict,
+            m.limit_source
         ];
         insert.execute(values)?;
     }

@@ -120,6 +120,10 @@ impl StepRecord {
         for measured in &self.measurements {
             name("the measurement's name", &measured.name)?;
         }
+        let measured = self.measurements.iter().map(|m| &m.limit_source);
+        for source in measured.chain([&self.limit_source]).flatten() {
+            list("the source of a limit", source)?;
+        }
         Ok(())
     }
 }

@@ -111,6 +111,8 @@ pub struct StepRecord {
     pub message: String,
     /// Line of the script it comes from.
     pub script_line: Option<u32>,
+    /// Where the numbers of what it expected come from, in the caller's words.
+    pub limit_source: Option<String>,
     /// What it measured.
     pub measurements: Vec<MeasurementRecord>,
 }
@@ -128,6 +130,8 @@ pub struct MeasurementRecord {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
+    /// Where its limits come from, in the caller's words.
+    pub limit_source: Option<String>,
     /// Its verdict.
     pub verdict: Verdict,
 }

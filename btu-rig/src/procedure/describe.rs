@@ -61,7 +61,16 @@ impl Step {
         }
         lines.extend(self.actions.iter().map(|a| format!("    do      {a}")));
         lines.extend(self.expectations.iter().map(|e| format!("    expect  {e}")));
-        lines.extend(self.measures.iter().map(|m| format!("    measure {m}")));
+        lines.extend(
+            self.origin
+                .text()
+                .map(|source| format!("            [{source}]")),
+        );
+        for measure in &self.measures {
+            lines.push(format!("    measure {measure}"));
+            let source = measure.origin.text();
+            lines.extend(source.map(|source| format!("            [{source}]")));
+        }
         if !self.provokes.is_empty() {
             let names: Vec<_> = self.provokes.iter().map(|e| e.definition().name).collect();
             lines.push(format!("    provokes {}", names.join(", ")));

@@ -290,6 +290,7 @@ fn of_item(measure: &Measure, item: &SelfTestItem) -> Measurement {
         low: Some(low),
         high: Some(high),
         uncertainty: None,
+        limit_source: measure.origin.text(),
         verdict,
     }
 }
@@ -310,6 +311,7 @@ fn measured(
         low: low.number(),
         high: high.number(),
         uncertainty: uncertainty.filter(|_| value.is_some()),
+        limit_source: measure.origin.text(),
         verdict: judge(value, uncertainty, low, high),
     }
 }

@@ -18,6 +18,7 @@ mod expectation_run;
 mod limit;
 pub mod loader;
 mod measure_run;
+pub mod origin;
 pub mod plan;
 pub mod report;
 pub mod runner;

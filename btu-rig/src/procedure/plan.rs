@@ -7,6 +7,7 @@ use protocol::{Duration, LruId};
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
+use super::origin::Origin;
 use crate::stimulus::Stimulus;
 
 /// How the tester reaches the unit.
@@ -78,6 +79,8 @@ pub struct Step {
     pub actions: Vec<Action>,
     /// What must be seen.
     pub expectations: Vec<Expectation>,
+    /// Where the numbers of its expectations come from: times, and what signals are compared with.
+    pub origin: Origin,
     /// What is measured.
     pub measures: Vec<Measure>,
     /// Events this step is meant to cause.
@@ -237,6 +240,8 @@ pub struct Measure {
     pub high: Option<Operand>,
     /// Time allowed from the end of the actions; unused by values taken at the step's end.
     pub within: Duration,
+    /// Where its limits come from.
+    pub origin: Origin,
 }
 
 impl Measure {
@@ -268,6 +273,7 @@ pub(super) fn of_self_test() -> impl Iterator<Item = Measure> {
         low: None,
         high: None,
         within: Duration::ZERO,
+        origin: Origin::of("unit"),
     })
 }
 
@@ -326,6 +332,14 @@ impl Step {
         }
     }
 
+    /// Numbers that have no source so far have these.
+    pub(super) fn fill(&mut self, sources: &[String]) {
+        self.origin.fill(sources);
+        for measure in &mut self.measures {
+            measure.origin.fill(sources);
+        }
+    }
+
     /// Events it is meant to cause or waits for.
     pub fn provoked(&self) -> impl Iterator<Item = Event> + '_ {
         let awaited = self.expectations.iter().filter_map(|e| match e {
@@ -337,6 +351,25 @@ impl Step {
 }
 
 impl Procedure {
+    /// Each limit that names no source: where it stands, and that it has none.
+    pub fn without_source(&self) -> Vec<String> {
+        let of_step = |step: &Step| {
+            let expected = step.origin.lacks().then(|| "what it expects".to_owned());
+            let measured = step.measures.iter().filter(|m| m.origin.lacks());
+            let measured = measured.map(|m| format!("measurement \"{}\"", m.name));
+            let said = |what| {
+                let (path, line, name) = (&self.path, step.line, &step.name);
+                format!("{path}:{line}: step \"{name}\", {what}: a limit names no source")
+            };
+            expected
+                .into_iter()
+                .chain(measured)
+                .map(said)
+                .collect::<Vec<_>>()
+        };
+        self.steps.iter().flat_map(of_step).collect()
+    }
+
     /// It asks the operator something, on a bench or on a train.
     pub fn asks(&self) -> bool {
         let steps = self.steps.iter().flat_map(|step| &step.actions);

@@ -19,6 +19,8 @@ pub struct Measurement {
     pub high: Option<f64>,
     /// How far the true value may be off, in `unit`; `None` = less than the steps in which it is given.
     pub uncertainty: Option<f64>,
+    /// Where its limits come from, [`Origin::text`](super::origin::Origin::text).
+    pub limit_source: Option<String>,
     /// Passed, failed or error.
     pub verdict: Verdict,
 }
@@ -44,6 +46,8 @@ pub struct StepResult {
     pub started: Instant,
     /// How long it took on the bench.
     pub bench_time: Duration,
+    /// Where the numbers of its expectations come from, as [`Measurement::limit_source`].
+    pub limit_source: Option<String>,
     /// What it measured.
     pub measurements: Vec<Measurement>,
 }

@@ -111,12 +111,14 @@ pub fn measured(
         bench_time_us: 4_000_000 + chance.below(5_000_000) as i64,
         message,
         script_line: Some(12 + index),
+        limit_source: None,
         measurements: vec![MeasurementRecord {
             name: check.name.to_owned(),
             value: Some(value),
             unit: check.unit.to_owned(),
             low: check.low,
             high: check.high,
+            limit_source: None,
             verdict,
         }],
     }

@@ -216,7 +216,7 @@ impl Store {
         let mut measurements = self.measurements(run)?;
         self.backend().select(
             "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
-                message, script_line FROM step WHERE run = ?1 ORDER BY step_index",
+                message, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
             |row| {
                 let index = row.get(0)?;
@@ -229,6 +229,7 @@ impl Store {
                     bench_time_us: row.get(5)?,
                     message: row.get(6)?,
                     script_line: row.get(7)?,
+                    limit_source: row.get(8)?,
                     measurements: measurements.remove(&index).unwrap_or_default(),
                 })
             },
@@ -238,7 +239,7 @@ impl Store {
     fn measurements(&self, run: i64) -> SqlResult<BTreeMap<u32, Vec<MeasurementRecord>>> {
         let mut by_step = BTreeMap::<u32, Vec<MeasurementRecord>>::new();
         self.backend().each(
-            "SELECT step_index, name, value, unit, low, high, verdict FROM measurement
+            "SELECT step_index, name, value, unit, low, high, verdict, limit_source FROM measurement
              WHERE run = ?1 ORDER BY step_index, ordinal",
             &values![run],
             |row| {
@@ -252,6 +253,7 @@ impl Store {
                         low: row.get(4)?,
                         high: row.get(5)?,
                         verdict: row.get(6)?,
+                        limit_source: row.get(7)?,
                     });
                 Ok(())
             },

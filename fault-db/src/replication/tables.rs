@@ -227,6 +227,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         columns: columns![
             run Run, step_index Integer, procedure Text, name Text, verdict Text,
             started_bench_us Integer, bench_time_us Integer, message Text, script_line Integer,
+            limit_source Text,
         ],
         shown: 1,
         by: "run",
@@ -238,7 +239,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         name: "measurement",
         columns: columns![
             run Run, step_index Integer, ordinal Integer, name Text, value Real, unit Text, low Real,
-            high Real, verdict Text,
+            high Real, verdict Text, limit_source Text,
         ],
         shown: 1,
         by: "run",

@@ -71,6 +71,7 @@ pub(crate) struct RunDigest {
     scripts: [u8; 32],
     steps: CanonicalHash,
     measurements: CanonicalHash,
+    sources: CanonicalHash,
     occurrences: BTreeMap<Id, [u8; 32]>,
     payload: RunPayload,
     continues: Option<Id>,
@@ -112,6 +113,7 @@ impl RunDigest {
             scripts: hash.finish(),
             steps: CanonicalHash::new(),
             measurements: CanonicalHash::new(),
+            sources: CanonicalHash::new(),
             occurrences: BTreeMap::new(),
             payload: RunPayload::default(),
             continues: record.continues,
@@ -130,8 +132,14 @@ impl RunDigest {
             &step.message,
             step.script_line,
         ]);
+        self.source(step.index, OF_STEP, step.limit_source.as_deref());
         for (ordinal, measurement) in (0u32..).zip(&step.measurements) {
             self.measurement(step.index, ordinal, measurement);
+            self.source(
+                step.index,
+                i64::from(ordinal),
+                measurement.limit_source.as_deref(),
+            );
         }
     }
 
@@ -146,6 +154,12 @@ impl RunDigest {
             measurement.high,
             measurement.verdict.as_str(),
         ]);
+    }
+
+    fn source(&mut self, step: u32, ordinal: i64, source: Option<&str>) {
+        if let Some(source) = source {
+            self.sources.values(&values![step, ordinal, source]);
+        }
     }
 
     /// Adds an occurrence of a fault.
@@ -196,6 +210,7 @@ impl RunDigest {
         if let Some(earlier) = self.continues {
             run.values(&values![earlier]);
         }
+        add_sources(&mut run, self.sources.clone());
         let payload = self.payload.text();
         let parts = [
             self.scripts,
@@ -222,6 +237,14 @@ fn joined<'a>(occurrences: impl Iterator<Item = &'a [u8; 32]>) -> [u8; 32] {
     hash.finish()
 }
 
+/// Adds the sources of a run's limits; of a run without any nothing.
+fn add_sources(run: &mut CanonicalHash, sources: CanonicalHash) {
+    let digest = sources.finish();
+    if digest != CanonicalHash::new().finish() {
+        run.bytes(&digest);
+    }
+}
+
 fn whole(mut run: CanonicalHash, parts: [[u8; 32]; 4], payload: &str) -> [u8; 32] {
     parts.iter().for_each(|part| run.bytes(part));
     run.text(payload);
@@ -237,6 +260,12 @@ const RUN: &str =
 
 /// Of a run that continues no other it adds nothing.
 const CONTINUES: &str = "SELECT continues FROM run WHERE seq = ?1 AND continues IS NOT NULL";
+
+/// Those of its limits; a step's own stands before those of its measurements.
+const SOURCES: &str = "SELECT step_index, -1 AS ordinal, limit_source FROM step WHERE run = ?1 AND limit_source IS NOT NULL
+     UNION ALL SELECT step_index, ordinal, limit_source FROM measurement WHERE run = ?1 AND limit_source IS NOT NULL
+     ORDER BY 1, 2";
+const OF_STEP: i64 = -1;
 
 const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
@@ -273,6 +302,9 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
     let mut whole_run = CanonicalHash::of("run");
     take_rows(&mut whole_run, backend, RUN, &of_run)?;
     take_rows(&mut whole_run, backend, CONTINUES, &of_run)?;
+    let mut sources = CanonicalHash::new();
+    take_rows(&mut sources, backend, SOURCES, &of_run)?;
+    add_sources(&mut whole_run, sources);
     Ok(whole(whole_run, parts, payload))
 }
 

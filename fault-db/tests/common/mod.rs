@@ -117,6 +117,7 @@ pub fn step(index: u32) -> StepRecord {
         bench_time_us: 50_000,
         message: String::new(),
         script_line: Some(12),
+        limit_source: None,
         measurements: Vec::new(),
     }
 }
@@ -128,6 +129,7 @@ pub fn measurement(name: &str, value: f64) -> MeasurementRecord {
         unit: "s".to_owned(),
         low: None,
         high: Some(0.5),
+        limit_source: Some("default: of the test".to_owned()),
         verdict: Verdict::Passed,
     }
 }

@@ -68,6 +68,7 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
         bench_time_us: 0,
         message: entry.message.clone(),
         script_line: None,
+        limit_source: None,
         measurements: Vec::new(),
     }
 }

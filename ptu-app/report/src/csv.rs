@@ -11,7 +11,7 @@ use ptu_bench::clock::rfc3339;
 use ptu_bench::stored::{STEP, outside_of};
 
 /// Names of the columns.
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 17] = [
     "run",
     "unit_serial",
     "started_at",
@@ -28,6 +28,7 @@ const COLUMNS: [&str; 16] = [
     "low",
     "high",
     "measurement_verdict",
+    "limit_source",
 ];
 
 /// A cell of a table: text must not act, a number must stay one.
@@ -52,7 +53,7 @@ pub fn csv(run: &RunDetail) -> String {
     text
 }
 
-fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 16] {
+fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 17] {
     let text = |text: &str| Cell::Text(text.to_owned());
     let number = |value: Option<f64>| {
         Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
@@ -75,6 +76,12 @@ fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord
         number(measured.and_then(|m| m.low)),
         number(measured.and_then(|m| m.high)),
         word(|m| m.verdict.as_str()),
+        text(
+            measured
+                .map_or(&step.limit_source, |m| &m.limit_source)
+                .as_deref()
+                .unwrap_or_default(),
+        ),
     ]
 }
 

@@ -76,6 +76,7 @@ fn step_json(step: &StepRecord) -> Value {
         "measurements": step.measurements.iter().map(measurement_json).collect::<Vec<_>>(),
         "message": step.message,
         "script_line": step.script_line,
+        "limit_source": step.limit_source,
     })
 }
 
@@ -86,6 +87,7 @@ fn measurement_json(measurement: &MeasurementRecord) -> Value {
         "unit": measurement.unit,
         "low": measurement.low,
         "high": measurement.high,
+        "limit_source": measurement.limit_source,
         "verdict": measurement.verdict.as_str(),
     })
 }

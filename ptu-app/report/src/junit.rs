@@ -91,6 +91,15 @@ fn case<'a>(
     if let Some(line) = step.script_line {
         case.add_property(("script_line", &*line.to_string()));
     }
+    if let Some(source) = &step.limit_source {
+        case.add_property(("limit_source", &*display_text::line(source)));
+    }
+    for measured in &step.measurements {
+        if let Some(source) = &measured.limit_source {
+            let name = format!("limit_source {}", measured.name);
+            case.add_property((&*display_text::line(&name), &*display_text::line(source)));
+        }
+    }
     let lines: Vec<_> = step
         .measurements
         .iter()

@@ -184,8 +184,14 @@ impl RunArguments {
                 .iter()
                 .map(|procedure| procedure.steps.len())
                 .sum();
+            let found: Vec<_> = procedures.iter().flat_map(|p| p.without_source()).collect();
+            found.iter().for_each(|finding| stdio::note(finding));
+            let found = match found.len() {
+                0 => "each limit names its source".to_owned(),
+                n => format!("{n} limits name no source"),
+            };
             return print_out(&format!(
-                "{} procedures, {steps} steps, no errors",
+                "{} procedures, {steps} steps, no errors; {found}",
                 procedures.len()
             ));
         }

@@ -61,6 +61,10 @@ fn listed(task: &Task, harness: Harness) -> serde_json::Value {
             json!({
                 "name": step.name, "line": step.line, "repeat": step.repeat,
                 "worst_case_s": step.worst_case.as_secs(), "note": step.note,
+                "limit_source": step.origin.text(),
+                "measurements": step.measures.iter().map(|measure| json!({
+                    "name": measure.name, "limit_source": measure.origin.text(),
+                })).collect::<Vec<_>>(),
             })
         })
         .collect();

@@ -46,6 +46,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
         unit: "s".into(),
         low: None,
         high: Some(0.5),
+        limit_source: None,
         verdict: Verdict::Passed,
     };
     let step = StepRecord {
@@ -57,6 +58,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
         bench_time_us: 1,
         message: String::new(),
         script_line: None,
+        limit_source: None,
         measurements: vec![measured],
     };
     writer.step(step).expect("kept");

@@ -9,6 +9,7 @@ use super::item::Item;
 use super::quantity::Quantity;
 use super::suggest::hint;
 use super::verb::Verb;
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Action, Condition};
 
 /// Arguments of a call, bound to the parameters of its verb.
@@ -108,7 +109,7 @@ impl Args<'_> {
 
     pub(super) fn condition(&self, name: &str) -> Result<Condition, String> {
         match self.must(name)? {
-            Item::Condition(condition) => Ok(condition.clone()),
+            Item::Condition(condition, _) => Ok(condition.clone()),
             other => Err(format!("`{name}` cannot be {}", other.found())),
         }
     }
@@ -120,6 +121,34 @@ impl Args<'_> {
             flatten(item, &mut items);
         }
         items
+    }
+
+    /// The sources that the call states.
+    pub(super) fn sources(&self) -> Vec<String> {
+        let texts = self
+            .flat("source")
+            .into_iter()
+            .filter_map(|item| match item {
+                Item::Text(text) => Some(text.clone()),
+                _ => None,
+            });
+        texts.collect()
+    }
+
+    /// Where its numbers come from: each quantity as it knows, and what the call states.
+    pub(super) fn origin(&self) -> Origin {
+        let mut origin = Origin::default();
+        (self.values.iter().flatten()).for_each(|item| origin.join(&item.origin()));
+        self.stated(origin)
+    }
+
+    /// The origin with what the call states.
+    pub(super) fn stated(&self, mut origin: Origin) -> Origin {
+        let sources = self.sources();
+        if !sources.is_empty() {
+            origin.give(&sources);
+        }
+        origin
     }
 
     pub(super) fn actions(&self, name: &str) -> Vec<Action> {
@@ -154,7 +183,7 @@ impl Args<'_> {
     /// A quantity, number or measured value as given.
     pub(super) fn quantity(&self, name: &str) -> Option<Quantity> {
         match self.get(name) {
-            Some(Item::Quantity(q)) => Some(*q),
+            Some(Item::Quantity(q)) => Some(q.clone()),
             _ => None,
         }
     }

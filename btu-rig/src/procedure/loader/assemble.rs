@@ -118,6 +118,7 @@ pub(super) fn assemble(
     for index in without_suspect {
         steps[index].suspect.clone_from(&head.suspect);
     }
+    steps.iter_mut().for_each(|step| step.fill(&head.sources));
     let procedure = Procedure {
         id: path.strip_suffix(".star").unwrap_or(path).to_owned(),
         title: head.title,
@@ -149,6 +150,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         line,
         actions: draft.actions,
         expectations: draft.expectations,
+        origin: draft.origin,
         measures: draft.measures,
         provokes: draft.provokes,
         when: draft.when,
@@ -160,6 +162,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         suspect: draft.suspect.flatten(),
         note: draft.note,
     };
+    step.fill(&draft.sources);
     step.worst_case = step.compute_worst_case(draft.limit);
     step.time_limit = draft.limit.unwrap_or(step.worst_case + TIME_LIMIT_MARGIN);
     if tests_unit_itself(&step.actions) {

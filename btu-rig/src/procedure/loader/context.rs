@@ -8,52 +8,60 @@ use protocol::line::Line;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 use crate::train::TrainData;
 
+use super::amounts;
 use super::item::{Item, Record};
-use super::quantity::{Dimension, Quantity};
 use super::suggest::hint;
+use crate::procedure::origin::SourceKind;
 
 /// Configuration that verbs take defaults from.
 #[derive(Debug)]
 pub(super) struct Context {
     pub unit: UnitConfig,
     pub line: Line,
-    train: TrainData,
     codes: Vec<Item>,
+    /// The unit configuration, the track database and the train's file, as scripts read them.
+    trees: [Item; 3],
 }
 
 impl Context {
     pub(super) fn new(unit: UnitConfig, line: Line, train: TrainData) -> Self {
         let codes = (unit.codes.iter().enumerate())
             .map(|(index, code)| {
-                let limit = Quantity::new(Dimension::Speed, code.limit_kmh);
-                record(
-                    "speed code",
-                    vec![
-                        ("name", Item::Text(code.name.clone())),
-                        ("limit", Item::Quantity(limit)),
-                        ("limit_kmh", Item::Float(code.limit_kmh)),
-                        ("carrier_hz", Item::Float(code.carrier_hz)),
-                        ("rate_hz", Item::Float(code.rate_hz)),
-                        ("index", Item::Int(index as i64)),
-                    ],
-                )
+                let fields = vec![
+                    ("name", Item::Text(code.name.clone())),
+                    ("limit_kmh", Item::Float(code.limit_kmh)),
+                    ("carrier_hz", Item::Float(code.carrier_hz)),
+                    ("rate_hz", Item::Float(code.rate_hz)),
+                    ("index", Item::Int(index as i64)),
+                ];
+                record("speed code", fields, "configuration codes.")
             })
             .collect();
+        let train = match &train {
+            TrainData::Ideal(data) => tree("train", data, "train "),
+            TrainData::Cars(data) => tree("train", data, "train "),
+        };
+        let trees = [
+            tree("unit configuration", &unit, "configuration "),
+            tree("line", &line, "track database "),
+            train,
+        ];
         Self {
             unit,
             line,
-            train,
             codes,
+            trees,
         }
     }
 
     /// The predeclared names that are neither verbs nor signals.
     pub(super) fn globals(&self) -> Vec<(&'static str, Item)> {
+        let [configuration, track, train] = &self.trees;
         vec![
             ("codes", Item::List(self.codes.clone())),
-            ("unit", tree("unit configuration", &self.unit)),
-            ("line", tree("line", &self.line)),
-            ("consist", self.consist()),
+            ("unit", configuration.clone()),
+            ("line", track.clone()),
+            ("consist", train.clone()),
             (
                 "cuts",
                 bits(
@@ -78,11 +86,30 @@ impl Context {
         ]
     }
 
-    /// The train's file.
-    fn consist(&self) -> Item {
-        match &self.train {
-            TrainData::Ideal(data) => tree("train", data),
-            TrainData::Cars(data) => tree("train", data),
+    /// Whether `source` says where a number comes from, and there is such a place; `Err` says what it is instead.
+    pub(super) fn source(&self, source: &str) -> Result<(), String> {
+        let [configuration, track, train] = &self.trees;
+        let Some((kind, key)) = SourceKind::split(source) else {
+            return Err(format!("the text \"{source}\""));
+        };
+        let tree = match kind {
+            SourceKind::Configuration => configuration,
+            SourceKind::Track => track,
+            SourceKind::Train => train,
+            SourceKind::Measurement => {
+                return Err(format!("\"{source}\", which measured() says by itself"));
+            }
+            SourceKind::Paper | SourceKind::Standard | SourceKind::Unit | SourceKind::Default => {
+                return Ok(());
+            }
+        };
+        let found = key.split('.').try_fold(tree.clone(), |at, name| match at {
+            Item::List(items) => items.first()?.attribute(name),
+            at => at.attribute(name),
+        });
+        match found {
+            Some(_) => Ok(()),
+            None => Err(format!("\"{source}\", and no such key")),
         }
     }
 
@@ -95,30 +122,38 @@ impl Context {
     }
 }
 
-fn record(kind: &'static str, fields: Vec<(&str, Item)>) -> Item {
-    let fields = fields.into_iter().map(|(n, v)| (n.to_owned(), v)).collect();
-    Item::Record(Arc::new(Record { kind, fields }))
+/// Named values, their quantities with them; `source` stands before their names where these are said.
+fn record<'a>(
+    kind: &'static str,
+    fields: impl IntoIterator<Item = (&'a str, Item)>,
+    source: &str,
+) -> Item {
+    let mut all: Vec<(String, Item)> = Vec::new();
+    let mut amounts: Vec<(String, Item)> = Vec::new();
+    for (name, value) in fields {
+        amounts.extend(amounts::of(name, &value, source));
+        all.push((name.to_owned(), value));
+    }
+    amounts.retain(|(name, _)| all.iter().all(|(other, _)| other != name));
+    all.extend(amounts);
+    Item::Record(Arc::new(Record { kind, fields: all }))
 }
 
 /// Bits of a signal by their names.
 fn bits<'a>(kind: &'static str, named: impl Iterator<Item = (&'a str, u16)>) -> Item {
-    record(
-        kind,
-        named
-            .map(|(name, bit)| (name, Item::Int(i64::from(bit))))
-            .collect(),
-    )
+    let fields = named.map(|(name, bit)| (name, Item::Int(i64::from(bit))));
+    record(kind, fields, "")
 }
 
 /// Configuration data as nested records, by way of their names in configuration files.
-fn tree(kind: &'static str, data: &impl serde::Serialize) -> Item {
+fn tree(kind: &'static str, data: &impl serde::Serialize, source: &str) -> Item {
     match serde_json::to_value(data) {
-        Ok(value) => item(kind, &value),
+        Ok(value) => item(kind, &value, source),
         Err(_) => Item::None,
     }
 }
 
-fn item(kind: &'static str, value: &serde_json::Value) -> Item {
+fn item(kind: &'static str, value: &serde_json::Value, source: &str) -> Item {
     use serde_json::Value;
     match value {
         Value::Null => Item::None,
@@ -130,14 +165,19 @@ fn item(kind: &'static str, value: &serde_json::Value) -> Item {
         Value::String(text) => Item::Text(text.clone()),
         Value::Array(values) => {
             let inner = if kind == "line" { "section" } else { kind };
-            Item::List(values.iter().map(|value| item(inner, value)).collect())
+            Item::List(
+                values
+                    .iter()
+                    .map(|value| item(inner, value, source))
+                    .collect(),
+            )
         }
-        Value::Object(fields) => Item::Record(Arc::new(Record {
-            kind,
-            fields: fields
-                .iter()
-                .map(|(name, value)| (name.clone(), item(kind, value)))
-                .collect(),
-        })),
+        Value::Object(fields) => {
+            let fields = fields.iter().map(|(name, value)| {
+                let inner = item(kind, value, &format!("{source}{name}."));
+                (name.as_str(), inner)
+            });
+            record(kind, fields, source)
+        }
     }
 }

@@ -3,6 +3,7 @@
 use protocol::event::Event;
 use protocol::{Duration, LruId};
 
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Action, Condition, Connection, Expectation, Measure, OnFail};
 
 /// A call that declares something.
@@ -21,6 +22,8 @@ pub(super) struct ProcedureDraft {
     pub suspect: Option<LruId>,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,
+    /// Of numbers that say none themselves.
+    pub sources: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -28,6 +31,8 @@ pub(super) struct StepDraft {
     pub name: String,
     pub actions: Vec<Action>,
     pub expectations: Vec<Expectation>,
+    /// Where the numbers of its expectations come from.
+    pub origin: Origin,
     pub measures: Vec<Measure>,
     pub provokes: Vec<Event>,
     pub when: Option<Condition>,
@@ -38,4 +43,6 @@ pub(super) struct StepDraft {
     /// `Some(None)`: the call says that the step suspects no part.
     pub suspect: Option<Option<LruId>>,
     pub note: Option<String>,
+    /// Of numbers that say none themselves.
+    pub sources: Vec<String>,
 }

@@ -99,7 +99,7 @@ impl<'v> StarlarkValue<'v> for Handle {
         match (&self.0, item(other)) {
             (Item::Signal(signal), _) => Err(error(no_value(signal.name()))),
             (Item::Quantity(a), Item::Quantity(b)) => {
-                Ok(order(*a, b).map_err(error)? == Ordering::Equal)
+                Ok(order(a, &b).map_err(error)? == Ordering::Equal)
             }
             _ => Ok(false),
         }
@@ -108,7 +108,7 @@ impl<'v> StarlarkValue<'v> for Handle {
     fn compare(&self, other: Value<'v>) -> starlark::Result<Ordering> {
         match (&self.0, item(other)) {
             (Item::Signal(signal), _) => Err(error(no_value(signal.name()))),
-            (Item::Quantity(a), Item::Quantity(b)) => order(*a, b).map_err(error),
+            (Item::Quantity(a), Item::Quantity(b)) => order(a, &b).map_err(error),
             (a, b) => Err(error(format!(
                 "cannot compare {} and {}",
                 a.found(),
@@ -177,7 +177,7 @@ fn declare(
     Ok(())
 }
 
-fn order(a: Quantity, b: Quantity) -> Result<Ordering, String> {
+fn order(a: &Quantity, b: &Quantity) -> Result<Ordering, String> {
     a.compare(b)
 }
 

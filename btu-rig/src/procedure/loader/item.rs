@@ -7,6 +7,7 @@ use protocol::signal::Signal;
 use super::draft::Declaration;
 use super::quantity::Quantity;
 use super::verb::Verb;
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Action, Condition, Expectation, Measure};
 
 #[derive(Clone, Debug)]
@@ -22,8 +23,10 @@ pub(super) enum Item {
     /// A speed code, a section, or a part of the configuration.
     Record(Arc<Record>),
     Actions(Vec<Action>),
-    Condition(Condition),
-    Expectation(Expectation),
+    /// With the source of the numbers it compares with.
+    Condition(Condition, Origin),
+    /// With the source of its numbers.
+    Expectation(Expectation, Origin),
     Measure(Box<Measure>),
     /// A value measured by an earlier step, by name, and what is added to it.
     Measured(String, Option<Quantity>),
@@ -65,8 +68,8 @@ impl Item {
             Self::Signal(signal) => format!("the signal {}", signal.name()),
             Self::Record(record) => format!("a {}", record.kind),
             Self::Actions(_) => "an action".into(),
-            Self::Condition(_) => "a condition".into(),
-            Self::Expectation(_) => "an expectation".into(),
+            Self::Condition(..) => "a condition".into(),
+            Self::Expectation(..) => "an expectation".into(),
             Self::Measure(_) => "a measurement".into(),
             Self::Measured(name, _) => format!("measured(\"{name}\")"),
             Self::Declaration(_) => "a step or procedure".into(),
@@ -84,6 +87,22 @@ impl Item {
             Self::Float(n) => Some(*n),
             _ => None,
         }
+    }
+
+    /// Where the quantities in it come from. A plain number here is a state or a count, and no limit.
+    pub(super) fn origin(&self) -> Origin {
+        let mut origin = Origin::default();
+        match self {
+            Self::Quantity(quantity) => origin.join(&quantity.origin),
+            Self::Condition(_, own) | Self::Expectation(_, own) => origin.join(own),
+            Self::Measured(name, offset) => {
+                origin.join(&Origin::of(format!("measurement {name}")));
+                offset.iter().for_each(|more| origin.join(&more.origin));
+            }
+            Self::List(items) => items.iter().for_each(|item| origin.join(&item.origin())),
+            _ => {}
+        }
+        origin
     }
 
     /// Whether it, and all in it, is known while a script is only checked.
@@ -116,10 +135,10 @@ impl Item {
     /// `self + other` or, with `sign` -1, `self - other`; `None` if this is not for us to decide.
     pub(super) fn plus(&self, other: &Self, sign: f64) -> Option<Result<Self, String>> {
         let sum = match (self, other) {
-            (Self::Quantity(a), Self::Quantity(b)) => a.plus(*b, sign).map(Self::Quantity),
+            (Self::Quantity(a), Self::Quantity(b)) => a.plus(b, sign).map(Self::Quantity),
             (Self::Measured(name, offset), Self::Quantity(b)) => {
                 let offset = match offset {
-                    Some(offset) => offset.plus(*b, sign),
+                    Some(offset) => offset.plus(b, sign),
                     None => Ok(b.times(sign)),
                 };
                 offset.map(|offset| Self::Measured(name.clone(), Some(offset)))

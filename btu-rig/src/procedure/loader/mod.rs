@@ -3,12 +3,13 @@
 //! Layers, bottom up:
 //! * `quantity`, `item`: the values of the script language, free of Starlark;
 //! * `verb`, `param_type`, `args`, `verbs`: its verbs, each a table entry with typed parameters;
-//! * `context`, `globals`: unit configuration, line, signals: the names a script knows;
+//! * `context`, `amounts`, `globals`: unit configuration, line, signals: the names a script knows;
 //! * `handle`: those values inside Starlark;
 //! * `nesting`, `check`: find errors without running a script, also where it would never run;
 //! * `evaluate`: runs it once, within bounds, with no access to anything but its libraries;
 //! * `assemble`: resolves names between steps and computes times.
 
+mod amounts;
 mod args;
 mod assemble;
 mod check;

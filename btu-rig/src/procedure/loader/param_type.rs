@@ -43,6 +43,8 @@ pub(super) enum ParamType {
     Ints,
     /// Any number of conditions.
     Conditions,
+    /// Where numbers come from: a text or a list of them.
+    Sources,
 }
 
 impl ParamType {
@@ -69,6 +71,7 @@ impl ParamType {
             Self::TimeFrom => "\"start\", \"actions\" or a condition".into(),
             Self::Ints => "a list of whole numbers".into(),
             Self::Conditions => "conditions such as is_(eb, \"applied\")".into(),
+            Self::Sources => "where numbers come from, such as \"S3 eq. 4\", \"configuration doors.aligned_m\" or \"default: two scans\"".into(),
         }
     }
 
@@ -94,8 +97,8 @@ impl ParamType {
                 _ => false,
             },
             Self::Signal => matches!(item, Item::Signal(_)),
-            Self::Subject => matches!(item, Item::Signal(_) | Item::Condition(_)),
-            Self::Condition => matches!(item, Item::Condition(_)),
+            Self::Subject => matches!(item, Item::Signal(_) | Item::Condition(..)),
+            Self::Condition => matches!(item, Item::Condition(..)),
             Self::Value => matches!(
                 item,
                 Item::Quantity(_)
@@ -116,20 +119,34 @@ impl ParamType {
             },
             Self::TimeFrom => match item {
                 Item::Text(word) => ["start", "actions"].contains(&word.as_str()),
-                other => matches!(other, Item::Condition(_)),
+                other => matches!(other, Item::Condition(..)),
             },
             Self::Actions => {
                 return every(item, |i| matches!(i, Item::Actions(_) | Item::None));
             }
             Self::Expectations => {
-                return every(item, |i| matches!(i, Item::Expectation(_) | Item::None));
+                return every(item, |i| matches!(i, Item::Expectation(..) | Item::None));
             }
             Self::Measures => return every(item, |i| matches!(i, Item::Measure(_) | Item::None)),
+            Self::Sources => return sources(item, context),
             Self::Events => return every(item, |i| matches!(i, Item::Text(_))),
             Self::Ints => return every(item, |i| matches!(i, Item::Int(_))),
-            Self::Conditions => return every(item, |i| matches!(i, Item::Condition(_))),
+            Self::Conditions => return every(item, |i| matches!(i, Item::Condition(..))),
         };
         if fits { Ok(()) } else { Err(item.found()) }
+    }
+}
+
+/// Whether all of them are sources that exist; `Err` says which is none.
+fn sources(item: &Item, context: &Context) -> Result<(), String> {
+    match item {
+        Item::List(items) => items.iter().try_for_each(|item| sources(item, context)),
+        Item::Unknown => Ok(()),
+        Item::Text(source) => {
+            text(item, LONGEST_NAME)?;
+            context.source(source)
+        }
+        other => Err(other.found()),
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use crate::procedure::origin::Origin;
+
 /// What a quantity is an amount of, with the unit it is kept in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dimension {
@@ -77,40 +79,49 @@ impl Dimension {
 }
 
 /// An amount of something.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
     pub dimension: Dimension,
     /// In the dimension's unit.
     pub value: f64,
+    /// Where its number comes from.
+    pub origin: Origin,
 }
 
 impl Quantity {
     /// `value` is rounded to a thousand-millionth, so that 1.1 s are 1100 ms and not a hair more.
-    pub(super) fn new(dimension: Dimension, value: f64) -> Self {
+    pub(super) fn new(dimension: Dimension, value: f64, origin: Origin) -> Self {
         let rounded = (value * 1e9).round() / 1e9;
         // Huge numbers would overflow on the way.
         let value = if rounded.is_finite() { rounded } else { value };
-        Self { dimension, value }
+        Self {
+            dimension,
+            value,
+            origin,
+        }
     }
 
     /// Sum or difference.
-    pub(super) fn plus(self, other: Self, sign: f64) -> Result<Self, String> {
+    pub(super) fn plus(&self, other: &Self, sign: f64) -> Result<Self, String> {
         self.same(other, if sign < 0.0 { "subtract" } else { "add" })?;
-        Ok(Self::new(self.dimension, self.value + sign * other.value))
+        let mut origin = self.origin.clone();
+        origin.join(&other.origin);
+        let sum = self.value + sign * other.value;
+        Ok(Self::new(self.dimension, sum, origin))
     }
 
     /// Multiple.
-    pub(super) fn times(self, factor: f64) -> Self {
-        Self::new(self.dimension, self.value * factor)
+    pub(super) fn times(&self, factor: f64) -> Self {
+        Self::new(self.dimension, self.value * factor, self.origin.clone())
     }
 
     /// Which is greater.
-    pub(super) fn compare(self, other: Self) -> Result<Ordering, String> {
+    pub(super) fn compare(&self, other: &Self) -> Result<Ordering, String> {
         self.same(other, "compare")?;
         Ok(self.value.total_cmp(&other.value))
     }
 
-    fn same(self, other: Self, verb: &str) -> Result<(), String> {
+    fn same(&self, other: &Self, verb: &str) -> Result<(), String> {
         if self.dimension == other.dimension {
             return Ok(());
         }
@@ -132,14 +143,15 @@ mod tests {
 
     #[test]
     fn only_like_quantities_mix() {
-        let speed = Quantity::new(Dimension::Speed, 55.0);
-        let time = Quantity::new(Dimension::Time, 1100.0);
-        assert_eq!(speed.plus(speed, -1.0).unwrap().value, 0.0);
+        let of = |dimension, value| Quantity::new(dimension, value, Origin::lacking());
+        let speed = of(Dimension::Speed, 55.0);
+        let time = of(Dimension::Time, 1100.0);
+        assert_eq!(speed.plus(&speed, -1.0).unwrap().value, 0.0);
         assert_eq!(
-            speed.plus(time, 1.0).unwrap_err(),
+            speed.plus(&time, 1.0).unwrap_err(),
             "cannot add a speed (55 km/h) and a time (1100 ms)"
         );
-        assert!(speed.compare(time).is_err());
-        assert_eq!(Quantity::new(Dimension::Time, 1.1 * 1000.0).value, 1100.0);
+        assert!(speed.compare(&time).is_err());
+        assert_eq!(of(Dimension::Time, 1.1 * 1000.0).value, 1100.0);
     }
 }

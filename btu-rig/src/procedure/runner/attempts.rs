@@ -194,6 +194,7 @@ impl Runner {
             suspect: None,
             started,
             bench_time: now.since(started),
+            limit_source: None,
             measurements: Vec::new(),
         }));
         if last {

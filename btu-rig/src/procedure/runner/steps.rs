@@ -171,6 +171,7 @@ impl Runner {
             suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
             bench_time: end.bench_time,
+            limit_source: step.origin.text(),
             measurements: end.measurements,
         }));
         self.verdict = self.verdict.and(end.verdict);
@@ -233,6 +234,7 @@ impl Runner {
             suspect: self.suspect(step),
             started: now,
             bench_time: Duration::ZERO,
+            limit_source: None,
             measurements: Vec::new(),
         }));
         self.verdict = self.verdict.and(verdict);

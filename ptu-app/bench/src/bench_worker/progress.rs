@@ -289,6 +289,7 @@ impl Progress {
                 suspect: None,
                 started: entry.at,
                 bench_time: Duration::ZERO,
+                limit_source: None,
                 measurements: Vec::new(),
             });
         }

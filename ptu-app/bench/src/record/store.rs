@@ -83,6 +83,7 @@ fn step(index: u32, run: &RecordedRun) -> StepRecord {
         bench_time_us: rows * run.trace.period_us,
         message: format!("trace {}: {}", run.id.short(), run.summary()),
         script_line: None,
+        limit_source: None,
         measurements: Vec::new(),
     }
 }

@@ -277,6 +277,7 @@ fn write(
         bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
         message: likeness.words().to_owned(),
         script_line: None,
+        limit_source: None,
         measurements: Vec::new(),
     })?;
     let id = writer.trace(&[], &trace)?;

@@ -237,6 +237,7 @@ impl<'a> Collector<'a> {
             bench_time_us: result.bench_time.as_us() as i64,
             message: result.message,
             script_line: Some(result.line),
+            limit_source: result.limit_source,
             measurements: result.measurements.into_iter().flat_map(records).collect(),
         });
     }
@@ -344,6 +345,7 @@ fn records(measured: btu_rig::procedure::Measurement) -> impl Iterator<Item = Me
         unit: unit.clone(),
         low: None,
         high: None,
+        limit_source: None,
         verdict: stored(Verdict::Passed),
     });
     let value = MeasurementRecord {
@@ -352,6 +354,7 @@ fn records(measured: btu_rig::procedure::Measurement) -> impl Iterator<Item = Me
         unit,
         low: measured.low,
         high: measured.high,
+        limit_source: measured.limit_source,
         verdict,
     };
     std::iter::once(value).chain(uncertainty)

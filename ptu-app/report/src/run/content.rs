@@ -7,6 +7,7 @@ use protocol::event::Event;
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
 use super::diagnosis::diagnosis;
 use super::plots::plots;
+use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::coverage_text;
@@ -16,14 +17,16 @@ use ptu_bench::coverage::Coverage;
 use ptu_bench::stored::{outside_of, standing};
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let sources = Sources::of(&sheet.run.steps);
     let mut blocks = head(sheet, words);
     blocks.extend(summary(sheet, words));
     blocks.extend(notes(sheet, words));
-    blocks.extend(failures(sheet, words));
+    blocks.extend(failures(sheet, &sources, words));
     blocks.extend(faults(sheet, words));
     blocks.extend(diagnosis(sheet, words));
     blocks.extend(the_run(sheet, words));
-    blocks.extend(all_steps(sheet, words));
+    blocks.extend(all_steps(sheet, &sources, words));
+    blocks.extend(sources.blocks(words));
     blocks.extend(scripts(sheet, words));
     let report = &words.report;
     let signing = [report.tester_signs, report.approver_signs];
@@ -123,7 +126,7 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
 }
 
 /// Steps that did not pass, each with its trace; a trace of several is drawn with the first.
-fn failures(sheet: &Sheet, words: &Words) -> Vec<Block> {
+fn failures(sheet: &Sheet, sources: &Sources<'_>, words: &Words) -> Vec<Block> {
     let report = &words.report;
     let failed = || sheet.run.steps.iter().filter(|step| !passed(step.verdict));
     let mut blocks = Vec::new();
@@ -134,7 +137,7 @@ fn failures(sheet: &Sheet, words: &Words) -> Vec<Block> {
     for step in failed() {
         blocks.push(Block::Subheading(step.procedure.clone(), String::new()));
         let this: &[StepRecord] = std::slice::from_ref(step);
-        blocks.push(Block::Table(steps::table(this, words)));
+        blocks.push(Block::Table(steps::table(this, sources, words)));
         for trace in sheet
             .traces
             .iter()
@@ -319,7 +322,7 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-fn all_steps(sheet: &Sheet, words: &Words) -> Vec<Block> {
+fn all_steps(sheet: &Sheet, sources: &Sources<'_>, words: &Words) -> Vec<Block> {
     let report = &words.report;
     let mut blocks = Vec::new();
     for mine in sheet.run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
@@ -327,7 +330,7 @@ fn all_steps(sheet: &Sheet, words: &Words) -> Vec<Block> {
         let of = mine.iter().filter(|s| outside_of(s).is_none()).count();
         let counted = fill(report.procedure_passed, &[("passed", &good), ("of", &of)]);
         blocks.push(Block::Subheading(mine[0].procedure.clone(), counted));
-        blocks.push(Block::Table(steps::table(mine, words)));
+        blocks.push(Block::Table(steps::table(mine, sources, words)));
     }
     if !blocks.is_empty() {
         blocks.insert(0, Block::Heading(report.procedures.into()));

@@ -11,6 +11,7 @@ mod html;
 pub mod page;
 mod pdf;
 mod plots;
+mod sources;
 mod steps;
 
 #[cfg(test)]
@@ -22,6 +23,7 @@ use fault_db::{Id, RunDetail, TraceData};
 
 pub use html::html;
 pub use pdf::pdf;
+pub use sources::in_words as source_in_words;
 
 use ptu_bench::run_diagnosis::Answer;
 

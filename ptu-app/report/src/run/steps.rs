@@ -6,31 +6,37 @@ use ptu_bench::run::uncertainty_of;
 use ptu_bench::stored::outside_of;
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
+use super::sources::Sources;
 use crate::limits::short;
 use crate::words::Words;
 
-/// Columns besides name and time: value, unit, low, high, bar, verdict.
-const MEASURED: usize = 5;
+/// Columns of a value: value, unit, low, high.
+const MEASURED: usize = 4;
 
 /// Steps, each with its message and measurements below it.
-pub fn table(steps: &[StepRecord], words: &Words) -> Table {
+pub fn table(steps: &[StepRecord], sources: &Sources<'_>, words: &Words) -> Table {
     let (common, report) = (&words.common, &words.report);
     Table {
         columns: vec![
-            Column::new(report.step_or_measurement, 0.34, Align::Left),
+            Column::new(report.step_or_measurement, 0.31, Align::Left),
             Column::new(common.value, 0.1, Align::Right),
             Column::new(report.unit_of_value, 0.08, Align::Left),
             Column::new(common.low, 0.08, Align::Right),
             Column::new(common.high, 0.08, Align::Right),
-            Column::new(report.within, 0.15, Align::Left),
+            Column::new(report.source_number, 0.05, Align::Right),
+            Column::new(report.within, 0.13, Align::Left),
             Column::new(common.verdict, 0.1, Align::Left),
             Column::new(report.seconds, 0.07, Align::Right),
         ],
-        rows: steps.iter().flat_map(|step| rows(step, words)).collect(),
+        rows: steps
+            .iter()
+            .flat_map(|step| rows(step, sources, words))
+            .collect(),
     }
 }
 
-fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
+fn rows(step: &StepRecord, sources: &Sources<'_>, words: &Words) -> Vec<Row> {
+    let source = sources.number(step.limit_source.as_deref());
     let plain = |text: String| Cell::Text(Tone::Plain, text);
     let name = match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),
@@ -40,6 +46,8 @@ fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
         kind: RowKind::Head,
         cells: vec![
             (plain(name), 1 + MEASURED),
+            (Cell::Text(Tone::Soft, source), 1),
+            (plain(String::new()), 1),
             (verdict(step.verdict, words), 1),
             (plain(format!("{:.1}", step.bench_time_us as f64 / 1e6)), 1),
         ],
@@ -52,18 +60,26 @@ fn rows(step: &StepRecord, words: &Words) -> Vec<Row> {
         };
         rows.push(Row {
             kind: RowKind::Detail,
-            cells: vec![(Cell::Text(tone, step.message.clone()), 3 + MEASURED)],
+            cells: vec![(Cell::Text(tone, step.message.clone()), 5 + MEASURED)],
         });
     }
     let all = &step.measurements;
     let own = all
         .iter()
         .filter(|measurement| !is_uncertainty(measurement, all));
-    rows.extend(own.map(|measurement| measured(measurement, uncertainty(measurement, all), words)));
+    rows.extend(own.map(|measurement| {
+        let source = sources.number(measurement.limit_source.as_deref());
+        measured(measurement, uncertainty(measurement, all), source, words)
+    }));
     rows
 }
 
-fn measured(measurement: &MeasurementRecord, uncertainty: Option<f64>, words: &Words) -> Row {
+fn measured(
+    measurement: &MeasurementRecord,
+    uncertainty: Option<f64>,
+    source: String,
+    words: &Words,
+) -> Row {
     let MeasurementRecord {
         name,
         value,
@@ -89,6 +105,7 @@ fn measured(measurement: &MeasurementRecord, uncertainty: Option<f64>, words: &W
             soft(unit.clone()),
             limit(low),
             limit(high),
+            soft(source),
             (Cell::Gauge(Gauge::of(*value, *low, *high, good)), 1),
             (verdict(measurement.verdict, words), 1),
             soft(String::new()),

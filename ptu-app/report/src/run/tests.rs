@@ -13,6 +13,8 @@ use super::{Sheet, html, pdf};
 use crate::words::{Language, Words};
 
 const HOSTILE: &str = "<script>alert(\"1\")</script>&'\u{1b}[31m\u{9b}2J\u{202e}";
+/// Of every measurement.
+const LIMIT_SOURCE: &str = "configuration overspeed.eb_delay_ms; default: two scans";
 
 /// A store and the folder it is in.
 struct Stored {
@@ -118,12 +120,14 @@ fn step(index: u32, failed: bool) -> StepRecord {
             String::new()
         },
         script_line: Some(3),
+        limit_source: None,
         measurements: vec![MeasurementRecord {
             name: "eb_reaction".into(),
             value: Some(if failed { 640.0 } else { 340.0 }),
             unit: "ms".into(),
             low: None,
             high: Some(472.0),
+            limit_source: Some(LIMIT_SOURCE.into()),
             verdict,
         }],
         index,
@@ -282,4 +286,22 @@ fn a_trace_that_cannot_be_read_is_named_and_the_sheet_goes_on() {
     let page = html(&sheet, Language::English.words());
     assert!(page.contains("cannot be shown: it is gone"));
     assert_eq!(page.matches("<figure").count(), 2);
+}
+
+#[test]
+fn a_limit_stands_with_the_number_of_its_source_which_is_listed_once_in_the_language_of_the_sheet() {
+    let (store, id) = stored(4, true);
+    for (language, listed) in [
+        (
+            Language::English,
+            "unit configuration overspeed.eb_delay_ms; bench default: two scans",
+        ),
+        (
+            Language::Korean,
+            "유닛 구성 overspeed.eb_delay_ms; 시험기 기본값: two scans",
+        ),
+    ] {
+        let page = html(&sheet(&store, id), language.words());
+        assert_eq!(page.matches(listed).count(), 1, "{listed}");
+    }
 }

@@ -55,6 +55,17 @@ wordings! {
         measurement: "Measurement", "측정 항목";
         unit_of_value: "Unit", "단위";
         within: "Within limits", "한계 내 위치";
+        source_number: "Src.", "출처";
+        limit_source: "Source", "출처";
+        limit_sources: "Sources of limits", "한계값 출처";
+        from_configuration: "unit configuration {key}", "유닛 구성 {key}";
+        from_track: "track database {key}", "선로 데이터베이스 {key}";
+        from_train: "train data {key}", "열차 데이터 {key}";
+        from_measurement: "measured before: {key}", "앞 단계 측정값: {key}";
+        from_standard: "standard {key}", "표준 {key}";
+        from_unit: "the unit's own limits", "유닛 자체 한계값";
+        by_default: "bench default", "시험기 기본값";
+        by_default_because: "bench default: {key}", "시험기 기본값: {key}";
         seconds: "Time s", "시간 s";
         no_value: "no value", "값 없음";
         faults: "Faults", "고장";

@@ -8,7 +8,8 @@ use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::suggest::hint;
-use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::loader::verb::{Param, Verb, needs, takes};
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand};
 
 /// Time for something to become true if a script gives none.
@@ -17,6 +18,8 @@ const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
 const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
+/// Where the numbers of the call come from.
+pub(super) const SOURCE: Param = takes("source", ParamType::Sources);
 /// A limit of an event's parameter.
 const PARAMETER: ParamType = ParamType::Int(i32::MIN as i64, i32::MAX as i64);
 
@@ -57,17 +60,23 @@ macro_rules! about {
 }
 
 pub(super) static VERBS: &[Verb] = &[
-    about!("is_", [], |args| Ok(Item::Condition(condition(args)?))),
-    about!("when", [], |args| Ok(Item::Condition(condition(args)?))),
+    about!("is_", [], |args| Ok(Item::Condition(
+        condition(args)?,
+        args.origin()
+    ))),
+    about!("when", [], |args| Ok(Item::Condition(
+        condition(args)?,
+        args.origin()
+    ))),
     verb!(
         "all_of",
         &[takes("conditions", ParamType::Conditions)],
-        |args| Ok(Item::Condition(Condition::All(parts(args)?)))
+        |args| Ok(Item::Condition(Condition::All(parts(args)?), args.origin()))
     ),
     verb!(
         "any_of",
         &[takes("conditions", ParamType::Conditions)],
-        |args| Ok(Item::Condition(Condition::Any(parts(args)?)))
+        |args| Ok(Item::Condition(Condition::Any(parts(args)?), args.origin()))
     ),
     about!("until", [takes("within", TIME)], |args| {
         Ok(Item::Actions(vec![Action::Until {
@@ -75,22 +84,31 @@ pub(super) static VERBS: &[Verb] = &[
             within: args.time_or("within", UNTIL_WITHIN)?,
         }]))
     }),
-    about!("becomes", [takes("within", TIME)], |args| {
-        Ok(Item::Expectation(Expectation::Becomes {
-            condition: condition(args)?,
-            within: args.time_or("within", BECOMES_WITHIN)?,
-        }))
+    about!("becomes", [takes("within", TIME), SOURCE], |args| {
+        expected(
+            args,
+            Expectation::Becomes {
+                condition: condition(args)?,
+                within: args.time_or("within", BECOMES_WITHIN)?,
+            },
+        )
     }),
-    about!("holds", [needs("for_", TIME)], |args| {
-        Ok(Item::Expectation(Expectation::Holds {
-            condition: condition(args)?,
-            duration: args.time_or("for_", Duration::ZERO)?,
-        }))
+    about!("holds", [needs("for_", TIME), SOURCE], |args| {
+        expected(
+            args,
+            Expectation::Holds {
+                condition: condition(args)?,
+                duration: args.time_or("for_", Duration::ZERO)?,
+            },
+        )
     }),
-    about!("never", [], |args| {
-        Ok(Item::Expectation(Expectation::Never {
-            condition: condition(args)?,
-        }))
+    about!("never", [SOURCE], |args| {
+        expected(
+            args,
+            Expectation::Never {
+                condition: condition(args)?,
+            },
+        )
     }),
     verb!(
         "logs",
@@ -99,23 +117,30 @@ pub(super) static VERBS: &[Verb] = &[
             takes("within", TIME),
             takes("low", PARAMETER),
             takes("high", PARAMETER),
+            SOURCE,
         ],
         |args| {
             let limit = |name, none| match args.get(name) {
                 None => Ok(none),
                 Some(_) => i32::try_from(args.int(name)?).map_err(|e| e.to_string()),
             };
-            Ok(Item::Expectation(Expectation::Logs {
-                event: event(args.text("event").unwrap_or_default())?,
-                parameter: [limit("low", i32::MIN)?, limit("high", i32::MAX)?],
-                within: args.time_or("within", BECOMES_WITHIN)?,
-            }))
+            expected(
+                args,
+                Expectation::Logs {
+                    event: event(args.text("event").unwrap_or_default())?,
+                    parameter: [limit("low", i32::MIN)?, limit("high", i32::MAX)?],
+                    within: args.time_or("within", BECOMES_WITHIN)?,
+                },
+            )
         }
     ),
     verb!("never_logs", &[needs("event", ParamType::Name)], |args| {
-        Ok(Item::Expectation(Expectation::NeverLogs {
-            event: event(args.text("event").unwrap_or_default())?,
-        }))
+        expected(
+            args,
+            Expectation::NeverLogs {
+                event: event(args.text("event").unwrap_or_default())?,
+            },
+        )
     }),
     verb!("measured", &[needs("name", ParamType::Name)], |args| {
         let name = args.text("name").unwrap_or_default();
@@ -123,9 +148,21 @@ pub(super) static VERBS: &[Verb] = &[
     }),
 ];
 
+/// An expectation with the source of its numbers; limits of an event's parameter are plain ones.
+fn expected(args: &Args<'_>, expectation: Expectation) -> Result<Item, String> {
+    let mut origin = args.origin();
+    if ["low", "high"]
+        .iter()
+        .any(|limit| args.get(limit).is_some())
+    {
+        origin.join(&Origin::lacking());
+    }
+    Ok(Item::Expectation(expectation, args.stated(origin)))
+}
+
 /// The condition a verb's first parameters make.
 fn condition(args: &Args<'_>) -> Result<Condition, String> {
-    if let Some(Item::Condition(condition)) = args.get("signal") {
+    if let Some(Item::Condition(condition, _)) = args.get("signal") {
         let extra = COMPARISONS.iter().any(|(name, _)| args.get(name).is_some());
         if extra || args.get("near").is_some() || args.get("tol").is_some() {
             return Err("a condition is complete, nothing more to compare".into());
@@ -204,7 +241,7 @@ fn parts(args: &Args<'_>) -> Result<Vec<Condition>, String> {
         .flat("conditions")
         .into_iter()
         .filter_map(|item| match item {
-            Item::Condition(condition) => Some(condition.clone()),
+            Item::Condition(condition, _) => Some(condition.clone()),
             _ => None,
         })
         .collect();

@@ -2,12 +2,14 @@
 
 use protocol::{LruId, lru};
 
+use super::conditions::SOURCE;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::draft::{Declaration, ProcedureDraft, StepDraft};
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Connection, Measure, OnFail};
 
 /// More repetitions than this are a slip of the finger.
@@ -24,6 +26,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("suspect", ParamType::Name),
             takes("setup", ParamType::Actions),
             takes("cleanup", ParamType::Actions),
+            SOURCE,
         ],
         make: |args| {
             declare(Declaration::Procedure(ProcedureDraft {
@@ -37,6 +40,7 @@ pub(super) static VERBS: &[Verb] = &[
                 suspect: suspect(args)?.flatten(),
                 setup: args.actions("setup"),
                 cleanup: args.actions("cleanup"),
+                sources: args.sources(),
             }))
         },
     },
@@ -55,6 +59,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("limit", ParamType::Amount(Dimension::Time)),
             takes("suspect", ParamType::Name),
             takes("note", ParamType::Text),
+            SOURCE,
         ],
         make: step,
     },
@@ -65,10 +70,11 @@ fn declare(declaration: Declaration) -> Result<Item, String> {
 }
 
 fn step(args: &Args<'_>) -> Result<Item, String> {
-    let mut expectations = Vec::new();
+    let (mut expectations, mut origin) = (Vec::new(), Origin::default());
     for item in args.flat("expect") {
-        if let Item::Expectation(expectation) = item {
+        if let Item::Expectation(expectation, of_it) = item {
             expectations.push(expectation.clone());
+            origin.join(of_it);
         }
     }
     let mut measures = Vec::new();
@@ -84,6 +90,7 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
         name: named(args, "name")?,
         actions: args.actions("do"),
         expectations,
+        origin,
         measures,
         provokes: args.events("provokes")?,
         when: args.condition("when").ok(),
@@ -98,6 +105,7 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
         limit: args.time("limit")?,
         suspect: suspect(args)?,
         note: args.text("note").map(str::to_owned),
+        sources: args.sources(),
     }))
 }
 

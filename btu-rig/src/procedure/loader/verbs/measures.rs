@@ -2,12 +2,13 @@
 
 use protocol::Duration;
 
-use super::conditions::{amount, operand};
+use super::conditions::{SOURCE, amount, operand};
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
+use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
 
 /// Time a measurement waits for its condition if neither `within` nor `high` says.
@@ -27,6 +28,7 @@ macro_rules! of_signal {
                 needs("signal", ParamType::Signal),
                 takes("low", ParamType::Value),
                 takes("high", ParamType::Value),
+                SOURCE,
             ],
             make: |args| measure(args, What::$what(args.signal("signal")?)),
         }
@@ -43,10 +45,11 @@ pub(super) static VERBS: &[Verb] = &[
             takes("low", ParamType::Value),
             takes("high", ParamType::Value),
             takes("within", TIME),
+            SOURCE,
         ],
         make: |args| {
             let from = match args.get("from_") {
-                Some(Item::Condition(condition)) => TimeFrom::Condition(condition.clone()),
+                Some(Item::Condition(condition, _)) => TimeFrom::Condition(condition.clone()),
                 Some(Item::Text(word)) if word == "start" => TimeFrom::StepStart,
                 _ => TimeFrom::ActionsEnd,
             };
@@ -67,6 +70,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("low", ParamType::Value),
             takes("high", ParamType::Value),
             takes("within", TIME),
+            SOURCE,
         ],
         make: |args| {
             let (signal, when) = (args.signal("signal")?, args.condition("when")?);
@@ -83,6 +87,7 @@ fn measure(args: &Args<'_>, what: What) -> Result<Item, String> {
         low: None,
         high: None,
         within: MEASURE_WITHIN,
+        origin: Origin::default(),
     };
     if measure.name.trim().is_empty() {
         return Err("a measurement needs a name".into());
@@ -99,7 +104,20 @@ fn measure(args: &Args<'_>, what: What) -> Result<Item, String> {
         measure.within = Duration::from_secs((high + BEYOND_LIMIT_MS) / 1000.0);
     }
     measure.within = args.time_or("within", measure.within)?;
+    measure.origin = args.stated(origin(args));
     Ok(Item::Measure(Box::new(measure)))
+}
+
+/// Where its limits come from; plain numbers do not say.
+fn origin(args: &Args<'_>) -> Origin {
+    let mut origin = Origin::default();
+    for item in ["low", "high"].iter().filter_map(|limit| args.get(limit)) {
+        origin.join(&item.origin());
+        if item.number().is_some() {
+            origin.join(&Origin::lacking());
+        }
+    }
+    origin
 }
 
 fn limit(args: &Args<'_>, name: &str, measure: &Measure) -> Result<Option<Operand>, String> {

@@ -1,12 +1,14 @@
 //! Verbs that make a quantity of a number: `kmh(40)`, `s(1)`.
 
+use super::conditions::SOURCE;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::{Dimension, Quantity};
 use crate::procedure::loader::verb::{Param, Verb, needs};
+use crate::procedure::origin::Origin;
 
-const NUMBER: &[Param] = &[needs("value", ParamType::Number)];
+const NUMBER: &[Param] = &[needs("value", ParamType::Number), SOURCE];
 
 macro_rules! unit {
     ($name:literal, $dimension:ident, $factor:expr) => {
@@ -34,5 +36,6 @@ pub(super) static VERBS: &[Verb] = &[
 
 fn quantity(args: &Args<'_>, dimension: Dimension, factor: f64) -> Result<Item, String> {
     let value = args.number("value")? * factor;
-    Ok(Item::Quantity(Quantity::new(dimension, value)))
+    let origin = args.stated(Origin::lacking());
+    Ok(Item::Quantity(Quantity::new(dimension, value, origin)))
 }

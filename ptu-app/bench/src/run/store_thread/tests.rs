@@ -41,6 +41,7 @@ fn step(index: u32) -> StepRecord {
         bench_time_us: 1,
         message: String::new(),
         script_line: None,
+        limit_source: None,
         measurements: Vec::new(),
     }
 }

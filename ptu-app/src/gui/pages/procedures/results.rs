@@ -12,6 +12,7 @@ use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use ptu_bench::bench_worker::{Progress, outside_place};
 use ptu_bench::run::CHECK_FAILED;
+use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 
 /// Lines shown before and after a step's.
@@ -175,7 +176,10 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     Grid::new("measurements").num_columns(3).show(ui, |ui| {
         for measurement in measured {
             ui.label(words.bench.measurement(&measurement.name));
-            limit_bar(ui, measurement);
+            let bar = limit_bar(ui, measurement);
+            if let Some(source) = &measurement.limit_source {
+                bar.on_hover_text(source_in_words(source, words));
+            }
             let colour = Palette::of(ui).verdict(measurement.verdict);
             ui.colored_label(colour, value_text(measurement));
             ui.end_row();

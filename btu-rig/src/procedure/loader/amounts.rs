@@ -1,0 +1,82 @@
+//! Quantities of configuration files: `detect_ms = 400` is the time `detect`, and knows where it comes from.
+
+use super::item::Item;
+use super::quantity::{Dimension, Quantity};
+use crate::procedure::origin::Origin;
+
+/// Ends of keys with what they are amounts of, and the factor to the unit of that; of two that fit the first counts.
+const UNITS: [(&str, Dimension, f64); 11] = [
+    ("_kmh_per_s", Dimension::Acceleration, 1.0 / 3.6),
+    ("_mps2", Dimension::Acceleration, 1.0),
+    ("_kmh", Dimension::Speed, 1.0),
+    ("_mps", Dimension::Speed, 3.6),
+    ("_ms", Dimension::Time, 1.0),
+    ("_mm", Dimension::Distance, 0.001),
+    ("_hz", Dimension::Frequency, 1.0),
+    ("_mv", Dimension::Level, 1.0),
+    ("_kg", Dimension::Mass, 1.0),
+    ("_s", Dimension::Time, 1000.0),
+    ("_m", Dimension::Distance, 1.0),
+];
+
+/// The quantity of a key that ends in a unit, under its name without it. `source` stands before the key.
+pub(super) fn of(key: &str, value: &Item, source: &str) -> Option<(String, Item)> {
+    let (name, dimension, factor) = UNITS
+        .iter()
+        .find_map(|(end, dimension, factor)| Some((key.strip_suffix(end)?, *dimension, *factor)))?;
+    // `drag_per_s` is no time.
+    if name.is_empty() || name.ends_with("_per") {
+        return None;
+    }
+    let origin = Origin::of(format!("{source}{key}"));
+    let amount = amount(value, &|number| {
+        Quantity::new(dimension, number * factor, origin.clone())
+    })?;
+    Some((name.to_owned(), amount))
+}
+
+fn amount(value: &Item, make: &dyn Fn(f64) -> Quantity) -> Option<Item> {
+    match value {
+        Item::List(items) => {
+            let all: Option<_> = items.iter().map(|item| amount(item, make)).collect();
+            all.map(Item::List)
+        }
+        item => item.number().map(|number| Item::Quantity(make(number))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_with_a_unit_is_a_quantity_of_its_name() {
+        for (key, name, shown) in [
+            ("detect_ms", "detect", "2 ms"),
+            ("dead_time_s", "dead_time", "2000 ms"),
+            ("accel_kmh_per_s", "accel", "0.556 m/s²"),
+            ("full_to_mps", "full_to", "7.2 km/h"),
+            ("stop_m", "stop", "2 m"),
+        ] {
+            let (found, item) = of(key, &Item::Int(2), "configuration a.").expect(key);
+            let Item::Quantity(quantity) = item else {
+                panic!("{key} is {}", item.found());
+            };
+            assert_eq!(
+                (found.as_str(), quantity.to_string().as_str()),
+                (name, shown)
+            );
+            let source = quantity.origin.text();
+            assert_eq!(source, Some(format!("configuration a.{key}")));
+        }
+        for key in [
+            "drag_per_s",
+            "s_curve_s_per_mps",
+            "jerk_mps3",
+            "number",
+            "_m",
+        ] {
+            assert!(of(key, &Item::Int(2), "").is_none(), "{key}");
+        }
+    }
+}
