@@ -190,7 +190,32 @@ fn collect(folder: &Path, prefix: &str, scripts: &mut Scripts) {
 fn the_scripts_that_ship_load() {
     let mut scripts = Scripts::new();
     collect(&root().join("../scripts"), "", &mut scripts);
-    assert_eq!(load_all(&scripts).errors, []);
+    let loaded = load_all(&scripts);
+    assert_eq!(loaded.errors, []);
+    let found: Vec<_> = (loaded.procedures.iter())
+        .flat_map(|procedure| procedure.without_source())
+        .collect();
+    assert_eq!(found, [""; 0], "each limit names its source");
+}
+
+#[test]
+fn a_limit_without_a_source_is_named_with_its_place() {
+    let loaded = load_all(&folder("good"));
+    let of_file = |name: &str| {
+        let procedure = loaded.procedures.iter().find(|p| p.path == name);
+        procedure.expect("loaded").without_source()
+    };
+    let step = "limits.star:20: step \"by the file, and a measurement by nothing\"";
+    let missing = ["none", "half"]
+        .map(|name| format!("{step}, measurement \"{name}\": a limit names no source"));
+    assert_eq!(of_file("limits.star"), missing);
+    let without = of_file("atp_overspeed.star");
+    assert!(
+        without
+            .iter()
+            .any(|found| found.ends_with("what it expects: a limit names no source")),
+        "{without:?}"
+    );
 }
 
 #[test]

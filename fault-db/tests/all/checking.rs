@@ -63,6 +63,11 @@ fn every_change_to_a_run_is_detected() {
         ),
         ("UPDATE measurement SET high = 9 WHERE run = 2", &[changed]),
         (
+            "UPDATE measurement SET limit_source = 'S3 eq. 1' WHERE run = 2",
+            &[changed],
+        ),
+        ("UPDATE step SET limit_source = 'S3 eq. 1' WHERE run = 2", &[changed]),
+        (
             "UPDATE fault_occurrence SET message = '' WHERE run = 2",
             &[changed],
         ),

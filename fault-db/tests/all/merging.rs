@@ -475,11 +475,11 @@ const TAMPERED: [(&str, &str); 8] = [
     ("a verdict taken away", "UPDATE run SET verdict = NULL"),
     (
         "a step",
-        "INSERT INTO step SELECT run, 7, procedure, name, verdict, 0, 0, '', NULL FROM step",
+        "INSERT INTO step SELECT run, 7, procedure, name, verdict, 0, 0, '', NULL, NULL FROM step",
     ),
     (
         "a measurement",
-        "INSERT INTO measurement SELECT run, 0, 9, name, 0.1, unit, low, high, verdict FROM measurement",
+        "INSERT INTO measurement SELECT run, 0, 9, name, 0.1, unit, low, high, verdict, NULL FROM measurement",
     ),
     (
         "a script",

@@ -107,7 +107,7 @@ pub struct RunArguments {
     /// Embedded units to test side by side
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: u32,
-    /// Report all errors of all scripts and drive nothing
+    /// Report all errors of all scripts, and limits that name no source, and drive nothing
     #[arg(long, conflicts_with = "list")]
     check: bool,
     /// Show what would be run and drive nothing

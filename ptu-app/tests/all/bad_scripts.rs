@@ -148,6 +148,34 @@ fn check_reports_the_errors_of_all_scripts() {
     assert!(said.out.contains("no errors"), "{}", said.all());
 }
 
+#[test]
+fn check_names_each_limit_without_a_source_and_is_no_error() {
+    let place = Place::new();
+    let limit = |source: &str| {
+        format!("{HEAD}step(\"a\", measure = value(\"v\", speed, high = kmh(1{source})))\n")
+    };
+    place.write("with.star", &limit(", source = \"default: it stands\""));
+    let said = place.ptu(&["run", "--check", "with.star"]).exits(0);
+    assert!(
+        said.out.contains("each limit names its source"),
+        "{}",
+        said.all()
+    );
+    place.write("without.star", &limit(""));
+    let said = place.ptu(&["run", "--check", "without.star"]).exits(0);
+    assert!(
+        said.out.contains("1 limits name no source"),
+        "{}",
+        said.all()
+    );
+    assert!(
+        said.err
+            .contains("without.star:2: step \"a\", measurement \"v\""),
+        "{}",
+        said.all()
+    );
+}
+
 /// Goal: a step that outlasts its limit is an error, not a pass and not a hang, the other steps
 /// still run, and so does clean-up. Method: a clean-up that cannot succeed is reported when it ran.
 #[test]

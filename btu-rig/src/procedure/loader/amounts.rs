@@ -19,8 +19,27 @@ const UNITS: [(&str, Dimension, f64); 11] = [
     ("_m", Dimension::Distance, 1.0),
 ];
 
-/// The quantity of a key that ends in a unit, under its name without it. `source` stands before the key.
-pub(super) fn of(key: &str, value: &Item, source: &str) -> Option<(String, Item)> {
+/// The quantities of the keys that end in a unit, under their names without it; of two that have the same name then
+/// each has what it is an amount of behind it, as `standstill_speed`. `source` stands before the keys.
+pub(super) fn of(fields: &[(String, Item)], source: &str) -> Vec<(String, Item)> {
+    let found = fields
+        .iter()
+        .filter_map(|(key, value)| of_key(key, value, source));
+    let found: Vec<_> = found.collect();
+    let times = |name: &String| found.iter().filter(|(other, ..)| other == name).count();
+    let named = found.iter().map(|(name, dimension, amount)| {
+        let name = match times(name) {
+            1 => name.clone(),
+            _ => format!("{name}_{}", dimension.word()),
+        };
+        (name, amount.clone())
+    });
+    named
+        .filter(|(name, _)| fields.iter().all(|(key, _)| key != name))
+        .collect()
+}
+
+fn of_key(key: &str, value: &Item, source: &str) -> Option<(String, Dimension, Item)> {
     let (name, dimension, factor) = UNITS
         .iter()
         .find_map(|(end, dimension, factor)| Some((key.strip_suffix(end)?, *dimension, *factor)))?;
@@ -32,7 +51,7 @@ pub(super) fn of(key: &str, value: &Item, source: &str) -> Option<(String, Item)
     let amount = amount(value, &|number| {
         Quantity::new(dimension, number * factor, origin.clone())
     })?;
-    Some((name.to_owned(), amount))
+    Some((name.to_owned(), dimension, amount))
 }
 
 fn amount(value: &Item, make: &dyn Fn(f64) -> Quantity) -> Option<Item> {
@@ -58,7 +77,7 @@ mod tests {
             ("full_to_mps", "full_to", "7.2 km/h"),
             ("stop_m", "stop", "2 m"),
         ] {
-            let (found, item) = of(key, &Item::Int(2), "configuration a.").expect(key);
+            let (found, _, item) = of_key(key, &Item::Int(2), "configuration a.").expect(key);
             let Item::Quantity(quantity) = item else {
                 panic!("{key} is {}", item.found());
             };
@@ -76,7 +95,21 @@ mod tests {
             "number",
             "_m",
         ] {
-            assert!(of(key, &Item::Int(2), "").is_none(), "{key}");
+            assert!(of_key(key, &Item::Int(2), "").is_none(), "{key}");
         }
+    }
+
+    #[test]
+    fn keys_that_differ_in_their_unit_alone_are_told_apart() {
+        let keys = [
+            "standstill_kmh",
+            "standstill_ms",
+            "fall_ms",
+            "creep_m",
+            "creep",
+        ];
+        let fields = keys.map(|key| (key.to_owned(), Item::Int(1)));
+        let names: Vec<_> = of(&fields, "").into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["standstill_speed", "standstill_time", "fall"]);
     }
 }

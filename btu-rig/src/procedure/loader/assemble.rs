@@ -118,7 +118,9 @@ pub(super) fn assemble(
     for index in without_suspect {
         steps[index].suspect.clone_from(&head.suspect);
     }
-    steps.iter_mut().for_each(|step| step.fill(&head.sources));
+    for step in &mut steps {
+        step.origin.fill(&head.sources);
+    }
     let procedure = Procedure {
         id: path.strip_suffix(".star").unwrap_or(path).to_owned(),
         title: head.title,

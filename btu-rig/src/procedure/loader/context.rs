@@ -128,15 +128,10 @@ fn record<'a>(
     fields: impl IntoIterator<Item = (&'a str, Item)>,
     source: &str,
 ) -> Item {
-    let mut all: Vec<(String, Item)> = Vec::new();
-    let mut amounts: Vec<(String, Item)> = Vec::new();
-    for (name, value) in fields {
-        amounts.extend(amounts::of(name, &value, source));
-        all.push((name.to_owned(), value));
-    }
-    amounts.retain(|(name, _)| all.iter().all(|(other, _)| other != name));
-    all.extend(amounts);
-    Item::Record(Arc::new(Record { kind, fields: all }))
+    let fields = fields.into_iter().map(|(n, v)| (n.to_owned(), v));
+    let mut fields: Vec<_> = fields.collect();
+    fields.extend(amounts::of(&fields, source));
+    Item::Record(Arc::new(Record { kind, fields }))
 }
 
 /// Bits of a signal by their names.

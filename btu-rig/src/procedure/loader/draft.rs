@@ -22,7 +22,7 @@ pub(super) struct ProcedureDraft {
     pub suspect: Option<LruId>,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,
-    /// Of numbers that say none themselves.
+    /// Of numbers in expectations that say none themselves.
     pub sources: Vec<String>,
 }
 

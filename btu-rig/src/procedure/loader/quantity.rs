@@ -64,17 +64,26 @@ impl Dimension {
         }
     }
 
-    /// With article.
-    pub(super) const fn found(self) -> &'static str {
+    /// What it is.
+    pub(super) const fn word(self) -> &'static str {
         match self {
-            Self::Speed => "a speed",
-            Self::Acceleration => "an acceleration",
-            Self::Time => "a time",
-            Self::Distance => "a distance",
-            Self::Frequency => "a frequency",
-            Self::Level => "a level",
-            Self::Mass => "a mass",
+            Self::Speed => "speed",
+            Self::Acceleration => "acceleration",
+            Self::Time => "time",
+            Self::Distance => "distance",
+            Self::Frequency => "frequency",
+            Self::Level => "level",
+            Self::Mass => "mass",
         }
+    }
+
+    /// With article.
+    pub(super) fn found(self) -> String {
+        let article = match self {
+            Self::Acceleration => "an",
+            _ => "a",
+        };
+        format!("{article} {}", self.word())
     }
 }
 

@@ -289,7 +289,8 @@ fn a_trace_that_cannot_be_read_is_named_and_the_sheet_goes_on() {
 }
 
 #[test]
-fn a_limit_stands_with_the_number_of_its_source_which_is_listed_once_in_the_language_of_the_sheet() {
+fn a_limit_stands_with_the_number_of_its_source_which_is_listed_once_in_the_language_of_the_sheet()
+{
     let (store, id) = stored(4, true);
     for (language, listed) in [
         (
