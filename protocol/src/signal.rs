@@ -103,6 +103,7 @@ signals! {
     CarrierHz "carrier_hz" "Hz" UNITY, 0 ..= 65535, Rig, "Carrier in the ATP antenna";
     CodeRateHz "code_rate_hz" "Hz" CENTI, 0 ..= 655, Rig, "Code rate in the ATP antenna";
     LevelMv "level_mv" "mV" UNITY, 0 ..= 65535, Rig, "Signal level in the ATP antenna";
+    CrosstalkMv "crosstalk_mv" "mV" UNITY, 0 ..= 65535, Rig, "Level of a second code in the ATP antenna, of a neighbouring track";
     TrainSpeed "train_speed" "km/h" CMS_KMH, 0 ..= 200, Rig, "True speed the tachometer generators follow";
     TrainPosition "train_position" "m" CENTI, -100000 ..= 100000, Rig, "True distance run";
     TrainAccel "train_accel" "m/s²" MILLI, -120 ..= 120, Rig, "True acceleration of the train, mean of 50 ms";

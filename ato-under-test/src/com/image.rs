@@ -1,9 +1,12 @@
 //! Input image: the last I/O frame, and whether I/O frames still arrive.
 
-use protocol::message::IoInput;
+use protocol::message::{Crosstalk, IoInput};
 use protocol::{Duration, Instant};
 
 use crate::front_end::at_rate;
+
+/// Time without a frame after which a second code counts as gone: two are lost.
+const CROSSTALK_LASTS: Duration = Duration::from_ms(150);
 
 /// Latched I/O inputs.
 #[derive(Debug)]
@@ -15,6 +18,7 @@ pub struct IoImage {
     alive: bool,
     timeout: Duration,
     clock_rate: f64,
+    crosstalk: Option<(Crosstalk, Instant)>,
 }
 
 impl IoImage {
@@ -28,6 +32,7 @@ impl IoImage {
             alive: false,
             timeout,
             clock_rate: 1.0,
+            crosstalk: None,
         }
     }
 
@@ -56,6 +61,16 @@ impl IoImage {
         self.alive = true;
     }
 
+    /// Takes the second code in the ATP antenna.
+    pub fn latch_crosstalk(&mut self, now: Instant, signal: Crosstalk) {
+        self.crosstalk = Some((signal, now));
+    }
+
+    /// The second code in the ATP antenna, while it is there.
+    pub fn crosstalk(&self) -> Option<&Crosstalk> {
+        self.crosstalk.as_ref().map(|(signal, _)| signal)
+    }
+
     /// Moves on to the present; a silent harness dies, and with it all its inputs.
     pub fn step(&mut self, now: Instant) {
         self.alive = self
@@ -65,6 +80,9 @@ impl IoImage {
             self.latest = None;
             self.sampled_at = now;
         }
+        self.crosstalk = self
+            .crosstalk
+            .filter(|(_, heard)| self.alive && now.since(*heard) < CROSSTALK_LASTS);
     }
 
     /// The last frame and its sampling time, while the harness is alive.

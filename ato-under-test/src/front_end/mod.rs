@@ -56,17 +56,21 @@ pub struct FrontEnd {
     bounces: DelayQueue<(MarkerPulse, bool)>,
     held_signal: AntennaSignal,
     metres_per_pulse: f64,
+    /// Least ratio of the levels of two codes of which the stronger is heard.
+    apart: f64,
 }
 
 impl FrontEnd {
-    /// Two speed sensors of this resolution, one ATP antenna, one marker antenna with TRA.
-    pub fn new(metres_per_pulse: f64) -> Self {
+    /// Two speed sensors of this resolution, one ATP antenna whose receiver tells codes apart that differ by so many
+    /// dB, one marker antenna with TRA.
+    pub fn new(metres_per_pulse: f64, apart_db: f64) -> Self {
         Self {
             sensors: [PulseSensor::default(), PulseSensor::default()],
             marker_edges: None,
             bounces: DelayQueue::default(),
             held_signal: AntennaSignal::default(),
             metres_per_pulse,
+            apart: libm::pow(10.0, apart_db / 20.0),
         }
     }
 
@@ -105,7 +109,14 @@ impl FrontEnd {
             .filter(|_| image.alive())
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
-        let received = self.receive(&frame, board.code(), built_in, faults);
+        let track = self.separate(
+            in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv),
+            image
+                .crosstalk()
+                .map(|second| in_antenna(second.carrier_hz, second.code_rate_chz, second.level_mv)),
+            faults,
+        );
+        let received = self.receive(track, board.code(), built_in, faults);
         let (marker, from_board) = self.marker(now, input.map(|(frame, _)| frame), board, faults);
         let tested = Inputs {
             alive: image.alive(),
@@ -146,20 +157,39 @@ impl FrontEnd {
         }
     }
 
+    /// What is heard of a code and that of a neighbouring track circuit: the stronger, as far as the weaker does not come
+    /// near to it; else they disturb each other, and nothing is heard.
+    fn separate(
+        &self,
+        own: AntennaSignal,
+        second: Option<AntennaSignal>,
+        faults: &Faults,
+    ) -> AntennaSignal {
+        let Some(second) = second.filter(|second| second.level_mv > 0.0) else {
+            return own;
+        };
+        let (stronger, weaker) = match second.level_mv > own.level_mv {
+            true => (second, own),
+            false => (own, second),
+        };
+        if faults.dead(Place::CodeSeparation) && weaker.level_mv > 0.0 {
+            return weaker;
+        }
+        match stronger.level_mv >= weaker.level_mv * self.apart {
+            true => stronger,
+            false => AntennaSignal::default(),
+        }
+    }
+
     /// Antenna and receiver: the stronger of track and test coil through the antenna; what is built in
     /// for the self-test enters behind it and is heard alone.
     fn receive(
         &mut self,
-        frame: &IoInput,
+        mut track: AntennaSignal,
         coil: Option<AntennaSignal>,
         built_in: Option<AntennaSignal>,
         faults: &mut Faults,
     ) -> Received {
-        let mut track = AntennaSignal {
-            carrier_hz: f64::from(frame.carrier_hz),
-            rate_hz: f64::from(frame.code_rate_chz) / 100.0,
-            level_mv: f64::from(frame.level_mv),
-        };
         let coil = coil.filter(|coil| coil.level_mv >= track.level_mv);
         let through_antenna = match faults.at(Place::AtpAntenna) {
             Some(Effect::Dead) => 0.0,
@@ -228,6 +258,15 @@ impl FrontEnd {
             self.bounces.push(due, (again, made.is_some()));
         }
         (heard.then_some(pulse), made.is_some())
+    }
+}
+
+/// A signal of the wire.
+fn in_antenna(carrier_hz: u16, rate_chz: u16, level_mv: u16) -> AntennaSignal {
+    AntennaSignal {
+        carrier_hz: f64::from(carrier_hz),
+        rate_hz: f64::from(rate_chz) / 100.0,
+        level_mv: f64::from(level_mv),
     }
 }
 

@@ -124,7 +124,7 @@ impl Unit {
             power: PowerAndClock::default(),
             late: DelayQueue::default(),
             number: OwnNumber::new(config.train.number),
-            front_end: FrontEnd::new(config.metres_per_pulse()),
+            front_end: FrontEnd::new(config.metres_per_pulse(), config.receiver.apart_db),
             output_stage: OutputStage::default(),
             relay_watch: RelayWatch::new(ms(config.overspeed.eb_feedback_ms)),
             commanded: Outputs::empty(),

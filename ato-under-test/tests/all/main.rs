@@ -7,6 +7,7 @@ mod brake_release;
 mod by_the_clock;
 mod command_line;
 mod common;
+mod crosstalk;
 mod driverless;
 mod independent_client;
 mod journey;

@@ -1,19 +1,26 @@
 //! Speed code in the ATP antenna: carrier, code rate and level, steady or drifting.
 
-use protocol::SCAN;
+use protocol::message::Crosstalk;
+use protocol::{Duration, Instant, SCAN};
 
 use crate::conditions::Sensors;
 
 use super::random::Random;
-use super::ranges::U16_MAX;
+use super::ranges::{U16_MAX, in_range};
+use crate::procedure::Refusal;
 
 /// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
 pub const MAX_RATE_HZ: f64 = 655.0;
+
+/// Time from one frame that tells of a second code to the next.
+const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
 
 /// What is put into the antenna, and what arrives there.
 #[derive(Debug)]
 pub struct Antenna {
     wanted: AntennaCommand,
+    /// That of a neighbouring track circuit.
+    second: Second,
     sensors: Sensors,
     random: Random,
     /// Noise of this scan: of the rate, Hz, and of the level as a share of it.
@@ -31,11 +38,21 @@ struct AntennaCommand {
     level_mv_per_s: f64,
 }
 
+/// A second, steady signal.
+#[derive(Debug, Default)]
+struct Second {
+    signal: AntennaCommand,
+    /// It was sent, and its end was not.
+    told: bool,
+    due: Instant,
+}
+
 impl Antenna {
     /// No signal; `random` is for noise.
     pub fn new(random: Random) -> Self {
         Self {
             wanted: AntennaCommand::default(),
+            second: Second::default(),
             sensors: Sensors::default(),
             random,
             rate_noise_hz: 0.0,
@@ -64,8 +81,42 @@ impl Antenna {
         self.wanted.level_mv_per_s = level_mv_per_s;
     }
 
+    /// Puts a second signal beside it; level 0 takes it away.
+    pub fn set_second(&mut self, now: Instant, carrier_hz: f64, rate_hz: f64, level_mv: f64) {
+        self.second.signal = AntennaCommand {
+            carrier_hz,
+            rate_hz,
+            level_mv,
+            ..AntennaCommand::default()
+        };
+        self.second.due = now;
+    }
+
+    /// Takes all out.
     pub fn off(&mut self) {
         self.wanted = AntennaCommand::default();
+        self.second.signal = AntennaCommand::default();
+    }
+
+    /// The second signal, when it is due to be sent: while it is there, and once at its end.
+    pub fn second_due(&mut self, now: Instant) -> Option<Crosstalk> {
+        let second = &mut self.second;
+        let there = second.signal.level_mv > 0.0;
+        if !there && !second.told || there && now < second.due {
+            return None;
+        }
+        second.told = there;
+        second.due = now + CROSSTALK_PERIOD;
+        Some(Crosstalk {
+            carrier_hz: self.arriving_hz(self.second.signal.carrier_hz),
+            code_rate_chz: self.arriving_chz(self.second.signal.rate_hz),
+            level_mv: self.second_mv(),
+        })
+    }
+
+    /// Level of the second signal as sent, mV.
+    pub fn second_mv(&self) -> u16 {
+        self.arriving_mv(self.second.signal.level_mv)
     }
 
     /// One scan of drift and noise.
@@ -87,20 +138,41 @@ impl Antenna {
 
     /// Carrier as sent, Hz.
     pub fn carrier_hz(&self) -> u16 {
-        off_by(self.wanted.carrier_hz, self.sensors.carrier_offset_hz).round() as u16
+        self.arriving_hz(self.wanted.carrier_hz)
     }
 
     /// Code rate as sent, 0.01 Hz.
     pub fn rate_chz(&self) -> u16 {
-        let off_hz = self.sensors.rate_offset_hz + self.rate_noise_hz;
-        (off_by(self.wanted.rate_hz, off_hz) * 100.0).round() as u16
+        self.arriving_chz(self.wanted.rate_hz)
     }
 
     /// Level as sent, mV.
     pub fn level_mv(&self) -> u16 {
-        let factor = self.sensors.level_factor * (1.0 + self.level_noise);
-        (self.wanted.level_mv * factor).round() as u16
+        self.arriving_mv(self.wanted.level_mv)
     }
+
+    fn arriving_hz(&self, carrier_hz: f64) -> u16 {
+        off_by(carrier_hz, self.sensors.carrier_offset_hz).round() as u16
+    }
+
+    fn arriving_chz(&self, rate_hz: f64) -> u16 {
+        let off_hz = self.sensors.rate_offset_hz + self.rate_noise_hz;
+        (off_by(rate_hz, off_hz) * 100.0).round() as u16
+    }
+
+    fn arriving_mv(&self, level_mv: f64) -> u16 {
+        let factor = self.sensors.level_factor * (1.0 + self.level_noise);
+        (level_mv * factor).round() as u16
+    }
+}
+
+/// A signal that the antenna can have: Hz, Hz, mV.
+pub fn antenna_signal(carrier: f64, rate: f64, level: f64) -> Result<(f64, f64, f64), Refusal> {
+    Ok((
+        in_range("carrier", carrier, 0.0, U16_MAX, "Hz")?,
+        in_range("code rate", rate, 0.0, MAX_RATE_HZ, "Hz")?,
+        in_range("level", level, 0.0, U16_MAX, "mV")?,
+    ))
 }
 
 /// A frequency that is there is off by so much; one that is not stays away.

@@ -8,7 +8,7 @@ use crate::stimulus::{
 };
 use crate::train::{EquipmentFaults, TrainData};
 
-use super::antenna::MAX_RATE_HZ;
+use super::antenna::antenna_signal;
 use super::ranges::{U16_MAX, in_range, positive};
 use super::request::Request;
 use super::{DoorGear, Rig, Track, test_signals};
@@ -53,6 +53,16 @@ impl Rig {
             } => {
                 self.set_code(carrier_hz, rate_hz, level_mv)?;
                 self.codes_along = false;
+            }
+            Stimulus::Crosstalk {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            } => {
+                let (carrier_hz, rate_hz, level_mv) =
+                    antenna_signal(carrier_hz, rate_hz, level_mv)?;
+                self.antenna
+                    .set_second(self.now, carrier_hz, rate_hz, level_mv);
             }
             Stimulus::CodeDrift {
                 rate_hz_per_s,
@@ -267,9 +277,7 @@ impl Rig {
     }
 
     fn set_code(&mut self, carrier: f64, rate: f64, level: f64) -> Result<(), Refusal> {
-        let carrier_hz = in_range("carrier", carrier, 0.0, U16_MAX, "Hz")?;
-        let rate_hz = in_range("code rate", rate, 0.0, MAX_RATE_HZ, "Hz")?;
-        let level_mv = in_range("level", level, 0.0, U16_MAX, "mV")?;
+        let (carrier_hz, rate_hz, level_mv) = antenna_signal(carrier, rate, level)?;
         self.antenna.set(carrier_hz, rate_hz, level_mv);
         Ok(())
     }

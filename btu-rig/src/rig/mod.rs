@@ -290,6 +290,9 @@ impl Rig {
         if let Some(entries) = self.desk.entry_due(now) {
             self.link.send(now, &entries.into(), out);
         }
+        if let Some(second) = self.antenna.second_due(now) {
+            self.link.send(now, &second.into(), out);
+        }
         self.link.send(now, &self.io_input(now).into(), out);
         let seen = TrainSeen {
             braking: self.braking,

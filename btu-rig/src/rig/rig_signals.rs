@@ -24,6 +24,7 @@ impl Rig {
                 f64::from(self.antenna.rate_chz()) / 100.0,
             ),
             (Signal::LevelMv, f64::from(self.antenna.level_mv())),
+            (Signal::CrosstalkMv, f64::from(self.antenna.second_mv())),
             (Signal::TrainSpeed, self.wheel.speed().kmh()),
             (Signal::TrainPosition, self.wheel.motion().position_m),
             (Signal::TrainAccel, self.speeds.accel_mps2()),

@@ -35,6 +35,15 @@ pub enum Stimulus {
         /// Level, mV.
         level_mv: f64,
     },
+    /// A second code in the ATP antenna, of a neighbouring track circuit, until the antenna is off; level 0 = none.
+    Crosstalk {
+        /// Carrier, Hz.
+        carrier_hz: f64,
+        /// Code rate, Hz.
+        rate_hz: f64,
+        /// Level, mV.
+        level_mv: f64,
+    },
     /// Lets code rate and level drift from where they are.
     CodeDrift {
         /// Hz per second.

@@ -66,7 +66,10 @@ fn every_change_to_a_run_is_detected() {
             "UPDATE measurement SET limit_source = 'S3 eq. 1' WHERE run = 2",
             &[changed],
         ),
-        ("UPDATE step SET limit_source = 'S3 eq. 1' WHERE run = 2", &[changed]),
+        (
+            "UPDATE step SET limit_source = 'S3 eq. 1' WHERE run = 2",
+            &[changed],
+        ),
         (
             "UPDATE fault_occurrence SET message = '' WHERE run = 2",
             &[changed],

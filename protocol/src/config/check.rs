@@ -42,6 +42,7 @@ impl UnitConfig {
             receiver.rate_tolerance_hz: 0.05, 5.0;
             receiver.level_min_mv: 1.0, 5000.0;
             receiver.level_max_mv: 1.0, 10000.0;
+            receiver.apart_db: 0.5, 20.0;
             receiver.detect_ms: 50.0, 5000.0;
             receiver.hold_ms: 0.0, 5000.0;
             tacho.pulses_per_turn: 10.0, 1000.0;

@@ -74,6 +74,9 @@ pub struct ReceiverConfig {
     pub level_max_mv: f64,
     /// Nominal level, mV.
     pub level_nominal_mv: f64,
+    /// A code is taken while no other in the antenna comes nearer to its level than this, dB.
+    #[serde(default = "apart_db")]
+    pub apart_db: f64,
     /// Time a code must be steady before it counts, ms.
     pub detect_ms: u32,
     /// Time the last code stays in force when none is decoded, ms.
@@ -115,6 +118,10 @@ pub struct OverspeedConfig {
 }
 
 /// That of `sg100`, for configurations without it.
+const fn apart_db() -> f64 {
+    4.0
+}
+
 const fn jog_kmh() -> f64 {
     5.0
 }

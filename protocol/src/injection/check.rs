@@ -69,6 +69,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::MarkerDebounce
         | Place::JogGuard
         | Place::CodeConfirmation
+        | Place::CodeSeparation
         | Place::LineGuard
         | Place::NeutralGuard
         | Place::SpeedGuard

@@ -122,6 +122,8 @@ pub enum Place {
     ReleaseGuard,
     /// Confirmation of the speed code in force.
     CodeConfirmation,
+    /// The receiver's choice of the stronger of two codes.
+    CodeSeparation,
     /// Supervision of a brake line that others open.
     LineGuard,
     /// Supervision of motion with the reverser in neutral.

@@ -113,6 +113,18 @@ layout! {
 }
 
 layout! {
+    /// A second code in the ATP antenna, of a neighbouring track circuit, I/O rack → unit; sent while it is there.
+    Crosstalk, Io, 0x03 {
+        /// Its carrier, Hz.
+        carrier_hz: u16,
+        /// Its code rate, 0.01 Hz; 0 = unmodulated.
+        code_rate_chz: u16,
+        /// Its level, mV; 0 = there is none any more.
+        level_mv: u16,
+    }
+}
+
+layout! {
     /// Outputs of the unit after a scan, unit → I/O rack.
     IoOutput, Io, 0x81 {
         /// Output contacts.

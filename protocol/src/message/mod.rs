@@ -21,7 +21,7 @@ pub use enums::{
     MeasureUnit, Mode, ModeSwitch, NumberState, OrderLacks, OrderState, Refusals, RunningMode,
     StoreKind, TrainOrder,
 };
-pub use io::{CabEntries, IoInput, IoOutput, Outputs, TrainLines};
+pub use io::{CabEntries, Crosstalk, IoInput, IoOutput, Outputs, TrainLines};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
 };
@@ -227,6 +227,7 @@ messages!(
     Taken,
     IoInput,
     CabEntries,
+    Crosstalk,
     IoOutput,
     TcmsToAtc,
     AtcToTcms,

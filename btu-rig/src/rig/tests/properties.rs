@@ -50,6 +50,13 @@ fn other() -> impl Strategy<Value = Stimulus> {
                 level_mv,
             }
         }),
+        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
+            Stimulus::Crosstalk {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            }
+        }),
         (number(), number()).prop_map(|(rate_hz_per_s, level_mv_per_s)| Stimulus::CodeDrift {
             rate_hz_per_s,
             level_mv_per_s

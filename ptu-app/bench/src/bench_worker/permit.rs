@@ -201,6 +201,7 @@ mod tests {
     fn needs(stimulus: &Stimulus) -> Needs {
         match stimulus {
             Stimulus::Code { .. }
+            | Stimulus::Crosstalk { .. }
             | Stimulus::CodeDrift { .. }
             | Stimulus::CodeOff
             | Stimulus::CodesAlong { .. }

@@ -4,11 +4,12 @@
 //! because each is sent at its own time.
 
 /// Signals from the inputs of the unit over its decisions to its outputs, then TCMS, then the train.
-const PATH: [&str; 119] = [
+const PATH: [&str; 120] = [
     // What the rig gives.
     "carrier_hz",
     "code_rate_hz",
     "level_mv",
+    "crosstalk_mv",
     "tacho1",
     "tacho2",
     "marker_coil",

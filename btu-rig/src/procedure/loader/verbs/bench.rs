@@ -52,6 +52,21 @@ pub(super) static VERBS: &[Verb] = &[
             level_mv_per_s: args.amount_or("level_per_s", 0.0)
         }
     ),
+    stimulus!(
+        "antenna.crosstalk",
+        &[takes("code", ParamType::Code), LEVEL],
+        |args| {
+            let (carrier_hz, rate_hz, level_mv) = match args.get("code") {
+                Some(_) => code_signal(args)?,
+                None => (0.0, 0.0, 0.0),
+            };
+            Stimulus::Crosstalk {
+                carrier_hz,
+                rate_hz,
+                level_mv,
+            }
+        }
+    ),
     switch!("antenna.along", |on| Stimulus::CodesAlong { on }),
     stimulus!("antenna.off", &[], |_| Stimulus::CodeOff),
     verb!("tacho.speed", &[TO, ACCEL, WAIT], |args| motion(
