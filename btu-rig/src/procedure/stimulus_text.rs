@@ -21,9 +21,7 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
             rate_hz,
             level_mv,
         } => format!("antenna signal {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV"),
-        Stimulus::Crosstalk { level_mv, .. } if level_mv == 0.0 => {
-            "no code of a neighbouring track".into()
-        }
+        Stimulus::Crosstalk { level_mv: 0.0, .. } => "no code of a neighbouring track".into(),
         Stimulus::Crosstalk {
             carrier_hz,
             rate_hz,
