@@ -28,6 +28,7 @@ mod driverless;
 pub mod flash;
 mod front_end;
 mod kernel;
+mod keyed;
 mod psm;
 mod random;
 #[cfg(feature = "serve")]

@@ -147,6 +147,8 @@ events! {
     WheelDiameter = 305 "wheel_diameter" Major "-" "Way by wheels and way between markers differ" "차륜 직경 오차" "difference, 0.01 %";
     PositionUnsure = 306 "position_unsure" Minor "marker_antenna" "No marker where one must be: position unsure" "위치 불확실" "PSM that did not come";
     TraBounces = 307 "tra_bounces" Minor "tra" "The same marker again after its debounce time: TRA bounces" "TRA 접점 떨림" "after its first edge, ms";
+    WheelEntered = 308 "wheel_entered" Info "-" "Wheel diameter keyed in at the cab" "차륜 직경 입력" "diameter, 0.1 mm";
+    WheelRefused = 309 "wheel_refused" Minor "-" "Wheel diameter keyed in that no wheel of the train has, or under way: not taken" "차륜 직경 입력 불허" "diameter, 0.1 mm";
     JogBegun = 310 "jog_begun" Info "-" "ATO jogs to the stop point" "정위치 인칭 시작" "way to go, cm; backward negative";
     JogFailed = 311 "jog_failed" Major "-" "Not aligned: too far to jog, or no try left" "인칭 실패: 정위치 불일치" "distance short of the stop point, cm; past it negative";
     JogOverspeed = 312 "jog_overspeed" Major "-" "Faster than a jog may be: full service brake" "인칭 과속: 상용전제동" "speed, cm/s";

@@ -326,6 +326,11 @@ impl Atp {
         self.doors_open
     }
 
+    /// Sets the way that a pulse stands for, m.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.tachometers.set_pulse(pulse_m);
+    }
+
     pub fn tachometers(&self) -> &Tachometers {
         &self.tachometers
     }

@@ -46,6 +46,12 @@ impl Speedometer {
         }
     }
 
+    /// Sets the way that a pulse stands for, m; what was measured is forgotten.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.metres_per_pulse = pulse_m;
+        self.reset();
+    }
+
     /// Forgets everything: the source of the pulses has changed.
     pub fn reset(&mut self) {
         self.edges.clear();

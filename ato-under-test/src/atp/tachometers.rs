@@ -73,6 +73,13 @@ impl Tachometers {
         }
     }
 
+    /// Sets the way that a pulse stands for, m, of a train that stands.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.meters
+            .iter_mut()
+            .for_each(|meter| meter.set_pulse(pulse_m));
+    }
+
     pub fn step(
         &mut self,
         now: Instant,

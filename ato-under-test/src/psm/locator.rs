@@ -100,6 +100,13 @@ impl Locator {
         }
     }
 
+    /// Sets the way that a pulse stands for, m: other wheels, of which nothing is known yet.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.odometer.set_pulse(pulse_m);
+        self.wheel = self.wheel.anew(self.config.wheel_spread);
+        self.wheel_reported = false;
+    }
+
     /// At a departure loop a new section begins.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) {
         let Some(section) = line.section(data.section) else {

@@ -39,6 +39,11 @@ pub struct Odometer {
 }
 
 impl Odometer {
+    /// Sets the way that a pulse stands for, m, from the next one on.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.pulse_m = pulse_m;
+    }
+
     /// An odometer whose pulses stand for `pulse_m`, with speeds averaged over `window_s`.
     pub fn new(pulse_m: f64, window_s: f64) -> Self {
         Self {

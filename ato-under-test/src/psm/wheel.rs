@@ -31,6 +31,11 @@ impl WheelCalibration {
         }
     }
 
+    /// Nothing known of other wheels.
+    pub fn anew(&self, spread: f64) -> Self {
+        Self::new(spread, self.scatter_m, self.bound)
+    }
+
     /// Takes a span of `track_m` between two markers that the wheel told as `wheel_m`.
     pub fn learn(&mut self, track_m: f64, wheel_m: f64) {
         if track_m < SHORTEST_M || wheel_m < SHORTEST_M / 2.0 {

@@ -1,23 +1,20 @@
 //! The unit's own train number: of the configuration until another is keyed in at the cab, which the wayside confirms
 //! by sending data for it.
 
+use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::NumberState;
-use protocol::{Duration, Instant};
 
 use super::TrainNumber;
 use crate::kernel::EventLog;
-
-/// Silence after which what is keyed in is a new entry.
-const ENTRY_OVER: Duration = Duration::from_ms(300);
+use crate::keyed::Keyed;
 
 #[derive(Clone, Debug)]
 pub struct OwnNumber {
     configured: TrainNumber,
     keyed: Option<TrainNumber>,
     confirmed: bool,
-    /// What the last frames said alike, how many there were, and when the last one came.
-    entry: Option<(TrainNumber, u8, Instant)>,
+    entry: Keyed,
 }
 
 impl OwnNumber {
@@ -26,7 +23,7 @@ impl OwnNumber {
             configured,
             keyed: None,
             confirmed: false,
-            entry: None,
+            entry: Keyed::default(),
         }
     }
 
@@ -52,13 +49,8 @@ impl OwnNumber {
         may_change: bool,
         log: &mut EventLog,
     ) {
-        let alike = self
-            .entry
-            .filter(|(before, _, at)| *before == number && now.since(*at) < ENTRY_OVER);
-        let count = alike.map_or(0, |(_, count, _)| count).saturating_add(1);
-        self.entry = Some((number, count, now));
         let keyed = (number != 0 && number != self.configured).then_some(number);
-        if count != frames || keyed == self.keyed {
+        if !self.entry.hear(now, number, frames) || keyed == self.keyed {
             return;
         }
         if !may_change {
@@ -78,7 +70,10 @@ impl OwnNumber {
 
 #[cfg(test)]
 mod tests {
+    use protocol::Duration;
+
     use super::*;
+    use crate::keyed::ENTRY_OVER;
 
     const FRAMES: u8 = 3;
 

@@ -36,6 +36,7 @@ impl Unit {
             }
             match message {
                 Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
+                Message::WheelEntry(entry) => self.take_wheel_entry(now, entry),
                 Message::Crosstalk(signal) => self.image.latch_crosstalk(now, signal),
                 Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
                 Message::CabEntries(entries) => self.take_entries(now, entries),

@@ -28,6 +28,7 @@ use crate::front_end::{
     apply_stored_data_faults,
 };
 use crate::kernel::{EventLog, RunRecord, SelfTester};
+use crate::keyed::Keyed;
 use crate::psm::Tra;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
@@ -65,6 +66,9 @@ pub struct Unit {
     late: DelayQueue<FromWayside>,
     /// Number of the unit's own train.
     number: OwnNumber,
+    wheel_entry: Keyed,
+    /// Wheel diameter of the configuration, mm, to which each power-up goes back.
+    configured_wheel_mm: f64,
     front_end: FrontEnd,
     output_stage: OutputStage,
     relay_watch: RelayWatch,
@@ -124,6 +128,8 @@ impl Unit {
             power: PowerAndClock::default(),
             late: DelayQueue::default(),
             number: OwnNumber::new(config.train.number),
+            wheel_entry: Keyed::default(),
+            configured_wheel_mm: config.tacho.wheel_diameter_mm,
             front_end: FrontEnd::new(config.metres_per_pulse(), config.receiver.apart_db),
             output_stage: OutputStage::default(),
             relay_watch: RelayWatch::new(ms(config.overspeed.eb_feedback_ms)),
@@ -203,7 +209,9 @@ impl Unit {
     fn restart(&mut self, now: Instant) {
         let faults = core::mem::replace(&mut self.faults, Faults::new(&[], 0));
         let flash = self.memory.take_device();
-        *self = Self::powered_up(self.setup.clone(), faults, flash);
+        let mut setup = self.setup.clone();
+        setup.config.tacho.wheel_diameter_mm = self.configured_wheel_mm;
+        *self = Self::powered_up(setup, faults, flash);
         self.power = PowerAndClock::restarted(now);
         self.log.push(Instant::ZERO, Event::SupplyDip, 0);
     }

@@ -7,7 +7,7 @@ use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{
     CabEntries, Mode, ModeSwitch, OrderLacks, OrderState, TrainLines, TrainOrder, TwcOrders,
-    TwcReport,
+    TwcReport, WheelEntry,
 };
 use protocol::{Duration, Instant};
 
@@ -62,13 +62,51 @@ impl Unit {
         if self.faults.dead(Place::CabEntries) {
             return;
         }
-        let atp = &self.functions.atp;
-        let may_change = atp.tachometers().standstill()
-            && atp.sequence().mode() != Mode::AutomaticRun
-            && self.test_mode.is_none();
+        let may_change = self.takes_entries();
         let frames = self.setup.config.orders.entry_frames;
         self.number
             .key_in(now, entries.train_number, frames, may_change, &mut self.log);
+    }
+
+    fn takes_entries(&self) -> bool {
+        let atp = &self.functions.atp;
+        atp.tachometers().standstill()
+            && atp.sequence().mode() != Mode::AutomaticRun
+            && self.test_mode.is_none()
+    }
+
+    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers told of the wheels
+    /// before is over. One that no wheel of the train has is refused.
+    pub(super) fn take_wheel_entry(&mut self, now: Instant, entry: WheelEntry) {
+        let frames = self.setup.config.orders.entry_frames;
+        if !self.wheel_entry.hear(now, entry.diameter_01mm, frames) {
+            return;
+        }
+        let tacho = &self.setup.config.tacho;
+        let (least_mm, most_mm) = (
+            self.configured_wheel_mm - tacho.worn_mm,
+            self.configured_wheel_mm + tacho.over_mm,
+        );
+        let diameter_mm = match entry.diameter_01mm {
+            0 => self.configured_wheel_mm,
+            keyed_01mm => f64::from(keyed_01mm) / 10.0,
+        };
+        let in_range =
+            (least_mm..=most_mm).contains(&diameter_mm) || self.faults.dead(Place::WheelGuard);
+        let parameter = i32::from(entry.diameter_01mm);
+        if !in_range || !self.takes_entries() {
+            self.log.push(now, Event::WheelRefused, parameter);
+            return;
+        }
+        if diameter_mm == tacho.wheel_diameter_mm {
+            return;
+        }
+        self.setup.config.tacho.wheel_diameter_mm = diameter_mm;
+        let pulse_m = self.setup.config.metres_per_pulse();
+        self.functions.atp.set_pulse(pulse_m);
+        self.functions.locator.set_pulse(pulse_m);
+        self.board.set_pulse(pulse_m);
+        self.log.push(now, Event::WheelEntered, parameter);
     }
 }
 

@@ -25,3 +25,4 @@ mod tacho_share;
 mod tcms;
 mod test_mode;
 mod test_signals;
+mod wheel_entry;

@@ -64,6 +64,9 @@ pub(super) fn stimulus_text(stimulus: &Stimulus) -> String {
         Stimulus::Station(data) => format!("wayside sends {}", station_text(&data)),
         Stimulus::Orders(Some(orders)) => format!("wayside orders {}", order_text(&orders)),
         Stimulus::Orders(None) => "wayside gives no orders".into(),
+        Stimulus::WheelDiameter { diameter_mm } => {
+            format!("wheel diameter {} mm keyed in", number(diameter_mm))
+        }
         Stimulus::TrainNumber { number } => format!("train number {number} keyed in"),
         Stimulus::Wayside(condition) => format!("TWC wayside {condition:?}").to_lowercase(),
         Stimulus::SideDoors { left, state } => {

@@ -147,6 +147,12 @@ impl Rig {
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
             Stimulus::TrainNumber { number } => self.desk.key_in(now, number),
+            Stimulus::WheelDiameter { diameter_mm } => {
+                let most_mm = U16_MAX / 10.0;
+                let diameter_mm = in_range("wheel diameter", diameter_mm, 0.0, most_mm, "mm")?;
+                self.desk
+                    .key_in_wheel(now, (diameter_mm * 10.0).round() as u16);
+            }
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
             Stimulus::Controller { lever } => self.desk.lever = lever,
             Stimulus::ControllerVolts { volts } => {

@@ -1,6 +1,6 @@
 //! Cab desks and train lines: what drivers, doors and the brake loop give TCMS and the unit.
 
-use protocol::message::{CabEntries, ModeSwitch, TrainLines};
+use protocol::message::{CabEntries, Message, ModeSwitch, TrainLines, WheelEntry};
 use protocol::{Duration, Instant};
 
 use crate::lever::Lever;
@@ -42,15 +42,36 @@ pub struct CabDesk {
     start_until: Instant,
     eb_loop: bool,
     eb_loop_fed: bool,
-    entry: Entry,
+    number: Entry,
+    wheel: Entry,
 }
 
-/// Train number that was keyed in last, and what of it is still to be sent.
+/// What was keyed in last, 0 = as the unit is configured, and what of it is still to be sent.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry {
-    number: u16,
+    value: u16,
     frames: u8,
     due: Instant,
+}
+
+impl Entry {
+    fn key_in(&mut self, now: Instant, value: u16) {
+        *self = Self {
+            value,
+            frames: ENTRY_FRAMES,
+            due: now,
+        };
+    }
+
+    /// The value, when it is due to be sent.
+    fn due(&mut self, now: Instant) -> Option<u16> {
+        if self.frames == 0 || now < self.due {
+            return None;
+        }
+        self.frames -= 1;
+        self.due = now + ENTRY_PERIOD;
+        Some(self.value)
+    }
 }
 
 /// Switches that are on.
@@ -99,7 +120,8 @@ impl Default for CabDesk {
             start_until: Instant::ZERO,
             eb_loop: false,
             eb_loop_fed: false,
-            entry: Entry::default(),
+            number: Entry::default(),
+            wheel: Entry::default(),
         }
     }
 }
@@ -108,14 +130,17 @@ impl CabDesk {
     /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay. Another train number
     /// than the configured one is taken back.
     pub fn reset(&mut self, now: Instant) {
-        if self.entry.number != 0 {
-            self.key_in(now, 0);
+        for entry in [&mut self.number, &mut self.wheel] {
+            if entry.value != 0 {
+                entry.key_in(now, 0);
+            }
         }
         *self = Self {
             eb_loop: self.eb_loop,
             eb_loop_fed: self.eb_loop_fed,
             faults: self.faults,
-            entry: self.entry,
+            number: self.number,
+            wheel: self.wheel,
             ..Self::default()
         };
     }
@@ -130,22 +155,22 @@ impl CabDesk {
 
     /// Keys a train number in.
     pub fn key_in(&mut self, now: Instant, number: u16) {
-        self.entry = Entry {
-            number,
-            frames: ENTRY_FRAMES,
-            due: now,
-        };
+        self.number.key_in(now, number);
+    }
+
+    /// Keys a wheel diameter in, 0.1 mm.
+    pub fn key_in_wheel(&mut self, now: Instant, diameter_01mm: u16) {
+        self.wheel.key_in(now, diameter_01mm);
     }
 
     /// What is keyed in, when it is due to be sent.
-    pub fn entry_due(&mut self, now: Instant) -> Option<CabEntries> {
-        if self.entry.frames == 0 || now < self.entry.due {
-            return None;
-        }
-        self.entry.frames -= 1;
-        self.entry.due = now + ENTRY_PERIOD;
-        let train_number = self.entry.number;
-        Some(CabEntries { train_number })
+    pub fn entries_due(&mut self, now: Instant) -> [Option<Message>; 2] {
+        let number = self.number.due(now);
+        let wheel = self.wheel.due(now);
+        [
+            number.map(|train_number| CabEntries { train_number }.into()),
+            wheel.map(|diameter_01mm| WheelEntry { diameter_01mm }.into()),
+        ]
     }
 
     /// Turns a switch of the train.

@@ -287,8 +287,8 @@ impl Rig {
 
     /// Frames of I/O rack, TCMS and wayside that are due.
     fn play_train(&mut self, now: Instant, out: &mut Vec<u8>) {
-        if let Some(entries) = self.desk.entry_due(now) {
-            self.link.send(now, &entries.into(), out);
+        for entry in self.desk.entries_due(now).into_iter().flatten() {
+            self.link.send(now, &entry, out);
         }
         if let Some(second) = self.antenna.second_due(now) {
             self.link.send(now, &second.into(), out);

@@ -168,6 +168,11 @@ pub enum Stimulus {
         /// 0 = as the unit is configured.
         number: u16,
     },
+    /// Wheel diameter keyed in at the cab.
+    WheelDiameter {
+        /// mm; 0 = as the unit is configured.
+        diameter_mm: f64,
+    },
     /// Mode switch.
     ModeSwitch(#[serde(with = "mode_switch")] ModeSwitch),
     /// Master controller.

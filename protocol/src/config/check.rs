@@ -47,6 +47,8 @@ impl UnitConfig {
             receiver.hold_ms: 0.0, 5000.0;
             tacho.pulses_per_turn: 10.0, 1000.0;
             tacho.wheel_diameter_mm: 500.0, 1200.0;
+            tacho.worn_mm: 0.0, 200.0;
+            tacho.over_mm: 0.0, 50.0;
             tacho.window_ms: 20.0, 1000.0;
             tacho.difference_kmh: 1.0, 20.0;
             tacho.standstill_kmh: 0.1, 3.0;

@@ -10,6 +10,12 @@ pub struct TachoConfig {
     pub pulses_per_turn: u32,
     /// Wheel diameter, mm.
     pub wheel_diameter_mm: f64,
+    /// A diameter keyed in may be smaller than that by so much, mm: a wheel worn to its limit.
+    #[serde(default = "TachoConfig::default_worn_mm")]
+    pub worn_mm: f64,
+    /// And greater by so much, mm: as wheels are measured.
+    #[serde(default = "TachoConfig::default_over_mm")]
+    pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.
     pub window_ms: u32,
     /// Difference between the channels that is a fault, km/h.
@@ -57,6 +63,14 @@ impl TachoConfig {
 
     const fn default_fall_kmh() -> f64 {
         2.0
+    }
+
+    const fn default_worn_mm() -> f64 {
+        80.0
+    }
+
+    const fn default_over_mm() -> f64 {
+        5.0
     }
 
     const fn default_fall_ms() -> u32 {

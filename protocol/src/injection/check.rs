@@ -96,6 +96,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::TrainGuard
         | Place::OrderGuard
         | Place::CabEntries
+        | Place::WheelGuard
         | Place::HandOverBrake
         | Place::PutAwayBrake
         | Place::WakeUpTest

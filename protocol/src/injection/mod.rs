@@ -90,6 +90,8 @@ pub enum Place {
     OrderGuard,
     /// Train number keyed in at the cab, as the TWC CPU takes it.
     CabEntries,
+    /// Range of a wheel diameter keyed in at the cab.
+    WheelGuard,
     /// Emergency brake of a cab that is given up at a turn-back.
     HandOverBrake,
     /// Emergency brake of a train that is put away.

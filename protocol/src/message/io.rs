@@ -113,6 +113,14 @@ layout! {
 }
 
 layout! {
+    /// Wheel diameter that is keyed in at the cab, I/O rack → unit; sent while it is keyed in.
+    WheelEntry, Io, 0x04 {
+        /// Diameter, 0.1 mm; 0 = that of the unit configuration.
+        diameter_01mm: u16,
+    }
+}
+
+layout! {
     /// A second code in the ATP antenna, of a neighbouring track circuit, I/O rack → unit; sent while it is there.
     Crosstalk, Io, 0x03 {
         /// Its carrier, Hz.

@@ -21,7 +21,7 @@ pub use enums::{
     MeasureUnit, Mode, ModeSwitch, NumberState, OrderLacks, OrderState, Refusals, RunningMode,
     StoreKind, TrainOrder,
 };
-pub use io::{CabEntries, Crosstalk, IoInput, IoOutput, Outputs, TrainLines};
+pub use io::{CabEntries, Crosstalk, IoInput, IoOutput, Outputs, TrainLines, WheelEntry};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
 };
@@ -228,6 +228,7 @@ messages!(
     IoInput,
     CabEntries,
     Crosstalk,
+    WheelEntry,
     IoOutput,
     TcmsToAtc,
     AtcToTcms,

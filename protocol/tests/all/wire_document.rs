@@ -261,10 +261,11 @@ const fn person(address: Address) -> &'static str {
 }
 
 /// What is sent regularly: message, ms between two, and when.
-const REGULAR: [(&str, usize, &str); 14] = [
+const REGULAR: [(&str, usize, &str); 15] = [
     ("IoInput", 10, "always"),
     ("TcmsToAtc", 50, "always"),
     ("CabEntries", 50, "while a number is keyed in at the cab"),
+    ("WheelEntry", 50, "while a diameter is keyed in at the cab"),
     ("Crosstalk", 50, "while a second code is in the ATP antenna"),
     ("TwcWayside", 250, "over a loop"),
     (

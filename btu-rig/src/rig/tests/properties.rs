@@ -64,6 +64,7 @@ fn other() -> impl Strategy<Value = Stimulus> {
         (0u8..4, condition())
             .prop_map(|(channel, condition)| Stimulus::Tacho { channel, condition }),
         any::<u8>().prop_map(|psm| Stimulus::Marker { psm }),
+        number().prop_map(|diameter_mm| Stimulus::WheelDiameter { diameter_mm }),
         prop::option::of(60u16..63).prop_map(|section| Stimulus::MarkersAlong { section }),
         prop::option::of(number()).prop_map(|coefficient| Stimulus::Adhesion { coefficient }),
         (any::<u8>(), prop::option::of(number()))

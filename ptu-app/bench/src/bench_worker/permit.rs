@@ -217,6 +217,7 @@ mod tests {
             | Stimulus::Station(_)
             | Stimulus::Orders(_)
             | Stimulus::TrainNumber { .. }
+            | Stimulus::WheelDiameter { .. }
             | Stimulus::Wayside(_)
             | Stimulus::ControllerVolts { .. }
             | Stimulus::ControllerContacts { .. }

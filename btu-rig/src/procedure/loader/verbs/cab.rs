@@ -51,6 +51,13 @@ pub(super) static VERBS: &[Verb] = &[
     switch!("cab.active", |on| Stimulus::Hcr { on }),
     switch!("cab.key", |on| Stimulus::MaintenanceKey { on }),
     stimulus!(
+        "cab.wheel_diameter",
+        &[takes("diameter", ParamType::Amount(Dimension::Distance))],
+        |args| Stimulus::WheelDiameter {
+            diameter_mm: 1000.0 * args.amount_or("diameter", 0.0),
+        }
+    ),
+    stimulus!(
         "cab.train_number",
         &[needs("number", ParamType::Int(0, 65535))],
         |args| {
