@@ -132,6 +132,13 @@ impl Consist {
         self.power_mps2
     }
 
+    /// What each car's air brake gives beyond its greatest service brake, N: its emergency brake does, at the present
+    /// load.
+    pub fn more_air_n(&self) -> PerCar {
+        let emergency = self.data.emergency_brake.kmh_per_s / self.data.service_brake.kmh_per_s;
+        std::array::from_fn(|car| (self.full_service_n[car] * emergency - self.air_n[car]).max(0.0))
+    }
+
     /// Braking mass of the full train, kg.
     pub fn full_inertia_kg(&self) -> f64 {
         self.full_inertia_kg

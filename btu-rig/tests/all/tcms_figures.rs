@@ -222,16 +222,17 @@ fn effort_keeps_to_the_demand_through_blending() {
     }
 }
 
-/// What the remaining brakes of the full train have without T1: all their air.
+/// S3: without T1 the other cars give all that is asked for, 443.69 kN, once the electric brake has faded, too. Their own
+/// maxima by the car table are 393.9 kN.
 #[test]
-fn without_t1_a_full_train_stops_on_the_air_there_is() {
+fn without_t1_a_full_train_stops_on_the_air_of_the_other_cars() {
     let mut ride = Ride::new(60.0, FULL_KG, -1.0);
     ride.brakes_out = CarSet::one(3);
     ride.run_until(|ride| ride.kmh() < 2.0);
     near(
         "air without T1, B7 full, kN",
         ride.brake_n() / 1e3,
-        393.9,
+        443.69,
         1.5,
     );
 }
