@@ -1,9 +1,12 @@
 //! Speed to run at: the most restrictive of limit and fixed speed, lowered by running mode
-//! [S0 §3.1.1, S2 §3.2].
+//! [S0 §3.1.1, S2 §3.2], and of lower limits ahead.
 
 use protocol::Speed;
 use protocol::config::AtoConfig;
 use protocol::message::RunningMode;
+
+use super::AtoInputs;
+use super::track_limit::{Place, limit_ahead};
 
 /// What the cruising speed depends on.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +16,33 @@ pub struct CruiseInputs {
     /// Fixed speed ordered by the wayside.
     pub fixed_speed: Option<Speed>,
     pub running_mode: RunningMode,
+}
+
+/// The cruising speed where the train is. `slowing_m` tells in which way it slows from one speed to a lower one, m/s.
+pub fn on_track(
+    inputs: &AtoInputs<'_>,
+    config: &AtoConfig,
+    slowing_m: impl Fn(f64, f64) -> f64,
+) -> Speed {
+    let under = |limit: Speed| {
+        let inputs = CruiseInputs {
+            limit,
+            fixed_speed: inputs.fixed_speed,
+            running_mode: inputs.running_mode,
+        };
+        cruise(inputs, config)
+    };
+    let place = Place {
+        section: inputs.section,
+        position_m: inputs.position_m,
+        heard_within_m: inputs.speed.mps() * inputs.heard_within_s,
+        limit: inputs.limit,
+    };
+    let now_mps = under(inputs.limit).mps();
+    let limit = limit_ahead(place, inputs.codes, |lower| {
+        slowing_m(now_mps, under(lower).mps())
+    });
+    under(limit)
 }
 
 /// The cruising speed in force.

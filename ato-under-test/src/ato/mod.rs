@@ -1,7 +1,7 @@
 //! ATO: drives the train from station to station while ATP says Automatic Run.
 //!
 //! One cycle, in order [S0 §3]: whether the inputs are plausible (`monitor`), operating state ([`AtoState`],
-//! ART), speed to run at (`cruise`), where the train will be when the effort acts (`observer`), the
+//! ART), limits ahead (`track_limit`), speed to run at (`cruise`), where the train will be when the effort acts (`observer`), the
 //! speed controller ([`mod@controller`], SPR), what the track costs (`feed_forward`), and the share of
 //! available effort for TCMS (`reg`, REG).
 
@@ -14,16 +14,16 @@ mod monitor;
 mod observer;
 mod profile;
 mod reg;
+mod track_limit;
 
 use alloc::boxed::Box;
 
 use protocol::Speed;
-use protocol::config::{AtoConfig, UnitConfig};
+use protocol::config::{AtoConfig, SpeedCode, UnitConfig};
 use protocol::line::Section;
 use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
 use controller::{ControllerInput, SpeedController, controller};
-use cruise::CruiseInputs;
 use jog::{Jog, JogInputs};
 use monitor::{Monitor, MonitorInputs};
 use observer::{Observer, SpeedMeasurement};
@@ -52,6 +52,10 @@ pub struct AtoInputs<'a> {
     pub mode: Mode,
     /// Limit from ATP.
     pub limit: Speed,
+    /// The unit's speed codes, by which the track database names limits.
+    pub codes: &'a [SpeedCode],
+    /// Time within which a new code is heard, s.
+    pub heard_within_s: f64,
     /// Fixed speed ordered by the wayside.
     pub fixed_speed: Option<Speed>,
     /// Running mode ordered by the wayside.
@@ -149,14 +153,8 @@ impl Ato {
         let to_stop_m = inputs
             .section
             .map(|s| s.stop_m - inputs.position_m - inputs.ahead_m);
-        let cruise = cruise::cruise(
-            CruiseInputs {
-                limit: inputs.limit,
-                fixed_speed: inputs.fixed_speed,
-                running_mode: inputs.running_mode,
-            },
-            config,
-        );
+        let slowing_m = |from_mps, to_mps| self.controller.slowing_m(from_mps, to_mps);
+        let cruise = cruise::on_track(&inputs, config, slowing_m);
         let stands = inputs.standstill && inputs.speed <= STOPPED && !self.observer.sliding();
         let may_go = cruise > Speed::ZERO && !inputs.power_cut;
         let drives = art::drives(self.state);

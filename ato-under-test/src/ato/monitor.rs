@@ -300,6 +300,8 @@ mod tests {
         let inputs = AtoInputs {
             mode: Mode::AutomaticRun,
             limit: Speed::from_mps(18.0),
+            codes: &[],
+            heard_within_s: 1.0,
             fixed_speed: None,
             running_mode: RunningMode::Normal,
             section: line.section(61),

@@ -4,7 +4,7 @@
 use ato_under_test::ato::{Ato, AtoInputs, AtoOutputs, Checks, TrainReport};
 use proptest::prelude::*;
 use protocol::Speed;
-use protocol::config::{AtoConfig, ControllerKind, UnitConfig};
+use protocol::config::{ControllerKind, UnitConfig};
 use protocol::line::{Curve, Gradient, Line, Section};
 use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
@@ -116,10 +116,18 @@ fn drawn() -> impl Strategy<Value = Drawn> {
     )
 }
 
-fn step(ato: &mut Ato, drawn: &Drawn, config: &AtoConfig) -> AtoOutputs {
+fn step(
+    ato: &mut Ato,
+    drawn: &Drawn,
+    UnitConfig {
+        ato: config, codes, ..
+    }: &UnitConfig,
+) -> AtoOutputs {
     let inputs = AtoInputs {
         mode: drawn.mode,
         limit: Speed::from_mps(drawn.limit_mps),
+        codes,
+        heard_within_s: 1.0,
         fixed_speed: drawn.fixed_mps.map(Speed::from_mps),
         running_mode: RunningMode::Normal,
         section: drawn.section.as_ref(),
@@ -167,10 +175,9 @@ proptest! {
         let mut unit = config();
         unit.ato.controller = kind;
         let mut ato = Ato::new(&unit);
-        let config = unit.ato;
         for (drawn, times) in cycles {
             for _ in 0..times {
-                let out = step(&mut ato, &drawn, &config);
+                let out = step(&mut ato, &drawn, &unit);
                 prop_assert!((-1024..=1023).contains(&out.effort));
                 prop_assert!(out.target.mps().is_finite() && out.target >= Speed::ZERO, "{:?}", out);
                 let may_power = drawn.mode == Mode::AutomaticRun
@@ -195,12 +202,11 @@ proptest! {
     ) {
         let unit = config();
         let mut ato = Ato::new(&unit);
-        let config = unit.ato;
         let good = Drawn { speed_mps: 1.0, standstill: false, ..departing() };
         for _ in 0..5 {
-            step(&mut ato, &departing(), &config);
+            step(&mut ato, &departing(), &unit);
         }
-        step(&mut ato, &Drawn { speed_mps: 0.5, ..good.clone() }, &config);
+        step(&mut ato, &Drawn { speed_mps: 0.5, ..good.clone() }, &unit);
         prop_assert_eq!(ato.state(), AtoState::Run);
         let mut absurd = good.clone();
         match which {
@@ -211,13 +217,13 @@ proptest! {
             4 => absurd.ahead_m = bad,
             _ => absurd.section.as_mut().unwrap().stop_m = bad,
         }
-        let out = step(&mut ato, &absurd, &config);
+        let out = step(&mut ato, &absurd, &unit);
         prop_assert!(!out.findings.absurd.is_empty());
         prop_assert_eq!((out.effort, out.failure, out.ready), (-1024, AtoFailure::Inputs, false));
-        let out = step(&mut ato, &good, &config);
+        let out = step(&mut ato, &good, &unit);
         prop_assert_eq!((out.effort, out.ready), (-1024, false));
-        step(&mut ato, &Drawn { mode: Mode::Manual, ..departing() }, &config);
-        let out = step(&mut ato, &Drawn { mode: Mode::Manual, ..departing() }, &config);
+        step(&mut ato, &Drawn { mode: Mode::Manual, ..departing() }, &unit);
+        let out = step(&mut ato, &Drawn { mode: Mode::Manual, ..departing() }, &unit);
         prop_assert!(out.ready);
     }
 }

@@ -31,8 +31,8 @@ pub struct Curve {
     pub radius_m: f64,
 }
 
-/// A speed code that the wayside sends from a position on. It is data of the bench: a unit reads
-/// codes from its antenna only.
+/// A speed code that the wayside sends from a position on. A unit's ATO slows for a lower one before its place;
+/// the limit that its ATP supervises is read from the antenna alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CodeFrom {

@@ -12,11 +12,12 @@ use serde_json::Value;
 /// The poles S0 prints, from which its four gains follow.
 const PRINTED_POLES: &str =
     "ato.servo.poles=[[0.6982, 0.0], [0.9682, 0.0], [0.92, 0.0332], [0.92, -0.0332]]";
-/// Full service brake of the train of cars [S3: B7], km/h/s, and what running resistance adds to it.
-const FSB_KMH_S: f64 = 3.5;
-const RESISTANCE_KMH_S: f64 = 0.2;
-/// ATO asks for S0's 3.5 km/h/s of a train whose brakes and resistance it knows to a hundredth.
-const KNOWN_TO: f64 = 1.01;
+/// Deceleration that ATO asks for at most [S0 §4], km/h/s.
+const MOST_KMH_S: f64 = 3.5;
+/// ATO knows brakes and resistance of the train of cars to so much of it.
+const KNOWN_TO: f64 = 1.02;
+/// Where `pss` begins to slow for S2's step at 235 m at the earliest: 80 m suffice from 50 to 40 km/h, so it does reach 50.
+const SLOWS_FROM_M: f64 = 150.0;
 /// Difference between target and limit less 5 km/h at which the stop curve counts as taking over.
 const TAKES_OVER_KMH: f64 = 0.1;
 /// What less resistance below 40 km/h and a descent add to full traction [S3: 3.0 km/h/s at 40 km/h].
@@ -70,8 +71,8 @@ fn the_servo_stops_the_ideal_train_of_section_61_within_two_centimetres() {
     }
 }
 
-/// Goal: sections 54 to 65 with the train of cars. Printed: within ±30 cm; held to ±10. Where the
-/// limit falls on the way ATP's full service brake comes on top of what ATO asks for.
+/// Goal: sections 54 to 65 with the train of cars. Printed: within ±30 cm, at most 3.5 km/h/s; held to ±10 cm. Also
+/// where the limit falls on the way: ATO is at the lower one there, and ATP has nothing to brake.
 #[test]
 fn servo_and_pss_stop_empty_and_full_trains_within_ten_centimetres_on_all_of_line_8() {
     let place = Place::new();
@@ -87,13 +88,23 @@ fn servo_and_pss_stop_empty_and_full_trains_within_ten_centimetres_on_all_of_lin
             let accel = number(&run["peak_accel_kmh_s"]);
             assert!(accel <= 3.0 + STARTING_KMH_S, "{what}: {accel}");
             let decel = number(&run["peak_decel_kmh_s"]);
-            let atp_brakes = place_of(run, "unit: overspeed_fsb").is_some();
-            let most = if atp_brakes {
-                FSB_KMH_S + RESISTANCE_KMH_S
-            } else {
-                FSB_KMH_S * KNOWN_TO
-            };
-            assert!(decel <= most, "{what}: {decel}");
+            assert!(decel <= MOST_KMH_S * KNOWN_TO, "{what}: {decel}");
+            assert_eq!(place_of(run, "unit: overspeed"), None, "{what}");
+        }
+    }
+}
+
+/// Goal: in normal automatic running ATP finds nothing to brake on S2's line, whatever drives the train.
+#[test]
+fn no_controller_is_braked_by_atp_where_the_codes_of_line_6_step_down() {
+    let place = Place::new();
+    for load in ["empty", "full"] {
+        let line6 = ["--line", "line6", "--section", "all", "--load", load];
+        let all = ["--compare", "servo,pi,fuzzy,pss"];
+        for run in list(&driven(&place, &[&line6[..], &all].concat())["runs"]) {
+            let what = format!("{load} {} {}", run["section"], run["controller"]);
+            assert!(stop_error_m(run).abs() <= 0.10, "{what}");
+            assert_eq!(place_of(run, "unit: overspeed"), None, "{what}");
         }
     }
 }
@@ -111,8 +122,8 @@ fn sixty_trains_and_days_stop_within_thirty_centimetres() {
 }
 
 /// Goal: S2's run of line 6, limit 55 to 45 km/h at 235 m. Printed: PSS takes over at 637 m, the
-/// target is the limit less 5 km/h until then. The step itself is left out: the unit hears of it a
-/// receiver's delay later.
+/// target is the limit less 5 km/h until then. At the step S2 has the train 5 km/h over the new limit; ATO comes down
+/// before it here, so that ATP does not brake, which is left out, as is the receiver's delay behind it.
 #[test]
 fn pss_takes_over_on_line_6_where_the_paper_has_it() {
     let place = Place::new();
@@ -136,14 +147,16 @@ fn pss_takes_over_on_line_6_where_the_paper_has_it() {
     let accel = number(&run["peak_accel_kmh_s"]);
     let decel = number(&run["peak_decel_kmh_s"]);
     assert!(accel <= 3.0 + STARTING_KMH_S, "{accel}");
-    assert!(decel <= FSB_KMH_S + RESISTANCE_KMH_S, "{decel}");
+    assert!(decel <= MOST_KMH_S * KNOWN_TO, "{decel}");
+    assert_eq!(place_of(&run, "unit: overspeed"), None);
 
     let step_m = place_of(&run, "limit 45 km/h").expect("a step of the limit");
     assert!((235.0..245.0).contains(&step_m), "{step_m} m");
     let mut cruised = [0, 0];
     for row in rows(&place.read("run.csv"), ["x_m", "limit_kmh", "target_kmh"]) {
         let [x_m, limit_kmh, target_kmh] = row;
-        if (1.0..takes_over_m - 0.01).contains(&x_m) && !(235.0..step_m + 1.0).contains(&x_m) {
+        if (1.0..takes_over_m - 0.01).contains(&x_m) && !(SLOWS_FROM_M..step_m + 1.0).contains(&x_m)
+        {
             let off_kmh = limit_kmh - 5.0 - target_kmh;
             assert!(off_kmh.abs() < TAKES_OVER_KMH, "{row:?}");
             let expected_kmh = if x_m < 235.0 { 55.0 } else { 45.0 };
@@ -151,8 +164,8 @@ fn pss_takes_over_on_line_6_where_the_paper_has_it() {
             cruised[usize::from(x_m > 235.0)] += 1;
         }
     }
-    // 20 s and 30 s of a row each 50 ms.
-    assert!(cruised[0] > 400 && cruised[1] > 600, "{cruised:?}");
+    // 15 s and 30 s of a row each 50 ms.
+    assert!(cruised[0] > 300 && cruised[1] > 600, "{cruised:?}");
 }
 
 /// Rms errors of fuzzy and PI, km/h, in S1's run through the whole unit: 432 t to 60 km/h on the test track.

@@ -73,6 +73,8 @@ pub struct Demand {
 pub trait SpeedController: Debug + Send + CloneBoxed {
     /// One cycle.
     fn step(&mut self, input: &ControllerInput) -> Demand;
+    /// Way in which it brings a train from one cruising speed to a lower one, m.
+    fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64;
     /// Resets the controller's state; the train stands and is not driven.
     fn reset(&mut self);
 }

@@ -73,6 +73,10 @@ impl SpeedController for Pi {
         }
     }
 
+    fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
+        self.generator.slowing_m(from_mps, to_mps)
+    }
+
     fn reset(&mut self) {
         self.generator.reset();
         self.integral = Integral::default();

@@ -100,6 +100,16 @@ impl SpeedController for Pss {
         }
     }
 
+    /// At the greatest brake, built up at the jerk limit, until the force goes down with the error: the last of
+    /// that is gone after two time constants.
+    fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
+        let rate_mps2 = self.gain_per_s * self.near_mps;
+        let seconds = (from_mps - to_mps).max(0.0) / rate_mps2
+            + rate_mps2 / self.jerk_mps3
+            + 2.0 / self.gain_per_s;
+        seconds * 0.5 * (from_mps + to_mps)
+    }
+
     fn reset(&mut self) {
         self.integral = Integral::default();
         self.stop = None;

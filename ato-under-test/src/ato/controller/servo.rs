@@ -175,9 +175,13 @@ impl Servo {
 
     /// Eq. (1) from a setpoint to a speed.
     fn s_curve(&self, from: Setpoint, target_mps: f64) -> SCurve {
-        let change = libm::fabs(target_mps - from.speed_mps);
-        let seconds = self.config.s_curve_s_per_mps * change + self.config.s_curve_s;
+        let seconds = self.s_curve_s(target_mps - from.speed_mps);
         SCurve::new(from, target_mps, seconds, self.rates.jerk_mps3)
+    }
+
+    /// Its time for a change of speed, s.
+    fn s_curve_s(&self, change_mps: f64) -> f64 {
+        self.config.s_curve_s_per_mps * libm::fabs(change_mps) + self.config.s_curve_s
     }
 
     /// The profile goes on from where the train is.
@@ -235,6 +239,11 @@ impl SpeedController for Servo {
             target_mps: reference.speed_mps,
             force_n: (reference.accel_mps2 + given) * input.mass_kg,
         }
+    }
+
+    /// Eq. (1) is symmetric: it runs at the mean of both speeds.
+    fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
+        self.s_curve_s(from_mps - to_mps) * 0.5 * (from_mps + to_mps)
     }
 
     fn reset(&mut self) {

@@ -77,6 +77,16 @@ impl JerkLimited {
         self.now
     }
 
+    /// Duration of a whole ramp between two speeds, s. It is symmetric, so it runs at their mean.
+    pub fn ramp_s(&self, from_mps: f64, to_mps: f64) -> f64 {
+        let mut from = *self;
+        from.place(Setpoint {
+            speed_mps: from_mps,
+            accel_mps2: 0.0,
+        });
+        from.ramp(to_mps).iter().map(|phase| phase.lasts_s).sum()
+    }
+
     fn advance(&mut self, jerk_mps3: f64, dt_s: f64) {
         let change = jerk_mps3 * dt_s;
         self.now.speed_mps += (self.now.accel_mps2 + 0.5 * change) * dt_s;
@@ -147,12 +157,7 @@ mod tests {
 
     /// Time until speed and acceleration are those of the end, from `from_mps`, s.
     fn ramp_s(from_mps: f64, to_mps: f64) -> f64 {
-        let mut profile = JerkLimited::new(&config());
-        profile.place(Setpoint {
-            speed_mps: from_mps,
-            accel_mps2: 0.0,
-        });
-        profile.ramp(to_mps).iter().map(|p| p.lasts_s).sum()
+        JerkLimited::new(&config()).ramp_s(from_mps, to_mps)
     }
 
     /// From, to, km/h, and the duration, s, worked by hand from t_01 = a_L/J, v_1 = J·t_01²/2,

@@ -74,6 +74,11 @@ impl ReferenceGenerator {
         }
     }
 
+    /// Way of its ramp from one speed to a lower one, m.
+    pub fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
+        self.ramp.ramp_s(from_mps, to_mps) * 0.5 * (from_mps + to_mps)
+    }
+
     /// Begins where the train is, and does not run away from it.
     fn keep_to_the_train(&mut self, command_mps: f64, train: Setpoint) {
         let ramp = self.ramp.setpoint();

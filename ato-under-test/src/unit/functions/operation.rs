@@ -20,6 +20,8 @@ impl Functions {
         let inputs = AtoInputs {
             mode: self.atp.sequence().mode(),
             limit: self.atp.limit(),
+            codes: &around.setup.config.codes,
+            heard_within_s: f64::from(around.setup.config.receiver.hold_ms) / 1000.0,
             fixed_speed: data
                 .filter(|data| data.fixed_speed_kmh != u8::MAX)
                 .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),

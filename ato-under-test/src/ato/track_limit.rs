@@ -1,0 +1,108 @@
+//! Limits of the track database ahead: ATO slows for a lower speed code before its place, so that ATP, which hears
+//! it there, finds nothing to brake (S2 §3.3: 55 to 45 km/h at 235 m, in a run that ATO drives).
+//!
+//! ATP's limit is that of the antenna alone. What the database has lowers the speed that ATO runs at, and only
+//! where the wayside sends what the database has.
+
+use protocol::Speed;
+use protocol::config::SpeedCode;
+use protocol::line::Section;
+
+/// Where the train is, and what it is told there.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// Section of the track database.
+    pub section: Option<&'a Section>,
+    /// Position in it, m.
+    pub position_m: f64,
+    /// Way behind a code's place within which the one before may still be in force, m.
+    pub heard_within_m: f64,
+    /// Limit in force.
+    pub limit: Speed,
+}
+
+/// Limit that ATO runs by. `slowing_m` tells the way in which it slows from the limit in force to that of another.
+pub fn limit_ahead(
+    place: Place<'_>,
+    codes: &[SpeedCode],
+    slowing_m: impl Fn(Speed) -> f64,
+) -> Speed {
+    let Some(section) = place.section else {
+        return place.limit;
+    };
+    let limit_of = |name: &str| {
+        let code = codes.iter().find(|code| code.name == name);
+        code.map(|code| Speed::from_kmh(code.limit_kmh))
+    };
+    let sent = || section.speed_codes.iter();
+    let limit_at = |at_m: f64| {
+        let last = sent().rev().find(|code| code.at_m <= at_m);
+        limit_of(&last.or(sent().next())?.code)
+    };
+    let behind_m = place.position_m - place.heard_within_m;
+    let as_sent = [place.position_m, behind_m].map(limit_at);
+    if !as_sent.contains(&Some(place.limit)) {
+        return place.limit;
+    }
+    let ahead = sent().filter_map(|code| {
+        let lower = limit_of(&code.code).filter(|&limit| limit > Speed::ZERO)?;
+        let to_m = code.at_m - place.position_m;
+        let counts = lower < place.limit && to_m > 0.0 && to_m <= slowing_m(lower);
+        counts.then_some(lower)
+    });
+    let here = limit_at(place.position_m).filter(|&limit| limit > Speed::ZERO);
+    ahead.chain(here).fold(place.limit, Speed::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::config::UnitConfig;
+    use protocol::line::Line;
+
+    use super::*;
+
+    /// Limit, km/h, at a place of S2's section under a limit in force, km/h, by a train that slows within 60 m.
+    fn at(position_m: f64, limit_kmh: f64) -> f64 {
+        let unit = include_str!("../../../scripts/units/sg100.toml");
+        let unit = UnitConfig::from_toml(unit).unwrap();
+        let line = include_str!("../../../scripts/lines/line6.toml");
+        let line = Line::from_toml(line).unwrap();
+        let place = Place {
+            section: line.section(22),
+            position_m,
+            heard_within_m: 15.0,
+            limit: Speed::from_kmh(limit_kmh),
+        };
+        limit_ahead(place, &unit.codes, |_| 60.0).kmh()
+    }
+
+    /// 55 km/h up to 235 m and 45 from there, as printed [S2 §3.3].
+    #[test]
+    fn the_lower_limit_counts_from_where_slowing_begins() {
+        for (position_m, expected_kmh) in [(0.0, 55.0), (174.0, 55.0), (176.0, 45.0), (234.0, 45.0)]
+        {
+            assert!(
+                (at(position_m, 55.0) - expected_kmh).abs() < 1e-9,
+                "{position_m}"
+            );
+        }
+    }
+
+    /// Until its code is heard: 15 m. A wayside that still sends 55 there has its reason.
+    #[test]
+    fn behind_its_place_it_counts_until_the_code_must_have_been_heard() {
+        assert!((at(245.0, 55.0) - 45.0).abs() < 1e-9);
+        assert!((at(251.0, 55.0) - 55.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_limit_in_force_stays_where_the_wayside_sends_another_one() {
+        for limit_kmh in [65.0, 35.0, 25.0, 0.0] {
+            assert!(
+                (at(200.0, limit_kmh) - limit_kmh).abs() < 1e-9,
+                "{limit_kmh}"
+            );
+        }
+        assert!((at(f64::NAN, 55.0) - 55.0).abs() < 1e-9);
+    }
+}
