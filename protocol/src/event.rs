@@ -130,7 +130,7 @@ events! {
     WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
     SpeedVanished = 233 "speed_vanished" Critical "io_board" "Speed fell faster than a train can slow: no tachometer is believed" "속도 신호 소실: 속도센서 전체 불신" "last speed that is believed, cm/s";
     NoPulses = 234 "no_pulses" Major "-" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
-    SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, no tachometer does" "TCMS 속도와 속도센서 불일치" "";
+    SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, or is much faster than both tachometers" "TCMS 속도와 속도센서 불일치" "speed that TCMS tells, cm/s";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     DoorNotEnabled = 242 "door_not_enabled" Critical "io_board" "Door open on a side that is not enabled" "허용되지 않은 쪽 출입문 열림" "sides";

@@ -71,7 +71,7 @@ class Client:
             self.alive = (self.alive + 1) & 0xFF
             contacts = self.heard["IoOutput"].outputs if "IoOutput" in self.heard else 0
             brakes = (SERVICE_BRAKED if contacts & FSB else 0) | (0 if contacts & EB_RELAY else EMERGENCY_BRAKED)
-            self.send(TCMS, "BHHBh", 0x01, brakes, 0, self.alive, 0)
+            self.send(TCMS, "BHHBhH", 0x01, brakes, 0, self.alive, 0, 0)
         if self.orders and now >= self.due[TWC]:
             self.due[TWC] = now + 0.250
             self.send(TWC, "BHHIHB", 0x02, self.orders[0], 0, 0, 0, self.orders[1])

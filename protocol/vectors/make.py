@@ -299,7 +299,7 @@ RACK = {
     "lines": "DOORS_CLOSED|HCR|MAINTENANCE_KEY|FORWARD|EB_LOOP_FED", "mode_switch": "manual", "controller": 0,
 }
 # TCMS orders the full service brake as long as the unit asks for it.
-BRAKING = {"bits": "FULL_SERVICE_BRAKE", "load_100kg": 0, "alive": 1, "effort": 0}
+BRAKING = {"bits": "FULL_SERVICE_BRAKE", "load_100kg": 0, "alive": 1, "effort": 0, "speed_cms": 0}
 STANDING = {
     "bits": "TCMS_OK|TRA_OK|ATO_READY|STARTED|INPUTS_OK", "mode": "manual", "ato_state": "stop",
     "refusals": "NO_TWC|STATION_INVALID|NO_CODE|MODE_SWITCH|TCMS_NOT_READY|NO_DEPARTURE",

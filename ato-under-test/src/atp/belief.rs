@@ -2,9 +2,9 @@
 //!
 //! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply of
 //! both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as long as
-//! a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells, says that its own
-//! axles stand. So it does while TCMS tells that they turn and no tachometer does. From rest, power that is asked for and
-//! moves nothing is cut.
+//! a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed, says that its
+//! own axles stand. So it does while TCMS tells that they turn and no tachometer does, or that they are much faster than
+//! both. From rest, power that is asked for and moves nothing is cut.
 
 use protocol::config::TachoConfig;
 use protocol::event::Event;
@@ -16,7 +16,7 @@ use crate::timer::{Edge, OnDelay};
 const GRAVITY_MPS2: f64 = 9.81;
 /// A speed below this is of no pulse, or of one.
 const NO_PULSES: Speed = Speed::from_kmh(1.0);
-/// Time for which TCMS must tell of motion that no tachometer sees: frames, its own lag, and the tachometers' window.
+/// Time for which TCMS must tell of a speed that no tachometer sees: frames, its own lag, and the tachometers' window.
 const CONTRADICTS: Duration = Duration::from_ms(800);
 /// Time for which pulses must be back.
 const BACK: Duration = Duration::from_ms(1_000);
@@ -24,8 +24,8 @@ const BACK: Duration = Duration::from_ms(1_000);
 /// What the speed is held against in a scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Witness {
-    /// TCMS tells that the axles it measures turn, or stand; `None` = it does not tell.
-    pub tcms_moves: Option<bool>,
+    /// Speed of the axles that TCMS measures; `None` = it does not tell.
+    pub tcms_speed: Option<Speed>,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
     /// The start of the train is awaited anew: somebody acknowledges.
@@ -34,6 +34,23 @@ pub struct Witness {
     pub tested: bool,
     /// Nothing is compared: an injected fault.
     pub dead: bool,
+}
+
+impl Witness {
+    /// TCMS tells of a train that moves.
+    pub fn tcms_moves(&self, config: &TachoConfig) -> bool {
+        self.tcms_speed
+            .is_some_and(|told| told.kmh() > config.tcms_moves_kmh)
+    }
+
+    /// The speed that TCMS tells of, where both tachometers are much slower.
+    fn contradicts(&self, speed: Speed, config: &TachoConfig) -> Option<Speed> {
+        let faster_kmh = match speed < NO_PULSES {
+            true => config.tcms_moves_kmh,
+            false => speed.kmh() + config.tcms_difference_kmh,
+        };
+        self.tcms_speed.filter(|told| told.kmh() > faster_kmh)
+    }
 }
 
 /// Compares from scan to scan.
@@ -51,6 +68,8 @@ pub struct Belief {
     back: OnDelay,
     /// Speed that the train may still have, m/s; `None` = what is measured is believed.
     doubted_mps: Option<f64>,
+    /// The speed by which TCMS contradicts, m/s; 0 = it does not.
+    told_mps: f64,
     powerless: OnDelay,
     cut: bool,
     told: Edge,
@@ -81,11 +100,12 @@ impl Belief {
             self.reference_mps = speed.mps();
         }
         self.follow(now, speed, config, log);
-        let stands = speed < NO_PULSES;
-        let contradicts = stands && witness.tcms_moves == Some(true);
-        if self.contradicts.update(now, contradicts, CONTRADICTS) && self.doubted_mps.is_none() {
+        let told = witness.contradicts(speed, config);
+        self.told_mps = told.map_or(0.0, Speed::mps);
+        let lasts = self.contradicts.update(now, told.is_some(), CONTRADICTS);
+        if let Some(told) = told.filter(|_| lasts && self.doubted_mps.is_none()) {
             self.doubted_mps = Some(0.0);
-            log.push(now, Event::SpeedContradicted, 0);
+            log.push(now, Event::SpeedContradicted, i32::from(told.to_cms()));
         }
         self.settle(now, speed, witness, config);
         self.await_start(now, pulses, witness, config, log);
@@ -138,8 +158,10 @@ impl Belief {
         };
         // The emergency brake is applied meanwhile.
         *doubted_mps = (*doubted_mps - config.least_brake_mps2 * SCAN.as_secs()).max(0.0);
-        let stopped = *doubted_mps == 0.0 && witness.tcms_moves != Some(true);
-        let turns = speed.kmh() > config.standstill_kmh && self.reference_mps <= speed.mps();
+        let stopped = *doubted_mps == 0.0 && !witness.tcms_moves(config);
+        let turns = speed.kmh() > config.standstill_kmh
+            && self.reference_mps <= speed.mps()
+            && self.told_mps == 0.0;
         if stopped || self.back.update(now, turns, BACK) {
             self.doubted_mps = None;
             self.back.clear();
@@ -171,7 +193,8 @@ impl Belief {
 
     /// Speed that the train may still have beside what is measured.
     pub fn doubted(&self) -> Option<Speed> {
-        self.doubted_mps.map(Speed::from_mps)
+        let doubted_mps = self.doubted_mps?;
+        Some(Speed::from_mps(doubted_mps.max(self.told_mps)))
     }
 
     /// Power is cut: it moves nothing.
@@ -252,11 +275,7 @@ mod tests {
             // As long as a stop takes at the least rate, 0.8 m/s².
             train.run(kmh / 3.6 / 0.8 - 0.5, Witness::default());
             assert!(train.doubts(), "{kmh}");
-            let moves = Witness {
-                tcms_moves: Some(true),
-                ..Witness::default()
-            };
-            train.run(2.0, moves);
+            train.run(2.0, told(15.0));
             assert!(train.doubts(), "TCMS says that it moves");
             train.run(0.02, Witness::default());
             assert!(!train.doubts(), "{kmh}");
@@ -296,19 +315,44 @@ mod tests {
         assert!(!train.doubts(), "pulses are back");
     }
 
+    /// TCMS, which tells of axles at this speed, km/h.
+    fn told(kmh: f64) -> Witness {
+        Witness {
+            tcms_speed: Some(Speed::from_kmh(kmh)),
+            ..Witness::default()
+        }
+    }
+
+    /// The train counts as moving, as fast as TCMS tells, as long as it tells of motion.
     #[test]
     fn tcms_that_tells_of_motion_is_believed() {
         let mut train = Train::at(0.0);
-        let moves = Witness {
-            tcms_moves: Some(true),
-            ..Witness::default()
-        };
-        train.run(0.7, moves);
+        train.run(0.7, told(15.0));
         assert!(!train.doubts());
-        train.run(0.2, moves);
-        assert!(train.doubts());
-        train.run(0.1, Witness::default());
+        train.run(0.2, told(15.0));
+        let doubted_kmh = train.belief.doubted().map(Speed::kmh);
+        assert!(
+            doubted_kmh.is_some_and(|kmh| (kmh - 15.0).abs() < 0.1),
+            "{doubted_kmh:?}"
+        );
+        train.run(6.0, told(3.0));
+        assert!(train.doubts(), "TCMS says that it moves");
+        train.run(0.1, told(1.0));
         assert!(!train.doubts());
+    }
+
+    /// Both tachometers read low alike, which nothing else tells: a train at 60 km/h that measures 45. Less than 10 km/h
+    /// is what axles slip and slide, and nobody who is slower than the tachometers speaks against them.
+    #[test]
+    fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
+        for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {
+            let mut train = Train::at(45.0);
+            train.run(3.0, told(kmh));
+            assert_eq!(train.doubts(), doubts, "TCMS at {kmh}");
+        }
+        let mut train = Train::at(45.0);
+        train.run(30.0, Witness::default());
+        assert!(!train.doubts(), "it does not tell");
     }
 
     #[test]
@@ -343,8 +387,7 @@ mod tests {
                 tested,
                 dead,
                 powers: true,
-                tcms_moves: Some(true),
-                ..Witness::default()
+                ..told(60.0)
             };
             train.go(0.0, 100.0, witness);
             train.run(10.0, witness);

@@ -61,8 +61,8 @@ pub struct ScanContext {
     pub jogs_backward: Option<bool>,
     /// Distance past the stop point, m, where the section's last marker proves it.
     pub overrun_m: Option<f64>,
-    /// TCMS tells that the axles it measures turn, or stand; `None` = it does not tell.
-    pub tcms_moves: Option<bool>,
+    /// Speed of the axles that TCMS measures; `None` = it does not tell.
+    pub tcms_speed: Option<Speed>,
     /// TCMS holds the train, or cuts its power.
     pub tcms_holds: bool,
     /// ATO asks for power.
@@ -299,7 +299,7 @@ impl Atp {
         };
         let held = self.power_cut() || context.tcms_holds;
         Witness {
-            tcms_moves: context.tcms_moves,
+            tcms_speed: context.tcms_speed,
             powers: notch && !held,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             tested: false,

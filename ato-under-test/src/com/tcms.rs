@@ -1,7 +1,7 @@
 //! The RS-485 link to TCMS: alive while frames come that make sense and their alive counter moves.
 
 use protocol::message::{TcmsToAtc, TcmsToAtcBits};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Speed};
 
 /// Effort as TCMS may say it: 10 bits and sign (S4).
 const EFFORT: core::ops::RangeInclusive<i16> = -1024..=1023;
@@ -111,10 +111,10 @@ impl TcmsLink {
         )
     }
 
-    /// The axles that TCMS measures turn, or stand; `None` = it does not tell.
-    pub fn moves(&self) -> Option<bool> {
-        let tells = self.says(TcmsToAtcBits::TELLS_MOTION);
-        tells.then(|| self.says(TcmsToAtcBits::MOVES))
+    /// Speed of the axles that TCMS measures; `None` = it does not tell.
+    pub fn speed(&self) -> Option<Speed> {
+        let tells = self.says(TcmsToAtcBits::TELLS_SPEED);
+        tells.then(|| Speed::from_cms(self.last.speed_cms))
     }
 
     /// TCMS reads the head control relay of the unit's cab as dropped.
@@ -156,6 +156,7 @@ mod tests {
         load_100kg: 1600,
         alive: 1,
         effort: 1023,
+        speed_cms: 0,
     };
 
     fn link() -> TcmsLink {

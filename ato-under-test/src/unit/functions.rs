@@ -123,7 +123,7 @@ impl Functions {
                 speed: around.faults.dead(Place::SpeedGuard),
                 stillness: around.faults.dead(Place::ReleaseStandstill),
             },
-            tcms_moves: around.tcms.moves(),
+            tcms_speed: around.tcms.speed(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,

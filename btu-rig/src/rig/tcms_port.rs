@@ -103,8 +103,7 @@ impl TcmsPort {
             (TcmsToAtcBits::TELLS_LINES, true),
             (TcmsToAtcBits::DOORS_CLOSED, seen.doors_closed),
             (TcmsToAtcBits::CAB_MANNED, seen.hcr),
-            (TcmsToAtcBits::TELLS_MOTION, true),
-            (TcmsToAtcBits::MOVES, view.moves),
+            (TcmsToAtcBits::TELLS_SPEED, true),
         ] {
             bits.set(bit, on);
         }
@@ -113,6 +112,7 @@ impl TcmsPort {
             load_100kg: (self.load_kg / 100.0).round() as u16,
             alive: self.alive,
             effort: view.given,
+            speed_cms: (view.speed_mps * 100.0).round() as u16,
         })
     }
 }

@@ -42,9 +42,6 @@ pub struct TcmsData {
     /// Speed by which an inverter's axles may differ from the others' before they count as slipping
     /// or sliding, km/h (S3).
     pub slip_kmh: f64,
-    /// Speed above which the unit is told that the train moves, km/h.
-    #[serde(default = "moves_kmh")]
-    pub moves_kmh: f64,
     /// Time between giving a cab up and taking the other at a turn-back, s.
     #[serde(default = "cab_change_s")]
     pub cab_change_s: f64,
@@ -53,11 +50,6 @@ pub struct TcmsData {
 /// That of `line6`, for files without it.
 const fn cab_change_s() -> f64 {
     1.0
-}
-
-/// That of `line6`, for files without it.
-const fn moves_kmh() -> f64 {
-    2.0
 }
 
 impl TcmsData {
@@ -117,7 +109,6 @@ impl TcmsData {
         time("tcms.not_following_after_s", self.not_following_after_s)?;
         time("tcms.silent_after_s", self.silent_after_s)?;
         within("tcms.slip_kmh", self.slip_kmh, 0.1, 50.0)?;
-        within("tcms.moves_kmh", self.moves_kmh, 0.5, 20.0)?;
         time("tcms.cab_change_s", self.cab_change_s)
     }
 }
@@ -171,7 +162,6 @@ mod tests {
             ("not_following_after_s", "61.0"),
             ("silent_after_s", "-1.0"),
             ("slip_kmh", "0.0"),
-            ("moves_kmh", "0.4"),
             ("cab_change_s", "61.0"),
         ] {
             let error = TrainData::from_toml(&with(key, value)).unwrap_err();

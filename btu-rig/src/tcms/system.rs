@@ -200,7 +200,6 @@ impl Tcms {
             found,
             volts,
             speed_mps,
-            moves: speed_mps * 3.6 > self.data.moves_kmh,
             demands,
             given: feedback::given(inputs.equipment, self.effort.as_ref(), speed_mps, share),
             backward: cab.is_some_and(|cab| cab.reverser < 0) || self.backward,

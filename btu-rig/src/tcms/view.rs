@@ -34,8 +34,6 @@ pub struct TcmsView {
     pub volts: f64,
     /// Speed as TCMS sees it, m/s.
     pub speed_mps: f64,
-    /// That is faster than a standing train.
-    pub moves: bool,
     /// Demands on the cars.
     pub demands: Demands,
     /// Effort the train gives, −1024..1023, for the unit.

@@ -60,6 +60,8 @@ impl UnitConfig {
             tacho.fall_ms: 20.0, 5000.0;
             tacho.least_brake_mps2: 0.1, 1.5;
             tacho.no_pulses_ms: 500.0, 60000.0;
+            tacho.tcms_moves_kmh: 0.5, 20.0;
+            tacho.tcms_difference_kmh: 2.0, 50.0;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
             overspeed.eb_margin_kmh: 0.0, 30.0;

@@ -41,6 +41,13 @@ pub struct TachoConfig {
     /// Time for which power may be asked for before a tachometer gives a pulse, ms.
     #[serde(default = "TachoConfig::default_no_pulses_ms")]
     pub no_pulses_ms: u32,
+    /// Speed of the axles that TCMS measures, km/h, above which a train moves although no tachometer gives pulses.
+    #[serde(default = "TachoConfig::default_tcms_moves_kmh")]
+    pub tcms_moves_kmh: f64,
+    /// Speed, km/h, by which the axles that TCMS measures must be faster than both tachometers, so that these are not
+    /// believed.
+    #[serde(default = "TachoConfig::default_tcms_difference_kmh")]
+    pub tcms_difference_kmh: f64,
     /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
     #[serde(default = "TachoConfig::default_share")]
     pub share: f64,
@@ -83,6 +90,14 @@ impl TachoConfig {
 
     const fn default_no_pulses_ms() -> u32 {
         6000
+    }
+
+    const fn default_tcms_moves_kmh() -> f64 {
+        2.0
+    }
+
+    const fn default_tcms_difference_kmh() -> f64 {
+        10.0
     }
 
     const fn default_adhesion() -> f64 {

@@ -27,11 +27,8 @@ wire_bits! {
         DOORS_CLOSED = 8,
         /// TCMS reads the head control relay of the unit's cab as picked up.
         CAB_MANNED = 9,
-        /// TCMS tells by the bit below whether the axles that it measures itself turn; else it says nothing of them.
-        TELLS_MOTION = 10,
-        /// The mean of the motor cars' axles is faster than a standing train's: a second, coarse opinion on the
-        /// tachometers.
-        MOVES = 11,
+        /// TCMS tells the speed of the axles that it measures itself in `speed_cms`; else that says nothing.
+        TELLS_SPEED = 10,
     }
 }
 
@@ -69,6 +66,9 @@ layout! {
         /// Effort the train gives: -1024 full brake .. 1023 full power, of what is available at this
         /// speed.
         effort: i16,
+        /// Mean speed of the motor cars' axles, those that slip or slide left out (S3), cm/s: a second, coarse opinion on the
+        /// tachometers. Only with `TELLS_SPEED`.
+        speed_cms: u16,
     }
 }
 
