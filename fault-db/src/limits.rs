@@ -77,6 +77,10 @@ impl RunRecord {
         name("the train's name", &self.train)?;
         name("the operator's name", &self.operator)?;
         list("the unit's place", &self.source)?;
+        name(
+            "the unit's connection",
+            self.connection.as_deref().unwrap_or_default(),
+        )?;
         let injected = self.injected.as_deref().unwrap_or_default();
         list("the list of injected faults", injected)?;
         for script in &self.scripts {

@@ -61,6 +61,8 @@ pub struct RunRecord {
     pub operator: String,
     /// Where the unit is: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
+    /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
+    pub connection: Option<String>,
     /// When it began.
     pub started_at_us: i64,
     /// Version of the program.

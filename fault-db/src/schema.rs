@@ -25,6 +25,7 @@ const STEPS: &[&str] = &[
         include_str!("schema/packed.sql")
     ),
     include_str!("schema/0008.sql"),
+    include_str!("schema/0009.sql"),
 ];
 
 /// Recomputes the tables of counts.

@@ -267,6 +267,7 @@ fn run_record(fleet: &Fleet, visit: &Visit, chance: &mut Chance) -> RunRecord {
         injected: None,
         owner: "history".to_owned(),
         continues: None,
+        connection: None,
         scripts: if visit.of_log {
             Vec::new()
         } else {

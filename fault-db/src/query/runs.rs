@@ -89,6 +89,8 @@ pub struct RunSummary {
     pub injected: Option<String>,
     /// The earlier run whose open procedures it ran.
     pub continues: Option<Id>,
+    /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
+    pub connection: Option<String>,
     /// Steps recorded, and what failed outside them.
     pub steps: u32,
     /// Of these, what failed, could not be tested or was stopped.
@@ -150,7 +152,7 @@ const SELECT_RUN: &str = "
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
         (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq, r.train, r.continues
+        r.seq, r.train, r.continues, r.connection
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -319,6 +321,7 @@ fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummar
         unit_config_sha256: row.get(16)?,
         injected: row.get(17)?,
         continues: row.get(23)?,
+        connection: row.get(24)?,
         steps: row.get(18)?,
         steps_not_passed: row.get(19)?,
         faults: row.get(20)?,

@@ -75,6 +75,7 @@ pub(crate) struct RunDigest {
     occurrences: BTreeMap<Id, [u8; 32]>,
     payload: RunPayload,
     continues: Option<Id>,
+    connection: Option<String>,
 }
 
 impl RunDigest {
@@ -117,6 +118,7 @@ impl RunDigest {
             occurrences: BTreeMap::new(),
             payload: RunPayload::default(),
             continues: record.continues,
+            connection: record.connection.clone(),
         }
     }
 
@@ -210,6 +212,9 @@ impl RunDigest {
         if let Some(earlier) = self.continues {
             run.values(&values![earlier]);
         }
+        if let Some(connection) = &self.connection {
+            run.values(&values![connection]);
+        }
         add_sources(&mut run, self.sources.clone());
         let payload = self.payload.text();
         let parts = [
@@ -261,6 +266,9 @@ const RUN: &str =
 /// Of a run that continues no other it adds nothing.
 const CONTINUES: &str = "SELECT continues FROM run WHERE seq = ?1 AND continues IS NOT NULL";
 
+/// Of a run that nobody led it adds nothing.
+const CONNECTION: &str = "SELECT connection FROM run WHERE seq = ?1 AND connection IS NOT NULL";
+
 /// Those of its limits; a step's own stands before those of its measurements.
 const SOURCES: &str = "SELECT step_index, -1 AS ordinal, limit_source FROM step WHERE run = ?1 AND limit_source IS NOT NULL
      UNION ALL SELECT step_index, ordinal, limit_source FROM measurement WHERE run = ?1 AND limit_source IS NOT NULL
@@ -302,6 +310,7 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
     let mut whole_run = CanonicalHash::of("run");
     take_rows(&mut whole_run, backend, RUN, &of_run)?;
     take_rows(&mut whole_run, backend, CONTINUES, &of_run)?;
+    take_rows(&mut whole_run, backend, CONNECTION, &of_run)?;
     let mut sources = CanonicalHash::new();
     take_rows(&mut sources, backend, SOURCES, &of_run)?;
     add_sources(&mut whole_run, sources);

@@ -100,6 +100,7 @@ pub fn run_record(serial: &str) -> RunRecord {
         injected: None,
         owner: "pid 1 started 2".to_owned(),
         continues: None,
+        connection: None,
         scripts: vec![ScriptRecord {
             path: "scripts/atp/speed.star".to_owned(),
             sha256: "ef".repeat(32),

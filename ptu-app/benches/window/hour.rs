@@ -77,6 +77,7 @@ pub fn write(file: &Path) {
         injected: None,
         owner: String::new(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &record).expect("a run");

@@ -50,6 +50,7 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
         "train": run.train,
         "seed": run.seed,
         "source": run.source,
+        "connection": run.connection,
         "operator": run.operator,
         "started_at": rfc3339(run.started_at_us),
         "finished_at": run.finished_at_us.map(rfc3339),

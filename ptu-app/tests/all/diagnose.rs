@@ -334,3 +334,24 @@ fn a_campaign_on_the_maintenance_port_says_what_needs_the_bench_and_serves_its_r
     let warnings = diagnosis["warnings"].to_string();
     assert!(!warnings.contains("another connection"), "{warnings}");
 }
+
+/// Goal: a sound unit that a laptop found nothing wrong with is not half suspected. A passed run has no trace that tells how
+/// the unit was reached, and what a sound unit measures depends on that: its relay drops in 10 to 20 ms aboard, in 30 to
+/// 60 on a bench, as the run was compared with.
+#[test]
+fn a_laptops_run_that_passed_is_compared_with_laptops() {
+    let place = Place::with_database();
+    place.ptu(&["run", "ptu", "--harness", "none"]).exits(0);
+    let run = place.json(&["runs", "show", "latest", "--json"]);
+    assert_eq!(run["run"]["connection"], "ptu");
+    let said = place.json(&["diagnose", "latest", "--json"]);
+    // What a laptop at a standing train cannot see, as a sensor that gives no pulses, stays possible.
+    let healthy = said["no_fault"].as_f64().expect("a probability");
+    let suspected = |part: &str| {
+        let of_part = |one: &&Value| one["lru"] == part;
+        let each = list(&said["candidates"]).iter().filter(of_part);
+        each.filter_map(|one| one["probability"].as_f64())
+            .sum::<f64>()
+    };
+    assert!(healthy > 0.6 && suspected("io_board") < 0.05, "{said}");
+}

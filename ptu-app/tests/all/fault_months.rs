@@ -37,6 +37,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
         injected: None,
         owner: String::new(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(store, &record).expect("begun");

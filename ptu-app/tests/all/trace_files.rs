@@ -142,6 +142,7 @@ fn kept(place: &Place, trace: &TraceData) -> Id {
         injected: None,
         owner: String::new(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &run).expect("begun");

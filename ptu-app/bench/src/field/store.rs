@@ -163,6 +163,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         injected: None,
         owner: crate::process_id::this_process(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     }
 }

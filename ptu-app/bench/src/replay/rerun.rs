@@ -252,6 +252,7 @@ fn run_record(
         injected: setup.injected(),
         owner: crate::process_id::this_process(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     }
 }

@@ -195,10 +195,13 @@ pub fn run_on(
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
     connected.set_stop(stop);
-    let record = run_record(plan, setup, connected.serial(), began.at_us);
+    let connection = connected.connection();
+    let record = RunRecord {
+        connection: Some(connection.word().into()),
+        ..run_record(plan, setup, connected.serial(), began.at_us)
+    };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let connection = connected.connection();
     let made = BenchContents::of(setup, connected.serial(), connection);
     let mut collector = Collector::new(run_store, listener, made);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
@@ -313,6 +316,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         injected: setup.injected(),
         owner: crate::process_id::this_process(),
         continues: plan.continues,
+        connection: None,
         scripts: plan
             .tasks
             .iter()

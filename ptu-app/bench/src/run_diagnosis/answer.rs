@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation};
-use fault_db::{Id, RepairsOf, RunDetail, RunOccurrence, Store, Verdict};
+use fault_db::{Id, RepairsOf, RunDetail, Store, Verdict};
 use protocol::LruId;
 
 use super::attribution::with_faults;
@@ -16,7 +16,7 @@ use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
 use crate::process_id;
-use crate::run::{Adaptive, BenchContents, of_run};
+use crate::run::{Adaptive, of_run};
 use crate::stdio;
 
 /// What decides what a healthy unit measures.
@@ -104,7 +104,7 @@ pub fn diagnose(
         from,
         mut warnings,
         current,
-    } = choose(Some(store), directory, connection_of(store, &occurrences)?)?;
+    } = choose(Some(store), directory, connection_of(&run))?;
     let seen = of_run(&run, &occurrences);
     let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
     for other in with {
@@ -178,17 +178,13 @@ fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
     ))
 }
 
-/// How the unit of a run was reached, as a recording of it tells; without one it counts as on a bench.
-pub(super) fn connection_of(
-    store: &Store,
-    occurrences: &[RunOccurrence],
-) -> Result<Connection, Failure> {
-    let trace = occurrences.iter().find_map(|one| one.trace_id);
-    let recording = trace.map(|trace| store.recording(trace)).transpose()?;
-    Ok(match recording.flatten() {
-        Some(recording) => BenchContents::read(&recording)?.0.connection(),
-        None => Connection::Btu,
-    })
+/// How the unit of a run was reached; where no tester led it, it counts as on a bench.
+pub(super) fn connection_of(run: &RunDetail) -> Connection {
+    let said = run.run.connection.as_deref();
+    match said == Some(Connection::Ptu.word()) {
+        true => Connection::Ptu,
+        false => Connection::Btu,
+    }
 }
 
 /// A run that did not pass is not called healthy because its failed steps could not be weighed.

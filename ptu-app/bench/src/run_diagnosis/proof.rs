@@ -42,7 +42,7 @@ pub fn prove_repairs(
         return Ok(Vec::new());
     }
     let settings = settings(directory)?;
-    let connection = super::answer::connection_of(store, &store.run_occurrences(run)?)?;
+    let connection = super::answer::connection_of(&store.run(run, &process_id::is_alive)?);
     let dictionary = choose(Some(store), directory, connection)?.dictionary;
     let history = OwnHistory::default();
     let model = Model::new(&dictionary, &settings, &history.factors);

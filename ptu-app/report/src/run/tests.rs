@@ -92,6 +92,7 @@ fn run() -> RunRecord {
         injected: None,
         owner: "nobody".into(),
         continues: None,
+        connection: None,
         scripts: vec![ScriptRecord {
             path: "atp/overspeed.star".into(),
             sha256: "ef".repeat(32),

@@ -27,6 +27,7 @@ fn record() -> RunRecord {
         injected: None,
         owner: String::new(),
         continues: None,
+        connection: None,
         scripts: Vec::new(),
     }
 }
