@@ -13,6 +13,13 @@ use super::plan::{
 use super::stimulus_text::stimulus_text;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 
+/// What a clock of the unit does that is faster than the bench's by so many thousandths.
+pub fn clock_wrong(by_permille: i32) -> String {
+    let way = if by_permille > 0 { "fast" } else { "slow" };
+    let percent = f64::from(by_permille.abs()) / 10.0;
+    format!("the unit's clock goes {percent:.1} % too {way} by the tester's")
+}
+
 impl Procedure {
     /// The whole plan, one line for each thing done, expected or measured.
     pub fn describe(&self) -> Vec<String> {

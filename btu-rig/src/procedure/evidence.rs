@@ -63,6 +63,8 @@ pub struct Evidence {
     pub not_kept: u64,
     /// The line to the unit.
     pub line: LineState,
+    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    pub clock_wrong_by_permille: Option<i32>,
     /// Self-test items that failed, as the unit says.
     pub self_test: SelfTest,
     /// By which the unit's reactions are timed; `None` = by the bench's clock.
@@ -76,6 +78,7 @@ impl Default for Evidence {
             log: LogState::Read,
             not_kept: 0,
             line: LineState::default(),
+            clock_wrong_by_permille: None,
             self_test: SelfTest::empty(),
             unit_time: None,
         }

@@ -182,6 +182,13 @@ pub enum RunEvent {
         /// Bench time.
         at: Instant,
     },
+    /// The unit's clock goes wrong, as the bench's tells.
+    UnitClockWrong {
+        /// By how much it is faster, thousandths.
+        by_permille: i32,
+        /// Bench time.
+        at: Instant,
+    },
     /// Something failed that belongs to no step.
     OutsideStep(OutsideStep),
     /// The procedure is over and outputs are safe, or could not be made so, which is an error.

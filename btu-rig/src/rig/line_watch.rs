@@ -15,6 +15,8 @@ use protocol::{CYCLE, Duration, Instant};
 
 use crate::procedure::LineState;
 
+use super::clock_rate::ClockRate;
+
 /// Span over which a line is bad or good, as the unit's own.
 const SPAN: Duration = Duration::from_ms(10_000);
 /// How often counts are kept.
@@ -62,6 +64,8 @@ pub struct LineWatch {
     clock: Option<(Instant, u32)>,
     /// Whether the unit's clock goes as the bench's does.
     clock_is_right: bool,
+    /// Its rate.
+    rate: ClockRate,
     /// Until when the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
     /// Counts of the last seconds, oldest first.
@@ -80,6 +84,7 @@ impl LineWatch {
             rejected_by_unit: None,
             clock: None,
             clock_is_right: true,
+            rate: ClockRate::default(),
             on_purpose_until: Instant::ZERO,
             past: VecDeque::new(),
         }
@@ -95,6 +100,7 @@ impl LineWatch {
         self.settles_until = Some(now + SETTLES);
         self.rejected_by_unit = None;
         self.clock = None;
+        self.rate = ClockRate::default();
     }
 
     /// This bench's own computer did not keep up: its frames left late and the unit's frames waited or were
@@ -102,6 +108,7 @@ impl LineWatch {
     pub fn note_stalled(&mut self, now: Instant) {
         self.settles_until = self.settles_until.map(|_| now + SETTLES);
         self.clock = None;
+        self.rate = ClockRate::default();
         self.past.clear();
         self.past.push_back((now, self.counts));
     }
@@ -111,11 +118,16 @@ impl LineWatch {
         if !self.settled(at) {
             return;
         }
+        self.rate.take(at, stamp_ms);
         let (since, first_ms) = *self.clock.get_or_insert((at, stamp_ms));
         let by_bench = at.since(since).as_us();
         let by_unit = u64::from(stamp_ms.wrapping_sub(first_ms)) * 1_000;
         let off = by_bench.abs_diff(by_unit);
-        self.clock_is_right = off <= CLOCK_OFF.as_us() || off <= by_bench / CLOCK_SHARE;
+        let wrong = off > CLOCK_OFF.as_us() && off > by_bench / CLOCK_SHARE;
+        // Before that a share this small cannot show: what was found before a stall stands.
+        if wrong || by_bench >= CLOCK_OFF.as_us() * CLOCK_SHARE {
+            self.clock_is_right = !wrong;
+        }
     }
 
     /// Takes the unit's own count, which wraps.
@@ -167,6 +179,11 @@ impl LineWatch {
 
     fn settled(&self, now: Instant) -> bool {
         self.settles_until.is_some_and(|until| now >= until)
+    }
+
+    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    pub fn clock_wrong_by_permille(&self) -> Option<i32> {
+        self.rate.wrong_by_permille()
     }
 
     /// What got lost until now, and in the last seconds.

@@ -12,6 +12,7 @@ mod antenna;
 mod apply;
 mod bench;
 mod cab_desk;
+mod clock_rate;
 mod connection;
 mod door_gear;
 mod exchange;

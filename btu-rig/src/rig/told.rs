@@ -74,6 +74,7 @@ impl Rig {
             log: self.tester.log_state(self.now),
             not_kept: self.tester.log().not_kept(),
             line: self.line_watch.state(),
+            clock_wrong_by_permille: self.line_watch.clock_wrong_by_permille(),
             self_test: self.tester.self_test(),
             unit_time: self.subscription.unit_time(),
         }

@@ -51,6 +51,26 @@ fn a_served_unit_with_a_slow_relay_fails() {
     assert!(number(&trace["trigger_row"]) >= 40.0, "two seconds before");
 }
 
+/// Goal: a unit whose clock goes wrong is named over a wire as in memory. Method: one that is 3 % fast, so that it refuses
+/// good frames of the I/O rack, TCMS and the wayside as late; of all steps two procedures.
+#[test]
+fn a_served_unit_with_a_fast_clock_is_measured_and_named() {
+    let unit = Unit::in_lock_step(&["--inject", "atp_cpu.clock_fast"]);
+    let place = Place::with_database();
+    let procedures = ["atp/limit_speed", "twc/exchange", "--report", "report.json"];
+    Running::start(&place, &unit, &procedures).finish().exits(1);
+    let report = place.read_json("report.json");
+    let mut faults = list(&report["faults"]).iter();
+    let measured = faults.find(|fault| fault["code"] == 9002);
+    assert_eq!(
+        measured.expect("a measured clock")["lru"],
+        "atp_cpu",
+        "{report}"
+    );
+    let said = place.json(&["diagnose", "latest", "--json"]);
+    assert_eq!(said["candidates"][0]["lru"], "atp_cpu", "{said}");
+}
+
 /// Goal: a unit without a serial number is no unknown one. Method: its run, and one that reached nobody.
 #[test]
 fn a_unit_without_a_serial_number_is_shown_as_one() {

@@ -82,6 +82,7 @@ pub struct Runner {
     captured: Vec<Option<f64>>,
     provoked: EventSet,
     brake_applied: Option<bool>,
+    clock_reported: bool,
     /// Part of the train that TCMS reported first, in a step that did not provoke it.
     train_part: Option<LruId>,
     stop: Stop,
@@ -113,7 +114,6 @@ pub struct Runner {
     set_up_at: Option<Instant>,
     /// How long the tester's computer stood still since the last scan, if too long.
     stood_still: Option<Duration>,
-    /// Times clean-up was begun.
     clean_ups: u32,
     verdict: Verdict,
     messages: Vec<String>,
@@ -132,6 +132,7 @@ impl Runner {
             phase: Phase::NotStarted,
             provoked: EventSet::default(),
             brake_applied: None,
+            clock_reported: false,
             train_part: None,
             stop: Stop::No,
             answer: None,
@@ -242,7 +243,7 @@ impl Runner {
         }
         self.obey_standstill(now);
         self.take_unit_events(events, now);
-        self.watch_brake(now, sample);
+        self.watch_unit(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
             self.lose_link(now, sample, error);
         }

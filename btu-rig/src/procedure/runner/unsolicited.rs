@@ -1,4 +1,4 @@
-//! Events and emergency brakes of the unit that no step provoked.
+//! Events and emergency brakes of the unit that no step provoked, and a clock that goes wrong.
 
 use protocol::Instant;
 use protocol::event::{Event, LOG_ENTRIES, Severity};
@@ -7,6 +7,7 @@ use protocol::signal::{Sample, Signal};
 use super::{Phase, Runner};
 use crate::procedure::UnitEvent;
 use crate::procedure::Verdict;
+use crate::procedure::describe::clock_wrong;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::plan::Step;
 use crate::procedure::report::{Outside, RunEvent};
@@ -93,7 +94,13 @@ impl Runner {
         self.outside(Outside::UnprovokedEvent, Verdict::Failed, text, now);
     }
 
-    pub(super) fn watch_brake(&mut self, now: Instant, sample: &Sample) {
+    /// Looks at what no event tells: an emergency brake, and the unit's clock.
+    pub(super) fn watch_unit(&mut self, now: Instant, sample: &Sample) {
+        self.watch_brake(now, sample);
+        self.watch_clock(now);
+    }
+
+    fn watch_brake(&mut self, now: Instant, sample: &Sample) {
         let applied = sample.get(Signal::Eb).map(|value| value != 0.0);
         let before = self.brake_applied;
         self.brake_applied = applied.or(before);
@@ -117,6 +124,24 @@ impl Runner {
             live.fail_by_brake();
             self.out.push(RunEvent::UnsolicitedBrake { at: now });
         }
+    }
+
+    /// A clock of the unit that is found wrong fails the procedure, once: no step is about it, and when it shows depends
+    /// on how long the unit has been watched.
+    fn watch_clock(&mut self, now: Instant) {
+        let Some(by_permille) = self.evidence.clock_wrong_by_permille else {
+            return;
+        };
+        if self.clock_reported || !matches!(self.phase, Phase::Steps { .. }) {
+            return;
+        }
+        self.clock_reported = true;
+        let text = clock_wrong(by_permille);
+        self.outside(Outside::Whole, Verdict::Failed, text, now);
+        self.out.push(RunEvent::UnitClockWrong {
+            by_permille,
+            at: now,
+        });
     }
 }
 

@@ -139,6 +139,31 @@ fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
+/// Goal: the same after the tester's computer stood still, when the clock is compared anew; and the rate of the clock is
+/// measured, from 13 s on. Method: a clock 3 % fast, which refuses frames for seconds on end, and stalls.
+#[test]
+fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
+    let mut bench = bench(FakeUnit {
+        clock_gains: 0.03,
+        ..FakeUnit::default()
+    });
+    bench.run_ms(10_000);
+    assert_eq!(
+        bench.rig().evidence().clock_wrong_by_permille,
+        None,
+        "not yet"
+    );
+    bench.run_ms(10_000);
+    assert_eq!(bench.rig().evidence().clock_wrong_by_permille, Some(30));
+    for _ in 0..30 {
+        let now = bench.now();
+        bench.rig_mut().note_stalled(now);
+        bench.run_ms(4_000);
+    }
+    assert!(bench.link().link.counters().rejected_total() > 200);
+    assert_eq!(bench.rig().evidence().line, LineState::default());
+}
+
 #[test]
 fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     let mut bench = bench(FakeUnit::default());

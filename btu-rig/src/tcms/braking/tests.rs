@@ -153,11 +153,11 @@ proptest! {
         }
         // Without any cut-out, or with one, what is taken off one pair is put on the others.
         prop_assert!((asked_n - demands.train_n).abs() < 1e-3);
-        for car in 0..MAX_CARS {
+        for (car, air_most_n) in air_most_n.into_iter().enumerate() {
             prop_assert!(demands.electric_n[car] >= 0.0 && demands.air_n[car] >= 0.0);
             let most_n = pattern * consist.electric_n[car] + 1e-6;
             prop_assert!(demands.electric_n[car] <= most_n);
-            prop_assert!(demands.air_n[car] <= air_most_n[car] + 1e-6);
+            prop_assert!(demands.air_n[car] <= air_most_n + 1e-6);
             prop_assert!(!out[0].contains(car) || demands.electric_n[car] == 0.0);
             prop_assert!(!out[1].contains(car) || demands.air_n[car] == 0.0);
         }

@@ -299,3 +299,28 @@ fn a_restart_of_the_units_own_counts_beside_the_steps_too() {
         assert_eq!(outcome.finished().0, Verdict::Failed, "{at_ms}");
     }
 }
+
+/// Goal: a clock of the unit that goes wrong fails the procedure, once, and says by how much; no step is about it.
+#[test]
+fn a_clock_that_goes_wrong_fails_the_procedure_beside_its_steps() {
+    let script = format!("{HEAD}step('a', do = wait(s(2)))\nstep('b', do = wait(s(2)))");
+    let outcome = run(&script, |world| {
+        if world.ms() >= 500 {
+            world.fake.evidence.clock_wrong_by_permille = Some(-31);
+        }
+    });
+    let expected = [("a", Verdict::Passed, ""), ("b", Verdict::Passed, "")];
+    assert_eq!(outcome.summary(), expected);
+    let said = "the unit's clock goes 3.1 % too slow by the tester's";
+    assert_eq!(outcome.finished(), (Verdict::Failed, said));
+    let told = |event: &&RunEvent| {
+        matches!(
+            event,
+            RunEvent::UnitClockWrong {
+                by_permille: -31,
+                ..
+            }
+        )
+    };
+    assert_eq!(outcome.events.iter().filter(told).count(), 1);
+}

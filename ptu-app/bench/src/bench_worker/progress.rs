@@ -272,7 +272,9 @@ impl Progress {
                 progress.message.clone_from(message);
                 self.present = None;
             }
-            RunEvent::UnsolicitedEvent(_) | RunEvent::UnsolicitedBrake { .. } => {}
+            RunEvent::UnsolicitedEvent(_)
+            | RunEvent::UnsolicitedBrake { .. }
+            | RunEvent::UnitClockWrong { .. } => {}
         }
     }
 

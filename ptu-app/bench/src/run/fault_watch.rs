@@ -1,7 +1,7 @@
 //! Derives faults from the events of a run: unit events that were not provoked, a brake that was not
 //! asked for, a check that failed.
 
-use btu_rig::procedure::describe::meanings;
+use btu_rig::procedure::describe::{clock_wrong, meanings};
 use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
 use protocol::event::{Event, Severity};
 use protocol::message::SelfTest;
@@ -14,6 +14,9 @@ use super::trace_data::freeze_frame;
 pub const CHECK_FAILED: u16 = 9000;
 /// Code of an emergency brake that was not requested.
 pub const EB_UNREQUESTED: u16 = 9001;
+
+/// Code of a clock of the unit that goes wrong.
+pub const CLOCK_WRONG: u16 = 9002;
 
 /// A fault as a procedure finds it.
 #[derive(Clone, Debug)]
@@ -106,6 +109,20 @@ pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
         at,
         step: None,
         message: "emergency brake applied in a step that did not ask for it".into(),
+        freeze: freeze_frame(sample),
+    }
+}
+
+/// A clock of the unit that goes wrong, measured by the bench's: it is on the board of ATP's processor.
+pub fn of_clock(by_permille: i32, at: Instant, sample: &Sample) -> FaultSeen {
+    FaultSeen {
+        code: CLOCK_WRONG,
+        name: "clock_wrong".into(),
+        lru: Some(LruId::from_static("atp_cpu")),
+        severity: Severity::Critical,
+        at,
+        step: None,
+        message: clock_wrong(by_permille),
         freeze: freeze_frame(sample),
     }
 }

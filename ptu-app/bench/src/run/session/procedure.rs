@@ -220,6 +220,9 @@ impl<L: UnitLink> Session<L> {
             RunEvent::UnsolicitedEvent(entry) => {
                 Some(fault_watch::of_event(entry, now, &self.sample))
             }
+            RunEvent::UnitClockWrong { by_permille, at } => {
+                Some(fault_watch::of_clock(*by_permille, *at, &self.sample))
+            }
             RunEvent::UnsolicitedBrake { at } => {
                 (!progress.explained).then(|| fault_watch::of_brake(*at, &self.sample))
             }
