@@ -25,7 +25,6 @@ const STEPS: &[&str] = &[
         include_str!("schema/packed.sql")
     ),
     include_str!("schema/0008.sql"),
-    include_str!("schema/0009.sql"),
 ];
 
 /// Recomputes the tables of counts.

@@ -13,7 +13,6 @@ const STEPS: &[&str] = &[
     include_str!("0003.sql"),
     include_str!("0004.sql"),
     include_str!("0005.sql"),
-    include_str!("0006.sql"),
 ];
 
 /// The schema this crate reads and writes on a server.

@@ -27,15 +27,12 @@ const SIXTH: &[u8] = include_bytes!("../data/schema6.db.zst");
 /// The same, brought up to date by the seventh.
 const SEVENTH: &[u8] = include_bytes!("../data/schema7.db.zst");
 
-/// The same, brought up to date by the eighth.
-const EIGHTH: &[u8] = include_bytes!("../data/schema8.db.zst");
-
-const OLDEST_TO_LAST: std::ops::RangeInclusive<usize> = 1..=STEPS.len() + 5;
+const OLDEST_TO_LAST: std::ops::RangeInclusive<usize> = 1..=STEPS.len() + 4;
 
 /// A file of an earlier schema with runs in it; how many.
 fn old_file(path: &Path, version: usize) -> usize {
     if version > STEPS.len() {
-        let packed = [FOURTH, FIFTH, SIXTH, SEVENTH, EIGHTH][version - STEPS.len() - 1];
+        let packed = [FOURTH, FIFTH, SIXTH, SEVENTH][version - STEPS.len() - 1];
         let file = zstd::decode_all(packed).expect("packed");
         std::fs::write(path, file).expect("written");
         return 4;
