@@ -22,7 +22,7 @@ pub struct BrakeInputs {
     /// Unit started, cab active, mode chosen, inputs alive.
     pub may_release: bool,
     pub standstill: bool,
-    /// No pulse for the time of standstill.
+    /// No pulse, or a lone one, for the time of standstill.
     pub still: bool,
     pub doors_closed: bool,
     pub acknowledge: bool,

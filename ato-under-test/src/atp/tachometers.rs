@@ -32,6 +32,7 @@ pub struct Tachometers {
     standstill: bool,
     silent: OnDelay,
     still: bool,
+    last_pulse: Instant,
     /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
     crept_m: [f64; 2],
     /// The greater change of speed that no adhesion explains, m/s².
@@ -65,6 +66,7 @@ impl Tachometers {
             standstill: false,
             silent: OnDelay::default(),
             still: false,
+            last_pulse: Instant::ZERO,
             crept_m: [0.0; 2],
             loose_mps2: None,
             ways_m: [0.0; 2],
@@ -123,8 +125,14 @@ impl Tachometers {
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
-        let silent = silent && !told && !doubted;
-        self.still = self.silent.update(now, silent, span);
+        // A train that creeps makes pulses in both channels, and more than one: a lone one is spurious.
+        let pulses: u64 = inputs.pulses.iter().map(|of| u64::from(of.count)).sum();
+        let lone = pulses == 1 && now.since(self.last_pulse) >= span;
+        if pulses > 0 {
+            self.last_pulse = now;
+        }
+        let quiet = (pulses == 0 || lone) && !told && !doubted;
+        self.still = self.silent.update(now, quiet, span);
         for (crept_m, way_m) in self.crept_m.iter_mut().zip(self.ways_m) {
             *crept_m = match slow && !self.still {
                 true => *crept_m + way_m,
@@ -195,7 +203,7 @@ impl Tachometers {
         self.standstill
     }
 
-    /// No wheel has made a pulse for the time of standstill.
+    /// No wheel has made more than a lone pulse for the time of standstill.
     pub fn still(&self) -> bool {
         self.still
     }
