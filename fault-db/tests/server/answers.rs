@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord,
-    RunFilter, RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
+    RepairsOf, RunFilter, RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 
 use crate::common;
@@ -107,7 +107,11 @@ fn people(store: &Store, at_us: i64) {
                     .record_repair(fault.id, &repair, "lee", at_us + n)
                     .map(drop)
             }
-            (0, FaultState::Repaired) => say(FaultState::Verified),
+            (0, FaultState::Repaired) => {
+                let run = store.resolve_run("latest").expect("a run");
+                let proven = [(fault.id, "by a run".to_owned())];
+                store.confirm_repairs(run, &proven).map(drop)
+            }
             (0 | 1, FaultState::Verified) => say(FaultState::Closed),
             (1, FaultState::Open) => say(FaultState::Closed),
             _ => store.add_note(fault.id, "kim", "seen near PSM2; wait", at_us + n),
@@ -232,8 +236,13 @@ fn lists() -> Vec<Question> {
             Ok((parts, spans, known))
         }),
         question("what confirmed repairs tell", |store| {
-            let repairs = store.confirmed_repairs(day(60), "default")?;
-            let cases = store.confirmed_cases(day(60), "default", 20)?;
+            let of = RepairsOf {
+                before_us: day(60),
+                unit_type: "default",
+                practice: true,
+            };
+            let repairs = store.confirmed_repairs(of)?;
+            let cases = store.confirmed_cases(of, 20)?;
             assert!(repairs.values().any(|of| of.named > 0) && !cases.is_empty());
             Ok((repairs, cases))
         }),

@@ -4,21 +4,40 @@ use ptu_bench::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 
+/// What runs that passed come to for a repair.
+#[derive(Clone, Copy, PartialEq)]
+enum Group {
+    Proven,
+    /// More of such runs can prove it.
+    Claimed,
+    /// The fault does not show in such runs.
+    NotShown,
+}
+
+impl Group {
+    fn of(proof: &RepairProof) -> Self {
+        match (proof.is_proven, proof.says.more) {
+            (true, _) => Self::Proven,
+            (false, Some(_)) => Self::Claimed,
+            (false, None) => Self::NotShown,
+        }
+    }
+}
+
 /// One sentence for the repairs that are proven, and one for those that are not, by what is missing; empty without any.
 /// Several faults share a sentence, which tells the least favourable figures.
 pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
     let report = &words.report;
-    let groups: [(&str, fn(&RepairProof) -> bool); 3] = [
-        (report.repair_proven, |proof| proof.is_proven),
-        (report.repair_claimed, |proof| {
-            !proof.is_proven && proof.says.more.is_some()
-        }),
-        (report.repair_not_shown, |proof| {
-            !proof.is_proven && proof.says.more.is_none()
-        }),
-    ];
-    let sentence = |(wording, of_group): (&str, fn(&RepairProof) -> bool)| {
-        let group: Vec<_> = proofs.iter().filter(|proof| of_group(proof)).collect();
+    let sentence = |of_group: Group| {
+        let wording = match of_group {
+            Group::Proven => report.repair_proven,
+            Group::Claimed => report.repair_claimed,
+            Group::NotShown => report.repair_not_shown,
+        };
+        let group: Vec<_> = proofs
+            .iter()
+            .filter(|proof| Group::of(proof) == of_group)
+            .collect();
         let first = group.first()?;
         let hidden = group.iter().map(|proof| match proof.is_proven {
             true => proof.says.hidden,
@@ -43,6 +62,7 @@ pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
             ],
         ))
     };
+    let groups = [Group::Proven, Group::Claimed, Group::NotShown];
     let sentences: Vec<_> = groups.into_iter().filter_map(sentence).collect();
     sentences.join("\n")
 }

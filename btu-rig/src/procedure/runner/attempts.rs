@@ -25,6 +25,8 @@ pub const ATTEMPTS: u32 = 3;
 const LOG_SETTLES: Duration = Duration::from_ms(600);
 /// And its log is read within this time, or the steps begin all the same.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
+/// What frames lost in a pause lead to shows within this time: unit and TCMS miss each other, brake and log it.
+const AFTERMATH: Duration = Duration::from_ms(1_000);
 /// How often clean-up is begun at most.
 const CLEAN_UPS: u32 = 3;
 
@@ -85,6 +87,18 @@ impl Runner {
         self.stood_still = Some(by);
     }
 
+    /// The computer stood still with tester and unit on it: time that counts for neither. Frames may have been lost all the
+    /// same, so a step that fails meanwhile or shortly after was not tested.
+    pub fn paused_with_unit(&mut self, by: Duration) {
+        self.paused = Some(by);
+    }
+
+    /// How long such a pause was, if what is seen now may come of it.
+    pub(super) fn after_pause(&self, now: Instant) -> Option<Duration> {
+        let (at, by) = self.last_pause?;
+        (now.since(at) <= AFTERMATH).then_some(by)
+    }
+
     /// After the set-up of a repetition: what the unit logged until now is read, so that no step is held to it.
     pub(super) fn has_settled(&mut self, now: Instant) -> bool {
         if self.begun_at.target == 0 && self.begun_at.attempt == 1 {
@@ -95,6 +109,12 @@ impl Runner {
     }
 
     pub(super) fn obey_standstill(&mut self, now: Instant) {
+        if let Some(by) = self.paused.take() {
+            self.last_pause = Some((now, by));
+        }
+        if let Some(by) = self.after_pause(now) {
+            self.behind(by);
+        }
         let Some(by) = self.stood_still.take() else {
             return;
         };

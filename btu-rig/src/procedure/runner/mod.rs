@@ -114,6 +114,10 @@ pub struct Runner {
     set_up_at: Option<Instant>,
     /// How long the tester's computer stood still since the last scan, if too long.
     stood_still: Option<Duration>,
+    /// How long computer, tester and unit stood still together since the last scan.
+    paused: Option<Duration>,
+    /// The last time that they did, and how long.
+    last_pause: Option<(Instant, Duration)>,
     clean_ups: u32,
     verdict: Verdict,
     messages: Vec<String>,
@@ -150,6 +154,8 @@ impl Runner {
             resume: None,
             set_up_at: None,
             stood_still: None,
+            paused: None,
+            last_pause: None,
             clean_ups: 1,
             verdict: Verdict::Skipped,
             messages: Vec::new(),

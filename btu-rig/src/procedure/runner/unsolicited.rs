@@ -51,6 +51,10 @@ impl Runner {
         if let Some(step) = live.as_mut().filter(|_| self.restarted) {
             step.note_restart();
         }
+        let pause = self.after_pause(now);
+        let Phase::Steps { live, .. } = &mut self.phase else {
+            return;
+        };
         let mut outside = Vec::new();
         for entry in events {
             let known = Event::from_code(entry.code);
@@ -65,6 +69,8 @@ impl Runner {
                 if let Some(step) = live.as_mut() {
                     step.hold_against_line(&entry.as_logged());
                 }
+            } else if let Some(by) = pause.filter(|_| !asked && live.is_some()) {
+                self.stood_still = Some(by);
             } else if !asked {
                 self.verdict = self.verdict.and(Verdict::Failed);
                 if let Some(step) = live.as_mut() {
@@ -107,6 +113,7 @@ impl Runner {
         if (before, applied) != (Some(false), Some(true)) {
             return;
         }
+        let pause = self.after_pause(now);
         if let Phase::Steps {
             live: Some(live),
             next,
@@ -114,6 +121,10 @@ impl Runner {
         {
             let step = &self.procedure.steps[self.schedule[*next].index];
             if asks_for_brake(step) {
+                return;
+            }
+            if let Some(by) = pause {
+                self.stood_still = Some(by);
                 return;
             }
             if self.evidence.line.lost_or_damaged_lately > 0 {

@@ -197,3 +197,34 @@ fn a_stop_ends_the_repetition() {
     assert_eq!(attempts(&outcome), expected);
     assert_eq!(overall(&outcome), Verdict::Aborted);
 }
+
+/// Goal: a pause of the computer in which the unit stood still as well may lose frames, and what comes of them is not held
+/// against the unit; a step that passes all the same is tested. Method: such a pause in each step, after which the unit
+/// brakes and says why, TCMS is late, or nothing happens.
+#[test]
+fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
+    let script = format!(
+        "{HEAD}step('a', do = wait(s(1)))\nstep('b', do = wait(s(2)))\n\
+         step('c', expect = becomes(speed, kmh(9), within = s(2)))"
+    );
+    let mut done = false;
+    let outcome = run(&script, |world| {
+        let ms = world.ms();
+        if [500, 1500, 5500].contains(&ms) {
+            world.runner.paused_with_unit(Duration::from_ms(300));
+        }
+        if ms == 1800 && !done {
+            done = true;
+            world.log(Event::InputsLost);
+        }
+    });
+    let expected = [
+        ("a", PASSED, false),
+        ("b", AGAIN, true),
+        ("b", PASSED, false),
+        ("c", AGAIN, true),
+        ("c", Verdict::Failed, false),
+    ];
+    assert_eq!(attempts(&outcome), expected, "{:#?}", outcome.steps());
+    assert_eq!(overall(&outcome), Verdict::Failed);
+}

@@ -37,6 +37,8 @@ pub struct Session<L: UnitLink> {
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     in_step: InStep,
+    /// Largest time that unit and bench stood still together since it was last taken.
+    paused: Option<Duration>,
     fresh_unit: bool,
     run_control: Option<Arc<dyn RunControl>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
@@ -67,6 +69,7 @@ impl<L: UnitLink> Session<L> {
             link_error: None,
             max_lag: None,
             stalled: None,
+            paused: None,
             in_step: InStep::default(),
             fresh_unit,
             run_control: None,

@@ -73,6 +73,7 @@ impl<L: UnitLink> Session<L> {
         if pause > Duration::ZERO {
             self.bench.rig_mut().note_pause(now, pause);
             self.in_step.begin(now, pause);
+            self.paused = self.paused.max(Some(pause));
             self.shift(pause.as_us() as i64);
         }
         if self.max_lag.is_some() {

@@ -152,6 +152,9 @@ impl<L: UnitLink> Session<L> {
         if let Some(behind) = self.stalled.take() {
             runner.stood_still(behind);
         }
+        if let Some(pause) = self.paused.take() {
+            runner.paused_with_unit(pause);
+        }
         if let Some(why) = self.bench.rig_mut().take_intervention() {
             runner.interrupted(why);
         }
