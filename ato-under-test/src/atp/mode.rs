@@ -5,8 +5,8 @@
 //! not released), the service brake stops the train first: there may be no driver. Then there is no
 //! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
-//! given began the run that failed. So it does after a run that ended away from its stop point. It departs once its
-//! doors have been served, too.
+//! given began the run that failed. So it does after a run that ended away from its stop point, or by the emergency brake:
+//! who acknowledges that does not send the train off. It departs once its doors have been served, too.
 //!
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
 //! again the service brake goes on stopping the train, and a driverless one waits for a departure that is given anew.
@@ -118,7 +118,8 @@ impl ModeSequence {
         if left || acknowledged && !runs {
             self.failed = Refusals::empty();
         }
-        self.departs_anew |= runs && inputs.gave_up;
+        let braked = inputs.lacking.contains(Refusals::EB_APPLIED);
+        self.departs_anew |= runs && (inputs.gave_up || braked);
         self.departs_anew &= !departs;
     }
 
@@ -208,11 +209,16 @@ mod tests {
     };
 
     #[test]
-    fn a_line_that_others_opened_ends_the_run_and_the_next_departs_anew() {
-        for (switch, start) in [
+    fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
+        let switches = [
             (ModeSwitch::Automatic, true),
             (ModeSwitch::Driverless, false),
-        ] {
+        ];
+        let by_others = [true, false];
+        for ((switch, start), line_open) in switches
+            .into_iter()
+            .flat_map(|one| by_others.map(|line_open| (one, line_open)))
+        {
             let mut sequence = ModeSequence::default();
             let mut log = EventLog::default();
             let mut after = |inputs| {
@@ -232,11 +238,11 @@ mod tests {
             assert_eq!(after(given).0, Mode::AutomaticRun);
             let open = ModeInputs {
                 lacking: Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL,
-                line_open: true,
+                line_open,
                 start: false,
                 ..given
             };
-            assert_eq!(after(open), (Mode::Manual, true));
+            assert_eq!(after(open), (Mode::Manual, line_open));
             let moving = ModeInputs {
                 lacking: Refusals::NOT_STANDSTILL,
                 start: false,
@@ -244,7 +250,7 @@ mod tests {
             };
             assert_eq!(
                 after(moving),
-                (Mode::Manual, true),
+                (Mode::Manual, line_open),
                 "closed again on the way"
             );
             let stands = ModeInputs {
