@@ -42,16 +42,12 @@ const THROUGH_THE_PROGRAM: [&str; 6] = [
 /// Modes that diagnosis takes for another part's at the default seed, and why.
 const NOT_DIAGNOSED: &[(&str, &str)] = &[
     (
-        "atp_antenna.loose",
-        "a code that is lost for a moment, once in a suite: nothing tells whose moment it was",
-    ),
-    (
-        "io_board.door_flickers",
+        "door_contact.loose",
         "doors that seem open for moments: by the input or by a contact, in the same steps",
     ),
     (
-        "atp_cpu.given_up_released",
-        "a change of cabs that is not as it should be, by the unit or by TCMS: one step sees both",
+        "twc_antenna.weak",
+        "a loop that is lost for a moment: what ATO does without it shows first",
     ),
 ];
 
