@@ -107,7 +107,7 @@ fn people(store: &Store, at_us: i64) {
                     .record_repair(fault.id, &repair, "lee", at_us + n)
                     .map(drop)
             }
-            (0, FaultState::Repaired) => {
+            (_, FaultState::Repaired) => {
                 let run = store.resolve_run("latest").expect("a run");
                 let proven = [(fault.id, "by a run".to_owned())];
                 store.confirm_repairs(run, &proven).map(drop)
