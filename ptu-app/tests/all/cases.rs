@@ -174,11 +174,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     assert_eq!(confirmed["text"], "as in 1 confirmed case, of BAD-1");
     // One case shows where to look, and makes nothing certain.
     let share = |of: &Value| of["lrus"][0]["probability"].as_f64().expect("a share");
-    assert!(
-        share(&known) > share(&first),
-        "{}",
-        known["conclusion"]
-    );
+    assert!(share(&known) > share(&first), "{}", known["conclusion"]);
     assert_eq!(known["finding"], "cannot_tell", "{}", known["conclusion"]);
 }
 
