@@ -93,9 +93,9 @@ mod tests {
         };
         let english = proof_text(&[proof.clone(), proof.clone()], Language::English.words());
         for part in [
-            "check_failed and 1 other",
+            "check_failed and 1 more",
             "hides in 33 of 100 such runs",
-            "2 more",
+            "needed: 2",
         ] {
             assert!(english.contains(part), "{english}");
         }
