@@ -170,6 +170,16 @@ impl StepRun {
         }
     }
 
+    /// What it has failed for so far.
+    pub(super) fn failures(&self) -> impl Iterator<Item = &str> {
+        self.problems
+            .iter()
+            .filter_map(|(problem, _)| match problem {
+                Problem::Failed(why) => Some(why.as_str()),
+                _ => None,
+            })
+    }
+
     fn has_failed(&self) -> bool {
         self.problems
             .iter()

@@ -122,6 +122,11 @@ impl Runner {
             Phase::Setup(_) => self.spoil(self.begun_at.target, now, now, by),
             Phase::Steps { next, live } => {
                 let (place, live) = (*next, live.take());
+                // It counts, although the step that it came in is repeated.
+                let before = live.iter().flat_map(|run| run.failures());
+                let before =
+                    before.map(|why| format!("before the tester's computer stood still: {why}"));
+                self.messages.extend(before);
                 let wanted = live.is_some() || !self.leaving;
                 if wanted && place < self.schedule.len() {
                     self.spoil(place, live.map_or(now, |run| run.started()), now, by);

@@ -228,3 +228,25 @@ fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
     assert_eq!(attempts(&outcome), expected, "{:#?}", outcome.steps());
     assert_eq!(overall(&outcome), Verdict::Failed);
 }
+
+/// What the unit did before the computer stood still fails the procedure, and is told, although the step is repeated.
+#[test]
+fn what_came_before_the_pause_counts_and_is_told() {
+    let script = format!("{HEAD}step('b', do = wait(s(2)))");
+    let mut done = false;
+    let outcome = run(&script, |world| {
+        if world.ms() == 900 && !done {
+            done = true;
+            world.log(Event::InputsLost);
+        }
+        if world.ms() == 1000 && done {
+            world.runner.stood_still(Duration::from_ms(300));
+        }
+    });
+    assert_eq!(overall(&outcome), Verdict::Failed);
+    let told = outcome.events.iter().any(|event| {
+        matches!(event, RunEvent::ProcedureFinished { message, .. }
+            if message.contains("before the tester's computer stood still: the unit logged inputs_lost"))
+    });
+    assert!(told, "{:#?}", outcome.events);
+}
