@@ -40,6 +40,9 @@ pub(crate) const REST_OF_CASE: &str =
     "fault f JOIN fault c ON c.unit = f.unit AND c.cause = f.cause
      WHERE f.seq = ?1 AND c.seq <> f.seq AND f.state <> 'closed' AND c.state <> 'closed'";
 
+/// What [`case_fault`] reads, of `c`.
+pub(crate) const CASE_FAULT: &str = "c.seq, c.id, c.code_name, c.lru, c.state";
+
 impl Store {
     /// A person says which part a fault comes from; with an empty part, that it stands alone. No diagnosis changes it
     /// afterwards.
@@ -119,14 +122,12 @@ impl Store {
 
     /// The fault with this id, now or formerly.
     pub(crate) fn fault_row(&self, fault: Id) -> Result<CaseFault, StoreError> {
-        let found = self.first(
-            "looking up a fault",
-            "SELECT c.seq, c.id, c.code_name, c.lru, c.state FROM fault c
+        let sql = format!(
+            "SELECT {CASE_FAULT} FROM fault c
              WHERE c.seq = (SELECT seq FROM fault WHERE id = ?1
-                UNION ALL SELECT fault FROM fault_alias WHERE id = ?1)",
-            &values![fault],
-            case_fault,
-        )?;
+                UNION ALL SELECT fault FROM fault_alias WHERE id = ?1)"
+        );
+        let found = self.first("looking up a fault", &sql, &values![fault], case_fault)?;
         found.ok_or_else(|| StoreError::not_found("fault", fault))
     }
 
@@ -136,9 +137,7 @@ impl Store {
         fault: &CaseFault,
         action: FaultAction,
     ) -> Result<Vec<CaseFault>, StoreError> {
-        let sql = format!(
-            "SELECT c.seq, c.id, c.code_name, c.lru, c.state FROM {REST_OF_CASE} ORDER BY c.seq"
-        );
+        let sql = format!("SELECT {CASE_FAULT} FROM {REST_OF_CASE} ORDER BY c.seq");
         let mut rest = self.select("looking up a case", &sql, &values![fault.seq], case_fault)?;
         rest.retain(|other| follows(action, fault.state, other.state));
         Ok(rest)
@@ -151,7 +150,7 @@ fn follows(action: FaultAction, named: FaultState, other: FaultState) -> bool {
     (action == FaultAction::Repair || other == named) && other.next(action).is_ok()
 }
 
-fn case_fault(row: Row<'_>) -> SqlResult<CaseFault> {
+pub(crate) fn case_fault(row: Row<'_>) -> SqlResult<CaseFault> {
     Ok(CaseFault {
         seq: row.get(0)?,
         id: row.get(1)?,

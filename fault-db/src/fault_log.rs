@@ -1,4 +1,4 @@
-//! Changes of a fault by users: each is an event, and the newest event gives the state.
+//! Changes of a fault, most of them by users: each is an event, and the newest event gives the state.
 
 use crate::backend::{Backend, values};
 use crate::cases::{CaseFault, ChangedFault};
@@ -11,13 +11,13 @@ use crate::limits;
 use crate::record::{REPAIR, RepairRecord};
 use crate::store::Store;
 
-/// A change of a fault's state.
-struct Change<'a> {
-    action: FaultAction,
-    kind: &'a str,
-    who: &'a str,
-    body: &'a str,
-    at_us: i64,
+/// A change of a fault's state, by a person or by a run that proves a repair.
+pub(crate) struct Change<'a> {
+    pub action: FaultAction,
+    pub kind: &'a str,
+    pub who: &'a str,
+    pub body: &'a str,
+    pub at_us: i64,
 }
 
 impl Store {
@@ -146,7 +146,7 @@ impl Store {
     }
 
     /// Adds the event of a change to one fault, in the caller's transaction.
-    fn apply(
+    pub(crate) fn apply(
         &self,
         backend: &Backend,
         fault: CaseFault,

@@ -75,7 +75,7 @@ pub use query::{
     FaultSummary, LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult,
     RepairsOf, RunDetail, RunFault, RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US,
     SqlValue, StatKey, StatQuery, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint,
-    TrendQuery, TrendStep, TrendUnit, code_number,
+    TrendQuery, TrendStep, TrendUnit, code_number, is_practice,
 };
 pub use record::{
     CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,

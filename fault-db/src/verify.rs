@@ -8,20 +8,21 @@
 
 use std::collections::BTreeMap;
 
-use crate::backend::{SqlError, values};
-use crate::cases::REST_OF_CASE;
+use crate::backend::values;
+use crate::cases::{CASE_FAULT, REST_OF_CASE, case_fault};
 use crate::error::StoreError;
 use crate::fault_event::{NewEvent, insert_event};
-use crate::fault_state::FaultState;
+use crate::fault_log::Change;
+use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
 use crate::query::LOG_SOURCE;
 use crate::record::{RunEnd, Verdict};
 use crate::store::Store;
 
 /// Kind of the event that notes a passing run after a repair.
-pub(crate) const PASSED: &str = "passed";
+const PASSED: &str = "passed";
 /// Kind of the event by which a run has proved a repair; by hand it is `verified`.
-pub(crate) const CONFIRMED: &str = "confirmed";
+const CONFIRMED: &str = "confirmed";
 /// What the note of such an event begins with, before the run's id.
 const IN_RUN: &str = "in run ";
 /// As many runs with the fault are evidence of its rate, the last ones.
@@ -117,7 +118,16 @@ impl Store {
         }
         notes.extend(gone.iter().map(|(fault, _)| (*fault, note.clone())));
         for (fault, note) in notes {
-            self.proof_event(fault, PASSED, end.finished_at_us, &note, None)?;
+            let event = NewEvent {
+                id: self.mint()?,
+                kind: PASSED,
+                at_us: end.finished_at_us,
+                who: "",
+                body: &note,
+                state: None,
+            };
+            insert_event(self.backend(), fault, &event)
+                .map_err(|error| self.failed(DOING, error))?;
         }
         Ok(())
     }
@@ -183,60 +193,37 @@ impl Store {
         let Some(at_us) = finished.flatten() else {
             return Err(StoreError::not_found("finished run", run));
         };
-        self.change(DOING, |_| {
+        self.change(DOING, |backend| {
+            let confirm = |fault, note: &str| {
+                let change = Change {
+                    action: FaultAction::Verify,
+                    kind: CONFIRMED,
+                    who: "",
+                    body: note,
+                    at_us,
+                };
+                self.apply(backend, fault, &change)
+            };
             let mut rows = Vec::new();
             for (fault, note) in proven {
                 let fault = self.fault_row(*fault)?;
                 if fault.state == FaultState::Repaired {
-                    self.confirm(fault.seq, at_us, note)?;
                     rows.push((fault.seq, fault.id));
+                    confirm(fault, note)?;
                 }
             }
             let mut verified: Vec<Id> = rows.iter().map(|(_, id)| *id).collect();
-            let with = format!("SELECT c.seq, c.id FROM {REST_OF_CASE} {PROVEN_WITH_IT}");
+            let with = format!("SELECT {CASE_FAULT} FROM {REST_OF_CASE} {PROVEN_WITH_IT}");
             for (fault, id) in rows {
                 let noted = format!("{IN_RUN}{run}");
                 let note = format!("{noted}, with fault {}", id.short());
                 let values = values![fault, format!("{noted}%")];
-                let consequences = self.select(DOING, &with, &values, |row| {
-                    Ok((row.get::<i64>(0)?, row.get::<Id>(1)?))
-                })?;
-                for (fault, id) in consequences {
-                    self.confirm(fault, at_us, &note)?;
-                    verified.push(id);
+                for consequence in self.select(DOING, &with, &values, case_fault)? {
+                    verified.push(confirm(consequence, &note)?.id);
                 }
             }
             Ok(verified)
         })
-    }
-
-    fn confirm(&self, fault: i64, at_us: i64, note: &str) -> Result<(), StoreError> {
-        self.proof_event(fault, CONFIRMED, at_us, note, Some(FaultState::Verified))?;
-        let sql = "UPDATE fault SET state = ?2 WHERE seq = ?1";
-        (self.backend())
-            .execute(sql, &values![fault, FaultState::Verified])
-            .map_err(|error| self.failed("verifying repairs", error))?;
-        Ok(())
-    }
-
-    fn proof_event(
-        &self,
-        fault: i64,
-        kind: &str,
-        at_us: i64,
-        note: &str,
-        state: Option<FaultState>,
-    ) -> Result<(), StoreError> {
-        let event = NewEvent {
-            id: self.mint()?,
-            kind,
-            at_us,
-            who: "",
-            body: note,
-            state,
-        };
-        insert_event(self.backend(), fault, &event)
-            .map_err(|error: SqlError| self.failed("noting a proof", error))
     }
 }
 

@@ -103,7 +103,7 @@ impl Locator {
     /// Sets the way that a pulse stands for, m: other wheels, of which nothing is known yet.
     pub fn set_pulse(&mut self, pulse_m: f64) {
         self.odometer.set_pulse(pulse_m);
-        self.wheel = self.wheel.anew(self.config.wheel_spread);
+        self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
         self.wheel_reported = false;
     }
 

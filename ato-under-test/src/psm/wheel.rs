@@ -31,8 +31,8 @@ impl WheelCalibration {
         }
     }
 
-    /// Nothing known of other wheels.
-    pub fn anew(&self, spread: f64) -> Self {
+    /// The calibration of other wheels, of which nothing is known.
+    pub fn of_other_wheels(&self, spread: f64) -> Self {
         Self::new(spread, self.scatter_m, self.bound)
     }
 

@@ -4,6 +4,8 @@
 //! the dictionary has its own effect; a mode that nobody has seen yet has, more or less, an effect of its part, or of
 //! a part whose modes act on the same checks.
 
+mod again;
+
 use std::collections::BTreeMap;
 
 use protocol::{LruId, Verdict};
@@ -281,55 +283,6 @@ impl<'a> Model<'a> {
                 + weight * likelihood_of_values(healthy, step, scale).ln(),
             effects,
             like_effects,
-        }
-    }
-
-    /// Likelihoods of a check that was made before in the same unit. What lasts shows the same again for certain, and so
-    /// does a check that an effect does not act on: where it shows something else, it is nearly impossible under what lasts.
-    /// What comes and goes shows it again with the probability of the result. Values that were weighed before are no evidence.
-    pub fn given_before(
-        &self,
-        place: usize,
-        (before, step): (&StepOutcome, &ObservedStep),
-        ln: &mut StepLikelihoods,
-    ) {
-        let settings = self.settings;
-        let anything = settings.likelihood.of(step.result);
-        let same = *before == StepOutcome::of(step);
-        let changed = before.result != step.result;
-        if same {
-            ln.healthy = 0.0;
-        }
-        let weighed = |likelihood: f64, otherwise| {
-            settings.weight_of_step * mixed(likelihood, anything, otherwise).ln()
-        };
-        for (effect, hypothesis) in self.effects().iter().enumerate() {
-            let acts = !self.is_like_healthy(*hypothesis, place);
-            let expected = self.expected(*hypothesis, place);
-            let like = |rate| match self.is_intermittent(*hypothesis) && acts {
-                true if same => {
-                    let again =
-                        expected.result(step.result) * self.factor(effect, place, step, rate);
-                    Some(weighed(again, settings.otherwise_unseen))
-                }
-                true => None,
-                false if same => Some(0.0),
-                false if changed => {
-                    let counted = if acts {
-                        expected.counted(step.result)
-                    } else {
-                        0.0
-                    };
-                    Some(weighed(counted, settings.otherwise))
-                }
-                false => None,
-            };
-            for (of_effect, rate) in ln.like_effects.iter_mut().zip(spells::rates(settings)) {
-                of_effect[effect] = like(rate).unwrap_or(of_effect[effect]);
-            }
-            if same || acts {
-                ln.effects[effect] = like(1.0).unwrap_or(ln.effects[effect]);
-            }
         }
     }
 

@@ -23,6 +23,11 @@ pub struct Proof {
 }
 
 impl Proof {
+    /// The repair is proven.
+    pub fn is_proven(&self) -> bool {
+        self.more == Some(0)
+    }
+
     /// Of the runs in which the fault was there and those that passed after the repair, each in order; `limit` is
     /// the greatest probability of a hidden fault at which the repair counts as proven. `None` without a run that passed.
     pub fn of(

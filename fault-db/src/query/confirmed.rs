@@ -24,7 +24,7 @@ pub struct RepairsOf<'a> {
     pub practice: bool,
 }
 
-/// A fault of practice, `f`: one that a run of practice saw (see [`RunSummary::is_practice`]).
+/// A fault of practice, `f`: one that a run of practice saw, as [`is_practice`] has it.
 macro_rules! practised {
     () => {
         "EXISTS (SELECT 1 FROM fault_occurrence o JOIN run x ON x.seq = o.run
@@ -76,10 +76,15 @@ pub struct ConfirmedCase {
 }
 
 impl RunSummary {
-    /// Whether it was practice: on a simulated unit, or with injected faults.
+    /// Whether it was practice.
     pub fn is_practice(&self) -> bool {
-        self.source == "sim" || self.source.starts_with("lockstep:") || self.injected.is_some()
+        is_practice(&self.source, self.injected.as_deref())
     }
+}
+
+/// Whether a run with this source and these injected faults is practice: on a simulated unit, or with such faults.
+pub fn is_practice(source: &str, injected: Option<&str>) -> bool {
+    source == "sim" || source.starts_with("lockstep:") || injected.is_some()
 }
 
 impl Store {

@@ -17,7 +17,7 @@ mod trace_read;
 mod traces;
 mod trend;
 
-pub use confirmed::{ConfirmedCase, ConfirmedRepairs, RepairsOf};
+pub use confirmed::{ConfirmedCase, ConfirmedRepairs, RepairsOf, is_practice};
 pub use daily::DailyCount;
 pub use fault_filter::FaultFilter;
 pub use faults::{FaultDetail, FaultEvent, FaultSummary, Occurrence};

@@ -122,6 +122,7 @@ const fn apart_db() -> f64 {
     4.0
 }
 
+/// That of `sg100`, for configurations without it.
 const fn jog_kmh() -> f64 {
     5.0
 }

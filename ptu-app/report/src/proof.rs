@@ -16,10 +16,10 @@ enum Group {
 
 impl Group {
     fn of(proof: &RepairProof) -> Self {
-        match (proof.is_proven, proof.says.more) {
-            (true, _) => Self::Proven,
-            (false, Some(_)) => Self::Claimed,
-            (false, None) => Self::NotShown,
+        match proof.says.more {
+            Some(0) => Self::Proven,
+            Some(_) => Self::Claimed,
+            None => Self::NotShown,
         }
     }
 }
@@ -39,9 +39,9 @@ pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
             .filter(|proof| Group::of(proof) == of_group)
             .collect();
         let first = group.first()?;
-        let hidden = group.iter().map(|proof| match proof.is_proven {
-            true => proof.says.hidden,
-            false => proof.says.hidden_in_last,
+        let hidden = group.iter().map(|proof| match of_group {
+            Group::Proven => proof.says.hidden,
+            Group::Claimed | Group::NotShown => proof.says.hidden_in_last,
         });
         let mut faults = format!("{} {}", first.fault.short(), first.code_name);
         if group.len() > 1 {
@@ -89,7 +89,6 @@ mod tests {
                 hidden_in_last: 0.33,
                 more: Some(2),
             },
-            is_proven: false,
         };
         let english = proof_text(&[proof.clone(), proof.clone()], Language::English.words());
         for part in [
@@ -103,7 +102,7 @@ mod tests {
         for part in ["check_failed", "100회 중 33회", "2회 더"] {
             assert!(korean.contains(part), "{korean}");
         }
-        proof.is_proven = true;
+        proof.says.more = Some(0);
         let proven = proof_text(&[proof.clone(), proof.clone()], Language::English.words());
         assert!(proven.contains("verified"), "{proven}");
     }

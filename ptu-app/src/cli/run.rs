@@ -1,5 +1,6 @@
 //! `ptu run`: check procedures.
 
+mod conclusion;
 mod resume;
 
 use std::path::PathBuf;
@@ -19,15 +20,12 @@ use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
-    self, BenchChoice, BenchSetup, Outcome, RunControl, RunPlan, Suite, Task, check_serial, select,
+    self, BenchChoice, BenchSetup, RunControl, RunPlan, Suite, Task, check_serial, select,
     software_version,
 };
-use ptu_bench::run_diagnosis::{Answer, Bench, RepairProof, adaptive, diagnose_run, prove_repairs};
+use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
-use ptu_report::diagnosis::diagnosis_text;
-use ptu_report::proof_text;
-use ptu_report::words::Language;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";
@@ -362,7 +360,7 @@ impl RunArguments {
         // The database and the reports have it: what a terminal does not take changes no verdict.
         let said = print_out(&verdict_table(&detail))
             .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
-            .and_then(|()| say_proofs(&proofs?));
+            .and_then(|()| conclusion::say_proofs(&proofs?));
         if let Err(failure) = said {
             failure.tell();
         }
@@ -370,44 +368,4 @@ impl RunArguments {
         store.close()?;
         Ok(outcome.exit)
     }
-
-    /// The diagnosis of an adaptive run, and of any other that failed.
-    fn diagnosis(
-        &self,
-        store: &Store,
-        directory: &ScriptsDirectory,
-        outcome: &Outcome,
-    ) -> Option<Result<Answer, Failure>> {
-        let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
-        is_wanted.then(|| diagnose_run(store, directory, outcome.id))
-    }
-
-    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
-    /// had from a dictionary that is not of these scripts.
-    fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
-        if self.adaptive {
-            let answer = answer?;
-            answer
-                .warnings
-                .iter()
-                .for_each(|warning| stdio::note(warning));
-            print_out(&format!("\n{}", diagnosis_text(&answer)))?;
-        } else if let Ok(answer) = answer
-            && answer.warnings.is_empty()
-        {
-            let id = answer.run.run.id.short();
-            let conclusion = &answer.diagnosis.conclusion;
-            print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
-        }
-        Ok(())
-    }
-}
-
-/// What a run that passed says of the repairs made before it.
-fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
-    if !proofs.is_empty() {
-        let said = proof_text(proofs, Language::English.words());
-        print_out(&format!("{said}\n"))?;
-    }
-    Ok(())
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Event, Modifiers, PointerButton, Rect};
+use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_app::gui::DataPaths;
@@ -130,15 +130,13 @@ impl Window {
         clicks: usize,
     ) {
         let pos = self.still(label, choose).center();
-        let button = |pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::default(),
-        };
         self.pass(MOMENT_S);
         for _ in 0..clicks {
-            let click = [Event::PointerMoved(pos), button(true), button(false)];
+            let click = [
+                Event::PointerMoved(pos),
+                button(pos, true),
+                button(pos, false),
+            ];
             self.harness.input_mut().events.extend(click);
             self.pass(0.18);
         }
@@ -156,19 +154,13 @@ impl Window {
     /// Holds what has this name down for so long, s.
     pub fn hold(&mut self, label: &str, for_s: f64) {
         let pos = self.still(label, |places| places.first().copied()).center();
-        let button = |pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::default(),
-        };
         self.pass(MOMENT_S);
-        let press = [Event::PointerMoved(pos), button(true)];
+        let press = [Event::PointerMoved(pos), button(pos, true)];
         self.harness.input_mut().events.extend(press);
         for _ in 0..10 {
             self.pass(for_s / 10.0);
         }
-        self.harness.input_mut().events.push(button(false));
+        self.harness.input_mut().events.push(button(pos, false));
         self.pass(0.02);
     }
 
@@ -230,6 +222,16 @@ impl Window {
             .query_all_by_label_contains("")
             .filter_map(|node| node.accesskit_node().label().or_else(|| node.value()))
             .collect()
+    }
+}
+
+/// The primary button of the pointer goes down or up.
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::default(),
     }
 }
 

@@ -23,7 +23,6 @@ use thiserror::Error;
 use super::context::Context;
 use super::draft::Declaration;
 use super::item::Item;
-use super::quantity::Quantity;
 
 /// Lists nested deeper than this are refused; a list may contain itself.
 const DEEPEST_LIST: usize = 16;
@@ -99,7 +98,7 @@ impl<'v> StarlarkValue<'v> for Handle {
         match (&self.0, item(other)) {
             (Item::Signal(signal), _) => Err(error(no_value(signal.name()))),
             (Item::Quantity(a), Item::Quantity(b)) => {
-                Ok(order(a, &b).map_err(error)? == Ordering::Equal)
+                Ok(a.compare(&b).map_err(error)? == Ordering::Equal)
             }
             _ => Ok(false),
         }
@@ -108,7 +107,7 @@ impl<'v> StarlarkValue<'v> for Handle {
     fn compare(&self, other: Value<'v>) -> starlark::Result<Ordering> {
         match (&self.0, item(other)) {
             (Item::Signal(signal), _) => Err(error(no_value(signal.name()))),
-            (Item::Quantity(a), Item::Quantity(b)) => order(a, &b).map_err(error),
+            (Item::Quantity(a), Item::Quantity(b)) => a.compare(&b).map_err(error),
             (a, b) => Err(error(format!(
                 "cannot compare {} and {}",
                 a.found(),
@@ -175,10 +174,6 @@ fn declare(
         .collect();
     declared.push((declaration, places));
     Ok(())
-}
-
-fn order(a: &Quantity, b: &Quantity) -> Result<Ordering, String> {
-    a.compare(b)
 }
 
 fn give<'v>(

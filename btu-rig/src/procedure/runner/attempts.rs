@@ -87,10 +87,21 @@ impl Runner {
         self.stood_still = Some(by);
     }
 
+    /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
+    /// late.
+    pub fn behind(&mut self, by: Duration) {
+        if let Phase::Steps {
+            live: Some(live), ..
+        } = &mut self.phase
+        {
+            live.note_behind(by);
+        }
+    }
+
     /// The computer stood still with tester and unit on it: time that counts for neither. Frames may have been lost all the
     /// same, so a step that fails meanwhile or shortly after was not tested.
-    pub fn paused_with_unit(&mut self, by: Duration) {
-        self.paused = Some(by);
+    pub fn paused_with_unit(&mut self, now: Instant, by: Duration) {
+        self.last_pause = Some((now, by));
     }
 
     /// How long such a pause was, if what is seen now may come of it.
@@ -109,9 +120,6 @@ impl Runner {
     }
 
     pub(super) fn obey_standstill(&mut self, now: Instant) {
-        if let Some(by) = self.paused.take() {
-            self.last_pause = Some((now, by));
-        }
         if let Some(by) = self.after_pause(now) {
             self.behind(by);
         }

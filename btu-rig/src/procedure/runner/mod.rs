@@ -114,10 +114,9 @@ pub struct Runner {
     set_up_at: Option<Instant>,
     /// How long the tester's computer stood still since the last scan, if too long.
     stood_still: Option<Duration>,
-    /// How long computer, tester and unit stood still together since the last scan.
-    paused: Option<Duration>,
-    /// The last time that they did, and how long.
+    /// When computer, tester and unit stood still together last, and how long.
     last_pause: Option<(Instant, Duration)>,
+    /// Times clean-up was begun.
     clean_ups: u32,
     verdict: Verdict,
     messages: Vec<String>,
@@ -154,7 +153,6 @@ impl Runner {
             resume: None,
             set_up_at: None,
             stood_still: None,
-            paused: None,
             last_pause: None,
             clean_ups: 1,
             verdict: Verdict::Skipped,
@@ -193,17 +191,6 @@ impl Runner {
     pub fn found_before(&mut self, what: &str, at: Instant) {
         let text = format!("found before the first step: {what}");
         self.outside(Outside::BringUp, Verdict::Failed, text, at);
-    }
-
-    /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
-    /// late.
-    pub fn behind(&mut self, by: Duration) {
-        if let Phase::Steps {
-            live: Some(live), ..
-        } = &mut self.phase
-        {
-            live.note_behind(by);
-        }
     }
 
     /// What is left of the procedure is not wanted: after the present step, clean-up. The verdict is that

@@ -39,6 +39,7 @@ impl Runner {
     pub(super) fn take_unit_events(&mut self, events: &[UnitEvent], now: Instant) {
         let restarts =
             |entry: &&UnitEvent| Event::from_code(entry.code).is_some_and(Event::restarts_unit);
+        let pause = self.after_pause(now);
         let Phase::Steps { live, .. } = &mut self.phase else {
             for entry in events.iter().filter(restarts) {
                 self.restarted = true;
@@ -51,10 +52,6 @@ impl Runner {
         if let Some(step) = live.as_mut().filter(|_| self.restarted) {
             step.note_restart();
         }
-        let pause = self.after_pause(now);
-        let Phase::Steps { live, .. } = &mut self.phase else {
-            return;
-        };
         let mut outside = Vec::new();
         for entry in events {
             let known = Event::from_code(entry.code);

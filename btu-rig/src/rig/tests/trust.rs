@@ -139,7 +139,7 @@ fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
-/// Goal: the same after the tester's computer stood still, when the clock is compared anew; and the rate of the clock is
+/// Goal: the same after the tester's computer stood still, when the clock is compared from the beginning; and the rate of the clock is
 /// measured, from 13 s on. Method: a clock 3 % fast, which refuses frames for seconds on end, and stalls.
 #[test]
 fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {

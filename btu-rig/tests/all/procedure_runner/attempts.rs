@@ -2,9 +2,9 @@
 //! that.
 
 use btu_rig::procedure::{RunEvent, Verdict};
-use protocol::Duration;
 use protocol::event::Event;
 use protocol::signal::Signal;
+use protocol::{Duration, Instant};
 
 use super::stand_in::{HEAD, OFF, ON, Outcome, World, run};
 
@@ -211,7 +211,9 @@ fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
     let outcome = run(&script, |world| {
         let ms = world.ms();
         if [500, 1500, 5500].contains(&ms) {
-            world.runner.paused_with_unit(Duration::from_ms(300));
+            world
+                .runner
+                .paused_with_unit(Instant::from_ms(u64::from(ms)), Duration::from_ms(300));
         }
         if ms == 1800 && !done {
             done = true;

@@ -106,7 +106,7 @@ impl BenchSetup {
 
     /// Whether a run is practice: on a simulated unit, or with injected faults.
     pub fn is_practice(&self) -> bool {
-        matches!(self.endpoint, Endpoint::Sim | Endpoint::LockStep(_)) || !self.faults.is_empty()
+        fault_db::is_practice(&self.endpoint.to_string(), self.injected().as_deref())
     }
 
     /// Names of the injected faults.

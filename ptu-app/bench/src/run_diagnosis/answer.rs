@@ -150,6 +150,18 @@ pub fn diagnose(
     })
 }
 
+/// A stored run and what was seen in it, as far as it can be compared with this dictionary.
+pub(super) fn observed(
+    store: &Store,
+    run: Id,
+    dictionary: &Dictionary,
+) -> Result<(RunDetail, Observation), Failure> {
+    let run = store.run(run, &process_id::is_alive)?;
+    let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
+    let seen = comparable(&run, seen, dictionary, &mut Vec::new());
+    Ok((run, seen))
+}
+
 /// What was seen in another run of the unit.
 fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation, Failure> {
     let other = store.run(other, &process_id::is_alive)?;
@@ -253,7 +265,7 @@ pub fn adaptive(
 
 /// Leaves out what cannot be compared with this dictionary, and warns of it: steps of scripts that were
 /// others then, steps it does not know.
-pub(super) fn comparable(
+fn comparable(
     run: &RunDetail,
     mut seen: Observation,
     dictionary: &Dictionary,

@@ -8,10 +8,9 @@ use fault_db::{ConfirmedRepairs, RepairsOf, Store};
 use protocol::LruId;
 use protocol::lru::from_stored;
 
-use super::answer::comparable;
+use super::answer::observed;
 use super::history::OwnHistory;
 use crate::failure::Failure;
-use crate::run::of_run;
 
 /// A diagnosis holds a run against so many confirmed cases at most, the last ones: each has to be read.
 const MOST_CASES: u32 = 20;
@@ -49,9 +48,7 @@ pub(super) fn take_confirmed(
         else {
             continue;
         };
-        let run = store.run(case.run, &crate::process_id::is_alive)?;
-        let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
-        let seen = comparable(&run, seen, dictionary, &mut Vec::new());
+        let (run, seen) = observed(store, case.run, dictionary)?;
         if run.run.unit_config_sha256 == dictionary.basis.unit_config_sha256 && seen.shows_a_fault()
         {
             let of_part = cases.entry(part).or_default();

@@ -1,16 +1,16 @@
 //! Whether a run that passed proves the repairs made before it.
 
-use diagnosis::{Model, Observation, Proof};
+use std::collections::BTreeMap;
+
+use diagnosis::{Model, Proof};
 use fault_db::{Id, Store};
 
-use super::answer::comparable;
+use super::answer::{connection_of, observed};
 use super::dictionary::choose;
-use super::history::OwnHistory;
 use super::settings;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::process_id;
-use crate::run::of_run;
 
 /// What a run that passed says of the repair of a fault.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +21,8 @@ pub struct RepairProof {
     pub code_name: String,
     /// Runs that passed since the repair, this one among them.
     pub passed: usize,
-    /// What they say.
+    /// What they say; the fault of a repair that they prove is verified.
     pub says: Proof,
-    /// The repair is proven, and the fault verified.
-    pub is_proven: bool,
 }
 
 /// Holds a run that passed against the repairs that its unit's faults had before, and verifies those that it proves: a unit
@@ -42,42 +40,46 @@ pub fn prove_repairs(
         return Ok(Vec::new());
     }
     let settings = settings(directory)?;
-    let connection = super::answer::connection_of(&store.run(run, &process_id::is_alive)?);
+    let connection = connection_of(&store.run(run, &process_id::is_alive)?);
     let dictionary = choose(Some(store), directory, connection)?.dictionary;
-    let history = OwnHistory::default();
-    let model = Model::new(&dictionary, &settings, &history.factors);
-    let seen = |run: &Id| -> Result<Observation, Failure> {
-        let detail = store.run(*run, &process_id::is_alive)?;
-        let seen = of_run(&detail, &store.run_occurrences(*run)?);
-        Ok(comparable(&detail, seen, &dictionary, &mut Vec::new()))
-    };
+    let no_factors = BTreeMap::new();
+    let model = Model::new(&dictionary, &settings, &no_factors);
+    let seen = |run: &Id| Ok(observed(store, *run, &dictionary)?.1);
+    let all_seen = |runs: &[Id]| runs.iter().map(seen).collect::<Result<Vec<_>, Failure>>();
+    // The faults of a case were there in the same runs: these are weighed once.
+    let mut known: BTreeMap<(Vec<Id>, Vec<Id>), Proof> = BTreeMap::new();
     let mut proofs = Vec::new();
     let mut proven = Vec::new();
     for repair in repairs {
-        let there: Vec<_> = repair.there.iter().map(seen).collect::<Result<_, _>>()?;
-        let passed: Vec<_> = repair.passed.iter().map(seen).collect::<Result<_, _>>()?;
-        let Some(says) = Proof::of(&model, &there, &passed, settings.hidden_fault) else {
-            continue;
+        let passed = repair.passed.len();
+        let runs = (repair.there, repair.passed);
+        let says = match known.get(&runs) {
+            Some(says) => *says,
+            None => {
+                let (there, passed) = (all_seen(&runs.0)?, all_seen(&runs.1)?);
+                let Some(says) = Proof::of(&model, &there, &passed, settings.hidden_fault) else {
+                    continue;
+                };
+                known.insert(runs, says);
+                says
+            }
         };
-        let is_proven = says.more == Some(0);
-        if is_proven {
+        if says.is_proven() {
+            let they = match passed {
+                1 => "it".to_owned(),
+                n => format!("{n} runs"),
+            };
+            let share = 100.0 * says.hidden;
             let note = format!(
-                "in run {run}: with the fault still there {} would have passed in {:.1} of 100 cases",
-                if passed.len() == 1 {
-                    "it".to_owned()
-                } else {
-                    format!("{} runs", passed.len())
-                },
-                100.0 * says.hidden
+                "in run {run}: with the fault still there {they} would have passed in {share:.1} of 100 cases"
             );
             proven.push((repair.fault, note));
         }
         proofs.push(RepairProof {
             fault: repair.fault,
             code_name: repair.code_name,
-            passed: passed.len(),
+            passed,
             says,
-            is_proven,
         });
     }
     store.confirm_repairs(run, &proven)?;

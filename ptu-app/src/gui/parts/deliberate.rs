@@ -5,15 +5,15 @@ use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher, Hash};
 use eframe::egui::{Button, Id, Key, Response, Sense, Ui};
 
 /// A click so soon after the place changed or acted was meant for what was there before, s.
-pub const MOMENT_S: f64 = 0.6;
+const MOMENT_S: f64 = 0.6;
 /// What arms is held so long, s.
-pub const HOLD_S: f64 = 1.0;
+const HOLD_S: f64 = 1.0;
 
 /// A place on the screen where one action follows another: buttons that a click replaces by others.
 pub struct ActionPlace {
     id: Id,
     now_s: f64,
-    ready: bool,
+    remembered: Remembered,
 }
 
 #[derive(Clone, Copy)]
@@ -40,13 +40,18 @@ impl ActionPlace {
         Self {
             id,
             now_s,
-            ready: now_s - remembered.at_s >= MOMENT_S,
+            remembered,
         }
+    }
+
+    /// Nothing has changed or acted here for a moment.
+    fn is_ready(&self) -> bool {
+        self.now_s - self.remembered.at_s >= MOMENT_S
     }
 
     /// Whether an action of this place was clicked and meant. From then on the place takes no click for a moment.
     pub fn clicked(&self, response: &Response) -> bool {
-        let meant = response.clicked() && self.ready;
+        let meant = response.clicked() && self.is_ready();
         if meant {
             self.acted(response);
         }
@@ -61,7 +66,10 @@ impl ActionPlace {
         let id = self.id.with("held since");
         let by_key = response.has_focus()
             && ui.input(|input| input.key_down(Key::Space) || input.key_down(Key::Enter));
-        if !(response.enabled() && self.ready && (response.is_pointer_button_down_on() || by_key)) {
+        if !(response.enabled()
+            && self.is_ready()
+            && (response.is_pointer_button_down_on() || by_key))
+        {
             ui.data_mut(|data| data.remove_temp::<f64>(id));
             return false;
         }
@@ -81,11 +89,10 @@ impl ActionPlace {
     }
 
     fn acted(&self, response: &Response) {
-        response.ctx.data_mut(|data| {
-            if let Some(mut known) = data.get_temp::<Remembered>(self.id) {
-                known.at_s = self.now_s;
-                data.insert_temp(self.id, known);
-            }
-        });
+        let acted = Remembered {
+            at_s: self.now_s,
+            ..self.remembered
+        };
+        (response.ctx).data_mut(|data| data.insert_temp(self.id, acted));
     }
 }

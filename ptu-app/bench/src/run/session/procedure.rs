@@ -153,7 +153,7 @@ impl<L: UnitLink> Session<L> {
             runner.stood_still(behind);
         }
         if let Some(pause) = self.paused.take() {
-            runner.paused_with_unit(pause);
+            runner.paused_with_unit(self.bench.now(), pause);
         }
         if let Some(why) = self.bench.rig_mut().take_intervention() {
             runner.interrupted(why);

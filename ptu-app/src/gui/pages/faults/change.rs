@@ -42,9 +42,7 @@ impl Form {
             ..Self::default()
         }
     }
-}
 
-impl Form {
     /// What has to be written before a person brings the fault to a state: why it is verified without a run, or which
     /// part was put in or what was done instead.
     fn missing_reason(&self, to: FaultState, words: &Words) -> Option<&'static str> {

@@ -1,0 +1,54 @@
+//! A check that was made before in the same unit: what it shows again is no new evidence, and what it shows otherwise is.
+
+use super::{AS_COUNTED, Model, StepLikelihoods, mixed, spells};
+use crate::cell::StepOutcome;
+use crate::observation::ObservedStep;
+
+impl Model<'_> {
+    /// Likelihoods of a check that was made before in the same unit. What lasts shows the same again for certain, and so
+    /// does a check that an effect does not act on: where it shows something else, it is nearly impossible under what lasts.
+    /// What comes and goes shows it again with the probability of the result. Values that were weighed before are no evidence.
+    pub fn given_before(
+        &self,
+        place: usize,
+        (before, step): (&StepOutcome, &ObservedStep),
+        ln: &mut StepLikelihoods,
+    ) {
+        let settings = self.settings;
+        let anything = settings.likelihood.of(step.result);
+        let same = *before == StepOutcome::of(step);
+        let changed = before.result != step.result;
+        let weighed = |likelihood: f64, otherwise| {
+            settings.weight_of_step * mixed(likelihood, anything, otherwise).ln()
+        };
+        if same {
+            ln.healthy = 0.0;
+        }
+        for (effect, hypothesis) in self.effects().iter().enumerate() {
+            let acts = !self.is_like_healthy(*hypothesis, place);
+            let expected = self.expected(*hypothesis, place);
+            if acts && self.is_intermittent(*hypothesis) {
+                if same {
+                    for (like, rate) in ln.like_effects.iter_mut().zip(spells::rates(settings)) {
+                        let again =
+                            expected.result(step.result) * self.factor(effect, place, step, rate);
+                        like[effect] = weighed(again, settings.otherwise_unseen);
+                    }
+                    ln.effects[effect] = ln.like_effects[AS_COUNTED][effect];
+                }
+            } else if same || changed {
+                let lasting = match (same, acts) {
+                    (true, _) => 0.0,
+                    (false, true) => weighed(expected.counted(step.result), settings.otherwise),
+                    (false, false) => weighed(0.0, settings.otherwise),
+                };
+                ln.like_effects
+                    .iter_mut()
+                    .for_each(|like| like[effect] = lasting);
+                if same || acts {
+                    ln.effects[effect] = lasting;
+                }
+            }
+        }
+    }
+}

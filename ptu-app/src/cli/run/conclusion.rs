@@ -1,0 +1,56 @@
+//! What a run comes to beyond its verdict: the diagnosis, and what it says of repairs.
+
+use fault_db::Store;
+
+use super::RunArguments;
+use crate::cli::print_out;
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::run::Outcome;
+use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run};
+use ptu_bench::stdio;
+use ptu_report::diagnosis::diagnosis_text;
+use ptu_report::proof_text;
+use ptu_report::words::Language;
+
+impl RunArguments {
+    /// The diagnosis of an adaptive run, and of any other that failed.
+    pub(super) fn diagnosis(
+        &self,
+        store: &Store,
+        directory: &ScriptsDirectory,
+        outcome: &Outcome,
+    ) -> Option<Result<Answer, Failure>> {
+        let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
+        is_wanted.then(|| diagnose_run(store, directory, outcome.id))
+    }
+
+    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
+    /// had from a dictionary that is not of these scripts.
+    pub(super) fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
+        if self.adaptive {
+            let answer = answer?;
+            answer
+                .warnings
+                .iter()
+                .for_each(|warning| stdio::note(warning));
+            print_out(&format!("\n{}", diagnosis_text(&answer)))?;
+        } else if let Ok(answer) = answer
+            && answer.warnings.is_empty()
+        {
+            let id = answer.run.run.id.short();
+            let conclusion = &answer.diagnosis.conclusion;
+            print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
+        }
+        Ok(())
+    }
+}
+
+/// What a run that passed says of the repairs made before it.
+pub(super) fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
+    if !proofs.is_empty() {
+        let said = proof_text(proofs, Language::English.words());
+        print_out(&format!("{said}\n"))?;
+    }
+    Ok(())
+}
