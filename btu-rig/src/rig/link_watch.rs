@@ -27,6 +27,8 @@ pub struct LinkWatch {
     begun: Option<Instant>,
     bytes: u64,
     taken: Option<Taken>,
+    /// The tester's own computer stood still until then.
+    stalled_until: Instant,
     /// Frames refused until each of the watched channels was last heard.
     refused: [Refused; WATCHED.len()],
 }
@@ -106,6 +108,12 @@ impl LinkWatch {
         self.begun.get_or_insert(now);
     }
 
+    /// The tester's own computer stood still until now. Frames that came meanwhile may have been lost here, so silence counts
+    /// from now on.
+    pub fn note_stalled(&mut self, now: Instant) {
+        self.stalled_until = now;
+    }
+
     /// Notes that a frame of a channel was taken.
     pub fn note_frame(&mut self, channel: Channel, counters: &Counters) {
         let place = WATCHED.iter().position(|(watched, _)| *watched == channel);
@@ -138,7 +146,7 @@ impl LinkWatch {
         let mut watched = WATCHED.iter().zip(since).zip(self.refused);
         watched.find_map(|((&(channel, name), since), refused_before)| {
             let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
-            let silence = now.since(heard);
+            let silence = now.since(heard.max(self.stalled_until));
             let refused = Refused::until_now(link.counters()).since(refused_before);
             let at_most = if refused.of_a_start() {
                 STARTING

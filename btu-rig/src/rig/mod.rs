@@ -379,14 +379,15 @@ impl Rig {
     }
 
     /// This bench's own computer stalled for longer than the unit tolerates: frames lost meanwhile are not
-    /// counted against the line.
+    /// counted against the line, and are no silence of the unit.
     pub fn note_stalled(&mut self, now: Instant) {
         self.line_watch.note_stalled(now);
+        self.watch.note_stalled(now);
     }
 
     /// Bench and unit both stood still for so long, which is no time for either.
     pub fn note_pause(&mut self, now: Instant, pause: Duration) {
-        self.line_watch.note_stalled(now);
+        self.note_stalled(now);
         self.tester.put_off_time(pause);
     }
 

@@ -126,6 +126,25 @@ fn a_bad_connection_is_named_after_the_time_for_first_contact() {
     }
 }
 
+/// Goal: frames that the tester's own computer lost while it stood still are no silence of the unit. Method: 3 s in which
+/// nothing is heard, made up by the bench, and what comes after them.
+#[test]
+fn a_standstill_of_the_testers_computer_is_no_silence_of_the_unit() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(4000);
+    bench.link_mut().dead = vec![Channel::Ptu, Channel::Io];
+    for _ in 0..300 {
+        bench.tick().unwrap();
+        let now = bench.now();
+        bench.rig_mut().note_stalled(now);
+    }
+    bench.run_ms(1400);
+    assert_eq!(bench.rig().link_error(), None);
+    bench.run_ms(200);
+    let error = bench.rig().link_error().unwrap();
+    assert!(error.starts_with("unit silent for 1.6 s"), "{error}");
+}
+
 #[test]
 fn silence_of_the_io_channel_is_an_error_and_of_tcms_is_a_finding() {
     let mut bench = bench(FakeUnit::default());
