@@ -1,0 +1,232 @@
+//! The sequence as a table, and after which ends a driverless train waits for a departure that is given anew.
+
+use super::*;
+
+const GOOD: ModeInputs = ModeInputs {
+    ready: true,
+    cab_active: true,
+    switch: ModeSwitch::Automatic,
+    lacking: Refusals::empty(),
+    departure: true,
+    start: false,
+    acknowledge: false,
+    arrived: false,
+    gave_up: false,
+    line_open: false,
+};
+
+#[test]
+fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
+    let switches = [
+        (ModeSwitch::Automatic, true),
+        (ModeSwitch::Driverless, false),
+    ];
+    let by_others = [true, false];
+    for ((switch, start), line_open) in switches
+        .into_iter()
+        .flat_map(|one| by_others.map(|line_open| (one, line_open)))
+    {
+        let mut sequence = ModeSequence::default();
+        let mut log = EventLog::default();
+        let mut after = |inputs| {
+            (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+            (sequence.mode(), sequence.stops())
+        };
+        let given = ModeInputs {
+            switch,
+            start,
+            ..GOOD
+        };
+        after(ModeInputs {
+            start: false,
+            departure: false,
+            ..given
+        });
+        assert_eq!(after(given).0, Mode::AutomaticRun);
+        let open = ModeInputs {
+            lacking: Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL,
+            line_open,
+            start: false,
+            ..given
+        };
+        assert_eq!(after(open), (Mode::Manual, line_open));
+        let moving = ModeInputs {
+            lacking: Refusals::NOT_STANDSTILL,
+            start: false,
+            ..given
+        };
+        assert_eq!(
+            after(moving),
+            (Mode::Manual, line_open),
+            "closed again on the way"
+        );
+        let stands = ModeInputs {
+            start: false,
+            ..given
+        };
+        assert_eq!(after(stands), (Mode::Automatic, false));
+        let anew = match start {
+            true => given,
+            false => {
+                after(ModeInputs {
+                    departure: false,
+                    ..stands
+                });
+                stands
+            }
+        };
+        assert_eq!(after(anew).0, Mode::AutomaticRun);
+    }
+}
+
+#[test]
+fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
+    let mut sequence = ModeSequence::default();
+    let mut log = EventLog::default();
+    let driverless = ModeInputs {
+        switch: ModeSwitch::Driverless,
+        ..GOOD
+    };
+    let mut after = |inputs| {
+        (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+        (sequence.mode(), sequence.refusals())
+    };
+    let none = Refusals::empty();
+    assert_eq!(after(driverless), (Mode::AutomaticRun, none));
+    let failed = ModeInputs {
+        lacking: Refusals::ATO_NOT_READY,
+        ..driverless
+    };
+    let refused = (Mode::Manual, Refusals::ATO_NOT_READY);
+    assert_eq!(after(failed), refused);
+    assert_eq!(after(driverless), refused, "ready again, not acknowledged");
+    let acknowledged = ModeInputs {
+        acknowledge: true,
+        ..driverless
+    };
+    assert_eq!(after(acknowledged), (Mode::Automatic, none));
+    assert_eq!(
+        after(driverless),
+        (Mode::Automatic, none),
+        "the old departure"
+    );
+    let waits = ModeInputs {
+        departure: false,
+        ..driverless
+    };
+    assert_eq!(after(waits).0, Mode::Automatic);
+    assert_eq!(after(driverless).0, Mode::AutomaticRun);
+    assert_eq!(after(failed), refused);
+    let manual = ModeInputs {
+        switch: ModeSwitch::Manual,
+        ..GOOD
+    };
+    assert_eq!(after(manual).0, Mode::Manual);
+    assert_eq!(after(driverless).0, Mode::Automatic);
+    let pressed = ModeInputs {
+        start: true,
+        ..driverless
+    };
+    assert_eq!(after(pressed).0, Mode::AutomaticRun);
+}
+
+#[test]
+fn the_sequence_is_this_table() {
+    let lacking = |r| ModeInputs { lacking: r, ..GOOD };
+    let switch = |s| ModeInputs { switch: s, ..GOOD };
+    let cases = [
+        (Mode::Manual, GOOD, false, Mode::Automatic),
+        (Mode::Manual, GOOD, true, Mode::Automatic),
+        (Mode::Automatic, GOOD, true, Mode::AutomaticRun),
+        (
+            Mode::Automatic,
+            lacking(Refusals::NO_TWC),
+            true,
+            Mode::Manual,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::NOT_STANDSTILL),
+            false,
+            Mode::AutomaticRun,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::NO_TWC),
+            false,
+            Mode::AutomaticRun,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::DOORS_OPEN),
+            false,
+            Mode::Manual,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::ATO_NOT_READY),
+            false,
+            Mode::Manual,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::ATO_NOT_READY.union(Refusals::NOT_STANDSTILL)),
+            false,
+            Mode::AutomaticRun,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::TCMS_NOT_READY.union(Refusals::NOT_STANDSTILL)),
+            false,
+            Mode::AutomaticRun,
+        ),
+        (
+            Mode::AutomaticRun,
+            lacking(Refusals::TCMS_NOT_READY),
+            false,
+            Mode::Manual,
+        ),
+        (
+            Mode::AutomaticRun,
+            ModeInputs {
+                arrived: true,
+                ..GOOD
+            },
+            false,
+            Mode::Automatic,
+        ),
+        (
+            Mode::AutomaticRun,
+            switch(ModeSwitch::Manual),
+            false,
+            Mode::Manual,
+        ),
+        (
+            Mode::AutomaticRun,
+            ModeInputs {
+                cab_active: false,
+                ..GOOD
+            },
+            false,
+            Mode::Off,
+        ),
+        (
+            Mode::Manual,
+            ModeInputs {
+                ready: false,
+                ..GOOD
+            },
+            true,
+            Mode::Off,
+        ),
+        (Mode::Off, switch(ModeSwitch::Yard), false, Mode::Yard),
+        (Mode::Off, switch(ModeSwitch::Unknown(9)), false, Mode::Off),
+    ];
+    for (from, inputs, departing, to) in cases {
+        assert_eq!(
+            next(from, &inputs, departing),
+            to,
+            "{from:?} {inputs:?} {departing}"
+        );
+    }
+}
