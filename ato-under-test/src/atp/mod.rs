@@ -129,7 +129,7 @@ impl Atp {
             rollback: Rollback::default(),
             jog: JogGuard::default(),
             brake: EmergencyBrake::new(),
-            sequence: ModeSequence::default(),
+            sequence: ModeSequence::new(),
             limit: Speed::ZERO,
             overspeed: Overspeed::default(),
             fsb_cause: FsbCause::None,

@@ -7,6 +7,9 @@
 //! train then waits for a departure that is given anew, or for the start button: the one that was still
 //! given began the run that failed. So it does after a run that ended away from its stop point, or by the emergency brake:
 //! who acknowledges that does not send the train off. It departs once its doors have been served, too.
+//! So it does after a power-up, and after a run that mode off has ended: the supply may have failed in a run.
+//! Given anew is a departure that was heard withheld before: neither the first that is heard nor one that is heard again
+//! after silence says when it was given.
 //!
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
 //! again the service brake goes on stopping the train, and a driverless one waits for a departure that is given anew.
@@ -43,7 +46,10 @@ pub struct ModeInputs {
     pub switch: ModeSwitch,
     /// Preconditions that do not hold, departure left out.
     pub lacking: Refusals,
+    /// Departure is given, and there is somewhere to run to.
     pub departure: bool,
+    /// Departure as station data have it: given or withheld; `None` = nothing is heard.
+    pub heard: Option<bool>,
     pub start: bool,
     pub acknowledge: bool,
     /// The train stands at the end of its run.
@@ -54,12 +60,13 @@ pub struct ModeInputs {
     pub line_open: bool,
 }
 
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ModeSequence {
     mode: Mode,
     start: Edge,
     acknowledge: Edge,
-    departure: Edge,
+    /// Departure was heard withheld, and not given since.
+    withheld: bool,
     /// What ended a run and nobody has acknowledged, of [`KEPT`].
     failed: Refusals,
     /// The next run needs a departure of its own.
@@ -70,6 +77,20 @@ pub struct ModeSequence {
 }
 
 impl ModeSequence {
+    /// As at power-up: off, and what is given is not known to be new.
+    pub fn new() -> Self {
+        Self {
+            mode: Mode::Off,
+            start: Edge::default(),
+            acknowledge: Edge::default(),
+            withheld: false,
+            failed: Refusals::empty(),
+            departs_anew: true,
+            stops: false,
+            refusals: Refusals::empty(),
+        }
+    }
+
     pub fn step(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
         let pressed = self.start.rises(inputs.start);
         self.keep_failure(&inputs);
@@ -91,8 +112,11 @@ impl ModeSequence {
                 i32::from(self.refusals.bits()),
             );
         }
-        if next == Mode::AutomaticRun && self.mode != next {
-            self.departs_anew = false;
+        match (self.mode, next) {
+            (Mode::AutomaticRun, Mode::Off) => self.departs_anew = true,
+            (Mode::AutomaticRun, _) => {}
+            (_, Mode::AutomaticRun) => self.departs_anew = false,
+            _ => {}
         }
         if next != self.mode {
             self.mode = next;
@@ -103,7 +127,7 @@ impl ModeSequence {
     /// Latches what ends a run, and gives it up.
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
-        let departs = self.departure.rises(inputs.departure);
+        let departs = self.given_anew(inputs.heard);
         let left = !matches!(
             inputs.switch,
             ModeSwitch::Automatic | ModeSwitch::Driverless
@@ -121,6 +145,17 @@ impl ModeSequence {
         let braked = inputs.lacking.contains(Refusals::EB_APPLIED);
         self.departs_anew |= runs && (inputs.gave_up || braked);
         self.departs_anew &= !departs;
+    }
+
+    fn given_anew(&mut self, heard: Option<bool>) -> bool {
+        match heard {
+            Some(true) => core::mem::take(&mut self.withheld),
+            Some(false) => {
+                self.withheld = true;
+                false
+            }
+            None => false,
+        }
     }
 
     /// A run that the line ends: the train is stopped, and does not go on by itself.

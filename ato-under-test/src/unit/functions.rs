@@ -236,7 +236,7 @@ impl Functions {
             enabled: self.atp.enabled(),
             open: self.atp.doors_open(),
             closed: self.atp.doors_closed(),
-            departure: self.departure(around),
+            departure: self.departure(around) == Some(true),
             acknowledge: self.inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             dead: DeadOrders {
                 closing: around.faults.dead(Place::DoorClosing),
@@ -259,10 +259,10 @@ impl Functions {
         }
     }
 
-    /// The wayside has given departure.
-    fn departure(&self, around: &Surroundings<'_>) -> bool {
-        let given = self.twc.data().is_some_and(|data| data.departure == 1);
-        !around.barred && self.twc.valid() && given
+    /// Departure as valid station data have it, given or withheld; `None` = nothing is heard, or no run may begin.
+    fn departure(&self, around: &Surroundings<'_>) -> Option<bool> {
+        let data = self.twc.data().filter(|_| self.twc.valid())?;
+        (!around.barred).then_some(data.departure == 1)
     }
 
     /// ATO holds the train, driving or at a station; so it stays when ATO has failed, until the driver takes it.
@@ -275,6 +275,7 @@ impl Functions {
 
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
         let lines = self.inputs.lines;
+        let heard = self.departure(around);
         let standstill = self.atp.tachometers().standstill();
         let code = matches!(self.atp.decoder().code(), Code::Known(_));
         let switch = self.inputs.mode_switch;
@@ -316,7 +317,8 @@ impl Functions {
             },
             lacking,
             // At its stop point it has nowhere to run: data of the next section are still to come.
-            departure: self.departure(around) && !self.aligned(),
+            departure: heard == Some(true) && !self.aligned(),
+            heard,
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),

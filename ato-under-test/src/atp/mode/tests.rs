@@ -8,6 +8,7 @@ const GOOD: ModeInputs = ModeInputs {
     switch: ModeSwitch::Automatic,
     lacking: Refusals::empty(),
     departure: true,
+    heard: Some(true),
     start: false,
     acknowledge: false,
     arrived: false,
@@ -26,7 +27,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
         .into_iter()
         .flat_map(|one| by_others.map(|line_open| (one, line_open)))
     {
-        let mut sequence = ModeSequence::default();
+        let mut sequence = ModeSequence::new();
         let mut log = EventLog::default();
         let mut after = |inputs| {
             (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
@@ -40,6 +41,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
         after(ModeInputs {
             start: false,
             departure: false,
+            heard: Some(false),
             ..given
         });
         assert_eq!(after(given).0, Mode::AutomaticRun);
@@ -70,6 +72,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
             false => {
                 after(ModeInputs {
                     departure: false,
+                    heard: Some(false),
                     ..stands
                 });
                 stands
@@ -81,7 +84,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
 
 #[test]
 fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
-    let mut sequence = ModeSequence::default();
+    let mut sequence = ModeSequence::new();
     let mut log = EventLog::default();
     let driverless = ModeInputs {
         switch: ModeSwitch::Driverless,
@@ -92,6 +95,12 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
         (sequence.mode(), sequence.refusals())
     };
     let none = Refusals::empty();
+    let waits = ModeInputs {
+        departure: false,
+        heard: Some(false),
+        ..driverless
+    };
+    assert_eq!(after(waits).0, Mode::Automatic);
     assert_eq!(after(driverless), (Mode::AutomaticRun, none));
     let failed = ModeInputs {
         lacking: Refusals::ATO_NOT_READY,
@@ -110,10 +119,6 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
         (Mode::Automatic, none),
         "the old departure"
     );
-    let waits = ModeInputs {
-        departure: false,
-        ..driverless
-    };
     assert_eq!(after(waits).0, Mode::Automatic);
     assert_eq!(after(driverless).0, Mode::AutomaticRun);
     assert_eq!(after(failed), refused);
@@ -128,6 +133,57 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
         ..driverless
     };
     assert_eq!(after(pressed).0, Mode::AutomaticRun);
+}
+
+/// Goal: neither a power-up nor mode off in a run lets a driverless train drive off by the departure that is still given.
+/// Method: that departure is the first thing heard, is heard again after silence, then withheld and given anew.
+#[test]
+fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
+    let given = ModeInputs {
+        switch: ModeSwitch::Driverless,
+        ..GOOD
+    };
+    let withheld = ModeInputs {
+        departure: false,
+        heard: Some(false),
+        ..given
+    };
+    let silent = ModeInputs {
+        departure: false,
+        heard: None,
+        ..given
+    };
+    let cab_lost = ModeInputs {
+        cab_active: false,
+        lacking: Refusals::CAB_INACTIVE,
+        ..given
+    };
+    let starting = ModeInputs {
+        ready: false,
+        ..silent
+    };
+    let mut sequence = ModeSequence::new();
+    let mut log = EventLog::default();
+    let mut after = |inputs| {
+        (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+        sequence.mode()
+    };
+    for off in [starting, cab_lost] {
+        assert_eq!(after(off), Mode::Off);
+        assert_eq!(after(given), Mode::Automatic, "the old departure");
+        after(silent);
+        assert_eq!(after(given), Mode::Automatic, "heard again after silence");
+        after(withheld);
+        after(silent);
+        assert_eq!(after(given), Mode::AutomaticRun, "given anew");
+    }
+    after(cab_lost);
+    assert_eq!(after(given), Mode::Automatic);
+    let pressed = ModeInputs {
+        start: true,
+        ..given
+    };
+    assert_eq!(after(pressed), Mode::AutomaticRun, "by the start button");
 }
 
 #[test]
