@@ -70,7 +70,7 @@ impl Confirmed {
     }
 }
 
-/// Automatic runs that the open brake line ended: the train goes on by a person or a new departure alone.
+/// Automatic runs that the open brake line ended, or a supply that failed: the train goes on by a person or a new departure alone.
 #[derive(Default)]
 pub(super) struct Runs {
     under_way: bool,
@@ -84,7 +84,9 @@ impl Runs {
         let driverless = seen.value(Signal::TcmsMode) == 5.0;
         let by_ato = driverless || seen.value(Signal::TcmsMode) == 4.0;
         let departure = seen.on(Signal::Departure);
-        let given = departure && !std::mem::replace(&mut self.departure, departure);
+        let before = std::mem::replace(&mut self.departure, departure);
+        // A unit without supply hears no departure.
+        let given = departure && !before && seen.powered;
         let switch = matches!(seen.value(Signal::ModeSwitch) as u8, 3 | 4);
         if seen.start || given || !switch || seen.value(Signal::Controller) != 0.0 {
             self.ended = false;
@@ -134,5 +136,49 @@ impl Blind {
         }
         let since = *self.since.get_or_insert(seen.now);
         seen.now.since(since) < Self::TOLD
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::signal::Sample;
+
+    use super::*;
+
+    /// A scan of a driverless train that powers.
+    fn goes_on(runs: &mut Runs, departure: bool, powered: bool, eb: bool) -> bool {
+        let mut sample = Sample::default();
+        sample.set(Signal::TcmsMode, 5.0);
+        sample.set(Signal::ModeSwitch, 4.0);
+        sample.set_bit(Signal::Departure, departure);
+        let seen = Observed {
+            now: Instant::ZERO,
+            sample: &sample,
+            speed_mps: 1.0,
+            accel_mps2: 0.0,
+            to_stop_m: None,
+            traction_n: 2.0 * NO_POWER_N,
+            reverser: 1,
+            start: false,
+            blind: false,
+            powered,
+        };
+        runs.goes_on(seen, eb)
+    }
+
+    /// Goal: each departure that is given anew begins a run, not only the minute's first; none is heard without supply.
+    #[test]
+    fn a_run_that_was_ended_goes_on_by_a_departure_that_is_heard_anew() {
+        let mut runs = Runs::default();
+        assert!(!goes_on(&mut runs, true, true, false), "under way");
+        for _ in 0..2 {
+            assert!(!goes_on(&mut runs, true, true, true), "braked");
+            assert!(goes_on(&mut runs, true, true, false), "still given");
+            assert!(goes_on(&mut runs, false, true, false), "withheld");
+            assert!(!goes_on(&mut runs, true, true, false), "given anew");
+        }
+        assert!(!goes_on(&mut runs, false, false, true), "no supply");
+        assert!(!goes_on(&mut runs, true, false, true), "given unheard");
+        assert!(goes_on(&mut runs, true, true, false));
     }
 }

@@ -122,6 +122,7 @@ impl<'a> Minute<'a> {
             let observed = Observed {
                 now,
                 blind: self.blind(),
+                powered: self.powered,
                 sample: rig.sample(),
                 speed_mps: truth.speed_mps,
                 accel_mps2: truth.accel_mps2,

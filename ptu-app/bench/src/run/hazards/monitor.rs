@@ -112,6 +112,8 @@ pub struct Observed<'a> {
     pub start: bool,
     /// No tachometer gives pulses.
     pub blind: bool,
+    /// The unit has its supply.
+    pub powered: bool,
 }
 
 impl Observed<'_> {
