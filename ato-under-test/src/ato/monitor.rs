@@ -1,13 +1,15 @@
 //! Monitoring of ATO's inputs and of ATO itself [S0 §1].
 //!
-//! * Implausible inputs end the run at once: nothing computed from them can be trusted, so the train brakes.
+//! * Implausible inputs end the run at once: nothing computed from them can be trusted, so the train brakes. A jump of the
+//!   speed has to stay for a cycle, or to come again: beside the first pulses of a train that inches, one spurious
+//!   pulse stands out for less than a cycle.
 //! * A train that does not follow the effort is not driven any longer. The criterion is not the speed error,
 //!   which is great in every departure, but the difference between the speed that the efforts of the last
 //!   seconds should have produced and the measured speed.
 //! * Effort that the train did not give is not ATO's fault: the effort that TCMS reports is compared with the
 //!   effort it was sent. While TCMS brakes by itself or cuts powering nothing is judged. A deviation of which
 //!   withheld effort explains at least half is reported as the train's, and ends the run only in braking.
-//! * A run that ends away from the stop point is reported.
+//! * A run that ends away from the stop point is reported; one that begins past it, to jog back, has not passed it.
 
 use protocol::config::AtoConfig;
 use protocol::line::Section;
@@ -21,6 +23,8 @@ use super::{AtoInputs, art};
 const FASTEST_MPS: f64 = 150.0 / 3.6;
 /// Greatest change of speed within a cycle, also of a sliding wheel, m/s [default].
 const JUMP_MPS: f64 = 1.0;
+/// Time after a jump in which another is not one more lone pulse, s [default]: of good tachometers one comes in minutes.
+const JUMPS_AGAIN_S: f64 = 1.0;
 /// Acceleration asked for at which the speed cannot stay the same, m/s² [default]: more than the
 /// gradient of 35 ‰ and the resistance that a unit with a wrong track database may not know of.
 const ASKED_MPS2: f64 = 0.6;
@@ -81,6 +85,10 @@ pub struct Findings {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Monitor {
     before_mps: Option<f64>,
+    /// Speed before it jumped in the last cycle, m/s.
+    jumped_from_mps: Option<f64>,
+    /// Time in which the next jump follows soon, s.
+    jumps_again_s: f64,
     expected_mps2: f64,
     deviation_mps: f64,
     /// What the effort sent should come to by now, m/s².
@@ -92,6 +100,8 @@ pub struct Monitor {
     stands_s: f64,
     /// A stop error of this run is reported, or there was none.
     stop_reported: bool,
+    /// The run began past the stop point; `None` = no run.
+    begun_past: Option<bool>,
 }
 
 impl Monitor {
@@ -112,6 +122,7 @@ impl Monitor {
             self.withheld_mps = 0.0;
             self.withheld_reported = false;
             self.frozen_s = 0.0;
+            (self.jumped_from_mps, self.jumps_again_s) = (None, 0.0);
             return Findings {
                 absurd,
                 overrun_m,
@@ -119,12 +130,13 @@ impl Monitor {
                 ..Findings::default()
             };
         }
-        let change_mps = speed_mps - before_mps.unwrap_or(speed_mps);
-        absurd.set(AbsurdInputs::SPEED_JUMP, libm::fabs(change_mps) > JUMP_MPS);
+        let before_mps = before_mps.unwrap_or(speed_mps);
+        let change_mps = speed_mps - before_mps;
+        let (doubted, jumped) = self.jumps(speed_mps, before_mps);
+        absurd.set(AbsurdInputs::SPEED_JUMP, jumped);
         let frozen = self.frozen(change_mps, inputs, on.asked_mps2, config);
         absurd.set(AbsurdInputs::FROZEN_SPEED, frozen);
-        let deviation_mps = absurd
-            .is_empty()
+        let deviation_mps = (absurd.is_empty() && !doubted)
             .then(|| self.follow(change_mps, inputs, on.asked_mps2, config))
             .flatten();
         let (not_following_mps, withheld_mps) = self.whose(deviation_mps);
@@ -135,6 +147,23 @@ impl Monitor {
             overrun_m,
             short_m,
         }
+    }
+
+    /// Whether the speed has jumped in this cycle or the last, and whether no lone pulse explains it: the jump stays, or
+    /// another follows soon.
+    fn jumps(&mut self, speed_mps: f64, before_mps: f64) -> (bool, bool) {
+        let far = |from_mps: f64| libm::fabs(speed_mps - from_mps) > JUMP_MPS;
+        let soon = self.jumps_again_s > 0.0;
+        self.jumps_again_s -= CYCLE.as_secs();
+        if let Some(from_mps) = self.jumped_from_mps.take() {
+            return (true, far(from_mps));
+        }
+        let jumps = far(before_mps);
+        if jumps {
+            self.jumped_from_mps = Some(before_mps);
+            self.jumps_again_s = JUMPS_AGAIN_S;
+        }
+        (jumps, jumps && soon)
     }
 
     /// The speed says exactly the same although effort is asked for.
@@ -209,7 +238,7 @@ impl Monitor {
     ) -> (Option<f64>, Option<f64>) {
         let running = inputs.section.filter(|_| on.state == AtoState::Run);
         let Some(section) = running else {
-            (self.stands_s, self.stop_reported) = (0.0, false);
+            (self.stands_s, self.stop_reported, self.begun_past) = (0.0, false, None);
             return (None, None);
         };
         self.stands_s = if on.stands && on.may_go {
@@ -220,7 +249,9 @@ impl Monitor {
         let to_stop_m = section.stop_m - inputs.position_m;
         let past_m = -to_stop_m;
         let ended = on.stands && on.arrived || self.stands_s > STANDS_S;
-        let overrun = past_m > config.watch.overrun_m && (on.stands || past_m > FAR_PAST_M);
+        let past = past_m > config.watch.overrun_m;
+        let begun_past = *self.begun_past.get_or_insert(past);
+        let overrun = past && !begun_past && (on.stands || past_m > FAR_PAST_M);
         let short = to_stop_m > inputs.aligned_m && ended;
         let first = !self.stop_reported;
         self.stop_reported |= ended || overrun;

@@ -1,13 +1,15 @@
 //! What ATO's watch finds in a run, and what it passes over.
 
+use alloc::vec::Vec;
+
 use protocol::line::Line;
 use protocol::message::{Mode, RunningMode};
 
 use super::*;
 use crate::ato::{Checks, tests::config};
 
-/// Time after which a speed that stays the same is found absurd, within 30 s.
-fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
+/// A cycle of a run at 10 m/s in section 61, with this to be monitored beside it.
+fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
     let line = include_str!("../../../../scripts/lines/line8.toml");
     let line = Line::from_toml(line).unwrap();
     let inputs = AtoInputs {
@@ -32,19 +34,79 @@ fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
     };
     let on = MonitorInputs {
         state: AtoState::Run,
-        asked_mps2,
+        asked_mps2: 0.0,
         may_go: true,
         stands: false,
         arrived: false,
     };
-    let mut monitor = Monitor::default();
-    let mut steps = 1..=600;
-    let found = steps.find(|_| {
-        let findings = monitor.step(&inputs, on, &config());
-        assert_eq!(findings.not_following_mps, None);
-        findings.absurd == AbsurdInputs::FROZEN_SPEED
+    then(inputs, on);
+}
+
+/// Time after which a speed that stays the same is found absurd, within 30 s.
+fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
+    let mut found = None;
+    with_run(|inputs, on| {
+        let on = MonitorInputs { asked_mps2, ..on };
+        let mut monitor = Monitor::default();
+        found = (1..=600).find(|_| {
+            let findings = monitor.step(&inputs, on, &config());
+            assert_eq!(findings.not_following_mps, None);
+            findings.absurd == AbsurdInputs::FROZEN_SPEED
+        });
     });
     found.map(|step| f64::from(step) * CYCLE.as_secs())
+}
+
+/// What is found in a train that inches at 0.3 m/s and whose speed is then this, m/s, cycle by cycle.
+fn found_inching(speeds_mps: &[f64]) -> AbsurdInputs {
+    let mut absurd = AbsurdInputs::empty();
+    with_run(|inputs, on| {
+        let mut monitor = Monitor::default();
+        for &speed_mps in [0.3, 0.3].iter().chain(speeds_mps) {
+            let speed = Speed::from_mps(speed_mps);
+            let findings = monitor.step(&AtoInputs { speed, ..inputs }, on, &config());
+            assert_eq!(findings.not_following_mps, None);
+            absurd |= findings.absurd;
+        }
+    });
+    absurd
+}
+
+/// Two edges 12 ms apart are 2.3 m/s until the wheel has been silent for another 27 ms.
+#[test]
+fn a_speed_that_a_lone_pulse_makes_is_passed_over_and_one_that_stays_is_absurd() {
+    let none = AbsurdInputs::empty();
+    assert_eq!(found_inching(&[2.3, 0.5, 0.3]), none);
+    assert_eq!(found_inching(&[2.3, 2.0]), AbsurdInputs::SPEED_JUMP);
+    assert_eq!(found_inching(&[9.0, 9.0]), AbsurdInputs::SPEED_JUMP);
+    let again = [2.3, 0.3, 0.3, 2.3];
+    assert_eq!(found_inching(&again), AbsurdInputs::SPEED_JUMP);
+}
+
+/// Overruns that are told of a run through these distances past the stop point, m, at each of which it stands.
+fn overruns_m(past_m: &[f64]) -> Vec<f64> {
+    let mut told = Vec::new();
+    with_run(|inputs, on| {
+        let stop_m = inputs.section.unwrap().stop_m;
+        let mut monitor = Monitor::default();
+        for past_m in past_m {
+            let inputs = AtoInputs {
+                position_m: stop_m + past_m,
+                speed: Speed::ZERO,
+                standstill: true,
+                ..inputs
+            };
+            let on = MonitorInputs { stands: true, ..on };
+            told.extend(monitor.step(&inputs, on, &config()).overrun_m);
+        }
+    });
+    told.into_iter().map(libm::round).collect()
+}
+
+#[test]
+fn an_overrun_is_told_of_the_run_that_passed_the_stop_point_alone() {
+    assert_eq!(overruns_m(&[-1.0, 2.0, 2.0]), [2.0]);
+    assert_eq!(overruns_m(&[2.0, 2.0, 1.5]), [0.0; 0], "to jog back");
 }
 
 #[test]
