@@ -2,6 +2,7 @@
 //! what is said when the evidence or the dictionary is not good enough.
 
 use std::path::Path;
+use std::process::{Output, Stdio};
 
 use crate::common::{Place, has_shape, list, number, scripts, text};
 use serde_json::Value;
@@ -333,6 +334,54 @@ fn a_campaign_on_the_maintenance_port_says_what_needs_the_bench_and_serves_its_r
     );
     let warnings = diagnosis["warnings"].to_string();
     assert!(!warnings.contains("another connection"), "{warnings}");
+}
+
+/// Goal: a campaign that is killed loses no run that was over, makes none twice, and comes to the same dictionary. Method:
+/// killed twice, each time when its file has grown by some runs; beside it one that nothing disturbs.
+#[test]
+fn a_campaign_that_is_killed_goes_on_where_it_was() {
+    let place = Place::with_database();
+    let campaign = |runs: &str, dictionary: &str| {
+        let (runs, dictionary) = (place.text_path(runs), place.text_path(dictionary));
+        let kept = ["--runs", &runs, "--save", &dictionary, "--jobs", "2"];
+        let sizes = ["--seeds", "2", "--held-out", "1", "--good", "4", "--json"];
+        let which = ["campaign", "--harness", "none", "--faults", "eb_relay.*"];
+        place.command(&[&which[..], &sizes, &kept].concat())
+    };
+    let records = |runs: &str| {
+        let bytes = std::fs::read(place.path(runs)).unwrap_or_default();
+        let mark = b"\x89PTURUN1";
+        let at_mark = bytes.windows(mark.len()).filter(|bytes| *bytes == mark);
+        at_mark.count()
+    };
+    let whole = campaign("whole.runs", "whole.zst").output().expect("ran");
+    assert!(whole.status.success(), "{whole:?}");
+    let all = records("whole.runs");
+
+    for kept in [all / 4, all / 2] {
+        let mut killed = campaign("killed.runs", "killed.zst")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("started");
+        while records("killed.runs") < kept {
+            assert!(killed.try_wait().expect("asked").is_none(), "not killed");
+            std::thread::yield_now();
+        }
+        killed.kill().expect("killed");
+        killed.wait().expect("over");
+        assert!(
+            !place.path("killed.zst").exists(),
+            "no dictionary of a part"
+        );
+    }
+    let last = campaign("killed.runs", "killed.zst").output().expect("ran");
+    assert!(last.status.success(), "{last:?}");
+    assert_eq!(records("killed.runs"), all, "none lost, none made twice");
+    let said = |output: &Output| String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(said(&last), said(&whole));
+    let dictionary = |name: &str| std::fs::read(place.path(name)).expect("saved");
+    assert!(dictionary("killed.zst") == dictionary("whole.zst"));
 }
 
 /// Goal: a sound unit that a laptop found nothing wrong with is not half suspected. A passed run has no trace that tells how

@@ -1,7 +1,10 @@
 //! A unit's own event log, read over its port: faults with freeze frames in the history, each once.
 
-use crate::common::served::{Running, Unit};
+use std::time::Duration;
+
+use crate::common::served::{Observer, Running, Unit};
 use crate::common::{Place, list, number, text};
+use protocol::message::{Answer, Message, SetClock};
 use serde_json::Value;
 
 /// Reads the unit's log into the place's history.
@@ -101,6 +104,39 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
         .exits(3)
         .explains(&["FLD-1", "FLD-2", "--serial-no"]);
     assert_eq!(depot.run_ids().len(), 1);
+}
+
+/// Goal: a laptop with a wrong clock that reads a unit first hides none of its faults. Method: it tells the unit the year
+/// 2025, and that nobody keeps its clock right; another laptop then asks for the faults of the last seven days.
+#[test]
+fn a_wrong_clock_told_before_hides_no_fault() {
+    let unit = Unit::on_pty(&["--inject", "speed_sensor_1.dead", "--serial-no", "FLD-3"]);
+    let mut wrong = Observer::on(&unit);
+    wrong.send(SetClock {
+        utc_ms: 1_735_689_600_000,
+        uncertainty_ms: u16::MAX,
+    });
+    wrong.wait(Duration::from_secs(5), "the answer", |message| {
+        matches!(message, Message::StimulusAnswer(answer) if answer.answer == Answer::Accepted)
+    });
+    drop(wrong);
+    let (workshop, depot) = (Place::new(), Place::new());
+    let arguments = ["atp/overspeed", "--step", "code 25: at the limit*"];
+    Running::start(&workshop, &unit, &arguments)
+        .finish()
+        .exits(1);
+
+    let read = import(&depot, &unit, &["--since", "7d"]);
+    assert!(names(&read["faults"]).contains(&"tacho1_dead"), "{read}");
+    assert_eq!(number(&read["left_out"]["too_old"]), 0.0, "{read}");
+    let dead = list(&read["faults"])
+        .iter()
+        .find(|fault| fault["name"] == "tacho1_dead");
+    let first_at = dead.map(|fault| text(&fault["at"]));
+    assert!(
+        !first_at.is_some_and(|at| at.starts_with("2025-01-01")),
+        "{read}"
+    );
 }
 
 #[test]
