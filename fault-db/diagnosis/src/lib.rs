@@ -13,6 +13,7 @@
 
 mod belief;
 mod cell;
+mod conclusion;
 mod dictionary;
 mod explained;
 mod likelihood;
@@ -36,6 +37,7 @@ mod weights;
 
 pub use belief::{Belief, Settled};
 pub use cell::{Cell, StepOutcome, Values};
+pub use conclusion::Sentence;
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use explained::Cause;
 pub use model::{Hypothesis, Model};

@@ -7,6 +7,7 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
+use super::conclusion::Sentence;
 use super::explained::{Cause, causes};
 use super::model::Model;
 use super::next_check::NextCheck;
@@ -78,7 +79,7 @@ pub struct Diagnosis {
     /// The check to make next; none when the question is settled or nothing would tell.
     pub next_check: Option<NextCheck>,
     /// In words.
-    pub conclusion: String,
+    pub conclusion: Sentence,
     /// In a word.
     pub finding: Finding,
     /// Parts, the likeliest first.
@@ -238,71 +239,30 @@ impl Weights {
         model: &Model<'_>,
         seen: &Observation,
         next: Option<&NextCheck>,
-    ) -> (Finding, String) {
+    ) -> (Finding, Sentence) {
         let settings = model.settings;
-        let percent = |p: f64| format!("{:.1} %", 100.0 * p);
-        let then = next.map_or_else(
-            || "nothing in this suite would tell more".to_owned(),
-            |next| {
-                let again = if next.again { " again" } else { "" };
-                format!(
-                    "next, run{again} {} ({:.2} bits in {:.0} s)",
-                    next.check, next.gain_bits, next.cost_s
-                )
-            },
-        );
         match self.failed(settings.found_at)[..] {
             [] => {}
-            [(one, probability)] => {
-                return (
-                    Finding::Found,
-                    format!("replace {one} ({})", percent(probability)),
-                );
-            }
+            [(one, probability)] => return (Finding::Found, Sentence::found(one, probability)),
             [(one, _), (other, _), ..] => {
-                let both = percent(self.both_failed(one, other));
-                return (
-                    Finding::TwoFound,
-                    format!("two faults: replace {one} and {other} ({both})"),
-                );
+                let both = self.both_failed(one, other);
+                return (Finding::TwoFound, Sentence::two_found([one, other], both));
             }
         }
         if self.no_fault >= settings.healthy_at {
-            return (
-                Finding::NoFault,
-                format!("no fault found ({})", percent(self.no_fault)),
-            );
+            return (Finding::NoFault, Sentence::no_fault(self.no_fault));
         }
         if !seen.shows_a_fault() {
-            let checks = seen.steps.len();
-            let all = model.dictionary.checks.len();
-            return (
-                Finding::NotEnough,
-                format!(
-                    "{checks} of {all} checks were made and show nothing wrong; cannot tell more; {then}"
-                ),
-            );
+            let checks = [seen.steps.len(), model.dictionary.checks.len()];
+            return (Finding::NotEnough, Sentence::nothing_seen(checks, next));
         }
         if self.unknown >= settings.conclusion.unknown_fault_at {
-            return (
-                Finding::UnknownFault,
-                format!(
-                    "cannot tell: no fault mode of the dictionary explains this ({}); {then}",
-                    percent(self.unknown)
-                ),
-            );
+            let said = Sentence::unknown_fault(self.unknown, next);
+            return (Finding::UnknownFault, said);
         }
-        let likely: Vec<_> = self
-            .lrus
-            .iter()
-            .filter(|part| part.probability >= settings.conclusion.named_at)
-            .map(|part| format!("{} ({})", part.lru, percent(part.probability)))
-            .collect();
-        let likely = match &likely[..] {
-            [] => "cannot tell yet which part".to_owned(),
-            [one] => format!("not certain yet: {one}"),
-            several => format!("cannot tell yet which: {}", several.join(" or ")),
-        };
-        (Finding::CannotTell, format!("{likely}; {then}"))
+        let named_at = settings.conclusion.named_at;
+        let parts = self.lrus.iter();
+        let likely: Vec<_> = parts.filter(|part| part.probability >= named_at).collect();
+        (Finding::CannotTell, Sentence::cannot_tell(&likely, next))
     }
 }

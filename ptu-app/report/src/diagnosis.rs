@@ -27,7 +27,8 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "candidates": d.candidates.iter().map(candidate).collect::<Vec<_>>(),
         "why_not": answer.why_not.as_ref().map(candidate),
         "next_check": d.next_check,
-        "conclusion": d.conclusion,
+        "conclusion": d.conclusion.english,
+        "conclusion_ko": d.conclusion.korean,
         "finding": d.finding,
         "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
@@ -50,7 +51,7 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         run.steps,
         run.steps_not_passed,
         run.faults,
-        d.conclusion
+        d.conclusion.english
     );
     for c in &d.candidates {
         candidate_text(&mut text, c);

@@ -120,6 +120,79 @@ fn filters_leave_what_they_say_in_korean_too() {
     window.wait_for(&format!("고장 {of}건 중 0건"));
 }
 
+/// Goal: one question has one answer. Method: a run that finds its part, one that leaves several, one that is too thin to
+/// tell, and one that was stopped; each is asked about on the command line and in the window, in both languages.
+#[test]
+fn the_window_says_what_the_command_line_says() {
+    let runs: [(&[&str], i32, &str); 4] = [
+        (
+            &["--inject", "eb_relay.slow", "atp/overspeed"],
+            1,
+            "replace eb_relay",
+        ),
+        (
+            &["--inject", "atp_receiver.dead", "atp/limit_speed"],
+            1,
+            "next, run",
+        ),
+        (
+            &["--inject", "fsk_board.receiver_dead", "twc/exchange"],
+            1,
+            "",
+        ),
+        (&["ato/markers"], 0, "not enough was run"),
+    ];
+    for (run, code, begins) in runs {
+        let place = Place::new();
+        place.ptu(&[&["run"], run].concat()).exits(code);
+        let answer = place.json(&["diagnose", "latest", "--json"]);
+        let said = |key: &str| answer[key].as_str().expect("a sentence").to_owned();
+        assert!(
+            said("conclusion").contains(begins),
+            "{}",
+            said("conclusion")
+        );
+        let said_by_text = place.ptu(&["diagnose", "latest"]).exits(0);
+        assert!(said_by_text.out.contains(&said("conclusion")));
+        let mut window = on(place, Page::Diagnosis, Language::English);
+        window.wait_for(&said("conclusion"));
+        window.click("language");
+        window.click("한국어");
+        window.wait_for(&said("conclusion_ko"));
+        let sheet = window.place.text_path("sheet.html");
+        let show = ["runs", "show", "latest", "--report", &sheet, "--lang", "ko"];
+        window.place.ptu(&show).exits(0);
+        assert!(
+            window
+                .place
+                .read("sheet.html")
+                .contains(&said("conclusion_ko"))
+        );
+    }
+}
+
+/// Goal: what is read first fits on a page. Method: a run that leaves more than three faults; the fourth is behind "more".
+#[test]
+fn three_candidates_are_shown_and_the_others_on_demand() {
+    let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
+    let answer = place.json(&["diagnose", "latest", "--json"]);
+    let candidates = answer["candidates"].as_array().expect("candidates").clone();
+    assert!(candidates.len() > 3, "{answer:#}");
+    let mut window = on(place, Page::Diagnosis, Language::English);
+    window.wait_for(answer["conclusion"].as_str().expect("a sentence"));
+    let shown = |window: &Window| {
+        let all = window.shown();
+        let is_shown = |candidate: &&Value| {
+            let name = format!("{}: ", candidate["fault"].as_str().expect("a fault"));
+            all.iter().any(|text| text.starts_with(&name))
+        };
+        candidates.iter().filter(is_shown).count()
+    };
+    assert_eq!(shown(&window), 3);
+    window.click(&format!("more ({})", candidates.len() - 3));
+    window.until("all of them", |window| shown(window) == candidates.len());
+}
+
 #[test]
 fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
     // A run of one procedure that fails leaves more than one part to blame.

@@ -31,7 +31,7 @@ fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
         "eb_reaction",
         "472",
         "eb_relay.slow",
-        "Replace eb_relay",
+        "replace eb_relay",
         "Approver",
     ] {
         assert!(page.contains(word), "{word}");

@@ -125,7 +125,7 @@ fn each_fault_of_the_dictionary_is_found() {
             found.finding,
             Finding::Found,
             "{fault}: {}",
-            found.conclusion
+            found.conclusion.english
         );
         assert_eq!(top(&found), fault);
         assert!(!found.candidates[0].for_it.is_empty());
@@ -157,9 +157,9 @@ fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
     let found = assessed.diagnosis();
     assert_eq!(found.finding, Finding::CannotTell);
     assert!(
-        found.conclusion.starts_with("cannot tell"),
+        found.conclusion.english.starts_with("cannot tell"),
         "{}",
-        found.conclusion
+        found.conclusion.english
     );
     let parts = assessed.credible_parts(0.9).into_iter();
     let named: BTreeSet<_> = parts.map(|part| part.as_str()).collect();
@@ -170,7 +170,12 @@ fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
 #[test]
 fn two_faults_at_once_are_both_named() {
     let found = diagnosed(&dictionary(), &run(&["a.s1", "a.s2", "b.s1"], Some(641.0)));
-    assert_eq!(found.finding, Finding::TwoFound, "{}", found.conclusion);
+    assert_eq!(
+        found.finding,
+        Finding::TwoFound,
+        "{}",
+        found.conclusion.english
+    );
     let parts: BTreeSet<_> = found.lrus[..2].iter().map(|p| p.lru.as_str()).collect();
     assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
 }
@@ -184,11 +189,16 @@ fn a_part_that_has_failed_beside_one_of_two_others_is_found() {
     let seen = run(&["a.s1", "b.s1", "c.s1"], Some(643.0));
     let assessed = Assessment::of(&model, &seen);
     let found = assessed.diagnosis();
-    assert_eq!(found.finding, Finding::Found, "{}", found.conclusion);
-    assert!(
-        found.conclusion.starts_with("replace relay"),
+    assert_eq!(
+        found.finding,
+        Finding::Found,
         "{}",
-        found.conclusion
+        found.conclusion.english
+    );
+    assert!(
+        found.conclusion.english.starts_with("replace relay"),
+        "{}",
+        found.conclusion.english
     );
     let parts: Vec<_> = assessed
         .credible_parts(0.9)
@@ -254,7 +264,11 @@ fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
 fn a_result_that_no_mode_explains_blames_no_part() {
     let found = diagnosed(&dictionary(), &run(&["c.s2", "c.s3", "b.s3"], Some(240.0)));
     let open = [Finding::UnknownFault, Finding::CannotTell];
-    assert!(open.contains(&found.finding), "{}", found.conclusion);
+    assert!(
+        open.contains(&found.finding),
+        "{}",
+        found.conclusion.english
+    );
     assert!(found.lrus[0].probability < 0.5);
 }
 
@@ -285,9 +299,14 @@ fn a_fault_in_a_way_not_seen_yet_is_the_part_s_that_the_failed_checks_judge() {
             top(&found),
             format!("{suspect}.unseen"),
             "{}",
-            found.conclusion
+            found.conclusion.english
         );
-        assert_eq!(found.finding, Finding::CannotTell, "{}", found.conclusion);
+        assert_eq!(
+            found.finding,
+            Finding::CannotTell,
+            "{}",
+            found.conclusion.english
+        );
         let text = &found.candidates[0].text;
         assert!(
             text.starts_with("in a way that is not in the dictionary"),
@@ -326,11 +345,16 @@ fn the_shares_of_an_answer_add_up_to_one() {
 fn a_healthy_run_finds_nothing_and_a_short_one_is_not_enough() {
     let dictionary = dictionary();
     let all = diagnosed(&dictionary, &run(&[], Some(240.0)));
-    assert_eq!(all.finding, Finding::NoFault, "{}", all.conclusion);
+    assert_eq!(all.finding, Finding::NoFault, "{}", all.conclusion.english);
     let mut short = run(&[], Some(240.0));
     short.steps.truncate(2);
     let short = diagnosed(&dictionary, &short);
-    assert_eq!(short.finding, Finding::NotEnough, "{}", short.conclusion);
+    assert_eq!(
+        short.finding,
+        Finding::NotEnough,
+        "{}",
+        short.conclusion.english
+    );
     let next = short.next_check.expect("something is left to test");
     assert_eq!(
         next.check,
@@ -347,8 +371,17 @@ fn contradicting_evidence_gives_no_certain_answer() {
     seen.steps.extend(again.iter().cloned());
     seen.steps.extend(again);
     let found = diagnosed(&dictionary(), &seen);
-    assert_ne!(found.finding, Finding::NoFault, "{}", found.conclusion);
-    assert!(found.lrus[0].probability < 0.95, "{}", found.conclusion);
+    assert_ne!(
+        found.finding,
+        Finding::NoFault,
+        "{}",
+        found.conclusion.english
+    );
+    assert!(
+        found.lrus[0].probability < 0.95,
+        "{}",
+        found.conclusion.english
+    );
 }
 
 /// Goal: a fault that comes more often than when it was counted is known by all that it hits.
@@ -413,7 +446,11 @@ fn a_check_made_again_tells_what_comes_and_goes_from_what_lasts() {
         next.again && ["s1"].contains(&next.check.step.as_str()),
         "{next:?}"
     );
-    assert!(open.conclusion.contains("run again"), "{}", open.conclusion);
+    assert!(
+        open.conclusion.english.contains("run again"),
+        "{}",
+        open.conclusion.english
+    );
     let is_hit = |step: &&ObservedStep| step.check == name("c", "s1");
     let failed = seen.steps.iter().find(is_hit).cloned().expect("c.s1");
     seen.steps.extend(std::iter::repeat_n(failed.clone(), 5));
@@ -477,7 +514,7 @@ fn a_unit_s_own_log_points_at_a_part_without_any_step() {
         signs: BTreeSet::from([dead]),
     };
     let found = diagnosed(&dictionary, &seen);
-    assert_eq!(top(&found), "sensor.dead", "{}", found.conclusion);
+    assert_eq!(top(&found), "sensor.dead", "{}", found.conclusion.english);
 }
 
 #[test]

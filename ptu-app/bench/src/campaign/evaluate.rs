@@ -169,7 +169,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         parts: parts.into_iter().cloned().collect(),
         orders: None,
         finding: diagnosis.finding,
-        conclusion: diagnosis.conclusion,
+        conclusion: diagnosis.conclusion.english,
         ranked: diagnosis.lrus,
     })
 }

@@ -60,7 +60,7 @@ impl PairFigures {
                     .collect();
                 figures
                     .not_both
-                    .push((faults.join(" and "), diagnosis.conclusion));
+                    .push((faults.join(" and "), diagnosis.conclusion.english));
             }
         }
         figures

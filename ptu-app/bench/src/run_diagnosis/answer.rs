@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
-use diagnosis::{Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation};
+use diagnosis::{
+    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation, Sentence,
+};
 use fault_db::{Id, RepairsOf, RunDetail, Store, Verdict};
 use protocol::LruId;
 
@@ -208,10 +210,10 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
     let nothing_wrong = matches!(diagnosis.finding, Finding::NoFault | Finding::NotEnough);
     if !passed && !run.steps.is_empty() && nothing_wrong {
         diagnosis.finding = Finding::CannotTell;
-        diagnosis.conclusion =
-            "cannot tell: the run did not pass, and what did not pass was not run to \
-             its end or is not in the dictionary"
-                .into();
+        diagnosis.conclusion = match (run.run.verdict, &diagnosis.next_check) {
+            (Some(Verdict::Aborted), Some(next)) => Sentence::broken_off(next),
+            _ => Sentence::not_weighed(),
+        };
     }
 }
 

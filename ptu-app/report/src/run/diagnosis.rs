@@ -5,7 +5,7 @@ use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::words::{Language, Words, fill};
 use ptu_bench::run_diagnosis::Answer;
 
-/// Parts and fault modes less likely than this are not named.
+/// Fault modes less likely than this are not named.
 const LEAST_NAMED: f64 = 0.01;
 
 /// The blocks of the diagnosis, or why there is none.
@@ -18,7 +18,7 @@ pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
             blocks.push(Block::Text(Tone::Soft, none));
         }
         Ok(answer) => {
-            blocks.push(Block::Facts(concluded(sheet, answer, words)));
+            blocks.push(Block::Facts(concluded(answer, words)));
             let table = candidates(sheet, answer, words);
             if !table.rows.is_empty() {
                 blocks.push(Block::Table(table));
@@ -28,30 +28,15 @@ pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-fn concluded(sheet: &Sheet, answer: &Answer, words: &Words) -> Vec<(String, String)> {
+fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
     let (report, diagnosis) = (&words.report, &answer.diagnosis);
-    let likely = diagnosis
-        .lrus
-        .iter()
-        .filter(|p| p.probability >= LEAST_NAMED);
-    let parts: Vec<_> = likely
-        .map(|part| {
-            let percent = 100.0 * part.probability;
-            format!("{} ({percent:.1} %)", sheet.part(part.lru.as_str(), words))
-        })
-        .collect();
-    let parts = if parts.is_empty() {
-        report.none_likely.to_owned()
-    } else {
-        parts.join(", ")
-    };
-    let conclusion = fill(report.finding(diagnosis.finding), &[("parts", &parts)]);
+    let conclusion = words.sentence(&diagnosis.conclusion);
     let age = if answer.dictionary_current {
         report.current
     } else {
         report.stale
     };
-    let mut facts = vec![(report.conclusion.to_owned(), conclusion)];
+    let mut facts = vec![(report.conclusion.to_owned(), conclusion.to_owned())];
     if let Some(next) = &diagnosis.next_check {
         let next = format!("{} ({:.0} s)", next.check, next.cost_s);
         facts.push((report.next_check.to_owned(), next));

@@ -1,6 +1,8 @@
 //! Parts to replace.
 
-use super::wordings;
+use diagnosis::Sentence;
+
+use super::{Language, Words, wordings};
 
 wordings! {
     /// Parts to replace.
@@ -22,5 +24,16 @@ wordings! {
         dictionary: "dictionary: {from}", "고장 사전: {from}";
         report: "Report", "성적서";
         reasons: "reasons", "이유";
+        more: "more ({n})", "더 보기 ({n})";
+    }
+}
+
+impl Words {
+    /// What a diagnosis comes to, in this language.
+    pub fn sentence<'a>(&self, sentence: &'a Sentence) -> &'a str {
+        match self.language {
+            Language::English => &sentence.english,
+            Language::Korean => &sentence.korean,
+        }
     }
 }

@@ -1,6 +1,5 @@
 //! Test sheet.
 
-use diagnosis::Finding;
 use protocol::event::Severity;
 
 use super::wordings;
@@ -90,14 +89,6 @@ wordings! {
         diagnosis: "Diagnosis", "진단";
         no_diagnosis: "No diagnosis: {why}", "진단 불가: {why}";
         conclusion: "Conclusion", "결론";
-        found: "Replace {parts}.", "교체 대상: {parts}.";
-        two_found: "Two faults: replace {parts}.", "복합 고장, 교체 대상: {parts}.";
-        no_fault: "No fault is found.", "고장이 발견되지 않았습니다.";
-        cannot_tell: "The part cannot be told; possible: {parts}.", "부품을 특정할 수 없습니다. 후보: {parts}.";
-        unknown_fault: "A fault that is not in the fault dictionary.", "고장 사전에 없는 고장입니다.";
-        not_enough: "What was run shows nothing wrong, but is not enough to say that nothing is.",
-            "수행한 단계에서는 이상이 없으나, 이상 없음을 판정하기에는 부족합니다.";
-        none_likely: "none", "없음";
         probability: "Probability", "확률";
         mode: "Fault mode", "고장 모드";
         speaks_for: "For it", "근거";
@@ -156,18 +147,6 @@ impl Report {
         match origin {
             Origin::Scripts => self.from_scripts,
             Origin::Campaign => self.from_campaign,
-        }
-    }
-
-    /// The finding of a diagnosis, with a placeholder for the parts.
-    pub fn finding(&self, finding: Finding) -> &'static str {
-        match finding {
-            Finding::Found => self.found,
-            Finding::TwoFound => self.two_found,
-            Finding::NoFault => self.no_fault,
-            Finding::CannotTell => self.cannot_tell,
-            Finding::UnknownFault => self.unknown_fault,
-            Finding::NotEnough => self.not_enough,
         }
     }
 }

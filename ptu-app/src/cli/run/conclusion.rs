@@ -39,7 +39,7 @@ impl RunArguments {
             && answer.warnings.is_empty()
         {
             let id = answer.run.run.id.short();
-            let conclusion = &answer.diagnosis.conclusion;
+            let conclusion = &answer.diagnosis.conclusion.english;
             print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
         }
         Ok(())

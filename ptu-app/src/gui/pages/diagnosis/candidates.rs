@@ -1,45 +1,54 @@
 //! The ranked parts and fault modes, with the reasons.
 
-use diagnosis::{Candidate, Finding};
-use eframe::egui::{CollapsingHeader, RichText, Ui};
+use diagnosis::Candidate;
+use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
 use super::NamedAnswer;
 use crate::gui::parts::share_bar;
 use crate::gui::{Destination, PageContext, Palette};
-use ptu_bench::run_diagnosis::Answer;
-use ptu_report::words::fill;
+use ptu_report::words::{Diagnosis, fill};
 
-/// Parts of less than this share of the likeliest are not named in the headline.
-const WORTH_NAMING: f64 = 0.1;
-
-/// The parts the headline names.
-pub fn parts(answer: &Answer) -> String {
-    let parts = &answer.diagnosis.lrus;
-    if answer.diagnosis.finding == Finding::TwoFound {
-        let both = parts.iter().take(2).map(|part| part.lru.to_string());
-        return both.collect::<Vec<_>>().join(", ");
-    }
-    let most = parts.first().map_or(0.0, |part| part.probability);
-    let named = parts
-        .iter()
-        .filter(|part| part.probability > 0.0 && part.probability >= WORTH_NAMING * most)
-        .map(|part| format!("{} ({:.1} %)", part.lru, 100.0 * part.probability));
-    named.collect::<Vec<_>>().join(", ")
-}
+/// Candidates, and reasons of each, that are shown at once; the others are behind "more".
+const AT_ONCE: usize = 3;
 
 /// Candidates, two faults at once, and the rest.
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
-    for (place, candidate) in diagnosis.candidates.iter().enumerate() {
+    let (first, more) = at_once(&diagnosis.candidates);
+    for (place, candidate) in first.iter().enumerate() {
         show(ui, context, named, candidate, place == 0);
     }
-    for two in &diagnosis.two_faults {
+    behind_more(ui, words, "candidates", more.len(), |ui| {
+        for candidate in more {
+            show(ui, context, named, candidate, false);
+        }
+    });
+    for two in diagnosis.two_faults.iter().take(AT_ONCE) {
         let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
         likely(ui, two.probability, &said);
     }
     likely(ui, diagnosis.no_fault, words.no_fault);
     likely(ui, diagnosis.unknown_fault, words.unknown_fault);
+}
+
+fn at_once<T>(all: &[T]) -> (&[T], &[T]) {
+    all.split_at(all.len().min(AT_ONCE))
+}
+
+/// What is shown when it is asked for.
+fn behind_more(
+    ui: &mut Ui,
+    words: &Diagnosis,
+    of: &str,
+    count: usize,
+    content: impl FnOnce(&mut Ui),
+) {
+    if count > 0 {
+        CollapsingHeader::new(fill(words.more, &[("n", &count)]))
+            .id_salt(("more", of))
+            .show(ui, content);
+    }
 }
 
 fn likely(ui: &mut Ui, probability: f64, text: &str) {
@@ -67,20 +76,14 @@ fn show(
         .id_salt(&candidate.fault)
         .default_open(open)
         .show(ui, |ui| {
-            reasons(
-                ui,
-                "+",
-                words.speaks_for,
-                &candidate.for_it,
-                Palette::of(ui).good,
-            );
-            reasons(
-                ui,
-                "−",
-                words.speaks_against,
-                &candidate.against,
-                Palette::of(ui).warn,
-            );
+            let palette = Palette::of(ui);
+            let (good, warn) = (palette.good, palette.warn);
+            for (sign, what, texts, colour) in [
+                ("+", words.speaks_for, &candidate.for_it, good),
+                ("−", words.speaks_against, &candidate.against, warn),
+            ] {
+                reasons(ui, words, (sign, what), texts, colour);
+            }
             let traces = named
                 .answer
                 .traces
@@ -101,15 +104,26 @@ fn show(
         });
 }
 
-fn reasons(ui: &mut Ui, sign: &str, what: &str, texts: &[String], colour: eframe::egui::Color32) {
+fn reasons(
+    ui: &mut Ui,
+    words: &Diagnosis,
+    (sign, what): (&str, &str),
+    texts: &[String],
+    colour: Color32,
+) {
     if texts.is_empty() {
         return;
     }
     ui.label(RichText::new(what).small().color(colour));
-    for text in texts {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new(sign).strong().color(colour));
-            ui.label(text);
-        });
-    }
+    let list = |ui: &mut Ui, texts: &[String]| {
+        for text in texts {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(sign).strong().color(colour));
+                ui.label(text);
+            });
+        }
+    };
+    let (first, more) = at_once(texts);
+    list(ui, first);
+    behind_more(ui, words, sign, more.len(), |ui| list(ui, more));
 }

@@ -2,7 +2,6 @@
 
 mod candidates;
 
-use diagnosis::Finding;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 use fault_db::Id;
 use protocol::injection::Lru;
@@ -13,6 +12,9 @@ use crate::gui::{Destination, PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::run_diagnosis::{Answer, diagnose_run};
 use ptu_report::words::{Language, Words, fill};
+
+/// Size of the conclusion, points: it is read first, and may fill two lines.
+const HEADLINE: f32 = 20.0;
 
 #[derive(Default)]
 pub struct DiagnosisPage {
@@ -116,14 +118,8 @@ impl DiagnosisPage {
             ],
         );
         ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
-        let parts = candidates::parts(answer);
-        let finding = words.report.finding(answer.diagnosis.finding);
-        let headline = fill(finding, &[("parts", &parts)]);
-        ui.label(RichText::new(headline).strong().size(24.0));
-        // With one part found the headline has said it all.
-        if answer.diagnosis.finding != Finding::Found {
-            ui.label(&answer.diagnosis.conclusion);
-        }
+        let conclusion = words.sentence(&answer.diagnosis.conclusion);
+        ui.label(RichText::new(conclusion).strong().size(HEADLINE));
         next_check(ui, context, answer);
         if ui.button(words.diagnosis.report).clicked() {
             context.go_to.push(Destination::Report(run.id));

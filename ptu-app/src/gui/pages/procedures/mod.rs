@@ -272,12 +272,13 @@ impl ProceduresPage {
         let id = outcome.id;
         self.conclusion = match outcome.exit {
             ptu_bench::failure::Exit::Failed => {
+                let words = context.words;
                 Request::Pending(context.queries.run(move |paths| {
                     let store = paths.open()?;
                     let answer = diagnose_run(&store, &paths.scripts, id)?;
-                    let conclusion = &answer.diagnosis.conclusion;
+                    let conclusion = words.sentence(&answer.diagnosis.conclusion);
                     Ok(match answer.attribute(&store) {
-                        Ok(()) => conclusion.clone(),
+                        Ok(()) => conclusion.to_owned(),
                         // The part is known all the same.
                         Err(failure) => format!("{conclusion} ({failure})"),
                     })
