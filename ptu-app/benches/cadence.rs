@@ -102,10 +102,10 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
     let options = Options {
-        paths: DataPaths {
-            database: folder.path().join("history.db"),
-            scripts: ScriptsDirectory::find(Some(&scripts)).expect("scripts"),
-        },
+        paths: DataPaths::new(
+            folder.path().join("history.db"),
+            ScriptsDirectory::find(Some(&scripts)).expect("scripts"),
+        ),
         settings: Settings::default(),
         settings_file: None,
         connect: true,

@@ -123,10 +123,10 @@ impl Window {
         let scripts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts"));
         let context = Context::default();
         let options = Options {
-            paths: DataPaths {
+            paths: DataPaths::new(
                 database,
-                scripts: ScriptsDirectory::find(Some(scripts)).expect("scripts"),
-            },
+                ScriptsDirectory::find(Some(scripts)).expect("scripts"),
+            ),
             settings,
             settings_file: None,
             connect: false,

@@ -79,10 +79,7 @@ impl GuiArguments {
             .unwrap_or_default();
         settings.language = self.lang.unwrap_or(settings.language);
         settings.page = self.page.unwrap_or(settings.page);
-        let paths = DataPaths {
-            database: self.database.file()?,
-            scripts: self.scripts.find()?,
-        };
+        let paths = DataPaths::new(self.database.file()?, self.scripts.find()?);
         settings.unit.harness = self.harness.unwrap_or(settings.unit.harness);
         if let Some(unit) = &self.unit {
             settings.unit.endpoint = unit.to_string();

@@ -6,8 +6,9 @@ use std::time::Duration;
 use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
 
 use super::data_paths::DataPaths;
+use super::data_watch::DataWatch;
 use super::frame::Frame;
-use super::messages::Messages;
+use super::messages::{About, Messages};
 use super::page::Page;
 use super::page_context::Destination;
 use super::page_context::PageContext;
@@ -19,6 +20,7 @@ use super::{fonts, theme};
 use ptu_bench::bench_worker::Wake;
 use ptu_bench::failure::Failure;
 use ptu_bench::stop::Stop;
+use ptu_report::words::Words;
 
 /// How often a window that is being closed looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);
@@ -40,6 +42,9 @@ pub struct Options {
 /// The window.
 pub struct App {
     queries: QueryWorker,
+    database: DataWatch,
+    /// The person was told that it is gone.
+    told_gone: bool,
     units: Units,
     settings: Settings,
     saved: Settings,
@@ -66,6 +71,7 @@ impl App {
         theme::set(context);
         let settings = options.settings;
         let mut units = Units::new(settings.unit.clone(), wake.clone())?;
+        let database = DataWatch::new(options.paths.clone(), wake.clone())?;
         let queries = QueryWorker::new(options.paths, wake)?;
         if options.connect {
             units.chosen_mut().connect(&queries);
@@ -73,6 +79,8 @@ impl App {
         Ok(Self {
             units,
             queries,
+            database,
+            told_gone: false,
             saved: settings.clone(),
             settings,
             settings_file: options.settings_file,
@@ -91,11 +99,13 @@ impl App {
     pub fn show(&mut self, ui: &mut Ui) {
         let words = self.settings.language.words();
         self.units.poll(words, &mut self.messages);
+        self.tell_if_gone(words);
         self.apply_settings(ui.ctx());
         self.close_in_order(ui.ctx());
         let mut page_context = PageContext {
             words,
             queries: &self.queries,
+            database: &self.database,
             units: &mut self.units,
             settings: &mut self.settings,
             messages: &mut self.messages,
@@ -137,6 +147,20 @@ impl App {
     /// The page shown.
     pub fn page(&self) -> Page {
         self.settings.page
+    }
+
+    /// Told when the database goes, and no longer when it is back.
+    fn tell_if_gone(&mut self, words: &Words) {
+        let gone = self.database.is_gone();
+        if std::mem::replace(&mut self.told_gone, gone) == gone {
+            return;
+        }
+        self.messages.over(About::Database);
+        if gone {
+            let file = self.queries.paths().database.display().to_string();
+            self.messages
+                .trouble_about(About::Database, words.frame.database_gone, file);
+        }
     }
 
     fn apply_settings(&mut self, context: &Context) {

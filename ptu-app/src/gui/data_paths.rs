@@ -1,6 +1,8 @@
 //! Where the window's data are: the database file and the scripts directory.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use fault_db::{Store, StoreError};
 
@@ -16,16 +18,43 @@ pub struct DataPaths {
     pub database: PathBuf,
     /// Procedures, lines, units.
     pub scripts: ScriptsDirectory,
+    /// The database was there; the same for all copies.
+    was_there: Arc<AtomicBool>,
 }
 
 impl DataPaths {
-    /// The database, to be written to; made if it is not there.
+    /// These; nothing is opened yet.
+    pub fn new(database: PathBuf, scripts: ScriptsDirectory) -> Self {
+        Self {
+            database,
+            scripts,
+            was_there: Arc::default(),
+        }
+    }
+
+    /// The database was there and is no longer.
+    pub fn is_gone(&self) -> bool {
+        self.was_there.load(Ordering::Relaxed) && !self.database.exists()
+    }
+
+    /// The database, to be written to; made if it is not there yet, but never in place of one that was.
     ///
     /// # Errors
-    /// It cannot be opened.
+    /// It cannot be opened, or is gone.
     pub fn open(&self) -> Result<Store, Failure> {
+        if self.is_gone() {
+            return Err(Failure::bench(format!(
+                "the database {} is gone",
+                self.database.display()
+            )));
+        }
         owner_only::folder_of(&self.database)?;
-        Ok(Store::open(&self.database, clock::open_options())?)
+        Ok(self.seen(Store::open(&self.database, clock::open_options())?))
+    }
+
+    fn seen(&self, store: Store) -> Store {
+        self.was_there.store(true, Ordering::Relaxed);
+        store
     }
 
     /// The database, to be read; one that is not there yet is made, one of an older schema is copied
@@ -40,9 +69,16 @@ impl DataPaths {
         match Store::open_read_only(&self.database) {
             Err(StoreError::OlderSchema { .. }) => {
                 self.open()?.close()?;
-                Ok(Store::open_read_only(&self.database)?)
+                Ok(self.seen(Store::open_read_only(&self.database)?))
             }
-            opened => Ok(opened?),
+            opened => Ok(self.seen(opened?)),
         }
     }
+}
+
+/// A file that SQLite keeps beside the database.
+pub fn beside(database: &Path, ending: &str) -> PathBuf {
+    let mut name = database.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
 }

@@ -10,6 +10,17 @@ pub struct Messages {
     unread: Option<usize>,
 }
 
+/// What a message is about while it is shown: it goes when that is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// The connection to the unit of this number.
+    Connection(u64),
+    /// The present or last run of the unit of this number.
+    Run(u64),
+    /// The database file.
+    Database,
+}
+
 #[derive(Debug)]
 pub struct Message {
     /// In the language chosen when it happened.
@@ -20,6 +31,10 @@ pub struct Message {
     pub bad: bool,
     /// µs since 1970.
     pub at_us: i64,
+    /// None = until the next.
+    about: Option<About>,
+    /// What it is about is over: it is only listed.
+    pub over: bool,
 }
 
 /// Messages kept; older ones are dropped.
@@ -28,11 +43,33 @@ const KEPT: usize = 100;
 impl Messages {
     /// Adds a message that something went wrong.
     pub fn trouble(&mut self, text: impl Into<String>, detail: impl Into<String>) {
-        self.push(text.into(), detail.into(), true);
+        self.push(text.into(), detail.into(), true, None);
     }
 
     pub fn note(&mut self, text: impl Into<String>) {
-        self.push(text.into(), String::new(), false);
+        self.push(text.into(), String::new(), false, None);
+    }
+
+    /// As [`trouble`](Self::trouble), until this is over.
+    pub fn trouble_about(
+        &mut self,
+        about: About,
+        text: impl Into<String>,
+        detail: impl Into<String>,
+    ) {
+        self.push(text.into(), detail.into(), true, Some(about));
+    }
+
+    /// As [`note`](Self::note), until this is over.
+    pub fn note_about(&mut self, about: About, text: impl Into<String>) {
+        self.push(text.into(), String::new(), false, Some(about));
+    }
+
+    /// What was said about this no longer holds.
+    pub fn over(&mut self, about: About) {
+        for message in &mut self.all {
+            message.over |= message.about == Some(about);
+        }
     }
 
     /// Oldest first.
@@ -42,7 +79,7 @@ impl Messages {
 
     /// The latest trouble that the user has not acknowledged.
     pub fn unread_trouble(&self) -> Option<&Message> {
-        self.all.get(self.unread?)
+        self.all.get(self.unread?).filter(|message| !message.over)
     }
 
     /// Marks the latest trouble as acknowledged.
@@ -55,7 +92,7 @@ impl Messages {
         self.unread = None;
     }
 
-    fn push(&mut self, text: String, detail: String, bad: bool) {
+    fn push(&mut self, text: String, detail: String, bad: bool, about: Option<About>) {
         if self.all.len() == KEPT {
             self.all.remove(0);
             self.unread = self.unread.and_then(|place| place.checked_sub(1));
@@ -68,6 +105,8 @@ impl Messages {
             detail,
             bad,
             at_us: clock::now_us(),
+            about,
+            over: false,
         });
     }
 }

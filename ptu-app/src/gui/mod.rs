@@ -5,6 +5,7 @@
 
 mod app;
 mod data_paths;
+mod data_watch;
 mod display;
 mod fonts;
 mod frame;

@@ -2,6 +2,7 @@
 
 use fault_db::Id;
 
+use super::data_watch::DataWatch;
 use super::messages::Messages;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
@@ -13,6 +14,8 @@ pub struct PageContext<'a> {
     pub words: &'static Words,
     /// Queries to the database and the scripts directory.
     pub queries: &'a QueryWorker,
+    /// The database file as others leave it.
+    pub database: &'a DataWatch,
     /// The units under test of this window.
     pub units: &'a mut Units,
     /// Settings, saved when the window closes.
@@ -20,6 +23,13 @@ pub struct PageContext<'a> {
     pub messages: &'a mut Messages,
     /// Pages to open; done after this page is drawn.
     pub go_to: &'a mut Vec<Destination>,
+}
+
+impl PageContext<'_> {
+    /// What the database holds may have changed when this has: a run has ended here, or another program wrote.
+    pub fn data_version(&self) -> (usize, u64) {
+        (self.units.runs_ended(), self.database.changes())
+    }
 }
 
 /// A page to open, and what it is to show.

@@ -77,12 +77,13 @@ impl<T> CachedResponse<T> {
         self.shown = Request::Pending(pending);
     }
 
-    /// Takes the response if it has arrived.
-    pub fn poll(&mut self) {
-        self.shown.poll();
-        if self.newer.poll() {
+    /// Takes the response if it has arrived; true when it has arrived with this call.
+    pub fn poll(&mut self) -> bool {
+        let newer = self.newer.poll();
+        if newer {
             self.shown = std::mem::take(&mut self.newer);
         }
+        newer || self.shown.poll()
     }
 
     /// The latest response or the state of its request.

@@ -223,7 +223,7 @@ fn a_wrong_unit_is_refused_before_anything_is_opened() {
                 "--serial-no",
                 "a serial number that is too long for the wire",
             ],
-            &["--serial-no must be 1 to"],
+            &["a serial number is 1 to"],
         ),
     ]);
 }

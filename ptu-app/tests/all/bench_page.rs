@@ -52,6 +52,23 @@ fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_awa
     window.wait_for("Speed code: no code");
 }
 
+/// Goal: who stops a train that runs is told at once that it is being stopped, and when it is. Method: 40 km/h by hand;
+/// everything is stopped without a run, on another page.
+#[test]
+fn stopping_everything_without_a_run_is_said_at_once() {
+    let mut window = connected(on_bench());
+    window.click("Go to speed");
+    window.wait_for("measured: 40.0 km/h");
+    window.key(Page::Report.key());
+    window.key(Key::F12);
+    window.step();
+    assert!(window.shows_part("stopping: outputs are being made safe"));
+    window.until("safe outputs", |window| {
+        !window.shows_part("stopping: outputs")
+    });
+    assert!(!window.shows_part("not confirmed safe"));
+}
+
 /// Goal: an order of the wayside is given by hand, and what becomes of it is seen. Method: one that the train, with a
 /// driver at the cab, is not in the state for.
 #[test]

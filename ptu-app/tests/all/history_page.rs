@@ -47,6 +47,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     window.click("Repaired");
     window.wait_for("repaired");
     window.wait_for_part("SN-77");
+    window.wait_for("Recorded: Repaired");
     let id = fault["id"].as_str().expect("an id").to_owned();
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
     assert_eq!(stored["state"], "repaired");

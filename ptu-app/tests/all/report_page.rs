@@ -1,9 +1,8 @@
 //! The page with the test sheet: what it shows, the files it writes, and notes on a run.
 
-use crate::common::window::Window;
+use crate::common::window::{Window, own_scripts, settings};
 use crate::common::{Place, list, record_bad_unit, scripts};
-use eframe::egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use eframe::egui::Key;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::Language;
 
@@ -25,21 +24,6 @@ fn on(place: Place, language: Language) -> Window {
     Window::with(place, scripts(), settings)
 }
 
-/// Writes into a field in place of what is in it.
-fn write_over(window: &mut Window, label: &str, text: &str) {
-    window.wait_for(label);
-    let harness = window.harness();
-    harness
-        .get_all_by_label(label)
-        .last()
-        .expect("seen")
-        .focus();
-    harness.step();
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    window.write(label, text);
-}
-
 fn begins(window: &Window, name: &str, with: &[u8]) -> bool {
     std::fs::read(window.place.path(name)).is_ok_and(|file| file.starts_with(with))
 }
@@ -53,7 +37,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
     window.wait_for("code 25: alarm, FSB, EB");
     window.wait_for("472");
     let file = window.place.text_path("mine.pdf");
-    write_over(&mut window, "file", &file);
+    window.write_over("file", &file);
     for (button, name, begin) in [
         ("PDF", "mine.pdf", &b"%PDF-"[..]),
         ("HTML", "mine.html", b"<!DOCTYPE html>"),
@@ -81,15 +65,85 @@ fn a_run_that_passed_after_one_that_failed_is_shown() {
     window.wait_for_part(&format!(", run {short}"));
 }
 
+/// Goal: nobody takes one unit's sheet for another's. Method: a run of a unit, then the window connects to another; each
+/// run that ends there is shown, and an older one of the first unit only when it is clicked, with a word about it.
+#[test]
+fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
+    let place = Place::new();
+    let arguments = ["run", "--inject", "eb_relay.slow", "atp/overspeed"];
+    place.ptu(&arguments).exits(1);
+    let first = place.run_ids().swap_remove(0);
+    let apart = Place::new();
+    let own = own_scripts(
+        &apart,
+        "procedure(title = \"Alarm\", suspect = \"tra\")\nstep(\"quiet\", do = [wait(s(1))])\n",
+    );
+    let mut settings = settings(Page::Report);
+    settings.unit.serial = "ABC-1".into();
+    let mut window = Window::with(place, &own, settings);
+    window.wait_for_part("Unit SIM-0001, run");
+    window.click("Connect");
+    window.wait_for("ABC-1");
+    window.wait_for("Choose a run on the left.");
+    window.key(Page::Diagnosis.key());
+    window.wait_for("Choose a run on the left");
+    assert!(!window.shows_part("unit SIM-0001,"));
+    for _ in 0..2 {
+        window.key(Page::Procedures.key());
+        window.click("Run");
+        window.wait_for_part("Run over: passed");
+        let latest = window.place.run_ids().swap_remove(0);
+        let short = latest.get(latest.len() - 8..).expect("an id").to_owned();
+        window.key(Page::Report.key());
+        window.wait_for_part(&format!("Unit ABC-1, run {short}"));
+        assert!(!window.shows_part("of another unit"));
+        let short = first.get(first.len() - 8..).expect("an id");
+        let row = |window: &Window| {
+            let shown = window.shown();
+            shown.into_iter().find(|text| text.starts_with(short))
+        };
+        let row = row(&window).expect("the first run is listed");
+        window.click(&row);
+        window.wait_for_part("Unit SIM-0001, run");
+        window.wait_for_part("of another unit: SIM-0001, not ABC-1");
+    }
+}
+
+/// Goal: what another program does is seen, and a loss is not hidden. Method: a window over nothing; a run by the command
+/// line appears by itself; then the file is taken away and put back.
+#[test]
+fn what_another_program_records_is_shown_and_a_lost_database_is_said() {
+    let mut window = Window::open(Page::Faults);
+    window.wait_for("0 of 0 faults");
+    record_bad_unit(&window.place);
+    window.until("the faults", |window| {
+        !window.shows("0 of 0 faults") && window.shows_part(" faults")
+    });
+    window.key(Page::Report.key());
+    window.wait_for_part("Unit BAD-1, run");
+    let (there, away) = (
+        window.place.path("history.db"),
+        window.place.path("away.db"),
+    );
+    std::fs::rename(&there, &away).expect("taken away");
+    window.wait_for_part("The database is gone");
+    window.key(Page::Faults.key());
+    window.wait_for("The fault history cannot be read");
+    assert!(!there.exists(), "made again in silence");
+    std::fs::rename(&away, &there).expect("put back");
+    window.until("the faults", |window| window.shows_part(" faults"));
+    assert!(!window.shows_part("The database is gone"));
+}
+
 #[test]
 fn a_file_that_cannot_be_written_is_said() {
     let mut window = window(Language::English);
     let nowhere = window.place.text_path("no/such/folder/x.pdf");
-    write_over(&mut window, "file", &nowhere);
+    window.write_over("file", &nowhere);
     window.click("PDF");
     window.wait_for_part("The report was not written");
     window.wait_for_part("there is no folder");
-    write_over(&mut window, "file", " ");
+    window.write_over("file", " ");
     window.click("HTML");
     window.wait_for("name a file");
 }
@@ -160,7 +214,7 @@ fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {
     window.click("English");
     window.wait_for("What did not pass");
     let file = window.place.text_path("english");
-    write_over(&mut window, "파일", &file);
+    window.write_over("파일", &file);
     window.click("HTML");
     window.wait_for_part("저장 완료");
     assert!(window.place.read("english.html").contains("lang=\"en\""));

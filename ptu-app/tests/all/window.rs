@@ -186,6 +186,30 @@ fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     assert!(!messages.contains("cut short"), "{messages}");
 }
 
+/// Goal: a message holds while it is shown. Method: a run that is stopped, and another that is begun; a port that is not
+/// there, and a unit that is.
+#[test]
+fn what_is_over_is_no_longer_said() {
+    let mut settings = realtime(Page::Procedures);
+    settings.unit.endpoint = "serial:/dev/no-such-port".into();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("Not connected");
+    window.click("unit");
+    window.click("simulated unit");
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    assert!(!window.shows_part("Not connected"));
+    window.click("Run");
+    window.until("the run", running);
+    window.key(Key::F12);
+    window.wait_for_part("stopping: outputs");
+    window.wait_for_part("Run over: aborted");
+    window.click("Run");
+    window.until("the next run", running);
+    assert!(!window.shows_part("Run over"));
+}
+
 #[test]
 fn letting_go_in_a_run_closes_its_record_first() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
@@ -281,7 +305,7 @@ fn a_port_that_is_not_there_is_said() {
     settings.unit.endpoint = "serial:/dev/no-such-port".into();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.click("Connect");
-    window.wait_for_part("The unit cannot be reached");
+    window.wait_for_part("Not connected");
     window.wait_for_part("/dev/no-such-port");
     window.wait_for("not connected");
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_app::gui::DataPaths;
@@ -36,10 +36,10 @@ impl Window {
 
     /// A window with these settings on these scripts.
     pub fn with(place: Place, scripts: impl AsRef<std::path::Path>, settings: Settings) -> Self {
-        let paths = DataPaths {
-            database: place.path("history.db"),
-            scripts: ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
-        };
+        let paths = DataPaths::new(
+            place.path("history.db"),
+            ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
+        );
         let settings_file = Some(place.path("config/window.json"));
         let mut options = Some(Options {
             paths,
@@ -198,6 +198,17 @@ impl Window {
         node.type_text(text);
         self.harness.step();
         self.harness.step();
+    }
+
+    /// Writes into a field in place of what is in it.
+    pub fn write_over(&mut self, label: &str, text: &str) {
+        self.wait_for(label);
+        let node = self.harness.query_all_by_label(label).last().expect("seen");
+        node.focus();
+        self.harness.step();
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.step();
+        self.write(label, text);
     }
 
     /// Presses a key.

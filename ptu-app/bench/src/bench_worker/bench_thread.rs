@@ -7,11 +7,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 
 use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{Procedure, UnitEvent};
 use btu_rig::rig::UnitLink;
 use btu_rig::stimulus::Stimulus;
 use protocol::signal::{Sample, Signal};
-use protocol::{Duration, SCAN};
+use protocol::{Duration, Instant, SCAN};
 
 use super::event::BenchEvent;
 use super::live_state::{LiveState, Phase};
@@ -160,16 +161,19 @@ impl BenchThread {
         let mut restarts = session.bench().rig().unit_restarts();
         let mut asked = None;
         let mut arm_at = None;
+        let mut safe_until = None;
         loop {
             match orders.try_recv() {
                 Ok(Order::Apply(stimulus, bench_epoch)) => {
                     if self.is_permitted(&stimulus, bench_epoch) {
+                        self.end_stop(&mut safe_until);
                         asked = self.apply(session, &stimulus);
                     }
                 }
                 Ok(Order::Arm(bench_epoch))
                     if bench_epoch == self.live_state.read().bench_epoch =>
                 {
+                    self.end_stop(&mut safe_until);
                     let mut wait = Duration::ZERO;
                     let rig = session.bench().rig();
                     let bench = rig.connection() == Some(Connection::Btu);
@@ -182,6 +186,7 @@ impl BenchThread {
                 Ok(Order::Arm(_)) => {}
                 Ok(Order::MakeSafe) => {
                     (asked, arm_at) = (None, None);
+                    safe_until = Some(session.now() + SAFE_WITHIN);
                     self.live_state.invalidate_orders();
                     let now = session.now();
                     session.bench().rig_mut().make_safe(now);
@@ -197,6 +202,12 @@ impl BenchThread {
                 |entry, _, _| self.tell(BenchEvent::Logged(*entry)),
                 |_| false,
             );
+            if session.bench().rig().safe() {
+                self.end_stop(&mut safe_until);
+            } else if safe_until.is_some_and(|until| session.now() >= until) {
+                safe_until = None;
+                self.tell(BenchEvent::NotSafe);
+            }
             if arm_at.is_some_and(|at| session.now() >= at) {
                 arm_at = None;
                 asked = self.apply(session, &Stimulus::PtuArm);
@@ -215,6 +226,13 @@ impl BenchThread {
                 restarts = now_restarts;
                 self.tell(BenchEvent::UnitRestarted);
             }
+        }
+    }
+
+    /// Tells the end of a stop that was under way.
+    fn end_stop(&self, safe_until: &mut Option<Instant>) {
+        if safe_until.take().is_some() {
+            self.tell(BenchEvent::StopEnded);
         }
     }
 

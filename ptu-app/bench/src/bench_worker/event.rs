@@ -23,8 +23,10 @@ pub enum BenchEvent {
     LinkLost(String),
     /// The unit restarted.
     UnitRestarted,
-    /// Safe outputs were not confirmed before a run began.
+    /// Safe outputs were not confirmed before a run began, or after everything was stopped.
     NotSafe,
+    /// Stopping everything has ended: outputs are safe and the unit is disarmed, or a person went on by hand before that.
+    StopEnded,
     /// The bench thread panicked; the unit disarms by its own time-out.
     Broken,
     /// A manual stimulus was refused.

@@ -208,7 +208,7 @@ pub fn check_serial(serial: &str) -> Result<(), Failure> {
     let longest = size_of_val(&Identity::default().serial);
     if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {
         return Err(Failure::usage(format!(
-            "--serial-no must be 1 to {longest} ASCII characters"
+            "a serial number is 1 to {longest} ASCII characters"
         )));
     }
     Ok(())

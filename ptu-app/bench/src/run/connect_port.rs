@@ -195,8 +195,8 @@ impl BenchSetup {
             return Ok(());
         }
         Err(Failure::bench(format!(
-            "{}: the unit's clock goes {times_faster:.1} times as fast as the tester's; give --slower at both \
-             ends or at neither",
+            "{}: the unit's clock goes {times_faster:.1} times as fast as the tester's; slow both ends down alike, \
+             or neither",
             self.endpoint
         )))
     }
@@ -205,19 +205,14 @@ impl BenchSetup {
         let serial = unit_text::serial(identity);
         unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
         let checks = [
-            (
-                "unit configuration",
-                identity.config_crc,
-                self.config.crc,
-                "--unit-config",
-            ),
-            ("track database", identity.tdb_crc, self.line.crc, "--line"),
+            ("unit configuration", identity.config_crc, self.config.crc),
+            ("track database", identity.tdb_crc, self.line.crc),
         ];
-        for (what, unit, ours, option) in checks {
+        for (what, unit, ours) in checks {
             if unit != ours {
                 return Err(Failure::bench(format!(
                     "the {what} of unit {serial} has checksum {unit:08x}, the tests were loaded \
-                     for {ours:08x}; choose the unit's with {option}"
+                     for {ours:08x}; choose the {what} of that unit"
                 )));
             }
         }

@@ -35,7 +35,7 @@ pub fn check_expected(
     match expected.filter(|expected| *expected != serial) {
         None => Ok(()),
         Some(expected) => Err(Failure::bench(format!(
-            "the unit on {endpoint} is {serial}, not {expected}; check the port or leave --serial-no out"
+            "the unit on {endpoint} is {serial}, not {expected}; check the port and the serial number asked for"
         ))),
     }
 }

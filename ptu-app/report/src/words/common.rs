@@ -51,6 +51,7 @@ wordings! {
         line: "line", "노선";
         train_no: "train number", "편성 번호";
         loading: "loading …", "불러오는 중 …";
+        other_unit: "of another unit: {unit}, not {connected}", "다른 유닛의 시험: {unit} (연결됨: {connected})";
         nothing: "nothing here yet", "아직 아무것도 없음";
         refresh: "refresh", "새로 고침";
         save: "save", "저장";

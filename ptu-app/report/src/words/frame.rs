@@ -19,7 +19,9 @@ wordings! {
         dark: "dark", "어둡게";
         light: "light", "밝게";
         scale: "size", "크기";
-        cannot_connect: "The unit cannot be reached", "유닛에 연결할 수 없습니다";
+        cannot_connect: "Not connected", "연결하지 못했습니다";
+        database_gone: "The database is gone: put it back, or open the window again to begin a new one", "데이터베이스 파일이 없어졌습니다. 제자리에 돌려놓거나, 창을 다시 열어 새로 시작하십시오";
+        stopping: "stopping: outputs are being made safe …", "정지 중: 출력을 안전 상태로 전환 중 …";
         is_connected: "Connected to unit {unit}", "유닛 {unit} 연결됨";
         is_disconnected: "Disconnected; outputs safe, unit disarmed", "연결 해제됨: 출력은 안전하고 시험 허가는 해제됨";
         link_lost: "The connection to the unit is lost", "유닛과의 링크가 끊어졌습니다";

@@ -177,6 +177,19 @@ mod tests {
         }
     }
 
+    /// Who reads the window or a sheet has no command line before them.
+    #[test]
+    fn no_wording_speaks_of_the_command_line() {
+        for (key, english, korean) in all() {
+            for text in [english, korean] {
+                assert!(
+                    !text.contains("`ptu ") && !text.contains("--"),
+                    "{key}: {text}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn both_languages_have_the_same_placeholders() {
         for (key, english, korean) in all() {

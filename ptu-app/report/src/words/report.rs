@@ -78,8 +78,8 @@ wordings! {
         trace_of: "Trace {id}: {faults}", "트레이스 {id}: {faults}";
         trace_shown: "Trace {id} is shown above.", "트레이스 {id}은(는) 위에 있습니다.";
         trace_missing: "Trace {id} cannot be shown: {why}", "트레이스 {id}을(를) 표시할 수 없음: {why}";
-        more_traces: "{n} more traces are in the database; `ptu trace show` shows them.",
-            "그 밖의 트레이스 {n}개는 데이터베이스에 있습니다(`ptu trace show`).";
+        more_traces: "{n} more traces are in the database.",
+            "그 밖의 트레이스 {n}개는 데이터베이스에 있습니다.";
         cut_short: "cut short", "중간에 끊김";
         other_traces: "Traces of other faults", "그 밖의 고장 트레이스";
         from_trigger: "Time from the trigger, s", "트리거 기준 시간, s";
@@ -121,6 +121,7 @@ wordings! {
         write_pdf: "PDF", "PDF";
         write_csv: "CSV", "CSV";
         write_hint: "Written to the file named beside it, with its own ending; never over one that is there, but beside it as -2, -3 …", "옆에 적은 파일에 해당 확장자로 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        writing: "writing …", "저장하는 중 …";
         written: "Written: {file}", "저장 완료: {file}";
         not_written: "The report was not written", "성적서를 저장하지 못했습니다";
         name_file: "name a file", "파일 이름을 적으십시오";

@@ -19,6 +19,9 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
         connect(ui, context);
         identity(ui, context);
         running(ui, context);
+        if context.units.iter().any(|unit| unit.stopping) {
+            chip(ui, context.words.frame.stopping, Palette::of(ui).warn);
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop_button(ui, context);
             arming(ui, context);

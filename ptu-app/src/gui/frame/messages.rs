@@ -34,7 +34,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
             said(ui, trouble);
         }
         // Trouble is shown until it was taken note of, and not again as the latest message.
-        if !last.bad {
+        if !last.bad && !last.over {
             said(ui, last);
         }
     });

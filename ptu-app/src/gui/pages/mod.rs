@@ -28,6 +28,8 @@ impl Pages {
     /// Takes what has come for the pages, whichever is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         self.procedures.poll(context);
+        self.faults.poll(context);
+        self.report.poll(context);
     }
 
     pub fn show(&mut self, page: Page, ui: &mut Ui, context: &mut PageContext<'_>) {

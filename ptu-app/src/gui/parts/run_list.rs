@@ -9,7 +9,8 @@ use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::process_id;
-use ptu_report::words::Words;
+use ptu_bench::run::unit_text;
+use ptu_report::words::{Words, fill};
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;
@@ -18,27 +19,65 @@ const MOST: u32 = 2_000;
 #[derive(Default)]
 pub struct RunList {
     runs: CachedResponse<Vec<RunSummary>>,
-    /// Runs that had ended when it was asked for; none = not asked yet.
-    ended: Option<usize>,
+    /// Version of the data it was asked for; none = not asked yet.
+    version: Option<(usize, u64)>,
     find: String,
+    /// What a person chose, until a run ends or another unit is connected.
+    chosen: Option<Id>,
+    followed: Followed,
+    shown: Option<Id>,
+}
+
+/// What decides which run is shown unless one is chosen.
+#[derive(Clone, Default, PartialEq)]
+struct Followed {
+    /// The unit connected last.
+    unit: Option<String>,
+    runs_ended: usize,
 }
 
 impl RunList {
-    /// Shows it; the run that was clicked.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        context: &PageContext<'_>,
-        chosen: Option<Id>,
-    ) -> Option<Id> {
+    /// Shows it; the run to show: the one chosen, or the latest of the connected unit that ended.
+    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
         self.keep_up(context);
+        if let Some(clicked) = self.list(ui, context) {
+            self.choose(clicked, context);
+        }
+        self.shown
+    }
+
+    /// Shows this run, whichever unit it is of.
+    pub fn choose(&mut self, run: Id, context: &PageContext<'_>) {
+        self.follow(context);
+        self.chosen = Some(run);
+        self.shown = Some(run);
+    }
+
+    /// Says whose run is shown, if it is not the connected unit's.
+    pub fn tell_other_unit(&self, ui: &mut Ui, words: &Words) {
+        let Some(connected) = &self.followed.unit else {
+            return;
+        };
+        let runs = self.runs.get().value().into_iter().flatten();
+        let mut shown = runs.filter(|run| Some(run.id) == self.shown);
+        if let Some(run) = shown.find(|run| run.unit_serial != *connected) {
+            let named: [(&str, &dyn std::fmt::Display); 2] =
+                [("unit", &run.unit_serial), ("connected", connected)];
+            let said = format!("⚠ {}", fill(words.common.other_unit, &named));
+            ui.label(RichText::new(said).color(Palette::of(ui).warn).strong());
+        }
+    }
+
+    /// The run that was clicked.
+    fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
+        let chosen = self.shown;
         let words = context.words;
         ui.horizontal(|ui| {
             let label = ui.label(words.procedures.find);
             ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
                 .labelled_by(label.id);
             if ui.button(words.common.refresh).clicked() {
-                self.ended = None;
+                self.version = None;
             }
         });
         let runs = match self.runs.get() {
@@ -74,18 +113,35 @@ impl RunList {
         clicked
     }
 
-    /// The run to show when none was chosen: the latest that ended, since it is what the person has just
-    /// done.
-    pub fn foremost(&self) -> Option<Id> {
+    /// The latest run of the connected unit that ended, or of any while none was connected.
+    fn foremost(&self) -> Option<Id> {
+        let unit = self.followed.unit.as_ref();
         let mut runs = self.runs.get().value()?.iter();
-        Some(runs.find(|run| run.verdict.is_some())?.id)
+        let is_it = |run: &&RunSummary| {
+            run.verdict.is_some() && unit.is_none_or(|unit| run.unit_serial == *unit)
+        };
+        Some(runs.find(is_it)?.id)
     }
 
-    /// Asks when it was not asked yet, and when a run has ended since.
+    /// What a person chose no longer holds when a run has ended or another unit is connected.
+    fn follow(&mut self, context: &PageContext<'_>) {
+        let identity = context.units.chosen().identity();
+        let connected = identity.map(|identity| unit_text::serial(&identity));
+        let followed = Followed {
+            unit: connected.or_else(|| self.followed.unit.clone()),
+            runs_ended: context.units.runs_ended(),
+        };
+        if followed != self.followed {
+            self.followed = followed;
+            self.chosen = None;
+        }
+    }
+
+    /// Asks when it was not asked yet, and when the data have changed since.
     fn keep_up(&mut self, context: &PageContext<'_>) {
-        let ended = context.units.runs_ended();
-        if self.ended != Some(ended) {
-            self.ended = Some(ended);
+        let version = context.data_version();
+        if self.version != Some(version) {
+            self.version = Some(version);
             self.runs.request(context.queries.run(|paths| {
                 let filter = RunFilter {
                     limit: Some(MOST),
@@ -95,6 +151,11 @@ impl RunList {
             }));
         }
         self.runs.poll();
+        self.follow(context);
+        // Until the newer list is there, what was shown stays.
+        if !self.runs.is_stale() {
+            self.shown = self.chosen.or_else(|| self.foremost());
+        }
     }
 }
 

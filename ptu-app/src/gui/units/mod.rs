@@ -125,8 +125,8 @@ impl Units {
     /// Stops every run, takes every stimulus away and disarms, at all units.
     pub fn stop_all(&mut self) {
         self.stops += 1;
-        for unit in self.iter() {
-            unit.bench.stop_all();
+        for unit in self.iter_mut() {
+            unit.stop_all();
         }
     }
 

@@ -7,7 +7,7 @@ use btu_rig::procedure::plan::Connection;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
-use crate::gui::messages::Messages;
+use crate::gui::messages::{About, Messages};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
 use ptu_bench::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
@@ -33,6 +33,8 @@ pub struct Unit {
     pub(super) runs_ended: usize,
     /// The person knows that it cannot be reached.
     lost: bool,
+    /// Everything is being stopped, and it is not known to be safe yet.
+    pub stopping: bool,
     /// It was let go without its outputs being confirmed safe.
     pub(super) not_safe: bool,
 }
@@ -48,6 +50,7 @@ impl Unit {
             run: None,
             runs_ended: 0,
             lost: false,
+            stopping: false,
             not_safe: false,
         })
     }
@@ -96,6 +99,12 @@ impl Unit {
         self.bench.disconnect();
     }
 
+    /// Stops its run, takes every stimulus away and disarms.
+    pub(super) fn stop_all(&mut self) {
+        self.stopping = self.is_connected();
+        self.bench.stop_all();
+    }
+
     /// Begins a run, if nothing else has the bench; whether it did.
     pub fn begin(&mut self, order: RunOrder) -> bool {
         if !self.may_run() {
@@ -127,10 +136,14 @@ impl Unit {
 
     /// Takes what happened since the last time, and tells the person what matters.
     pub(super) fn poll(&mut self, words: &Words, said: &mut UnitMessages<'_>) {
+        let connection = About::Connection(self.id);
         if self.setup.poll() {
+            said.messages.over(connection);
             match &self.setup {
                 Request::Ready(setup) => self.bench.connect(setup.clone()),
-                Request::Failed(why) => said.trouble(words.frame.cannot_connect, why.clone()),
+                Request::Failed(why) => {
+                    said.trouble(connection, words.frame.cannot_connect, why.clone());
+                }
                 _ => {}
             }
         }
@@ -142,6 +155,7 @@ impl Unit {
 
     fn on_event(&mut self, event: BenchEvent, words: &Words, said: &mut UnitMessages<'_>) {
         let frame = &words.frame;
+        let (connection, this_run) = (About::Connection(self.id), About::Run(self.id));
         match event {
             BenchEvent::Connected { serial } => {
                 self.log.clear();
@@ -151,25 +165,31 @@ impl Unit {
                 if self.run.as_ref().is_some_and(|run| run.unit != serial) {
                     self.run = None;
                 }
-                said.note(fill(frame.is_connected, &[("unit", &serial)]));
+                said.note(connection, fill(frame.is_connected, &[("unit", &serial)]));
             }
-            BenchEvent::NotConnected(why) => said.trouble(frame.cannot_connect, why),
-            BenchEvent::Disconnected { safe: true } => said.note(frame.is_disconnected),
+            BenchEvent::NotConnected(why) => said.trouble(connection, frame.cannot_connect, why),
+            BenchEvent::Disconnected { safe: true } => {
+                self.stopping = false;
+                said.note(connection, frame.is_disconnected);
+            }
             BenchEvent::Disconnected { safe: false } | BenchEvent::NotSafe => {
+                self.stopping = false;
                 self.not_safe = true;
-                said.trouble(frame.not_safe, "");
+                said.trouble(None, frame.not_safe, "");
             }
+            BenchEvent::StopEnded => self.stopping = false,
             BenchEvent::LinkLost(why) => self.lose(why, words, said),
             BenchEvent::Broken => {
+                self.stopping = false;
                 self.not_safe = true;
-                said.trouble(frame.broken, "");
+                said.trouble(None, frame.broken, "");
                 if let Some(run) = self.run.as_mut().filter(|run| run.is_running()) {
                     run.end(None);
                 }
             }
-            BenchEvent::UnitRestarted => said.trouble(frame.unit_restarted, ""),
+            BenchEvent::UnitRestarted => said.trouble(None, frame.unit_restarted, ""),
             BenchEvent::NotDone { asked, why } => {
-                said.trouble(fill(frame.not_done, &[("what", &asked)]), why);
+                said.trouble(None, fill(frame.not_done, &[("what", &asked)]), why);
             }
             BenchEvent::Logged(entry) => {
                 if self.log.len() == LOG {
@@ -187,20 +207,22 @@ impl Unit {
             }
             BenchEvent::RunEnded(outcome) => {
                 self.runs_ended += 1;
+                self.stopping = false;
                 let verdict = words.common.verdict(outcome.verdict);
                 let mut ended = fill(frame.run_ended, &[("verdict", &verdict)]);
                 let coverage = self.run.as_ref().map(Progress::coverage);
                 if let Some(part) = coverage.and_then(|coverage| coverage_text(&coverage, words)) {
                     ended += &format!(" ({part})");
                 }
-                said.note(ended);
+                said.note(this_run, ended);
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
                 }
             }
             BenchEvent::RunFailed(why) => {
                 self.runs_ended += 1;
-                said.trouble(frame.run_failed, why);
+                self.stopping = false;
+                said.trouble(this_run, frame.run_failed, why);
                 if let Some(run) = &mut self.run {
                     run.end(None);
                 }
@@ -210,8 +232,9 @@ impl Unit {
 
     /// Said once, though every procedure of a run finds it out for itself.
     fn lose(&mut self, why: String, words: &Words, said: &mut UnitMessages<'_>) {
+        self.stopping = false;
         if !std::mem::replace(&mut self.lost, true) {
-            said.trouble(words.frame.link_lost, why);
+            said.trouble(About::Connection(self.id), words.frame.link_lost, why);
         }
     }
 }
@@ -231,14 +254,25 @@ impl UnitMessages<'_> {
         }
     }
 
-    fn trouble(&mut self, text: impl Into<String>, detail: impl Into<String>) {
+    fn trouble(
+        &mut self,
+        about: impl Into<Option<About>>,
+        text: impl Into<String>,
+        detail: impl Into<String>,
+    ) {
         let text = self.named(text);
-        self.messages.trouble(text, detail);
+        match about.into() {
+            Some(about) => self.messages.trouble_about(about, text, detail),
+            None => self.messages.trouble(text, detail),
+        }
     }
 
-    fn note(&mut self, text: impl Into<String>) {
+    fn note(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
         let text = self.named(text);
-        self.messages.note(text);
+        match about.into() {
+            Some(about) => self.messages.note_about(about, text),
+            None => self.messages.note(text),
+        }
     }
 }
 

@@ -55,7 +55,7 @@ fn a_unit_with_another_configuration_is_told_at_once() {
     place
         .ptu(&["run", "tcms/link", "--unit", &unit.address])
         .exits(3)
-        .explains(&["unit configuration", "checksum", "--unit-config"]);
+        .explains(&["unit configuration", "checksum", "choose"]);
     let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
     assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
 }
@@ -110,7 +110,7 @@ fn a_tester_slower_than_the_unit_is_told() {
     Running::start(&place, &unit, &["short.star", "--slower", "2"])
         .finish()
         .exits(3)
-        .explains(&["times as fast", "--slower"]);
+        .explains(&["times as fast", "slow both"]);
     let as_slow = Unit::on_pty(&["--slower", "2"]);
     Running::start(&place, &as_slow, &["short.star", "--slower", "2"])
         .finish()

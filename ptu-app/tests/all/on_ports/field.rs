@@ -102,7 +102,7 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
     depot
         .ptu(&other)
         .exits(3)
-        .explains(&["FLD-1", "FLD-2", "--serial-no"]);
+        .explains(&["FLD-1", "FLD-2", "serial number"]);
     assert_eq!(depot.run_ids().len(), 1);
 }
 

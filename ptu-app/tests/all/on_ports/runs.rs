@@ -133,5 +133,5 @@ fn over_tcp_a_procedure_passes_and_the_next_tester_is_let_in() {
     Running::start(&place, &unit, &other)
         .finish()
         .exits(3)
-        .explains(&["TCP-7", "TCP-8", "--serial-no"]);
+        .explains(&["TCP-7", "TCP-8", "serial number"]);
 }

@@ -4,6 +4,7 @@
 use crate::common::served::Unit;
 use crate::common::window::{Window, latest, settings};
 use crate::common::{Place, scripts};
+use eframe::egui::Key;
 use ptu_app::gui::{Page, Settings};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{Language, Words};
@@ -107,6 +108,28 @@ fn the_whole_way_on_a_train_is_clicked_through() {
 #[test]
 fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
     the_whole_way(Language::Korean);
+}
+
+/// Goal: another unit than the one asked for is told as that, in words of the window. Method: a unit of one serial number,
+/// a window set to another, then to the right one.
+#[test]
+fn another_unit_than_asked_for_is_said_and_forgotten_once_connected() {
+    let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
+    let mut settings = settings(Page::Bench);
+    settings.unit.endpoint = unit.address.clone();
+    settings.unit.serial = "TCP-8".into();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("is TCP-7, not TCP-8");
+    for text in window.shown() {
+        assert!(!text.contains("--") && !text.contains("reached"), "{text}");
+    }
+    window.click("Setup");
+    window.write_over("serial number", "TCP-7");
+    window.key(Key::Escape);
+    window.click("Connect");
+    window.wait_for("TCP-7");
+    assert!(!window.shows_part("not TCP-8"));
 }
 
 #[test]

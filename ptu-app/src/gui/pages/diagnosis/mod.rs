@@ -45,33 +45,34 @@ impl DiagnosisPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
         let list = Panel::left("diagnosed runs").default_size(270.0);
-        let clicked = list
-            .show(ui, |ui| self.runs.show(ui, context, self.run))
-            .inner;
-        let unasked = if self.run.is_none() {
-            self.runs.foremost()
-        } else {
-            None
-        };
-        if let Some(run) = clicked.or(unasked) {
-            self.open(run, context);
+        let run = list.show(ui, |ui| self.runs.show(ui, context)).inner;
+        if run != self.run {
+            self.ask(run, context);
         }
         CentralPanel::default().show(ui, |ui| {
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| self.answer(ui, context));
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                self.runs.tell_other_unit(ui, context.words);
+                self.answer(ui, context);
+            });
         });
     }
 
     /// Shows the diagnosis of this run.
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
-        self.run = Some(run);
-        self.answer = Request::Pending(context.queries.run(move |paths| {
-            Ok(NamedAnswer {
-                answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
-                parts: paths.scripts.faults()?.lrus,
-            })
-        }));
+        self.runs.choose(run, context);
+        self.ask(Some(run), context);
+    }
+
+    fn ask(&mut self, run: Option<Id>, context: &PageContext<'_>) {
+        self.run = run;
+        self.answer = run.map_or(Request::Idle, |run| {
+            Request::Pending(context.queries.run(move |paths| {
+                Ok(NamedAnswer {
+                    answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
+                    parts: paths.scripts.faults()?.lrus,
+                })
+            }))
+        });
     }
 
     fn answer(&self, ui: &mut Ui, context: &mut PageContext<'_>) {

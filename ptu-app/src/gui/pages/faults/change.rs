@@ -7,7 +7,7 @@ use crate::gui::parts::{ActionPlace, name_edit, note_edit};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock::now_us;
-use ptu_report::words::Words;
+use ptu_report::words::{Words, fill};
 
 /// States a person can bring a fault to.
 const TOWARDS: [FaultState; 5] = [
@@ -24,6 +24,8 @@ pub struct Change {
     form: Form,
     /// Answers with the fault that was changed.
     under_way: Request<Id>,
+    /// What is being recorded, as its button says it.
+    what: &'static str,
 }
 
 /// What is written about one fault.
@@ -74,6 +76,8 @@ impl Change {
                 None
             }
             Request::Ready(changed) => {
+                let said = fill(context.words.faults.recorded, &[("what", &self.what)]);
+                context.messages.note(said);
                 if self.form.of == Some(changed) {
                     self.form = Form::about(changed);
                 }
@@ -134,6 +138,7 @@ impl Change {
                 let written = !self.form.note.trim().is_empty();
                 let add = ui.add_enabled(written, Button::new(words.faults.add_note));
                 if place.clicked(&add) {
+                    self.what = words.faults.add_note;
                     let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
                     self.under_way = Request::Pending(context.queries.run(move |paths| {
                         paths.open()?.add_note(id, &who, &note, now_us())?;
@@ -154,6 +159,7 @@ impl Change {
         state: FaultState,
         who: &str,
     ) {
+        self.what = name(state, context.words);
         let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
             part: fault.cause().to_owned(),

@@ -32,8 +32,8 @@ struct History {
 pub struct FaultsPage {
     filter: Filter,
     history: CachedResponse<History>,
-    /// What the history was asked for with: days, and runs that had ended.
-    asked: Option<(Option<i64>, usize)>,
+    /// What the history was asked for with: days, and its version.
+    asked: Option<(Option<i64>, (usize, u64))>,
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,
     change: Change,
@@ -62,12 +62,12 @@ impl FaultsPage {
         self.detail.request_other(detail_of(id, context));
     }
 
-    /// Asks anew when a run has ended or the span is another.
+    /// Asks anew when the data or the span are others.
     fn keep_up(&mut self, context: &mut PageContext<'_>) {
-        let wanted = (self.filter.days, context.units.runs_ended());
+        let wanted = (self.filter.days, context.data_version());
         if self.asked != Some(wanted) {
-            if let Some((_, ended)) = self.asked.replace(wanted)
-                && ended != wanted.1
+            if let Some((_, version)) = self.asked.replace(wanted)
+                && version != wanted.1
             {
                 self.reread(context);
             }
@@ -88,6 +88,10 @@ impl FaultsPage {
         }
         self.history.poll();
         self.detail.poll();
+    }
+
+    /// Takes what has been stored, whatever page is in front.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if let Some(changed) = self.change.poll(context) {
             self.asked = None;
             if self.chosen == Some(changed) {

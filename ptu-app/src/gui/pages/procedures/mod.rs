@@ -13,6 +13,7 @@ use std::sync::Arc;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
+use crate::gui::messages::About;
 use crate::gui::parts::RunNoteForm;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
@@ -224,6 +225,7 @@ impl ProceduresPage {
             return;
         };
         let (choice, serial, connection) = (unit.choice.clone(), unit.name(), unit.connection());
+        context.messages.over(About::Run(id));
         let order = context.queries.run(move |paths| {
             let unit = (serial.as_str(), connection);
             prepare::order(paths, &choice, unit, &selection, how, &shown)
@@ -245,14 +247,18 @@ impl ProceduresPage {
                     if unit.is_some_and(|unit| unit.begin(*order)) {
                         self.shown = ResultsView::default();
                     } else {
-                        context.messages.trouble(words.not_begun, "");
+                        let run = About::Run(ordered.unit);
+                        context.messages.trouble_about(run, words.not_begun, "");
                     }
                 }
                 Request::Ready(Prepared::Changed) => {
                     context.messages.trouble(words.scripts_changed, "");
                     self.load(context);
                 }
-                Request::Failed(why) => context.messages.trouble(words.not_begun, why),
+                Request::Failed(why) => {
+                    let run = About::Run(ordered.unit);
+                    context.messages.trouble_about(run, words.not_begun, why);
+                }
                 order => self.orders.push(PendingOrder { order, ..ordered }),
             }
         }

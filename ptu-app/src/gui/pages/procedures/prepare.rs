@@ -175,10 +175,7 @@ mod tests {
     fn the_shown_procedures_are_run_unless_one_of_their_files_has_changed() {
         let folder = tempfile::tempdir().expect("a folder");
         let scripts = scripts_in(folder.path());
-        let paths = DataPaths {
-            database: folder.path().join("history.db"),
-            scripts,
-        };
+        let paths = DataPaths::new(folder.path().join("history.db"), scripts);
         let choice = BenchChoice::default();
         let load_shown = || ShownSuite {
             suite: Arc::new(load(&paths, &choice).expect("the suite")),

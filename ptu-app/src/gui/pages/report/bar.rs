@@ -53,6 +53,10 @@ impl ReportPage {
                 self.write(context, run, language, ending);
             }
         }
+        if !self.writing.is_idle() {
+            ui.spinner();
+            ui.label(words.writing);
+        }
     }
 
     fn write(&mut self, context: &mut PageContext<'_>, run: Id, language: Language, ending: &str) {

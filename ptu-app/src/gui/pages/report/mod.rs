@@ -20,14 +20,12 @@ use ptu_report::words::{Language, fill};
 #[derive(Default)]
 pub struct ReportPage {
     runs: RunList,
-    /// None = the foremost.
-    chosen: Option<Id>,
     /// The sheet asked for, and the one shown until that is there.
     asked: Request<Shown>,
     shown: Option<Shown>,
     asked_for: Option<(Id, Language)>,
-    /// Runs that had ended when it was asked for.
-    ended: usize,
+    /// Version of the data it was asked for.
+    version: (usize, u64),
     /// When the page was last shown, in passes of the window.
     pass: u64,
     /// Language of the sheet; none = the window's.
@@ -48,28 +46,30 @@ struct Shown {
 
 impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        self.poll(context);
         let list = Panel::left("reported runs").default_size(270.0);
-        let shown = self.run();
-        let clicked = list.show(ui, |ui| self.runs.show(ui, context, shown)).inner;
-        self.chosen = clicked.or(self.chosen);
-        self.keep_up(ui, context);
-        CentralPanel::default().show(ui, |ui| self.sheet(ui, context));
+        let run = list.show(ui, |ui| self.runs.show(ui, context)).inner;
+        self.keep_up(ui, context, run);
+        CentralPanel::default().show(ui, |ui| {
+            self.runs.tell_other_unit(ui, context.words);
+            self.sheet(ui, context);
+        });
     }
 
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
-        self.chosen = Some(run);
+        self.runs.choose(run, context);
         self.ask(run, context);
     }
 
     /// Asks when another run is to be shown, and anew when something may have been added to this one:
-    /// a run has ended, or the page was away.
-    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>) {
-        let (pass, ended) = (ui.ctx().cumulative_pass_nr(), context.units.runs_ended());
-        let away = pass > self.pass + 1 && !matches!(self.asked, Request::Pending(_));
-        let anew = away || ended != self.ended;
+    /// the data have changed, or the page was away.
+    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, run: Option<Id>) {
+        let pass = ui.ctx().cumulative_pass_nr();
+        let away = pass > self.pass + 1;
+        let pending = matches!(self.asked, Request::Pending(_));
+        let anew = (away || context.data_version() != self.version) && !pending;
         self.pass = pass;
-        let Some(run) = self.chosen.or_else(|| self.runs.foremost()) else {
+        let Some(run) = run else {
+            (self.asked, self.shown, self.asked_for) = (Request::Idle, None, None);
             return;
         };
         if anew || self.asked_for != Some((run, self.language(context))) {
@@ -84,7 +84,7 @@ impl ReportPage {
         }
         let language = self.language(context);
         self.asked_for = Some((run, language));
-        self.ended = context.units.runs_ended();
+        self.version = context.data_version();
         self.asked = Request::Pending(context.queries.run(move |paths| {
             let sheet = Sheet::gather(&paths.read()?, Some(&paths.scripts), run)?;
             Shown::of(&sheet, language)
@@ -101,7 +101,8 @@ impl ReportPage {
         self.language.unwrap_or(context.words.language)
     }
 
-    fn poll(&mut self, context: &mut PageContext<'_>) {
+    /// Takes what has come, whatever page is in front.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.asked.poll() {
             match std::mem::take(&mut self.asked) {
                 Request::Ready(shown) => self.shown = Some(shown),

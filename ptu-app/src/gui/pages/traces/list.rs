@@ -4,7 +4,7 @@ use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::Id;
 
 use crate::gui::parts::{MemoryReader, Stored};
-use crate::gui::request::Request;
+use crate::gui::request::{CachedResponse, Request};
 use crate::gui::{PageContext, Palette};
 use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
 use ptu_report::words::{Words, fill};
@@ -12,12 +12,12 @@ use ptu_report::words::{Words, fill};
 /// The list's own state.
 #[derive(Default)]
 pub struct TraceList {
-    runs: Request<Vec<ListedRun>>,
+    runs: CachedResponse<Vec<ListedRun>>,
     filter: String,
     /// What fits the filter, by run and trace; told anew when either changes.
     shown: Vec<(usize, Option<usize>)>,
-    /// Runs that had ended when it was asked for.
-    ended: usize,
+    /// Version of the data it was asked for.
+    version: (usize, u64),
     /// The run record of the chosen unit.
     unit_record: UnitRecord,
 }
@@ -44,11 +44,11 @@ impl TraceList {
         ui.horizontal(|ui| {
             ui.label(RichText::new(words.traces.recorded).strong());
             if ui.button(words.common.refresh).clicked() {
-                self.runs = Request::Idle;
+                self.runs = CachedResponse::default();
             }
         });
         if self.unit_record.0.show(ui, context) {
-            self.runs = Request::Idle;
+            self.runs = CachedResponse::default();
         }
         let edit = TextEdit::singleline(&mut self.filter)
             .hint_text(words.traces.filter)
@@ -58,7 +58,7 @@ impl TraceList {
         if edit.changed() {
             self.apply();
         }
-        let runs = match &self.runs {
+        let runs = match self.runs.get() {
             Request::Ready(runs) => runs,
             Request::Failed(why) => {
                 let text = format!("{}: {why}", words.traces.cannot_list);
@@ -106,34 +106,41 @@ impl TraceList {
 
     /// The latest trace and its run.
     pub fn latest(&self) -> Option<(Id, Id)> {
-        let run = self.runs.value()?.first()?;
+        let run = self.runs.get().value()?.first()?;
         Some((run.traces.first()?.id, run.id))
     }
 
     /// Unit and date of a run; unknown ones are empty.
     pub fn whose(&self, run: Option<Id>) -> (&str, &str) {
-        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        let runs = self
+            .runs
+            .get()
+            .value()
+            .map(Vec::as_slice)
+            .unwrap_or_default();
         let found = runs.iter().find(|listed| Some(listed.id) == run);
         found.map_or(("", ""), |run| (&run.unit, &run.began))
     }
 
     /// All traces with their runs, the latest run first.
     pub fn all(&self) -> impl Iterator<Item = (&ListedRun, &ListedTrace)> {
-        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        let runs = self
+            .runs
+            .get()
+            .value()
+            .map(Vec::as_slice)
+            .unwrap_or_default();
         runs.iter()
             .flat_map(|run| run.traces.iter().map(move |trace| (run, trace)))
     }
 
-    /// Asks when it was not asked yet, and when a run has ended since.
+    /// Asks when it was not asked yet, and when the data have changed since.
     fn keep_up(&mut self, context: &PageContext<'_>) {
-        let ended = context.units.runs_ended();
-        if ended != self.ended {
-            self.ended = ended;
-            self.runs = Request::Idle;
-        }
-        if self.runs.is_idle() {
+        let version = context.data_version();
+        if version != self.version || self.runs.get().is_idle() {
+            self.version = version;
             let question = context.queries.run(|paths| listing::list(&paths.read()?));
-            self.runs = Request::Pending(question);
+            self.runs.request(question);
         }
         if self.runs.poll() {
             self.apply();
@@ -142,7 +149,12 @@ impl TraceList {
 
     fn apply(&mut self) {
         self.shown.clear();
-        let runs = self.runs.value().map(Vec::as_slice).unwrap_or_default();
+        let runs = self
+            .runs
+            .get()
+            .value()
+            .map(Vec::as_slice)
+            .unwrap_or_default();
         for (place, run) in runs.iter().enumerate() {
             let traces = run.traces.iter().enumerate();
             let mut fitting = traces

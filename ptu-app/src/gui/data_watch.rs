@@ -1,0 +1,132 @@
+//! Follows the database file: says when another program has written to it, and when it is gone.
+//!
+//! Only the file and its write-ahead log are looked at, by size and time. A connection kept open for this would hold a
+//! lock, and keep other programs from what they need the file for alone.
+
+use std::fs::Metadata;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::time::{Duration, SystemTime};
+
+use super::data_paths::{DataPaths, beside};
+use ptu_bench::bench_worker::Wake;
+use ptu_bench::failure::Failure;
+
+/// Time between two looks.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// What the thread has seen.
+#[derive(Default)]
+struct Seen {
+    changes: AtomicU64,
+    gone: AtomicBool,
+}
+
+/// The thread that looks; it ends when this is dropped.
+pub struct DataWatch {
+    seen: Arc<Seen>,
+    _ends_when_dropped: Sender<()>,
+}
+
+impl DataWatch {
+    /// Starts the thread; `wake` is called when something has changed, and only then.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn new(paths: DataPaths, wake: Wake) -> Result<Self, Failure> {
+        let seen = Arc::<Seen>::default();
+        let (sender, ended) = mpsc::channel::<()>();
+        let told = seen.clone();
+        std::thread::Builder::new()
+            .name("database".into())
+            .spawn(move || {
+                let mut before = Stamp::of(&paths.database);
+                while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                    let now = Stamp::of(&paths.database);
+                    let gone = paths.is_gone();
+                    let was_gone = told.gone.swap(gone, Ordering::Relaxed);
+                    if now != before || gone != was_gone {
+                        before = now;
+                        told.changes.fetch_add(1, Ordering::Relaxed);
+                        wake();
+                    }
+                }
+            })
+            .map_err(|error| Failure::bench(format!("cannot start a thread: {error}")))?;
+        Ok(Self {
+            seen,
+            _ends_when_dropped: sender,
+        })
+    }
+
+    /// Counts the times it was seen to be another than before.
+    pub fn changes(&self) -> u64 {
+        self.seen.changes.load(Ordering::Relaxed)
+    }
+
+    /// It was there and is no longer.
+    pub fn is_gone(&self) -> bool {
+        self.seen.gone.load(Ordering::Relaxed)
+    }
+}
+
+/// Which file it is and how it was left.
+#[derive(PartialEq, Eq)]
+struct Stamp([Option<(u64, u64, Option<SystemTime>)>; 2]);
+
+impl Stamp {
+    fn of(database: &Path) -> Self {
+        let of = |path: &Path| {
+            let found = std::fs::metadata(path).ok()?;
+            // A reader makes an empty log, and takes it away.
+            (found.len() > 0).then(|| (identity(&found), found.len(), found.modified().ok()))
+        };
+        Self([of(database), of(&beside(database, "-wal"))])
+    }
+}
+
+/// Tells a file from another one put in its place.
+#[cfg(unix)]
+fn identity(file: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(file)
+}
+
+#[cfg(not(unix))]
+fn identity(file: &Metadata) -> u64 {
+    let made = file.created().ok();
+    let since = made.and_then(|made| made.duration_since(SystemTime::UNIX_EPOCH).ok());
+    since.map_or(0, |since| since.as_micros() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: reading wakes nobody, or the window would read for ever. Method: the stamp before and after a reader, and
+    /// after a writer.
+    #[test]
+    fn a_reader_leaves_the_stamp_and_a_writer_does_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let database = folder.path().join("history.db");
+        let options = ptu_bench::clock::open_options;
+        fault_db::Store::open(&database, options())
+            .expect("made")
+            .close()
+            .expect("closed");
+        let before = Stamp::of(&database);
+        drop(fault_db::Store::open_read_only(&database).expect("read"));
+        assert!(Stamp::of(&database) == before);
+        let store = fault_db::Store::open(&database, options()).expect("open");
+        drop(fault_db::Store::open_read_only(&database).expect("read"));
+        let open = Stamp::of(&database);
+        drop(fault_db::Store::open_read_only(&database).expect("read"));
+        assert!(Stamp::of(&database) == open);
+        let conn = rusqlite::Connection::open(&database).expect("open");
+        conn.execute_batch("PRAGMA user_version = 8")
+            .expect("written");
+        assert!(Stamp::of(&database) != open);
+        drop(store);
+    }
+}
