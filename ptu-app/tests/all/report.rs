@@ -1,9 +1,12 @@
 //! Test sheets and tables of runs, as the program writes them.
 
-use crate::common::Place;
+use std::collections::BTreeSet;
+
+use crate::common::{Place, list};
 use fault_db::Store;
 use ptu_report::run::{Sheet, html};
 use ptu_report::words::Language;
+use serde_json::Value;
 
 /// A failed run in all formats at once, and the same from the store: sheets say what failed, and are
 /// the same files again.
@@ -77,6 +80,95 @@ fn a_passing_run_has_a_korean_sheet() {
         assert!(page.contains(word), "{word}");
     }
     assert!(!page.contains("미합격 항목"), "nothing failed");
+}
+
+/// Goal: a sheet in Korean is Korean: steps, messages, sources, fault modes and reasons. Method: runs that fail in
+/// different ways; no text of their sheets has three plain English words in a row.
+#[test]
+fn a_korean_sheet_of_a_failed_run_has_no_english_sentence() {
+    let runs = [
+        ("atp/limit_speed", "atp_receiver.dead", 1),
+        ("atp/overspeed", "eb_relay.slow", 1),
+        ("door/*", "io_board.door_enable_dead", 1),
+        ("door/*", "door_contact.bridged", 3),
+        ("twc/*", "twc_cpu.dead", 1),
+        ("tcms/*", "inverter.dead", 1),
+        ("ato/markers", "marker_antenna.weak", 1),
+    ];
+    let mut english = BTreeSet::new();
+    for (procedures, fault, code) in runs {
+        let place = Place::new();
+        let sheet = place.text_path("sheet.html");
+        let run = ["run", procedures, "--inject", fault, "--lang", "ko"];
+        place
+            .ptu(&[&run[..], &["--report", &sheet]].concat())
+            .exits(code);
+        let page = place.read("sheet.html");
+        let body = page.split_once("</style>").map_or(&*page, |(_, body)| body);
+        let texts = body.split('<').filter_map(|part| part.split_once('>'));
+        let texts = texts.map(|(_, text)| text.trim());
+        english.extend(texts.filter(|text| is_english(text)).map(str::to_owned));
+    }
+    assert!(english.is_empty(), "{english:#?}");
+}
+
+/// Goal: who adds a step or a reason for a limit adds its Korean.
+#[test]
+fn every_step_and_every_reason_of_a_limit_has_korean() {
+    let place = Place::new();
+    let on_request = [
+        "ato/driverless_section",
+        "ato/line_run",
+        "ato/orders",
+        "ato/stop_degraded",
+    ];
+    let more = ["cab/inputs", "tcms/notches"];
+    let listed = [
+        place.json(&["run", "--list", "--json"]),
+        place.json(&[&["run", "--list", "--json"], &on_request[..], &more].concat()),
+    ];
+    let words = Language::Korean.words();
+    let is_missing = |text: &str| words.content(text) == text;
+    let mut missing = BTreeSet::new();
+    for procedure in listed.iter().flat_map(list) {
+        for step in list(&procedure["steps"]) {
+            let texts = [&step["name"], &step["note"]].into_iter();
+            missing.extend(
+                texts
+                    .filter_map(Value::as_str)
+                    .filter(|text| is_missing(text)),
+            );
+            let measured = list(&step["measurements"]).iter();
+            let sources = measured
+                .chain([step])
+                .filter_map(|of| of["limit_source"].as_str());
+            let reasons = sources.flat_map(|source| source.split("; "));
+            let reasons = reasons.filter_map(|source| source.strip_prefix("default: "));
+            missing.extend(reasons.filter(|reason| is_english(reason) && is_missing(reason)));
+        }
+    }
+    assert!(
+        missing.is_empty(),
+        "not in scripts/korean.toml: {missing:#?}"
+    );
+}
+
+/// Three plain words in a row, but for the signs of a condition: `lamps without failure`.
+fn is_english(text: &str) -> bool {
+    let is_plain = |word: &str| {
+        let word = word
+            .trim_end_matches([',', '.', ':', ';', ')'])
+            .trim_start_matches('(');
+        word.len() > 1
+            && !["with", "without"].contains(&word)
+            && word
+                .chars()
+                .all(|c| c.is_ascii_lowercase() || c == '\'' || c == '-')
+    };
+    let words: Vec<_> = text.split_whitespace().collect();
+    words
+        .windows(3)
+        .any(|words| words.iter().all(|word| is_plain(word)))
 }
 
 #[test]

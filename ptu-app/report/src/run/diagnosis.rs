@@ -14,7 +14,7 @@ pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(report.diagnosis.into())];
     match &sheet.diagnosis {
         Err(why) => {
-            let none = fill(report.no_diagnosis, &[("why", why)]);
+            let none = fill(report.no_diagnosis, &[("why", &words.content(why))]);
             blocks.push(Block::Text(Tone::Soft, none));
         }
         Ok(answer) => {
@@ -36,15 +36,24 @@ fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
     } else {
         report.stale
     };
-    let mut facts = vec![(report.conclusion.to_owned(), conclusion.to_owned())];
+    let mut facts = vec![(report.conclusion.to_owned(), conclusion.into_owned())];
     if let Some(next) = &diagnosis.next_check {
-        let next = format!("{} ({:.0} s)", next.check, next.cost_s);
+        let next = format!(
+            "{} ({:.0} s)",
+            words.content(&next.check.to_string()),
+            next.cost_s
+        );
         facts.push((report.next_check.to_owned(), next));
     }
     let dictionary = format!("{}, {age}", report.origin(answer.dictionary_from));
     facts.push((report.dictionary.to_owned(), dictionary));
     let warnings = answer.warnings.iter();
-    facts.extend(warnings.map(|warning| (sentence(words.common.note), warning.clone())));
+    facts.extend(warnings.map(|warning| {
+        (
+            sentence(words.common.note),
+            words.content(warning).into_owned(),
+        )
+    }));
     facts
 }
 
@@ -56,8 +65,11 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
         let cells = [
             format!("{:.1} %", 100.0 * candidate.probability),
             sheet.part(candidate.lru.as_str(), words),
-            format!("{}: {}", candidate.fault, candidate.text),
-            candidate.for_it.join("\n"),
+            format!("{}: {}", candidate.fault, words.content(&candidate.text)),
+            (candidate.for_it.iter())
+                .map(|reason| words.content(reason))
+                .collect::<Vec<_>>()
+                .join("\n"),
         ];
         Row::words(RowKind::Head, cells)
     });

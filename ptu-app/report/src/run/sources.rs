@@ -55,7 +55,7 @@ impl<'a> Sources<'a> {
     }
 }
 
-/// The sources of a limit in the language of the sheet; names and reasons as the script has them.
+/// The sources of a limit in the language of the sheet.
 pub fn in_words(sources: &str, words: &Words) -> String {
     let report = &words.report;
     let one = |source: &str| {
@@ -73,7 +73,7 @@ pub fn in_words(sources: &str, words: &Words) -> String {
             SourceKind::Default if key.is_empty() => report.by_default,
             SourceKind::Default => report.by_default_because,
         };
-        fill(said, &[("key", &key)])
+        fill(said, &[("key", &words.content(key))])
     };
     let all: Vec<_> = sources.split(SEPARATOR).map(one).collect();
     all.join(SEPARATOR)

@@ -40,7 +40,7 @@ fn rows(step: &StepRecord, sources: &Sources<'_>, words: &Words) -> Vec<Row> {
     let plain = |text: String| Cell::Text(Tone::Plain, text);
     let name = match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),
-        None => step.name.clone(),
+        None => words.content(&step.name).into_owned(),
     };
     let mut rows = vec![Row {
         kind: RowKind::Head,
@@ -60,7 +60,10 @@ fn rows(step: &StepRecord, sources: &Sources<'_>, words: &Words) -> Vec<Row> {
         };
         rows.push(Row {
             kind: RowKind::Detail,
-            cells: vec![(Cell::Text(tone, step.message.clone()), 5 + MEASURED)],
+            cells: vec![(
+                Cell::Text(tone, words.content(&step.message).into_owned()),
+                5 + MEASURED,
+            )],
         });
     }
     let all = &step.measurements;

@@ -1,5 +1,7 @@
 //! Parts to replace.
 
+use std::borrow::Cow;
+
 use diagnosis::Sentence;
 
 use super::{Language, Words, wordings};
@@ -30,10 +32,11 @@ wordings! {
 
 impl Words {
     /// What a diagnosis comes to, in this language.
-    pub fn sentence<'a>(&self, sentence: &'a Sentence) -> &'a str {
+    pub fn sentence<'a>(&self, sentence: &'a Sentence) -> Cow<'a, str> {
         match self.language {
-            Language::English => &sentence.english,
-            Language::Korean => &sentence.korean,
+            Language::English => Cow::Borrowed(&sentence.english),
+            // The check it names is called as its script calls it.
+            Language::Korean => self.content(&sentence.korean),
         }
     }
 }

@@ -1,10 +1,11 @@
 //! What people read, in their language: the one catalogue of the window and of printed reports.
 //!
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
-//! technicians write them; texts of scripts are not translated.
+//! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
 
 mod bench;
 mod common;
+mod content;
 mod diagnosis;
 mod faults;
 mod fill;
@@ -24,6 +25,8 @@ pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
 pub use traces::Traces;
+
+use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
@@ -122,6 +125,17 @@ pub struct Words {
     pub diagnosis: Diagnosis,
     /// Test sheet.
     pub report: Report,
+}
+
+impl Words {
+    /// A text of scripts, catalogues or the runner, which is made and stored in English: a step's name, a fault mode, a
+    /// message. What nobody has put into this language is as it was written.
+    pub fn content<'a>(&self, text: &'a str) -> Cow<'a, str> {
+        match self.language {
+            Language::English => Cow::Borrowed(text),
+            Language::Korean => content::korean(text),
+        }
+    }
 }
 
 static ENGLISH: Words = Words {

@@ -15,7 +15,7 @@ use crate::gui::parts::lane;
 use ptu_bench::bench_worker::BenchWorker;
 use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Span, Window, columns, spans};
-use ptu_report::words::{Bench, fill};
+use ptu_report::words::{Words, fill};
 
 /// Left of the curves: names with values, and the scale's numbers.
 const NAMES: f32 = 168.0;
@@ -70,7 +70,7 @@ impl Plot {
         framed(ui, |ui| {
             ui.horizontal(|ui| {
                 heading(ui, words.plot);
-                self.choose(ui, plotted, words);
+                self.choose(ui, plotted, view.words);
             });
             let size = vec2(ui.available_width(), height);
             let (area, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -98,22 +98,22 @@ impl Plot {
     }
 
     /// Time shown, and signals by name.
-    fn choose(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Bench) {
+    fn choose(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Words) {
         for span_s in SPANS_S {
-            let text = fill(words.plot_last, &[("time", &span_s)]);
+            let text = fill(words.bench.plot_last, &[("time", &span_s)]);
             if ui.selectable_label(self.span_s == span_s, text).clicked() {
                 self.span_s = span_s;
             }
         }
         let stay = MenuConfig::default().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        MenuButton::new(words.plot_signals)
+        MenuButton::new(words.bench.plot_signals)
             .config(stay)
             .ui(ui, |ui| self.signals(ui, plotted, words));
     }
 
-    fn signals(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Bench) {
+    fn signals(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Words) {
         ui.horizontal(|ui| {
-            let label = ui.label(words.plot_find).id;
+            let label = ui.label(words.bench.plot_find).id;
             ui.add(TextEdit::singleline(&mut self.find).desired_width(180.0))
                 .labelled_by(label);
         });
@@ -129,7 +129,7 @@ impl Plot {
                 let place = plotted.iter().position(|one| one == name);
                 let mut on = place.is_some();
                 let check = ui.add_enabled(on || !full, Checkbox::new(&mut on, name));
-                let check = check.on_hover_text(signal.definition().doc);
+                let check = check.on_hover_text(&*words.content(signal.definition().doc));
                 if !check.changed() {
                     continue;
                 }

@@ -1,5 +1,7 @@
 //! The ranked parts and fault modes, with the reasons.
 
+use std::borrow::Cow;
+
 use diagnosis::Candidate;
 use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
@@ -70,7 +72,11 @@ fn show(
         share_bar(ui, candidate.probability, Palette::of(ui).accent);
         ui.label(RichText::new(candidate.lru.as_str()).strong().size(17.0));
         ui.label(RichText::new(named.part(candidate.lru.as_str(), context.words)).strong());
-        ui.label(format!("{}: {}", candidate.fault, candidate.text));
+        ui.label(format!(
+            "{}: {}",
+            candidate.fault,
+            context.words.content(&candidate.text)
+        ));
     });
     CollapsingHeader::new(words.reasons)
         .id_salt(&candidate.fault)
@@ -82,7 +88,9 @@ fn show(
                 ("+", words.speaks_for, &candidate.for_it, good),
                 ("−", words.speaks_against, &candidate.against, warn),
             ] {
-                reasons(ui, words, (sign, what), texts, colour);
+                let said = texts.iter().map(|text| context.words.content(text));
+                let said: Vec<_> = said.collect();
+                reasons(ui, words, (sign, what), &said, colour);
             }
             let traces = named
                 .answer
@@ -108,18 +116,18 @@ fn reasons(
     ui: &mut Ui,
     words: &Diagnosis,
     (sign, what): (&str, &str),
-    texts: &[String],
+    texts: &[Cow<'_, str>],
     colour: Color32,
 ) {
     if texts.is_empty() {
         return;
     }
     ui.label(RichText::new(what).small().color(colour));
-    let list = |ui: &mut Ui, texts: &[String]| {
+    let list = |ui: &mut Ui, texts: &[Cow<'_, str>]| {
         for text in texts {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).strong().color(colour));
-                ui.label(text);
+                ui.label(&**text);
             });
         }
     };

@@ -136,7 +136,8 @@ fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(words.next_check);
-        ui.label(RichText::new(next.check.to_string()).strong());
+        let check = next.check.to_string();
+        ui.label(RichText::new(context.words.content(&check)).strong());
         let gains = fill(
             words.gains,
             &[

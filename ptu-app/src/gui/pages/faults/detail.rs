@@ -93,7 +93,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
             if ui.small_button(words.faults.to_diagnosis).clicked() {
                 go_to.push(Destination::Diagnosis(seen.run_id));
             }
-            ui.label(RichText::new(&seen.message).color(Palette::of(ui).quiet));
+            ui.label(RichText::new(&*words.content(&seen.message)).color(Palette::of(ui).quiet));
         });
     }
     if let Some(latest) = detail.occurrences.first() {

@@ -284,7 +284,7 @@ impl ProceduresPage {
                     let answer = diagnose_run(&store, &paths.scripts, id)?;
                     let conclusion = words.sentence(&answer.diagnosis.conclusion);
                     Ok(match answer.attribute(&store) {
-                        Ok(()) => conclusion.to_owned(),
+                        Ok(()) => conclusion.into_owned(),
                         // The part is known all the same.
                         Err(failure) => format!("{conclusion} ({failure})"),
                     })

@@ -1,5 +1,6 @@
 //! Results of the steps, and details of the selected one.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -112,15 +113,19 @@ fn row(
             shown.chosen = (!on).then_some(place);
         }
         if !result.message.is_empty() {
-            let message = RichText::new(&result.message).color(Palette::of(ui).quiet);
+            let message =
+                RichText::new(&*words.content(&result.message)).color(Palette::of(ui).quiet);
             ui.add(eframe::egui::Label::new(message).truncate());
         }
     });
 }
 
 /// The step's name, or where it failed if that is no step.
-fn name<'a>(result: &'a StepResult, words: &'a Words) -> &'a str {
-    outside_place(result).map_or(&result.name, |place| words.common.outside(place))
+fn name<'a>(result: &'a StepResult, words: &'a Words) -> Cow<'a, str> {
+    match outside_place(result) {
+        Some(place) => words.common.outside(place).into(),
+        None => words.content(&result.name),
+    }
 }
 
 fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a StepResult)> {
@@ -145,7 +150,7 @@ fn details(
     let name = name(result, words);
     ui.label(RichText::new(format!("{}: {name}", procedure.id)).strong());
     if !result.message.is_empty() {
-        ui.label(&result.message);
+        ui.label(&*words.content(&result.message));
     }
     if outside_place(result).is_some() {
         return;
@@ -240,7 +245,7 @@ fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
                     ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
                     let part = lru::stored(fault.lru.as_ref());
                     ui.label(fill(words.procedures.suspect, &[("part", &part)]));
-                    ui.label(&fault.message);
+                    ui.label(&*words.content(&fault.message));
                 });
             }
         });

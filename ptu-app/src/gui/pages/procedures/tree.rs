@@ -137,7 +137,7 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
             ui.label(RichText::new(title(procedure, words)).italics());
             for (place, step) in procedure.steps.iter().enumerate() {
                 let mut on = chosen.has(procedure, place);
-                let response = ui.checkbox(&mut on, &step.name);
+                let response = ui.checkbox(&mut on, &*words.content(&step.name));
                 let changed = response.changed();
                 if let Some(note) = &step.note {
                     response.on_hover_text(note);

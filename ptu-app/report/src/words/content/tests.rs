@@ -1,0 +1,117 @@
+use std::collections::BTreeSet;
+
+use protocol::injection::FaultCatalogue;
+use protocol::signal::Signal;
+
+use super::*;
+
+fn file() -> File {
+    toml::from_str(KOREAN).expect("the file that is built in")
+}
+
+#[test]
+fn numbers_stand_where_the_language_has_them() {
+    let said = |wording: &str, text: &str| with_numbers(wording, &without_numbers(text).1);
+    assert_eq!(
+        without_numbers("code 25 at 3.5 km/h, PSM4, T1, 2nd").0,
+        "code # at # km/h, PSM4, T1, 2nd"
+    );
+    assert_eq!(said("# 다음 #", "a 1 b 2.5"), "1 다음 2.5");
+    assert_eq!(said("#2 앞 #1", "a 1 b 2.5"), "2.5 앞 1");
+}
+
+#[test]
+fn a_message_is_told_with_what_it_holds() {
+    let say = |text: &str| korean(text).into_owned();
+    assert_eq!(
+        say("eb_reaction = 500, allowed at most 250 ms"),
+        "eb_reaction = 500 (허용 250 ms 이하)"
+    );
+    assert_eq!(
+        say("not run, setup: nothing; not run, the bench"),
+        "시험 안 함: 준비: nothing; 시험 안 함: the bench"
+    );
+    assert_eq!(
+        say("a step of the depot's own"),
+        "a step of the depot's own"
+    );
+}
+
+/// Goal: no text is shown with a number lost or made up, and no entry is there twice.
+#[test]
+fn both_languages_have_the_same_numbers_and_places() {
+    let File {
+        steps,
+        modes,
+        signals,
+        reasons,
+        phrases,
+        messages,
+    } = file();
+    for (english, korean) in [steps, modes, signals, reasons, phrases]
+        .into_iter()
+        .flatten()
+    {
+        let numbers: Vec<String> = (1..=english.matches('#').count())
+            .map(|n| format!("<{n}>"))
+            .collect();
+        let numbers: Vec<_> = numbers.iter().map(String::as_str).collect();
+        let said = with_numbers(&korean, &numbers);
+        let missing: Vec<_> = numbers
+            .iter()
+            .filter(|number| said.matches(*number).count() != 1)
+            .collect();
+        assert!(
+            missing.is_empty() && !said.contains('#'),
+            "{english}: {korean}"
+        );
+    }
+    let mut known = BTreeSet::new();
+    for [english, korean] in messages {
+        let mut places: Vec<_> = Pattern::new(&english, String::new()).places;
+        let mut of_korean = Pattern::new(&korean, String::new()).places;
+        places.sort();
+        of_korean.sort();
+        assert_eq!(places, of_korean, "{english}");
+        assert!(known.insert(english.clone()), "{english} twice");
+    }
+}
+
+/// Goal: no fault mode and no signal is told in English, and no entry stays behind one that is gone.
+#[test]
+fn the_fault_modes_and_signals_are_those_of_the_catalogues() {
+    let file = file();
+    let keys = |texts: &mut dyn Iterator<Item = String>| -> BTreeSet<String> {
+        texts.map(|text| without_numbers(&text).0).collect()
+    };
+    let catalogue = include_str!("../../../../../scripts/units/faults.toml");
+    let catalogue = FaultCatalogue::from_toml(catalogue).expect("the one that is delivered");
+    let modes = keys(&mut catalogue.faults.iter().map(|mode| mode.mode.clone()));
+    assert_eq!(file.modes.into_keys().collect::<BTreeSet<_>>(), modes);
+    let signals = keys(
+        &mut Signal::ALL
+            .iter()
+            .map(|signal| signal.definition().doc.to_owned()),
+    );
+    assert_eq!(file.signals.into_keys().collect::<BTreeSet<_>>(), signals);
+}
+
+/// Units and signs are the same in both languages.
+#[test]
+fn korean_is_korean() {
+    let File {
+        steps,
+        modes,
+        signals,
+        reasons,
+        phrases,
+        ..
+    } = file();
+    let parts = [steps, modes, signals, reasons, phrases];
+    for (english, korean) in parts.into_iter().flatten() {
+        let mut words = english.split(|c: char| !c.is_ascii_lowercase());
+        let is_said = words.any(|word| word.len() > 2);
+        let hangul = korean.chars().any(|c| ('가'..='힣').contains(&c));
+        assert!(hangul || !is_said, "{english}: {korean}");
+    }
+}
