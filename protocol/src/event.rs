@@ -104,9 +104,9 @@ events! {
     InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
     InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";
     FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
-    CodeLost = 200 "code_lost" Info "-" "No valid speed code any more: most restrictive limit" "속도코드 상실" "";
-    CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도코드 수신" "code rate, 0.01 Hz";
-    CodeFlickers = 202 "code_flickers" Minor "atp_receiver" "Speed codes do not stay long enough to be detected: the most restrictive one holds" "속도코드 불안정: 최저 제한속도 적용" "time for which the last one was heard within the hold time, ms";
+    CodeLost = 200 "code_lost" Info "-" "No valid speed code any more: most restrictive limit" "속도 코드 상실" "";
+    CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도 코드 수신" "code rate, 0.01 Hz";
+    CodeFlickers = 202 "code_flickers" Minor "atp_receiver" "Speed codes do not stay long enough to be detected: the most restrictive one holds" "속도 코드 불안정: 최저 제한속도 적용" "time for which the last one was heard within the hold time, ms";
     Overspeed = 210 "overspeed" Info "-" "Speed above limit and alarm margin" "과속 경보" "excess, cm/s";
     OverspeedFsb = 211 "overspeed_fsb" Info "-" "Overspeed: full service brake" "과속 상용전제동" "excess, cm/s";
     OverspeedEb = 212 "overspeed_eb" Major "-" "Overspeed: emergency brake" "과속 비상제동" "excess, cm/s";
@@ -125,7 +125,7 @@ events! {
     TachoRatio = 227 "tacho_ratio" Minor "-" "Tachometers differ by a share of the way: worn wheel or missing teeth" "속도센서 비율 차이: 차륜 마모 또는 치 결손" "1 over 2, 0.01 %";
     TachoShare1 = 228 "tacho1_share" Minor "speed_sensor_1" "Tachometer 1 counts another way than lies between markers: worn wheel if more, missing teeth if less" "속도센서 1 거리 비율 오차" "difference, 0.01 %";
     TachoShare2 = 229 "tacho2_share" Minor "speed_sensor_2" "Tachometer 2 counts another way than lies between markers: worn wheel if more, missing teeth if less" "속도센서 2 거리 비율 오차" "difference, 0.01 %";
-    EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 융착" "";
+    EbRelayWelded = 230 "eb_relay_welded" Critical "eb_relay" "EB relay dropped but the brake line stays energised" "EB 계전기 용착" "";
     EbRelayOpen = 231 "eb_relay_open" Critical "eb_relay" "EB relay energised but the brake line stays dead" "EB 계전기 개방" "";
     WheelSlip = 232 "wheel_slip" Info "-" "A wheel spins or slides: its speed changes faster than adhesion lets a train" "차륜 공전/활주" "acceleration, cm/s²";
     SpeedVanished = 233 "speed_vanished" Critical "io_board" "Speed fell faster than a train can slow: no tachometer is believed" "속도 신호 소실: 속도센서 전체 불신" "last speed that is believed, cm/s";
@@ -139,9 +139,9 @@ events! {
     DoorOrderRefused = 245 "door_order_refused" Major "ato_cpu" "Doors ordered to open on a side that is not enabled: order stopped" "허용되지 않은 쪽 출입문 열림 지령 차단" "sides";
     DoorsStayClosed = 246 "doors_stay_closed" Major "io_board" "Doors that are enabled and ordered to open stay closed" "출입문 열림 지령에 무응답" "sides";
     DoorChatters = 247 "door_chatters" Minor "door_contact" "A door line opens more often than doors can: a contact chatters" "출입문 접점 떨림" "openings within a second";
-    MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "표지 순서 오류" "marker";
-    MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "표지 누락" "marker";
-    MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "표지 위치 오차" "difference, cm";
+    MarkerOrder = 300 "marker_order" Minor "marker_antenna" "Marker out of order" "마커 순서 오류" "marker";
+    MarkerMissing = 301 "marker_missing" Minor "marker_antenna" "Marker missed" "마커 누락" "marker";
+    MarkerPosition = 302 "marker_position" Minor "marker_antenna" "Marker away from its place" "마커 위치 오차" "difference, cm";
     TraFailed = 303 "tra_failed" Major "tra" "TRA did not answer its test" "TRA 시험 실패" "";
     TraRestored = 304 "tra_restored" Info "-" "TRA answers again" "TRA 복귀" "";
     WheelDiameter = 305 "wheel_diameter" Major "-" "Way by wheels and way between markers differ" "차륜 직경 오차" "difference, 0.01 %";
@@ -183,9 +183,9 @@ events! {
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
     InverterFailed = 800 "inverter_failed" Major "inverter" "TCMS: inverter does not answer" "추진장치 고장" "car";
     BrakeUnitFailed = 801 "brake_unit_failed" Major "brake_unit" "TCMS: brake control unit does not answer" "제동장치 고장" "car";
-    BrakeCylinderFailed = 802 "brake_cylinder_failed" Major "brake_cylinder" "TCMS: brake cylinders do not follow the demand" "제동통 압력 이상" "car";
+    BrakeCylinderFailed = 802 "brake_cylinder_failed" Major "brake_cylinder" "TCMS: brake cylinders do not follow the demand" "제동실린더 압력 이상" "car";
     RegenerationCutOut = 803 "regeneration_cut_out" Minor "inverter" "TCMS: inverter cut its electric brake out" "회생제동 차단" "car; 0 = all, the line takes nothing";
-    BrakeNotReleased = 804 "brake_not_released" Major "brake_cylinder" "TCMS: brake not released" "제동 불완해" "car";
+    BrakeNotReleased = 804 "brake_not_released" Major "brake_cylinder" "TCMS: brake not released" "제동불완해" "car";
     ControllerFailed = 805 "controller_failed" Major "master_controller" "TCMS: master controller value in its failure range" "주간제어기 고장" "mV";
     ControllerContradicts = 806 "controller_contradicts" Minor "master_controller" "TCMS: power and brake contacts both on" "역행/제동 동시 입력" "";
     TwoCabsActive = 807 "two_cabs_active" Critical "head_control_relay" "TCMS: two head control relays energised" "전두계전기 중복" "";

@@ -37,7 +37,7 @@ const NOTHING: [&str; 7] = [
     "wayside was being worked on",
     "재현 안됨",
     "이상 없음, 시험대 3회 합격",
-    "지상 장치 작업 중이었음",
+    "지상 신호장치 작업 중이었음",
 ];
 
 const REPAIRED: [&str; 9] = [

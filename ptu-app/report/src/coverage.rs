@@ -56,7 +56,7 @@ mod tests {
         );
         assert_eq!(
             said(&coverage, Language::Korean),
-            "466개 단계 중 80개 수행, 모두 합격; 386개 건너뜀; 386개는 벤치 하네스 필요: ato, atp"
+            "466개 단계 중 80개 수행, 모두 합격; 386개 건너뜀; 386개는 시험대 하네스 필요: ato, atp"
         );
         coverage.passed = 79;
         assert!(

@@ -160,7 +160,7 @@ fn the_page_speaks_korean() {
     });
     window.wait_for("EB: 완해");
     window.wait_for("출입문: 닫힘");
-    window.click("속도코드: 55");
+    window.click("속도 코드: 55");
     window.wait_for("제한: 55.0 km/h");
     window.click("출입문: 열림");
     window.wait_for_part("역행 차단 원인: 출입문");

@@ -181,7 +181,7 @@ fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
         ..Settings::default()
     });
     window.wait_for("0.00 s 트리거");
-    let filter = "필터: 유닛, 시험, 날짜, 고장";
+    let filter = "필터: 장치, 시험, 날짜, 고장";
     window.write(filter, "bad-1 atp_cpu");
     window.until("fewer traces", |window| {
         let shown = window.shown();
@@ -190,7 +190,7 @@ fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
     });
     clear(&mut window, filter);
     window.write(filter, "GOOD-9");
-    window.wait_for("필터에 맞는 트레이스가 없음");
+    window.wait_for("필터에 맞는 신호 기록이 없음");
     window.click("거리");
     window.wait_for("0.00 m 트리거");
 }

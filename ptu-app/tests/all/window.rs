@@ -117,7 +117,7 @@ fn speaks_korean_from_one_frame_to_the_next() {
     window.click("language");
     window.click("한국어");
     for name in [
-        "벤치",
+        "시험대",
         "시험 절차",
         "고장 이력",
         "진단",

@@ -300,7 +300,7 @@ fn a_limit_stands_with_the_number_of_its_source_which_is_listed_once_in_the_lang
         ),
         (
             Language::Korean,
-            "유닛 구성 overspeed.eb_delay_ms; 시험기 기본값: two scans",
+            "장치 구성 overspeed.eb_delay_ms; 시험기 기본값: two scans",
         ),
     ] {
         let page = html(&sheet(&store, id), language.words());

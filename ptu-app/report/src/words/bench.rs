@@ -8,13 +8,13 @@ use ptu_bench::bench_worker::Refused;
 wordings! {
     /// Live view and stimuli.
     Bench {
-        title: "Bench", "벤치";
-        connect_first: "Connect a unit to see it live.", "유닛을 연결하면 실시간으로 볼 수 있습니다.";
+        title: "Bench", "시험대";
+        connect_first: "Connect a unit to see it live.", "장치를 연결하면 실시간으로 볼 수 있습니다.";
 
         // Why a stimulus cannot be given.
-        no_unit: "No unit is connected", "연결된 유닛이 없습니다";
-        run_has_bench: "A run has the bench: stop it first", "시험이 벤치를 사용 중입니다. 먼저 시험을 멈추십시오";
-        needs_harness: "Goes through the bench harness; only the maintenance port is connected", "벤치 하네스로 주는 신호입니다. 정비 포트만 연결되어 있습니다";
+        no_unit: "No unit is connected", "연결된 장치가 없습니다";
+        run_has_bench: "A run has the bench: stop it first", "시험이 시험대를 사용 중입니다. 먼저 시험을 멈추십시오";
+        needs_harness: "Goes through the bench harness; only the maintenance port is connected", "시험대 하네스로 주는 신호입니다. 정비 포트만 연결되어 있습니다";
         in_cab: "A person in the cab does this; only the maintenance port is connected", "운전실에서 사람이 조작합니다. 정비 포트만 연결되어 있습니다";
         not_armed: "The unit is not armed: hold Arm down first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 1초 동안 누르십시오";
         key_off: "The maintenance key is off", "정비 키가 꺼져 있습니다";
@@ -60,15 +60,15 @@ wordings! {
         hcr: "HCR", "HCR";
         key: "Maintenance key", "정비 키";
         controller: "Controller", "주간제어기";
-        speed_code: "Speed code", "속도코드";
+        speed_code: "Speed code", "속도 코드";
         no_code: "no code", "무코드";
         eb_cause: "EB cause", "EB 원인";
         fsb_cause: "FSB cause", "FSB 원인";
         ato: "ATO", "ATO";
         ready: "ready", "준비됨";
         not_ready: "not ready", "준비 안 됨";
-        standstill: "Standstill", "정차 검지";
-        healthy: "Unit healthy", "유닛 정상";
+        standstill: "Standstill", "정지 검지";
+        healthy: "Unit healthy", "장치 정상";
         refused: "Automatic refused", "자동운전 불허";
 
         // Track strip.
@@ -99,7 +99,7 @@ wordings! {
         // TWC.
         twc: "TWC", "TWC";
         twc_link: "TWC link", "TWC 통신";
-        wayside: "Wayside", "지상 장치";
+        wayside: "Wayside", "지상 신호장치";
         station: "Station", "역";
         next_station: "Next station", "다음 역";
         loop_id: "Loop", "루프";
@@ -135,7 +135,7 @@ wordings! {
         group_test_board: "TEST board", "TEST 보드";
         group_atp: "ATP signal", "ATP 신호";
         group_speed: "Speed", "속도";
-        group_markers: "Markers", "지상자";
+        group_markers: "Markers", "마커";
         group_twc: "TWC", "TWC";
         group_lines: "Train lines", "인통선";
         group_controller: "Controller", "주간제어기";
@@ -166,10 +166,10 @@ wordings! {
         noise: "Noise", "잡음";
         factor: "Scale", "배율";
         train_model: "Train model", "열차 모델";
-        marker_pulse: "Marker pulse", "지상자 펄스";
+        marker_pulse: "Marker pulse", "마커 펄스";
         lay: "Lay section", "구간 설정";
         take_up: "Take up", "해제";
-        marker: "Marker", "지상자";
+        marker: "Marker", "마커";
         move_by: "Moved by", "이동";
         move_marker: "Move", "이동 적용";
         missing: "Missing", "누락";
@@ -203,17 +203,17 @@ wordings! {
         maintenance: "Tester", "시험기";
         silent: "silent", "무응답";
         speaks: "speaks", "통신";
-        arm: "Arm unit", "유닛 시험 허가";
-        disarm: "Disarm unit", "유닛 시험 허가 해제";
+        arm: "Arm unit", "장치 시험 허가";
+        disarm: "Disarm unit", "장치 시험 허가 해제";
         inputs: "Inputs", "입력 채널";
         test_code: "Test code", "시험 코드";
         test_speed: "Test speed", "시험 속도";
-        test_marker: "Test marker", "시험 지상자";
+        test_marker: "Test marker", "시험 마커";
         test_twc: "Test TWC frame", "시험 TWC 전문";
         self_test: "Self-test", "자체시험";
         run_self_test: "Self-test now", "자체시험 실행";
         item_memory: "memory", "메모리";
-        item_configuration: "unit configuration", "유닛 구성";
+        item_configuration: "unit configuration", "장치 구성";
         item_track_database: "track database", "선로 데이터";
         item_eb_relay: "EB relay", "EB 릴레이";
         item_atp_receiver: "ATP receiver", "ATP 수신부";
@@ -284,7 +284,7 @@ wordings! {
         arm_starting_up: "starting up", "기동 중";
         arm_brakes_released: "brakes not proved", "제동 미확인";
         arm_train_moved: "train moved", "차량 이동";
-        arm_code_changed: "code changed", "속도코드 변화";
+        arm_code_changed: "code changed", "속도 코드 변화";
         arm_mode_changed: "mode switch turned", "모드 스위치 변경";
         side_left: "left", "좌측";
         side_right: "right", "우측";
@@ -320,7 +320,7 @@ wordings! {
         cause_atc: "ATC", "ATC";
         cause_atc_silent: "ATC silent", "ATC 통신 두절";
         cause_holding: "holding brake", "정차 제동";
-        cause_not_released: "brake not released", "제동 불완해";
+        cause_not_released: "brake not released", "제동불완해";
         cause_mode: "no mode", "모드 없음";
         cause_failure: "failure", "고장";
         refused_moving: "moving", "정차 아님";

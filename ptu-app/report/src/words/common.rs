@@ -11,7 +11,7 @@ wordings! {
     Common {
         passed: "passed", "합격";
         failed: "failed", "불합격";
-        error: "error", "오류";
+        error: "error", "판정 불가";
         skipped: "skipped", "생략";
         aborted: "aborted", "중단";
         running: "running", "진행 중";
@@ -22,8 +22,8 @@ wordings! {
         safe_outputs: "safe outputs", "출력 안전화";
         unprovoked_event: "unprovoked event", "유발하지 않은 이벤트";
         self_test: "self-test", "자체 시험";
-        unit_log: "unit log", "유닛 로그";
-        bench: "bench", "벤치";
+        unit_log: "unit log", "장치 로그";
+        bench: "bench", "시험대";
         stop: "stop", "정지 명령";
         not_begun: "not begun", "시작 안 함";
         as_a_whole: "as a whole", "전체";
@@ -32,7 +32,7 @@ wordings! {
         repaired: "repaired", "수리됨";
         verified: "verified", "검증됨";
         closed: "closed", "종결";
-        unit: "unit", "유닛";
+        unit: "unit", "장치";
         run: "run", "시험";
         fault: "fault", "고장";
         part: "part", "부품";
@@ -51,7 +51,7 @@ wordings! {
         line: "line", "노선";
         train_no: "train number", "편성 번호";
         loading: "loading …", "불러오는 중 …";
-        other_unit: "of another unit: {unit}, not {connected}", "다른 유닛의 시험: {unit} (연결됨: {connected})";
+        other_unit: "of another unit: {unit}, not {connected}", "다른 장치의 시험: {unit} (연결됨: {connected})";
         nothing: "nothing here yet", "아직 아무것도 없음";
         refresh: "refresh", "새로 고침";
         save: "save", "저장";

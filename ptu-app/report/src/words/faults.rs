@@ -15,7 +15,7 @@ wordings! {
         seen: "seen", "횟수";
         last_seen: "last seen", "최근 발생";
         over_time: "occurrences, {days} day(s) a bar", "발생 횟수, 막대당 {days}일";
-        by_unit: "by unit", "유닛별";
+        by_unit: "by unit", "장치별";
         by_code: "by code", "코드별";
         others: "others", "기타";
         cause: "cause", "원인";
@@ -41,7 +41,7 @@ wordings! {
         occurrences: "occurrences", "발생 기록";
         freeze_frame: "freeze frame: every signal at the moment", "프리즈 프레임: 발생 순간의 모든 신호";
         not_known: "not known", "알 수 없음";
-        to_trace: "Trace", "트레이스";
+        to_trace: "Trace", "신호 기록";
         to_run: "Run", "시험";
         to_diagnosis: "Diagnosis", "진단";
     }

@@ -10,11 +10,11 @@ wordings! {
     Report {
         title: "Report", "시험 성적서";
         sheet: "Test sheet", "시험 성적서";
-        of_unit: "Unit {serial}, run {run}", "유닛 {serial}, 시험 {run}";
+        of_unit: "Unit {serial}, run {run}", "장치 {serial}, 시험 {run}";
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
         part_passed: "{run} of {of} steps run, all passed; {skipped} skipped", "{of}개 단계 중 {run}개 수행, 모두 합격; {skipped}개 건너뜀";
         part_not_passed: "{run} of {of} steps run, {n} did not pass; {skipped} skipped", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {skipped}개 건너뜀";
-        needs_bench: "; {n} need the bench harness: {what}", "; {n}개는 벤치 하네스 필요: {what}";
+        needs_bench: "; {n} need the bench harness: {what}", "; {n}개는 시험대 하네스 필요: {what}";
         and_others: " and {n} more", " 외 {n}건";
         repair_proven: "Fault {fault}: the repair is verified. With the fault still there, the runs since it would all have passed in {hidden} of 100 cases", "고장 {fault}: 조치가 검증되었습니다. 고장이 남아 있다면 이후 시험이 모두 합격할 확률은 100회 중 {hidden}회입니다";
         repair_claimed: "Fault {fault}: the repair is not proven yet. Runs passed since it: {passed}; such a fault hides in {hidden} of 100 such runs. More such runs needed: {more}", "고장 {fault}: 조치가 아직 검증되지 않았습니다. 조치 이후 합격 {passed}회; 이런 고장은 이런 시험 100회 중 {hidden}회 드러나지 않습니다. {more}회 더 시험하십시오";
@@ -27,16 +27,16 @@ wordings! {
         the_run: "Run", "시험 개요";
         run_id: "Run number", "시험 번호";
         continues: "Continues run", "이어서 한 시험";
-        unit_serial: "Serial number of the unit", "유닛 일련번호";
-        unit_kind: "Kind of unit", "유닛 종류";
-        unit_config: "Unit configuration", "유닛 구성";
+        unit_serial: "Serial number of the unit", "장치 일련번호";
+        unit_kind: "Kind of unit", "장치 종류";
+        unit_config: "Unit configuration", "장치 구성";
         tester: "Tested by", "시험자";
         nobody: "not stated", "기재 없음";
         seed: "Seed", "시드";
         source: "Connection", "연결";
         started: "Started", "시작";
         finished: "Finished", "종료";
-        bench_time: "Time on the bench", "벤치 시간";
+        bench_time: "Time on the bench", "시험대 시간";
         wall_time: "Time by the clock", "실제 소요 시간";
         program: "Program version", "프로그램 버전";
         injected: "Faults injected", "주입한 고장";
@@ -57,12 +57,12 @@ wordings! {
         source_number: "Src.", "출처";
         limit_source: "Source", "출처";
         limit_sources: "Sources of limits", "한계값 출처";
-        from_configuration: "unit configuration {key}", "유닛 구성 {key}";
+        from_configuration: "unit configuration {key}", "장치 구성 {key}";
         from_track: "track database {key}", "선로 데이터베이스 {key}";
         from_train: "train data {key}", "열차 데이터 {key}";
         from_measurement: "measured before: {key}", "앞 단계 측정값: {key}";
         from_standard: "standard {key}", "표준 {key}";
-        from_unit: "the unit's own limits", "유닛 자체 한계값";
+        from_unit: "the unit's own limits", "장치 자체 한계값";
         by_default: "bench default", "시험기 기본값";
         by_default_because: "bench default: {key}", "시험기 기본값: {key}";
         seconds: "Time s", "시간 s";
@@ -74,14 +74,14 @@ wordings! {
         critical: "critical", "치명";
         seen: "Seen", "횟수";
         first_seen: "First seen", "최초 발생";
-        trace: "Trace", "트레이스";
-        trace_of: "Trace {id}: {faults}", "트레이스 {id}: {faults}";
-        trace_shown: "Trace {id} is shown above.", "트레이스 {id}은(는) 위에 있습니다.";
-        trace_missing: "Trace {id} cannot be shown: {why}", "트레이스 {id}을(를) 표시할 수 없음: {why}";
+        trace: "Trace", "신호 기록";
+        trace_of: "Trace {id}: {faults}", "신호 기록 {id}: {faults}";
+        trace_shown: "Trace {id} is shown above.", "신호 기록 {id}은(는) 위에 있습니다.";
+        trace_missing: "Trace {id} cannot be shown: {why}", "신호 기록 {id}을(를) 표시할 수 없음: {why}";
         more_traces: "{n} more traces are in the database.",
-            "그 밖의 트레이스 {n}개는 데이터베이스에 있습니다.";
+            "그 밖의 신호 기록 {n}개는 데이터베이스에 있습니다.";
         cut_short: "cut short", "중간에 끊김";
-        other_traces: "Traces of other faults", "그 밖의 고장 트레이스";
+        other_traces: "Traces of other faults", "그 밖의 고장 신호 기록";
         from_trigger: "Time from the trigger, s", "트리거 기준 시간, s";
         trigger: "trigger", "트리거";
         speeds: "Speeds", "속도";
@@ -126,8 +126,8 @@ wordings! {
         not_written: "The report was not written", "성적서를 저장하지 못했습니다";
         name_file: "name a file", "파일 이름을 적으십시오";
         to_diagnosis: "Diagnosis", "진단";
-        to_trace: "Trace {id}", "트레이스 {id}";
-        to_traces: "Traces ({n})", "트레이스 ({n})";
+        to_trace: "Trace {id}", "신호 기록 {id}";
+        to_traces: "Traces ({n})", "신호 기록 ({n})";
         page: "page {n} of {of}", "{of}쪽 중 {n}쪽";
     }
 }

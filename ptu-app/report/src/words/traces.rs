@@ -5,7 +5,7 @@ use super::wordings;
 wordings! {
     /// Recorded traces.
     Traces {
-        title: "Traces", "트레이스";
+        title: "Traces", "신호 기록";
 
         // Values.
         on: "on", "켜짐";
@@ -13,16 +13,16 @@ wordings! {
         not_known: "not known", "알 수 없음";
 
         // The list.
-        recorded: "recorded traces", "기록된 트레이스";
-        filter: "filter: unit, run, date, fault", "필터: 유닛, 시험, 날짜, 고장";
+        recorded: "recorded traces", "기록된 신호 기록";
+        filter: "filter: unit, run, date, fault", "필터: 장치, 시험, 날짜, 고장";
         no_fault: "no fault", "고장 없음";
-        none_recorded: "No trace is recorded yet. Traces are recorded when a check fails or a fault shows.", "아직 기록된 트레이스가 없습니다. 점검이 불합격이거나 고장이 나타나면 기록됩니다.";
-        none_fits: "no trace fits the filter", "필터에 맞는 트레이스가 없음";
+        none_recorded: "No trace is recorded yet. Traces are recorded when a check fails or a fault shows.", "아직 기록된 신호 기록이 없습니다. 점검이 불합격이거나 고장이 나타나면 기록됩니다.";
+        none_fits: "no trace fits the filter", "필터에 맞는 신호 기록이 없음";
         only_newest: "only the newest {runs} runs are listed", "최근 시험 {runs}건만 표시됨";
-        cannot_list: "The traces cannot be listed", "트레이스 목록을 불러올 수 없습니다";
-        cannot_open: "The trace cannot be opened", "트레이스를 열 수 없습니다";
-        choose_one: "Choose a trace on the left.", "왼쪽에서 트레이스를 선택하십시오.";
-        of_unit: "trace {trace}, unit {unit}, {when}", "트레이스 {trace}, 유닛 {unit}, {when}";
+        cannot_list: "The traces cannot be listed", "신호 기록 목록을 불러올 수 없습니다";
+        cannot_open: "The trace cannot be opened", "신호 기록을 열 수 없습니다";
+        choose_one: "Choose a trace on the left.", "왼쪽에서 신호 기록을 선택하십시오.";
+        of_unit: "trace {trace}, unit {unit}, {when}", "신호 기록 {trace}, 장치 {unit}, {when}";
         cut_short: "cut short: the link dropped or the program was closed", "도중에 끊김: 링크가 끊어졌거나 프로그램이 종료됨";
         has_gaps: "some samples are missing", "일부 표본 없음";
         to_report: "Test sheet", "시험 성적서";
@@ -33,13 +33,13 @@ wordings! {
         over_distance: "distance", "거리";
         seconds: "s from the trigger", "s (트리거 기준)";
         metres: "m from the trigger", "m (트리거 기준)";
-        no_distance: "no signal of this trace tells where the train was", "이 트레이스에는 열차 위치를 알려 주는 신호가 없음";
+        no_distance: "no signal of this trace tells where the train was", "이 신호 기록에는 열차 위치를 알려 주는 신호가 없음";
         moved_back: "the train moved back by up to {metres} m ({seconds} s): those rows stand at the farthest point", "열차가 최대 {metres} m 후퇴함 ({seconds} s): 그 구간은 가장 멀리 간 지점에 표시됨";
         zoom_in: "Zoom in", "확대";
         zoom_out: "Zoom out", "축소";
         fit: "Fit", "전체 보기";
         close_axes: "Scale to view", "세로축 맞춤";
-        close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 트레이스에 맞춤";
+        close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 신호 기록에 맞춤";
         trigger: "trigger", "트리거";
         events: "events", "이벤트";
         lanes: "lanes", "신호 칸";
@@ -57,7 +57,7 @@ wordings! {
         higher: "taller: {signal}", "높게: {signal}";
         lower: "flatter: {signal}", "낮게: {signal}";
         hide: "hide: {signal}", "숨기기: {signal}";
-        not_in_trace: "not in this trace", "이 트레이스에 없음";
+        not_in_trace: "not in this trace", "이 신호 기록에 없음";
 
         // Cursors.
         cursor_a: "Cursor A", "커서 A";
@@ -78,8 +78,8 @@ wordings! {
         overlay: "Compare with", "비교 대상";
         overlay_choice: "what to compare with", "비교할 대상";
         no_overlay: "nothing", "없음";
-        good_twin: "good twin", "정상 비교 유닛";
-        making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 유닛에 다시 주는 중 …";
+        good_twin: "good twin", "정상 비교 장치";
+        making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 장치에 다시 주는 중 …";
         cannot_overlay: "There is nothing to compare with", "비교할 수 없습니다";
         cannot_compare: "Where they differ cannot be told", "차이를 판단할 수 없습니다";
         offset: "offset", "이동";

@@ -149,7 +149,7 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
         run.is_some_and(|run| run.done > 0)
     });
     unit.kill();
-    window.wait_for_part("유닛과의 링크가 끊어졌습니다");
+    window.wait_for_part("장치와의 링크가 끊어졌습니다");
     window.wait_for_part("시험 종료: 오류");
     window.until("disconnected", |window| {
         window.app().units().chosen().phase() == Phase::Offline
