@@ -37,6 +37,8 @@ pub struct FaultsPage {
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,
     change: Change,
+    /// The detail is being read anew because of a change made here: what was offered before may no longer be.
+    changed_here: bool,
     /// The log of the chosen unit.
     unit_log: MemoryReader,
 }
@@ -88,6 +90,7 @@ impl FaultsPage {
         }
         self.history.poll();
         self.detail.poll();
+        self.changed_here &= self.detail.is_stale();
     }
 
     /// Takes what has been stored, whatever page is in front.
@@ -95,6 +98,7 @@ impl FaultsPage {
         if let Some(changed) = self.change.poll(context) {
             self.asked = None;
             if self.chosen == Some(changed) {
+                self.changed_here = true;
                 self.reread(context);
             }
         }
@@ -138,7 +142,8 @@ impl FaultsPage {
     }
 
     fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let stale = self.detail.is_stale();
+        // What others write takes no click away; the store refuses what it no longer allows.
+        let stale = self.changed_here;
         match self.detail.get() {
             Request::Ready(detail) => {
                 detail::head(ui, context.words, detail);
