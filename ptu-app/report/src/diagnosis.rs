@@ -28,7 +28,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "why_not": answer.why_not.as_ref().map(candidate),
         "next_check": d.next_check,
         "conclusion": d.conclusion.english,
-        "conclusion_ko": d.conclusion.korean,
+        "conclusion_ko": Language::Korean.words().sentence(&d.conclusion),
         "finding": d.finding,
         "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
