@@ -179,7 +179,10 @@ mod tests {
                 "train 302: no unit configuration \"sg10\"",
             ),
             (train("", "SG-2", "0.1.0", "sg100"), "its number is empty"),
-            (train("302", "", "0.1.0", "sg100"), "train 302: --serial-no"),
+            (
+                train("302", "", "0.1.0", "sg100"),
+                "train 302: a serial number is 1 to 16",
+            ),
             ("[[train]]\n".to_owned(), "train"),
         ] {
             let failure = records(&format!("{good}{other}")).expect_err("refused");

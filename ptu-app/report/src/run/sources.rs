@@ -73,7 +73,15 @@ pub fn in_words(sources: &str, words: &Words) -> String {
             SourceKind::Default if key.is_empty() => report.by_default,
             SourceKind::Default => report.by_default_because,
         };
-        fill(said, &[("key", &words.content(key))])
+        // A measurement is named after its step.
+        let named = match key
+            .rsplit_once('/')
+            .filter(|_| kind == SourceKind::Measurement)
+        {
+            Some((step, measurement)) => format!("{}/{measurement}", words.content(step)),
+            None => words.content(key).into_owned(),
+        };
+        fill(said, &[("key", &named)])
     };
     let all: Vec<_> = sources.split(SEPARATOR).map(one).collect();
     all.join(SEPARATOR)

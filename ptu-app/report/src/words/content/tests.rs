@@ -32,6 +32,10 @@ fn a_message_is_told_with_what_it_holds() {
         "시험 안 함: 준비: nothing; 시험 안 함: the bench"
     );
     assert_eq!(
+        say("atp/overspeed: code 25: alarm, FSB, EB failed (under this fault 100 %, healthy 0 %)"),
+        "atp/overspeed: 속도 코드 25: 경보, FSB, EB 작동: 불합격 (이 고장일 때 100 %, 정상일 때 0 %)"
+    );
+    assert_eq!(
         say("a step of the depot's own"),
         "a step of the depot's own"
     );
