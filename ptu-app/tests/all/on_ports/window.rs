@@ -153,7 +153,7 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     });
     unit.kill();
     window.wait_for_part("장치와의 링크가 끊어졌습니다");
-    window.wait_for_part("시험 종료: 오류");
+    window.wait_for_part("시험 종료: 판정 불가");
     window.until("disconnected", |window| {
         window.app().units().chosen().phase() == Phase::Offline
     });
