@@ -4,15 +4,15 @@
 //! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake
 //! not released), the service brake stops the train first: there may be no driver. Then there is no
 //! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
-//! train then waits for a departure that is given anew, or for the start button: the one that was still
+//! train then waits for a new departure, or for the start button: the one that was still
 //! given began the run that failed. So it does after a run that ended away from its stop point, or by the emergency brake:
 //! who acknowledges that does not send the train off. It departs once its doors have been served, too.
 //! So it does after a power-up, and after a run that mode off has ended: the supply may have failed in a run.
-//! Given anew is a departure that was heard withheld before: neither the first that is heard nor one that is heard again
+//! A departure is new if it was heard withheld before: neither the first that is heard nor one that is heard again
 //! after silence says when it was given.
 //!
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
-//! again the service brake goes on stopping the train, and a driverless one waits for a departure that is given anew.
+//! again the service brake goes on stopping the train, and a driverless one waits for a new departure.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -127,7 +127,7 @@ impl ModeSequence {
     /// Latches what ends a run, and gives it up.
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
-        let departs = self.given_anew(inputs.heard);
+        let departs = self.new_departure(inputs.heard);
         let left = !matches!(
             inputs.switch,
             ModeSwitch::Automatic | ModeSwitch::Driverless
@@ -147,7 +147,8 @@ impl ModeSequence {
         self.departs_anew &= !departs;
     }
 
-    fn given_anew(&mut self, heard: Option<bool>) -> bool {
+    /// Whether a departure is heard that was heard withheld before.
+    fn new_departure(&mut self, heard: Option<bool>) -> bool {
         match heard {
             Some(true) => core::mem::take(&mut self.withheld),
             Some(false) => {

@@ -43,26 +43,26 @@ const KEPT: usize = 100;
 impl Messages {
     /// Adds a message that something went wrong.
     pub fn trouble(&mut self, text: impl Into<String>, detail: impl Into<String>) {
-        self.push(text.into(), detail.into(), true, None);
+        self.trouble_about(None, text, detail);
     }
 
     pub fn note(&mut self, text: impl Into<String>) {
-        self.push(text.into(), String::new(), false, None);
+        self.note_about(None, text);
     }
 
-    /// As [`trouble`](Self::trouble), until this is over.
+    /// As [`trouble`](Self::trouble), until what it is about is over.
     pub fn trouble_about(
         &mut self,
-        about: About,
+        about: impl Into<Option<About>>,
         text: impl Into<String>,
         detail: impl Into<String>,
     ) {
-        self.push(text.into(), detail.into(), true, Some(about));
+        self.push(text.into(), detail.into(), true, about.into());
     }
 
-    /// As [`note`](Self::note), until this is over.
-    pub fn note_about(&mut self, about: About, text: impl Into<String>) {
-        self.push(text.into(), String::new(), false, Some(about));
+    /// As [`note`](Self::note), until what it is about is over.
+    pub fn note_about(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
+        self.push(text.into(), String::new(), false, about.into());
     }
 
     /// What was said about this no longer holds.

@@ -97,6 +97,13 @@ impl<T> CachedResponse<T> {
     }
 }
 
+impl<T> CachedResponse<Vec<T>> {
+    /// What the latest response lists; nothing before there is one.
+    pub fn items(&self) -> &[T] {
+        self.shown.value().map(Vec::as_slice).unwrap_or_default()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::mpsc::{self, Sender};

@@ -116,16 +116,18 @@ fn a_korean_sheet_of_a_failed_run_has_no_english_sentence() {
 #[test]
 fn every_step_and_every_reason_of_a_limit_has_korean() {
     let place = Place::new();
+    let suite = ["run", "--list", "--json"];
     let on_request = [
         "ato/driverless_section",
         "ato/line_run",
         "ato/orders",
         "ato/stop_degraded",
+        "cab/inputs",
+        "tcms/notches",
     ];
-    let more = ["cab/inputs", "tcms/notches"];
     let listed = [
-        place.json(&["run", "--list", "--json"]),
-        place.json(&[&["run", "--list", "--json"], &on_request[..], &more].concat()),
+        place.json(&suite),
+        place.json(&[&suite[..], &on_request].concat()),
     ];
     let words = Language::Korean.words();
     let is_missing = |text: &str| words.content(text) == text;

@@ -1,4 +1,4 @@
-//! The sequence as a table, and after which ends a driverless train waits for a departure that is given anew.
+//! The sequence as a table, and after which ends a driverless train waits for a new departure.
 
 use super::*;
 
@@ -136,7 +136,7 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
 }
 
 /// Goal: neither a power-up nor mode off in a run lets a driverless train drive off by the departure that is still given.
-/// Method: that departure is the first thing heard, is heard again after silence, then withheld and given anew.
+/// Method: that departure is the first thing heard, is heard again after silence, then withheld and given again.
 #[test]
 fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
     let given = ModeInputs {
@@ -175,7 +175,7 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
         assert_eq!(after(given), Mode::Automatic, "heard again after silence");
         after(withheld);
         after(silent);
-        assert_eq!(after(given), Mode::AutomaticRun, "given anew");
+        assert_eq!(after(given), Mode::AutomaticRun, "given again");
     }
     after(cab_lost);
     assert_eq!(after(given), Mode::Automatic);

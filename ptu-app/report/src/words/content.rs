@@ -1,7 +1,7 @@
 //! What scripts, catalogues and the runner say, in Korean: names of steps, fault modes, signals, reasons of limits, messages.
 //!
 //! They are made and stored in English; `scripts/korean.toml` has the Korean beside the scripts it belongs to. A text is
-//! looked up with its numbers as `#`, so that `code 25 gives 25 km/h` and its fourteen sisters are one entry. A message is a
+//! looked up with its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry. A message is a
 //! pattern, `{name} = {value}, allowed {limits}`; what a place stands for is looked up in the same way. What is in neither,
 //! as a name that a depot gave its own step, is shown as it was written.
 
@@ -83,13 +83,19 @@ impl Content {
             return Some(parts.join(JOINED));
         }
         let known = |part: &str| self.texts.contains_key(&without_numbers(part).0);
-        let fits = || {
-            let all = self.patterns.iter();
-            all.filter_map(|pattern| Some((pattern, pattern.places_in(text, known)?)))
-        };
         // Names of steps have commas and colons of their own: a pattern that finds one whole is the right one.
-        let of_known = fits().find(|(_, found)| found.iter().any(|part| known(part)));
-        let (pattern, found) = of_known.or_else(|| fits().next())?;
+        let mut fits = None;
+        for pattern in &self.patterns {
+            let Some(found) = pattern.places_in(text, known) else {
+                continue;
+            };
+            if found.iter().any(|part| known(part)) {
+                fits = Some((pattern, found));
+                break;
+            }
+            fits.get_or_insert((pattern, found));
+        }
+        let (pattern, found) = fits?;
         let mut said = pattern.korean.clone();
         for (place, part) in pattern.places.iter().zip(found) {
             said = said.replace(&format!("{{{place}}}"), &or_same(part));

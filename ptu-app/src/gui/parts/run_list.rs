@@ -58,8 +58,7 @@ impl RunList {
         let Some(connected) = &self.followed.unit else {
             return;
         };
-        let runs = self.runs.get().value().into_iter().flatten();
-        let mut shown = runs.filter(|run| Some(run.id) == self.shown);
+        let mut shown = (self.runs.items().iter()).filter(|run| Some(run.id) == self.shown);
         if let Some(run) = shown.find(|run| run.unit_serial != *connected) {
             let named: [(&str, &dyn std::fmt::Display); 2] =
                 [("unit", &run.unit_serial), ("connected", connected)];
@@ -116,7 +115,7 @@ impl RunList {
     /// The latest run of the connected unit that ended, or of any while none was connected.
     fn foremost(&self) -> Option<Id> {
         let unit = self.followed.unit.as_ref();
-        let mut runs = self.runs.get().value()?.iter();
+        let mut runs = self.runs.items().iter();
         let is_it = |run: &&RunSummary| {
             run.verdict.is_some() && unit.is_none_or(|unit| run.unit_serial == *unit)
         };

@@ -156,6 +156,9 @@ impl Unit {
     fn on_event(&mut self, event: BenchEvent, words: &Words, said: &mut UnitMessages<'_>) {
         let frame = &words.frame;
         let (connection, this_run) = (About::Connection(self.id), About::Run(self.id));
+        if ends_stop(&event) {
+            self.stopping = false;
+        }
         match event {
             BenchEvent::Connected { serial } => {
                 self.log.clear();
@@ -169,18 +172,15 @@ impl Unit {
             }
             BenchEvent::NotConnected(why) => said.trouble(connection, frame.cannot_connect, why),
             BenchEvent::Disconnected { safe: true } => {
-                self.stopping = false;
                 said.note(connection, frame.is_disconnected);
             }
             BenchEvent::Disconnected { safe: false } | BenchEvent::NotSafe => {
-                self.stopping = false;
                 self.not_safe = true;
                 said.trouble(None, frame.not_safe, "");
             }
-            BenchEvent::StopEnded => self.stopping = false,
+            BenchEvent::StopEnded => {}
             BenchEvent::LinkLost(why) => self.lose(why, words, said),
             BenchEvent::Broken => {
-                self.stopping = false;
                 self.not_safe = true;
                 said.trouble(None, frame.broken, "");
                 if let Some(run) = self.run.as_mut().filter(|run| run.is_running()) {
@@ -207,7 +207,6 @@ impl Unit {
             }
             BenchEvent::RunEnded(outcome) => {
                 self.runs_ended += 1;
-                self.stopping = false;
                 let verdict = words.common.verdict(outcome.verdict);
                 let mut ended = fill(frame.run_ended, &[("verdict", &verdict)]);
                 let coverage = self.run.as_ref().map(Progress::coverage);
@@ -221,7 +220,6 @@ impl Unit {
             }
             BenchEvent::RunFailed(why) => {
                 self.runs_ended += 1;
-                self.stopping = false;
                 said.trouble(this_run, frame.run_failed, why);
                 if let Some(run) = &mut self.run {
                     run.end(None);
@@ -237,6 +235,19 @@ impl Unit {
             said.trouble(About::Connection(self.id), words.frame.link_lost, why);
         }
     }
+}
+
+/// Whether what was being stopped is stopped, or cannot be stopped any more.
+fn ends_stop(event: &BenchEvent) -> bool {
+    matches!(
+        event,
+        BenchEvent::Disconnected { .. }
+            | BenchEvent::NotSafe
+            | BenchEvent::StopEnded
+            | BenchEvent::Broken
+            | BenchEvent::RunEnded(_)
+            | BenchEvent::RunFailed(_)
+    )
 }
 
 /// Messages that say which unit they are about when there are several.
@@ -261,18 +272,12 @@ impl UnitMessages<'_> {
         detail: impl Into<String>,
     ) {
         let text = self.named(text);
-        match about.into() {
-            Some(about) => self.messages.trouble_about(about, text, detail),
-            None => self.messages.trouble(text, detail),
-        }
+        self.messages.trouble_about(about, text, detail);
     }
 
     fn note(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
         let text = self.named(text);
-        match about.into() {
-            Some(about) => self.messages.note_about(about, text),
-            None => self.messages.note(text),
-        }
+        self.messages.note_about(about, text);
     }
 }
 

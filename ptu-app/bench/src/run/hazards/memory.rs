@@ -166,16 +166,16 @@ mod tests {
         runs.goes_on(seen, eb)
     }
 
-    /// Goal: each departure that is given anew begins a run, not only the minute's first; none is heard without supply.
+    /// Goal: each new departure begins a run, not only the minute's first; none is heard without supply.
     #[test]
-    fn a_run_that_was_ended_goes_on_by_a_departure_that_is_heard_anew() {
+    fn a_run_that_was_ended_goes_on_by_a_new_departure() {
         let mut runs = Runs::default();
         assert!(!goes_on(&mut runs, true, true, false), "under way");
         for _ in 0..2 {
             assert!(!goes_on(&mut runs, true, true, true), "braked");
             assert!(goes_on(&mut runs, true, true, false), "still given");
             assert!(goes_on(&mut runs, false, true, false), "withheld");
-            assert!(!goes_on(&mut runs, true, true, false), "given anew");
+            assert!(!goes_on(&mut runs, true, true, false), "given again");
         }
         assert!(!goes_on(&mut runs, false, false, true), "no supply");
         assert!(!goes_on(&mut runs, true, false, true), "given unheard");

@@ -44,23 +44,12 @@ fn a_message_is_told_with_what_it_holds() {
 /// Goal: no text is shown with a number lost or made up, and no entry is there twice.
 #[test]
 fn both_languages_have_the_same_numbers_and_places() {
-    let File {
-        steps,
-        modes,
-        signals,
-        reasons,
-        phrases,
-        messages,
-    } = file();
-    for (english, korean) in [steps, modes, signals, reasons, phrases]
-        .into_iter()
-        .flatten()
-    {
+    for (english, korean) in &CONTENT.texts {
         let numbers: Vec<String> = (1..=english.matches('#').count())
             .map(|n| format!("<{n}>"))
             .collect();
         let numbers: Vec<_> = numbers.iter().map(String::as_str).collect();
-        let said = with_numbers(&korean, &numbers);
+        let said = with_numbers(korean, &numbers);
         let missing: Vec<_> = numbers
             .iter()
             .filter(|number| said.matches(*number).count() != 1)
@@ -71,7 +60,7 @@ fn both_languages_have_the_same_numbers_and_places() {
         );
     }
     let mut known = BTreeSet::new();
-    for [english, korean] in messages {
+    for [english, korean] in file().messages {
         let mut places: Vec<_> = Pattern::new(&english, String::new()).places;
         let mut of_korean = Pattern::new(&korean, String::new()).places;
         places.sort();
@@ -103,16 +92,7 @@ fn the_fault_modes_and_signals_are_those_of_the_catalogues() {
 /// Units and signs are the same in both languages.
 #[test]
 fn korean_is_korean() {
-    let File {
-        steps,
-        modes,
-        signals,
-        reasons,
-        phrases,
-        ..
-    } = file();
-    let parts = [steps, modes, signals, reasons, phrases];
-    for (english, korean) in parts.into_iter().flatten() {
+    for (english, korean) in &CONTENT.texts {
         let mut words = english.split(|c: char| !c.is_ascii_lowercase());
         let is_said = words.any(|word| word.len() > 2);
         let hangul = korean.chars().any(|c| ('가'..='힣').contains(&c));

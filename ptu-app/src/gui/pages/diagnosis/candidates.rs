@@ -1,14 +1,12 @@
 //! The ranked parts and fault modes, with the reasons.
 
-use std::borrow::Cow;
-
 use diagnosis::Candidate;
 use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
 use super::NamedAnswer;
 use crate::gui::parts::share_bar;
 use crate::gui::{Destination, PageContext, Palette};
-use ptu_report::words::{Diagnosis, fill};
+use ptu_report::words::{Diagnosis, Words, fill};
 
 /// Candidates, and reasons of each, that are shown at once; the others are behind "more".
 const AT_ONCE: usize = 3;
@@ -88,9 +86,7 @@ fn show(
                 ("+", words.speaks_for, &candidate.for_it, good),
                 ("−", words.speaks_against, &candidate.against, warn),
             ] {
-                let said = texts.iter().map(|text| context.words.content(text));
-                let said: Vec<_> = said.collect();
-                reasons(ui, words, (sign, what), &said, colour);
+                reasons(ui, context.words, (sign, what), texts, colour);
             }
             let traces = named
                 .answer
@@ -114,24 +110,24 @@ fn show(
 
 fn reasons(
     ui: &mut Ui,
-    words: &Diagnosis,
+    words: &Words,
     (sign, what): (&str, &str),
-    texts: &[Cow<'_, str>],
+    texts: &[String],
     colour: Color32,
 ) {
     if texts.is_empty() {
         return;
     }
     ui.label(RichText::new(what).small().color(colour));
-    let list = |ui: &mut Ui, texts: &[Cow<'_, str>]| {
+    let list = |ui: &mut Ui, texts: &[String]| {
         for text in texts {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).strong().color(colour));
-                ui.label(&**text);
+                ui.label(&*words.content(text));
             });
         }
     };
     let (first, more) = at_once(texts);
     list(ui, first);
-    behind_more(ui, words, sign, more.len(), |ui| list(ui, more));
+    behind_more(ui, &words.diagnosis, sign, more.len(), |ui| list(ui, more));
 }

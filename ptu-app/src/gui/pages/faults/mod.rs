@@ -37,7 +37,7 @@ pub struct FaultsPage {
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,
     change: Change,
-    /// The detail is being read anew because of a change made here: what was offered before may no longer be.
+    /// The detail is being read again because of a change made here: what was offered before may no longer be.
     changed_here: bool,
     /// The log of the chosen unit.
     unit_log: MemoryReader,
@@ -64,7 +64,7 @@ impl FaultsPage {
         self.detail.request_other(detail_of(id, context));
     }
 
-    /// Asks anew when the data or the span are others.
+    /// Asks again when the data or the span are others.
     fn keep_up(&mut self, context: &mut PageContext<'_>) {
         let wanted = (self.filter.days, context.data_version());
         if self.asked != Some(wanted) {

@@ -60,19 +60,19 @@ impl ReportPage {
         self.ask(run, context);
     }
 
-    /// Asks when another run is to be shown, and anew when something may have been added to this one:
+    /// Asks when another run is to be shown, and again when something may have been added to this one:
     /// the data have changed, or the page was away.
     fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, run: Option<Id>) {
         let pass = ui.ctx().cumulative_pass_nr();
         let away = pass > self.pass + 1;
         let pending = matches!(self.asked, Request::Pending(_));
-        let anew = (away || context.data_version() != self.version) && !pending;
+        let again = (away || context.data_version() != self.version) && !pending;
         self.pass = pass;
         let Some(run) = run else {
             (self.asked, self.shown, self.asked_for) = (Request::Idle, None, None);
             return;
         };
-        if anew || self.asked_for != Some((run, self.language(context))) {
+        if again || self.asked_for != Some((run, self.language(context))) {
             self.ask(run, context);
         }
     }

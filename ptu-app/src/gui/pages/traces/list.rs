@@ -106,31 +106,22 @@ impl TraceList {
 
     /// The latest trace and its run.
     pub fn latest(&self) -> Option<(Id, Id)> {
-        let run = self.runs.get().value()?.first()?;
+        let run = self.runs.items().first()?;
         Some((run.traces.first()?.id, run.id))
     }
 
     /// Unit and date of a run; unknown ones are empty.
     pub fn whose(&self, run: Option<Id>) -> (&str, &str) {
-        let runs = self
-            .runs
-            .get()
-            .value()
-            .map(Vec::as_slice)
-            .unwrap_or_default();
-        let found = runs.iter().find(|listed| Some(listed.id) == run);
+        let mut runs = self.runs.items().iter();
+        let found = runs.find(|listed| Some(listed.id) == run);
         found.map_or(("", ""), |run| (&run.unit, &run.began))
     }
 
     /// All traces with their runs, the latest run first.
     pub fn all(&self) -> impl Iterator<Item = (&ListedRun, &ListedTrace)> {
-        let runs = self
-            .runs
-            .get()
-            .value()
-            .map(Vec::as_slice)
-            .unwrap_or_default();
-        runs.iter()
+        self.runs
+            .items()
+            .iter()
             .flat_map(|run| run.traces.iter().map(move |trace| (run, trace)))
     }
 
@@ -149,13 +140,7 @@ impl TraceList {
 
     fn apply(&mut self) {
         self.shown.clear();
-        let runs = self
-            .runs
-            .get()
-            .value()
-            .map(Vec::as_slice)
-            .unwrap_or_default();
-        for (place, run) in runs.iter().enumerate() {
+        for (place, run) in self.runs.items().iter().enumerate() {
             let traces = run.traces.iter().enumerate();
             let mut fitting = traces
                 .filter(|(_, trace)| trace.fits(&self.filter))
