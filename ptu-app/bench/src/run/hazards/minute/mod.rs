@@ -1,0 +1,252 @@
+//! A minute in which a driver, a track and a wayside that know no rule do things to a unit, with at most two faults.
+
+mod acts;
+mod antenna;
+
+use btu_rig::lever::Lever;
+use btu_rig::rig::{Bench, Random};
+use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
+use protocol::injection::{FaultMode, Place};
+use protocol::line::Section;
+use protocol::message::ModeSwitch;
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::monitor::{Hazard, Monitor, Observed};
+use crate::link::SimLink;
+use crate::run::BenchSetup;
+
+const MINUTE: Duration = Duration::from_ms(60_000);
+/// The unit is powered up a second in, and starts up in three.
+const STARTED: Duration = Duration::from_ms(4_000);
+
+/// Time in which the bench notices that the unit has restarted.
+const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
+
+/// Time for which a start button that was pressed may begin a run.
+const PRESSED: Duration = Duration::from_ms(800);
+
+/// A hazard in a minute.
+#[derive(Debug)]
+pub struct Find {
+    pub hazard: Hazard,
+    pub at: Instant,
+    /// What the monitor saw then.
+    pub state: String,
+    /// Faults that were injected, and those of tachometers that the bench made.
+    pub faults: Vec<String>,
+    /// What was done, in order.
+    pub acts: Vec<String>,
+}
+
+/// One random minute.
+pub struct Minute<'a> {
+    bench: Bench<SimLink>,
+    setup: &'a BenchSetup,
+    random: Random,
+    /// Faults that may still be made.
+    budget: usize,
+    faults: Vec<FaultMode>,
+    scaled: bool,
+    section: Section,
+    station: StationData,
+    reverser: i8,
+    powered: bool,
+    /// Codes that come by turns, each for its time; the present one first.
+    flicker: Option<[(Stimulus, Duration); 2]>,
+    flicker_due: Instant,
+    /// When the start button was pressed last.
+    started: Option<Instant>,
+    /// TCMS's link is as the minute's faults have it.
+    tcms_good: bool,
+    acts: Vec<(Instant, String)>,
+}
+
+impl<'a> Minute<'a> {
+    /// The minute of a seed: faults are drawn from `catalogue`.
+    pub fn new(setup: &'a BenchSetup, catalogue: &[FaultMode], seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let budget = [0, 0, 1, 1, 2][random.below(5)];
+        let injected = random.below(budget + 1);
+        let faults: Vec<_> = (0..injected)
+            .map(|_| catalogue[random.below(catalogue.len())].clone())
+            .collect();
+        let setup_of_minute = BenchSetup {
+            faults: faults.clone(),
+            ..setup.clone()
+        };
+        let section =
+            setup.line.content.sections[random.below(setup.line.content.sections.len())].clone();
+        let power_at = Instant::ZERO + Duration::from_ms(1_000);
+        Self {
+            bench: setup_of_minute.on_bench(seed, power_at),
+            setup,
+            budget: budget - injected,
+            faults,
+            scaled: false,
+            station: StationData::at_departure(&section),
+            section,
+            random,
+            reverser: 1,
+            powered: true,
+            flicker: None,
+            flicker_due: Instant::ZERO,
+            started: None,
+            tcms_good: true,
+            acts: Vec::new(),
+        }
+    }
+
+    /// Plays it; the first hazard, if there was one.
+    pub fn play(mut self) -> Option<Find> {
+        let mut monitor = Monitor::new(&self.setup.config.content);
+        self.tidy_begin();
+        let end = self.bench.now() + MINUTE;
+        let mut next_act = self.bench.now();
+        let mut seen_from = self.bench.now() + STARTED;
+        let mut found: Option<(Hazard, Instant, u32, String)> = None;
+        while self.bench.now() < end {
+            let now = self.bench.now();
+            if now >= next_act {
+                let wait_ms = [20, 200, 1_000, 3_000, 8_000][self.random.below(5)];
+                next_act = now + Duration::from_ms(wait_ms);
+                self.act();
+            }
+            self.turn_code(now);
+            self.bench.tick().expect("the embedded unit answers");
+            // Without TCMS nothing tells of motion that no tachometer sees.
+            if !self.powered || self.blind() && !self.tcms_good {
+                seen_from = now + STARTED;
+            }
+            let rig = self.bench.rig();
+            let truth = rig.truth();
+            let observed = Observed {
+                now,
+                blind: self.blind(),
+                powered: self.powered,
+                sample: rig.sample(),
+                speed_mps: truth.speed_mps,
+                accel_mps2: truth.accel_mps2,
+                to_stop_m: truth.to_stop_m,
+                traction_n: truth.traction_n,
+                reverser: self.reverser,
+                start: self.started.is_some_and(|at| now.since(at) < PRESSED),
+            };
+            let restarts = rig.unit_restarts();
+            let hazard = monitor.step(observed).filter(|_| now >= seen_from);
+            if found.is_none() {
+                found = hazard.map(|hazard| (hazard, now, restarts, state(observed)));
+            }
+            // A unit that restarts is heard again only after a while: until then the bench has its last contacts.
+            if let Some((hazard, at, before, state)) =
+                found.take_if(|found| now.since(found.1) > HEARD_AGAIN)
+            {
+                if before == restarts {
+                    return Some(self.found(hazard, at, state));
+                }
+                seen_from = now + STARTED;
+            }
+        }
+        None
+    }
+
+    fn found(self, hazard: Hazard, at: Instant, state: String) -> Find {
+        let mut faults: Vec<_> = self.faults.iter().map(|fault| fault.id.clone()).collect();
+        if self.scaled {
+            faults.push("speed_sensor_1.of_the_bench".to_owned());
+        }
+        Find {
+            hazard,
+            at,
+            state,
+            faults,
+            acts: self
+                .acts
+                .iter()
+                .map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6))
+                .collect(),
+        }
+    }
+
+    /// How the minute begins: a train at a platform, on the track, or on the bench's own wheels.
+    fn tidy_begin(&mut self) {
+        let switch = [
+            ModeSwitch::Manual,
+            ModeSwitch::Automatic,
+            ModeSwitch::Driverless,
+            ModeSwitch::Yard,
+        ][self.random.below(4)];
+        let driven = self.random.unit() < 0.6;
+        for stimulus in [
+            Stimulus::Hcr { on: true },
+            Stimulus::Reverser { position: 1 },
+            Stimulus::Doors { closed: true },
+            // Until the driver moves them.
+            Stimulus::DoorsFollow { on: true },
+            Stimulus::Controller {
+                lever: Lever::Neutral,
+            },
+            Stimulus::ModeSwitch(switch),
+            Stimulus::MarkersAlong {
+                section: Some(self.section.section),
+            },
+            Stimulus::CodesAlong { on: true },
+            Stimulus::Station(self.station),
+            Stimulus::Wayside(WaysideCondition::Good),
+            Stimulus::TrainDriven { on: driven },
+        ] {
+            self.apply(stimulus);
+        }
+        for _ in 0..400 {
+            self.bench.tick().expect("the embedded unit answers");
+        }
+        self.apply(Stimulus::Acknowledge);
+        for _ in 0..100 {
+            self.bench.tick().expect("the embedded unit answers");
+        }
+    }
+
+    /// What cannot be done is not done, as a bench refuses it.
+    fn apply(&mut self, stimulus: Stimulus) {
+        let now = self.bench.now();
+        if self.bench.rig_mut().apply(now, &stimulus).is_ok() {
+            if let Stimulus::Reverser { position } = stimulus {
+                self.reverser = position;
+            }
+            self.acts.push((now, stimulus.to_string()));
+        }
+    }
+
+    fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.random.below(of.len())]
+    }
+
+    fn chance(&mut self, p: f64) -> bool {
+        self.random.unit() < p
+    }
+
+    /// No tachometer gives pulses.
+    fn blind(&self) -> bool {
+        let sample = self.bench.rig().sample();
+        let dead = |signal| sample.get(signal) == Some(1.0);
+        let unfed = |fault: &FaultMode| fault.place == Place::SpeedSensors;
+        dead(Signal::Tacho1) && dead(Signal::Tacho2) || self.faults.iter().any(unfed)
+    }
+}
+
+fn state(seen: Observed<'_>) -> String {
+    let signals = [
+        Signal::Mode,
+        Signal::Limit,
+        Signal::Speed,
+        Signal::Eb,
+        Signal::EbCause,
+        Signal::Fsb,
+        Signal::FsbCause,
+        Signal::Standstill,
+        Signal::Aligned,
+        Signal::Started,
+    ];
+    let values = signals.map(|signal| format!("{} {:?}", signal.name(), seen.sample.get(signal)));
+    format!("{:.2} km/h, {}", seen.speed_mps * 3.6, values.join(", "))
+}
