@@ -76,9 +76,14 @@ pub(super) struct Runs {
     under_way: bool,
     ended: bool,
     departure: bool,
+    /// When departure was given last while the brake was applied.
+    given_braked: Option<Instant>,
 }
 
 impl Runs {
+    /// Time for which a departure is on its way: given under the brake it may be heard after its release.
+    const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
+
     /// Whether ATO drives on although the line has ended its run.
     pub fn goes_on(&mut self, seen: Observed<'_>, eb: bool) -> bool {
         let driverless = seen.value(Signal::TcmsMode) == 5.0;
@@ -86,7 +91,14 @@ impl Runs {
         let departure = seen.on(Signal::Departure);
         let before = std::mem::replace(&mut self.departure, departure);
         // A unit without supply hears no departure.
-        let given = departure && !before && seen.powered;
+        let begins = departure && !before && seen.powered;
+        // One that is given under the brake is for a train that may not go.
+        if begins && eb {
+            self.given_braked = Some(seen.now);
+        }
+        let braked = self.given_braked.take_if(|_| !eb);
+        let late = braked.is_some_and(|at| seen.now.since(at) < Self::ON_ITS_WAY);
+        let given = begins && !eb || late;
         let switch = matches!(seen.value(Signal::ModeSwitch) as u8, 3 | 4);
         if seen.start || given || !switch || seen.value(Signal::Controller) != 0.0 {
             self.ended = false;
@@ -147,21 +159,19 @@ mod tests {
 
     /// A scan of a driverless train that powers.
     fn goes_on(runs: &mut Runs, departure: bool, powered: bool, eb: bool) -> bool {
+        goes_on_at(runs, 0, departure, powered, eb)
+    }
+
+    fn goes_on_at(runs: &mut Runs, ms: u64, departure: bool, powered: bool, eb: bool) -> bool {
         let mut sample = Sample::default();
         sample.set(Signal::TcmsMode, 5.0);
         sample.set(Signal::ModeSwitch, 4.0);
         sample.set_bit(Signal::Departure, departure);
         let seen = Observed {
-            now: Instant::ZERO,
-            sample: &sample,
             speed_mps: 1.0,
-            accel_mps2: 0.0,
-            to_stop_m: None,
             traction_n: 2.0 * NO_POWER_N,
-            reverser: 1,
-            start: false,
-            blind: false,
             powered,
+            ..Observed::at_rest(Instant::from_us(ms * 1_000), &sample)
         };
         runs.goes_on(seen, eb)
     }
@@ -180,5 +190,18 @@ mod tests {
         assert!(!goes_on(&mut runs, false, false, true), "no supply");
         assert!(!goes_on(&mut runs, true, false, true), "given unheard");
         assert!(goes_on(&mut runs, true, true, false));
+    }
+
+    /// Goal: a departure that is given under the brake does not begin a run, but for one that is heard after its release.
+    #[test]
+    fn a_departure_under_the_brake_begins_no_run() {
+        for (released_ms, goes) in [(3_000, true), (1_500, false)] {
+            let mut runs = Runs::default();
+            assert!(!goes_on_at(&mut runs, 0, true, true, false), "under way");
+            assert!(!goes_on_at(&mut runs, 500, false, true, true), "braked");
+            assert!(!goes_on_at(&mut runs, 1_000, true, true, true), "given");
+            let released = goes_on_at(&mut runs, released_ms, true, true, false);
+            assert_eq!(released, goes, "released at {released_ms} ms");
+        }
     }
 }

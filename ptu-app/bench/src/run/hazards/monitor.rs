@@ -3,11 +3,12 @@
 //!
 //! It sees the track, the desk, the brake line and the wheels as they are, and of the unit its contacts alone.
 
-use protocol::config::{SpeedCode, UnitConfig};
+use protocol::config::UnitConfig;
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
-use super::memory::{Asleep, Blind, Confirmed, Lately, Runs};
+use super::memory::{Asleep, Blind, Lately, Runs};
+use super::permitted::{Limits, Permitted};
 
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
 const MOVES_KMH: f64 = 1.08 + 0.4;
@@ -15,15 +16,10 @@ const MOVES_KMH: f64 = 1.08 + 0.4;
 const STANDS_KMH: f64 = 0.25;
 /// What a measured speed may be off, km/h.
 const SPEED_OFF_KMH: f64 = 0.6;
-/// Time for which a code that is no longer there may still be in force, and the desk's order on its way: hold time of
-/// the receiver, detection, filter.
-const CODE_HELD: Duration = Duration::from_ms(1_900);
 /// Time from a cause to a contact, beside the table's: scans of unit and bench, and window of the speed.
 const SLACK: Duration = Duration::from_ms(300);
 /// Wheels that slow the train by less do not, m/s².
 const SLOWS_MPS2: f64 = 0.3;
-/// Share of the time of detection for which a code is there before the unit may count it.
-const NEARLY: f64 = 0.8;
 /// Traction that is none, N: what an inverter still gives while its order fades.
 pub(super) const NO_POWER_N: f64 = 10_000.0;
 /// Place that the unit may take for the stop point's, m: its tolerance, and what its position may be off.
@@ -68,6 +64,10 @@ pub enum Hazard {
     SleepingMoves,
     /// Motion with the reverser in neutral.
     RollsNeutral,
+    /// Faster than the code of the own track lets it, by that of a neighbouring one.
+    Crosstalk,
+    /// Faster than the limit by a wheel diameter that has to be refused.
+    WrongWheels,
 }
 
 impl Hazard {
@@ -89,6 +89,8 @@ impl Hazard {
             Self::DrivesOnByItself => "drives_on_by_itself",
             Self::SleepingMoves => "sleeping_moves",
             Self::RollsNeutral => "rolls_neutral",
+            Self::Crosstalk => "crosstalk",
+            Self::WrongWheels => "wrong_wheels",
         }
     }
 }
@@ -114,6 +116,30 @@ pub struct Observed<'a> {
     pub blind: bool,
     /// The unit has its supply.
     pub powered: bool,
+    /// Carrier and code rate of a neighbouring track's code, Hz; its level is a signal.
+    pub crosstalk: [f64; 2],
+    /// Wheel diameter that is being keyed in, mm; 0 = as configured.
+    pub wheel_mm: Option<f64>,
+}
+
+impl<'a> Observed<'a> {
+    /// A train at rest on the bench, forward, with its unit supplied.
+    pub(super) fn at_rest(now: Instant, sample: &'a Sample) -> Self {
+        Self {
+            now,
+            sample,
+            speed_mps: 0.0,
+            accel_mps2: 0.0,
+            to_stop_m: None,
+            traction_n: 0.0,
+            reverser: 1,
+            start: false,
+            blind: false,
+            powered: true,
+            crosstalk: [0.0; 2],
+            wheel_mm: None,
+        }
+    }
 }
 
 impl Observed<'_> {
@@ -131,12 +157,7 @@ impl Observed<'_> {
 }
 
 pub struct Monitor {
-    codes: Vec<SpeedCode>,
-    level_mv: (f64, f64),
-    yard_kmh: f64,
-    emergency_kmh: f64,
-    limits: Lately,
-    confirmed: Confirmed,
+    limits: Limits,
     runs: Runs,
     asleep: Asleep,
     blind: Blind,
@@ -152,15 +173,7 @@ pub struct Monitor {
 impl Monitor {
     pub fn new(config: &UnitConfig) -> Self {
         Self {
-            codes: config.codes.clone(),
-            level_mv: (config.receiver.level_min_mv, config.receiver.level_max_mv),
-            yard_kmh: config.overspeed.yard_kmh,
-            emergency_kmh: config.overspeed.emergency_kmh,
-            limits: Lately::default(),
-            confirmed: Confirmed::new(
-                Duration::from_secs(NEARLY * f64::from(config.receiver.detect_ms) / 1e3),
-                Duration::from_ms(u64::from(config.receiver.hold_ms)),
-            ),
+            limits: Limits::new(config),
             runs: Runs::default(),
             asleep: Asleep::default(),
             blind: Blind::default(),
@@ -186,8 +199,14 @@ impl Monitor {
         found
     }
 
-    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 15] {
-        let (limit_kmh, confirmed_kmh) = self.most_permitted_kmh(seen);
+    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 17] {
+        let Permitted {
+            most_kmh,
+            confirmed_kmh,
+            selected_kmh,
+            keyed,
+            admitted,
+        } = self.limits.note(seen);
         let (eb, fsb) = (seen.on(Signal::EbLoop), seen.on(Signal::Fsb));
         let (left, right) = (
             seen.on(Signal::DoorEnableLeft),
@@ -196,8 +215,11 @@ impl Monitor {
         let kmh = seen.kmh();
         let blind = self.blind.note(seen);
         let moves = kmh > MOVES_KMH && !blind;
+        let beyond = |limit_kmh: f64, margin_kmh: f64, factor: f64| {
+            kmh > (limit_kmh + margin_kmh) * factor + SPEED_OFF_KMH
+        };
         let above =
-            |margin_kmh| limit_kmh > 0.0 && kmh > limit_kmh + margin_kmh + SPEED_OFF_KMH && !blind;
+            |margin_kmh, factor| most_kmh > 0.0 && beyond(most_kmh, margin_kmh, factor) && !blind;
         let side = seen.value(Signal::WaysideDoorSide);
         let (mut left_given, mut right_given) = (false, false);
         for side in self.sides.note(seen.now, side, Duration::from_ms(2_500)) {
@@ -213,17 +235,17 @@ impl Monitor {
         let elsewhere = seen.to_stop_m.is_none_or(|m| m.abs() > AT_STOP_POINT_M);
         let ms = Duration::from_ms;
         [
-            (Hazard::OverLimit, above(3.0) && !eb && !fsb, ms(300)),
+            (Hazard::OverLimit, above(3.0, keyed) && !eb && !fsb, ms(300)),
             (
                 Hazard::OverLimitUnslowed,
-                above(6.0)
+                above(6.0, keyed)
                     && !eb
                     && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs(),
                 ms(6_000),
             ),
             (
                 Hazard::MovesUnderStop,
-                limit_kmh == 0.0 && moves && !eb && !fsb,
+                most_kmh == 0.0 && moves && !eb && !fsb,
                 ms(500),
             ),
             (
@@ -260,12 +282,12 @@ impl Monitor {
             ),
             (
                 Hazard::JogTooFast,
-                jogs_back(seen) && kmh > JOG_KMH + SPEED_OFF_KMH && !eb && !fsb && !blind,
+                jogs_back(seen) && beyond(JOG_KMH, 0.0, keyed) && !eb && !fsb && !blind,
                 ms(300),
             ),
             (
                 Hazard::UnconfirmedCode,
-                moves && kmh > confirmed_kmh + 3.0 + SPEED_OFF_KMH && !eb && !fsb,
+                moves && beyond(confirmed_kmh, 3.0, keyed) && !eb && !fsb,
                 ms(500),
             ),
             (
@@ -283,38 +305,17 @@ impl Monitor {
                 seen.reverser == 0 && self.rolled_back(seen, fsb) && !eb && !blind,
                 ms(0),
             ),
+            (
+                Hazard::Crosstalk,
+                moves && beyond(selected_kmh, 3.0, keyed) && !eb && !fsb,
+                ms(500),
+            ),
+            (
+                Hazard::WrongWheels,
+                above(3.0, admitted) && !eb && !fsb,
+                ms(300),
+            ),
         ]
-    }
-
-    /// The greatest limit that may still be in force, km/h: of what was there at all, and of what was there for as long
-    /// as a detection takes.
-    fn most_permitted_kmh(&mut self, seen: Observed<'_>) -> (f64, f64) {
-        let limit_kmh = match seen.value(Signal::ModeSwitch) as u8 {
-            1 => self.yard_kmh,
-            2..=4 => self.code_limit_kmh(seen),
-            5 => self.emergency_kmh,
-            _ => 0.0,
-        };
-        let lately = self.limits.note(seen.now, limit_kmh, CODE_HELD);
-        let most_kmh = lately.fold(0.0, f64::max);
-        let confirmed_kmh = self.confirmed.note(seen.now, limit_kmh, CODE_HELD);
-        (most_kmh, confirmed_kmh)
-    }
-
-    /// Limit of the code in the antenna, km/h; near its tolerances it may count.
-    fn code_limit_kmh(&self, seen: Observed<'_>) -> f64 {
-        let (least_mv, most_mv) = self.level_mv;
-        let level_mv = seen.value(Signal::LevelMv);
-        if !(0.8 * least_mv..=1.2 * most_mv).contains(&level_mv) {
-            return 0.0;
-        }
-        let rate_hz = seen.value(Signal::CodeRateHz);
-        let carrier_hz = seen.value(Signal::CarrierHz);
-        let near = |code: &&SpeedCode| {
-            (code.rate_hz - rate_hz).abs() < 0.7 && (code.carrier_hz - carrier_hz).abs() < 60.0
-        };
-        let limits = self.codes.iter().filter(near).map(|code| code.limit_kmh);
-        limits.fold(0.0, f64::max)
     }
 
     /// A jog back does not count, nor does what its brake takes to stop the train.

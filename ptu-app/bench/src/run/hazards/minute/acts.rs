@@ -12,7 +12,7 @@ use super::Minute;
 impl Minute<'_> {
     /// Does one thing.
     pub(super) fn act(&mut self) {
-        let act = self.random.below(28);
+        let act = self.random.below(31);
         match act {
             0..=2 => self.change_code(),
             3 => {
@@ -80,7 +80,9 @@ impl Minute<'_> {
             23 => self.change_power(),
             24 | 25 => self.let_code_flicker(),
             26 => self.open_line(),
-            _ => self.give_order(),
+            27 => self.give_order(),
+            28 | 29 => self.let_neighbour_speak(),
+            _ => self.key_in_wheels(),
         }
     }
 
@@ -197,6 +199,22 @@ impl Minute<'_> {
         self.apply(Stimulus::Hcr { on });
         let passengers_kg = 1e5 * self.random.unit();
         self.apply(Stimulus::Load { passengers_kg });
+    }
+
+    /// Wheels of the train's range, that of the configuration, or what no wheel has.
+    pub(super) fn key_in_wheels(&mut self) {
+        let tacho = &self.setup.config.content.tacho;
+        let (worn_mm, new_mm) = (
+            tacho.wheel_diameter_mm - tacho.worn_mm,
+            tacho.wheel_diameter_mm + tacho.over_mm,
+        );
+        let diameter_mm = match self.random.below(5) {
+            0 => 0.0,
+            1 => worn_mm + (new_mm - worn_mm) * self.random.unit(),
+            2 | 3 => worn_mm * (0.7 + 0.29 * self.random.unit()),
+            _ => new_mm * (1.01 + 0.2 * self.random.unit()),
+        };
+        self.apply(Stimulus::WheelDiameter { diameter_mm });
     }
 
     /// The supply fails, or comes back.

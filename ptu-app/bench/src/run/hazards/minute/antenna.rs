@@ -1,4 +1,4 @@
-//! What the ATP antenna hears in a minute: codes that stay, and codes that flicker.
+//! What the ATP antenna hears in a minute: codes that stay, codes that flicker, and those of a neighbouring track.
 
 use btu_rig::stimulus::Stimulus;
 use protocol::{Duration, Instant};
@@ -44,6 +44,18 @@ impl Minute<'_> {
         self.flicker_due = now + stays;
         let refused = self.bench.rig_mut().apply(now, &code);
         refused.expect("any code can be put in");
+    }
+
+    /// A code of a neighbouring track beside what is there, from 12 dB weaker to 6 dB stronger than a nominal one; or none any more.
+    pub(super) fn let_neighbour_speak(&mut self) {
+        let config = &self.setup.config.content;
+        let code = config.codes[self.random.below(config.codes.len())].clone();
+        let times = self.one_of(&[0.0, 0.25, 0.5, 0.5, 0.56, 0.7, 1.0, 1.4, 2.0]);
+        self.apply(Stimulus::Crosstalk {
+            carrier_hz: code.carrier_hz,
+            rate_hz: code.rate_hz,
+            level_mv: times * config.receiver.level_nominal_mv,
+        });
     }
 
     fn any_code(&mut self) -> Stimulus {

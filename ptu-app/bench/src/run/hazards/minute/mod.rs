@@ -26,11 +26,16 @@ const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
 /// Time for which a start button that was pressed may begin a run.
 const PRESSED: Duration = Duration::from_ms(800);
 
+/// Time for which a wheel diameter that is keyed in may be taken: the bench keys it in for 300 ms.
+const KEYED_IN: Duration = Duration::from_ms(600);
+
 /// A hazard in a minute.
 #[derive(Debug)]
 pub struct Find {
     pub hazard: Hazard,
     pub at: Instant,
+    /// No tachometer gave pulses then.
+    pub blind: bool,
     /// What the monitor saw then.
     pub state: String,
     /// Faults that were injected, and those of tachometers that the bench made.
@@ -57,6 +62,10 @@ pub struct Minute<'a> {
     flicker_due: Instant,
     /// When the start button was pressed last.
     started: Option<Instant>,
+    /// Carrier and code rate of the neighbouring track, Hz.
+    crosstalk: [f64; 2],
+    /// Wheel diameter that was keyed in last, mm, and when.
+    wheel: Option<(f64, Instant)>,
     /// TCMS's link is as the minute's faults have it.
     tcms_good: bool,
     acts: Vec<(Instant, String)>,
@@ -92,6 +101,8 @@ impl<'a> Minute<'a> {
             flicker: None,
             flicker_due: Instant::ZERO,
             started: None,
+            crosstalk: [0.0; 2],
+            wheel: None,
             tcms_good: true,
             acts: Vec::new(),
         }
@@ -104,7 +115,7 @@ impl<'a> Minute<'a> {
         let end = self.bench.now() + MINUTE;
         let mut next_act = self.bench.now();
         let mut seen_from = self.bench.now() + STARTED;
-        let mut found: Option<(Hazard, Instant, u32, String)> = None;
+        let mut found: Option<(Find, u32)> = None;
         while self.bench.now() < end {
             let now = self.bench.now();
             if now >= next_act {
@@ -131,18 +142,23 @@ impl<'a> Minute<'a> {
                 traction_n: truth.traction_n,
                 reverser: self.reverser,
                 start: self.started.is_some_and(|at| now.since(at) < PRESSED),
+                crosstalk: self.crosstalk,
+                wheel_mm: self
+                    .wheel
+                    .filter(|(_, at)| now.since(*at) < KEYED_IN)
+                    .map(|(mm, _)| mm),
             };
             let restarts = rig.unit_restarts();
             let hazard = monitor.step(observed).filter(|_| now >= seen_from);
             if found.is_none() {
-                found = hazard.map(|hazard| (hazard, now, restarts, state(observed)));
+                found = hazard.map(|hazard| (self.found(hazard, observed), restarts));
             }
             // A unit that restarts is heard again only after a while: until then the bench has its last contacts.
-            if let Some((hazard, at, before, state)) =
-                found.take_if(|found| now.since(found.1) > HEARD_AGAIN)
+            if let Some((find, before)) =
+                found.take_if(|(find, _)| now.since(find.at) > HEARD_AGAIN)
             {
                 if before == restarts {
-                    return Some(self.found(hazard, at, state));
+                    return Some(find);
                 }
                 seen_from = now + STARTED;
             }
@@ -150,15 +166,16 @@ impl<'a> Minute<'a> {
         None
     }
 
-    fn found(self, hazard: Hazard, at: Instant, state: String) -> Find {
+    fn found(&self, hazard: Hazard, seen: Observed<'_>) -> Find {
         let mut faults: Vec<_> = self.faults.iter().map(|fault| fault.id.clone()).collect();
         if self.scaled {
             faults.push("speed_sensor_1.of_the_bench".to_owned());
         }
         Find {
             hazard,
-            at,
-            state,
+            at: seen.now,
+            blind: seen.blind,
+            state: state(seen),
             faults,
             acts: self
                 .acts
@@ -204,14 +221,24 @@ impl<'a> Minute<'a> {
         for _ in 0..100 {
             self.bench.tick().expect("the embedded unit answers");
         }
+        if self.chance(0.2) {
+            self.key_in_wheels();
+        }
     }
 
     /// What cannot be done is not done, as a bench refuses it.
     fn apply(&mut self, stimulus: Stimulus) {
         let now = self.bench.now();
         if self.bench.rig_mut().apply(now, &stimulus).is_ok() {
-            if let Stimulus::Reverser { position } = stimulus {
-                self.reverser = position;
+            match stimulus {
+                Stimulus::Reverser { position } => self.reverser = position,
+                Stimulus::Crosstalk {
+                    carrier_hz,
+                    rate_hz,
+                    ..
+                } => self.crosstalk = [carrier_hz, rate_hz],
+                Stimulus::WheelDiameter { diameter_mm } => self.wheel = Some((diameter_mm, now)),
+                _ => {}
             }
             self.acts.push((now, stimulus.to_string()));
         }
