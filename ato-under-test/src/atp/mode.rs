@@ -9,7 +9,8 @@
 //! who acknowledges that does not send the train off. It departs once its doors have been served, too.
 //! So it does after a power-up, and after a run that mode off has ended: the supply may have failed in a run.
 //! A departure is new if it was heard withheld before: neither the first that is heard nor one that is heard again
-//! after silence says when it was given.
+//! after silence says when it was given. One that is given while the emergency brake is applied, or before such a failure
+//! is acknowledged, is not: it was given to a train that may not go, and has to be given again.
 //!
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
 //! again the service brake goes on stopping the train, and a driverless one waits for a new departure.
@@ -127,7 +128,9 @@ impl ModeSequence {
     /// Latches what ends a run, and gives it up.
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
-        let departs = self.new_departure(inputs.heard);
+        // A train that is held departs by what is given when it may go: who releases it does not send it off.
+        let held = inputs.lacking.contains(Refusals::EB_APPLIED) || self.failed();
+        let departs = self.new_departure(inputs.heard) && !held;
         let left = !matches!(
             inputs.switch,
             ModeSwitch::Automatic | ModeSwitch::Driverless

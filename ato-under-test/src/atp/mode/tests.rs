@@ -186,6 +186,61 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
     assert_eq!(after(pressed), Mode::AutomaticRun, "by the start button");
 }
 
+/// Goal: a departure is for a train that may go. Method: it is withheld and given again while the emergency brake is applied,
+/// and while a failure of ATO is not acknowledged; then the brake is released, the failure acknowledged.
+#[test]
+fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
+    let given = ModeInputs {
+        switch: ModeSwitch::Driverless,
+        ..GOOD
+    };
+    let withheld = ModeInputs {
+        departure: false,
+        heard: Some(false),
+        ..given
+    };
+    let acknowledged = ModeInputs {
+        acknowledge: true,
+        ..given
+    };
+    for held in [Refusals::EB_APPLIED, Refusals::ATO_NOT_READY] {
+        let mut sequence = ModeSequence::new();
+        let mut log = EventLog::default();
+        let mut after = |inputs| {
+            (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+            sequence.mode()
+        };
+        let lacking = |inputs| ModeInputs {
+            lacking: held,
+            ..inputs
+        };
+        after(lacking(given));
+        after(lacking(withheld));
+        after(lacking(given));
+        // A unit that was powered up is released with that departure still there, as one that ended a run is.
+        if held == Refusals::EB_APPLIED {
+            assert_eq!(after(acknowledged), Mode::Automatic, "powered up");
+        }
+        after(withheld);
+        assert_eq!(after(given), Mode::AutomaticRun);
+        assert_eq!(after(lacking(given)), Mode::Manual);
+        after(lacking(withheld));
+        after(lacking(given));
+        after(acknowledged);
+        assert_eq!(after(given), Mode::Automatic, "{held:?}: given before");
+        after(withheld);
+        assert_eq!(after(given), Mode::AutomaticRun, "given again");
+        // Withheld while it was held, and given when it may go.
+        after(lacking(given));
+        after(lacking(withheld));
+        after(ModeInputs {
+            acknowledge: true,
+            ..withheld
+        });
+        assert_eq!(after(given), Mode::AutomaticRun, "{held:?}: given after");
+    }
+}
+
 #[test]
 fn the_sequence_is_this_table() {
     let lacking = |r| ModeInputs { lacking: r, ..GOOD };
