@@ -42,7 +42,7 @@ pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use explained::Cause;
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
-pub use observation::{CheckName, Observation, ObservedStep, Sign, is_observed};
+pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use proof::Proof;
 pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
 pub use strategy::{Effort, Strategy, fixed_order, replayed};

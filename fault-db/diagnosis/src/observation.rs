@@ -42,6 +42,9 @@ impl std::fmt::Display for CheckName {
     }
 }
 
+/// Name of the fault that the tester measures by itself, whatever the unit says: its clock, against the tester's.
+pub const CLOCK_WRONG: &str = "clock_wrong";
+
 /// A fault event of the unit or the train: the fault's name and the part it points at.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
@@ -53,6 +56,11 @@ pub struct Sign {
 }
 
 impl Sign {
+    /// The tester has measured it.
+    pub(crate) fn is_measured(&self) -> bool {
+        self.fault == CLOCK_WRONG
+    }
+
     /// The part's word in the dictionary.
     pub(crate) fn part(&self) -> &str {
         lru::stored(self.lru.as_ref())

@@ -106,6 +106,8 @@ pub struct SignSettings {
     pub of_unknown: f64,
     /// Probability of a sign unrelated to the fault.
     pub stray: f64,
+    /// Probability that the tester measures what a fault of another part, or no fault, does not show.
+    pub measured: f64,
     /// Probability that a sign which a mode always showed does not show.
     pub silent: f64,
 }
@@ -175,6 +177,7 @@ impl Settings {
             ("signs.of_other_part", signs.of_other_part),
             ("signs.of_unknown", signs.of_unknown),
             ("signs.stray", signs.stray),
+            ("signs.measured", signs.measured),
             ("signs.silent", signs.silent),
             ("conclusion.unknown_fault_at", conclusion.unknown_fault_at),
             ("conclusion.named_at", conclusion.named_at),
@@ -271,6 +274,7 @@ impl Default for SignSettings {
             of_other_part: 0.015,
             of_unknown: 0.02,
             stray: 0.003,
+            measured: 1e-6,
             silent: 0.02,
         }
     }

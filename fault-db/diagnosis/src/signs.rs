@@ -19,10 +19,15 @@ pub struct SignsSeen {
 }
 
 impl SignsSeen {
-    /// Logarithm of their likelihood under a hypothesis other than no fault, whose steps have theirs.
+    /// Logarithm of their likelihood under a hypothesis. Steps of no fault have theirs, but for what the tester measures.
     pub fn ln(&self, model: &Model<'_>, hypothesis: Hypothesis) -> f64 {
         match hypothesis {
-            Hypothesis::NoFault => self.in_log.len() as f64 * model.settings.log.stray.ln(),
+            Hypothesis::NoFault => {
+                let (signs, log) = (&model.settings.signs, &model.settings.log);
+                let measured = self.in_steps.iter().filter(|sign| sign.is_measured());
+                measured.count() as f64 * signs.measured.ln()
+                    + self.in_log.len() as f64 * log.stray.ln()
+            }
             Hypothesis::Mode { .. } => self.ln_under(model, &[hypothesis]),
             Hypothesis::Unseen { .. } | Hypothesis::Unknown => {
                 let named = model.lru(hypothesis);
@@ -33,9 +38,9 @@ impl SignsSeen {
                     .chain(self.in_log.difference(&self.in_steps));
                 let of_sign = |sign: &Sign| {
                     let chance = match (&sign.lru, named) {
-                        (None, _) => settings.of_other_part,
-                        (_, None) => settings.of_unknown,
                         (Some(lru), Some(part)) if lru == part => settings.of_part,
+                        _ if sign.is_measured() => settings.measured,
+                        (Some(_), None) => settings.of_unknown,
                         _ => settings.of_other_part,
                     };
                     chance.ln()
@@ -58,6 +63,10 @@ impl SignsSeen {
             }
         }
         let chance = |sign: &Sign, stray: f64| {
+            let stray = match sign.is_measured() {
+                true => settings.measured,
+                false => stray,
+            };
             let share = shown.get(sign).map_or(0.0, |shown| shown.share);
             (stray + (1.0 - stray) * share).min(1.0 - stray).ln()
         };

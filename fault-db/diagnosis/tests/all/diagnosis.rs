@@ -1,11 +1,13 @@
 //! What diagnosis promises: it finds the part when the evidence does, asks for the check that tells the
 //! most, and says "cannot tell" rather than something wrong.
 
+mod signs;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
     Assessment, Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation,
-    ObservedStep, Settings, Sign, Strategy, fixed_order, replayed,
+    ObservedStep, Settings, Strategy, fixed_order, replayed,
 };
 use protocol::lru::from_stored;
 use protocol::{LruId, Verdict};
@@ -482,39 +484,6 @@ fn a_confirmed_case_is_known_again() {
     assert_eq!(top(&diagnosed(&dictionary, &seen)), "sensor.confirmed");
     let other = run(&["b.s1", "c.s1"], Some(240.0));
     assert!(["antenna.dead", "cable.open"].contains(&top(&diagnosed(&dictionary, &other))));
-}
-
-#[test]
-fn a_unit_s_own_log_points_at_a_part_without_any_step() {
-    let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());
-    let sign = |fault: &str, lru: &str| Sign {
-        fault: fault.into(),
-        lru: from_stored(lru),
-    };
-    let logged = |signs: &[Sign]| {
-        let mut run = run(&[], Some(240.0));
-        run.steps[4].signs.extend(signs.iter().cloned());
-        vec![run; 5]
-    };
-    dictionary.set_healthy(&logged(&[]));
-    let dead = sign("tacho_dead_1", "sensor");
-    let weak = sign("code_lost", "antenna");
-    dictionary.add(
-        &mode("sensor.dead", 1.0),
-        "nominal".into(),
-        &logged(std::slice::from_ref(&dead)),
-    );
-    dictionary.add(
-        &mode("antenna.weak", 1.0),
-        "nominal".into(),
-        &logged(&[weak]),
-    );
-    let seen = Observation {
-        steps: Vec::new(),
-        signs: BTreeSet::from([dead]),
-    };
-    let found = diagnosed(&dictionary, &seen);
-    assert_eq!(top(&found), "sensor.dead", "{}", found.conclusion.english);
 }
 
 #[test]

@@ -117,7 +117,7 @@ pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
 pub fn of_clock(by_permille: i32, at: Instant, sample: &Sample) -> FaultSeen {
     FaultSeen {
         code: CLOCK_WRONG,
-        name: "clock_wrong".into(),
+        name: diagnosis::CLOCK_WRONG.into(),
         lru: Some(LruId::from_static("atp_cpu")),
         severity: Severity::Critical,
         at,
