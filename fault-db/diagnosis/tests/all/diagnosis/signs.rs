@@ -51,7 +51,7 @@ fn what_the_tester_measures_names_the_part() {
         dictionary.add(&mode("clock.fast", 1.0), "nominal".into(), &counted);
         let found = diagnosed(&dictionary, &shown(&["a.s2", "b.s1"], &[&clock, &lost]));
         let named = |part: &diagnosis::PartProbability| {
-            part.lru.to_string() == "clock" && part.probability > 0.9
+            part.lru == "clock" && part.probability > 0.9
         };
         let said = &found.conclusion.english;
         assert_eq!(found.lrus.iter().any(named), decides, "{fault}: {said}");
