@@ -42,7 +42,8 @@ impl Backlog {
     /// in that time has arrived.
     fn pause(&mut self, arrived: usize, behind: Duration) -> Duration {
         let late = behind >= PAUSE;
-        let first = late && !core::mem::replace(&mut self.late, late);
+        let was_late = core::mem::replace(&mut self.late, late);
+        let first = late && !was_late;
         if behind < SCAN {
             self.usual = self.usual - self.usual / PARTS + arrived;
         }
@@ -154,6 +155,21 @@ mod tests {
         assert_eq!(late(600, 300), Duration::ZERO);
         assert_eq!(late(0, 290), Duration::ZERO);
         assert_eq!(late(0, 280), Duration::ZERO);
+    }
+
+    /// A standstill that was made up, as one before the first word of the partner, says nothing about the next.
+    #[test]
+    fn a_pause_is_seen_after_a_standstill_that_was_made_up() {
+        let (mut backlog, mut out) = (Backlog::default(), Vec::new());
+        for ms in [300, 200, 100] {
+            let none = backlog.share(&[], Duration::from_ms(ms), &mut out);
+            assert_eq!(none, Duration::ZERO);
+        }
+        for _ in 0..200 {
+            backlog.share(&[0; 20], Duration::ZERO, &mut out);
+        }
+        let took = Duration::from_ms(300);
+        assert_eq!(backlog.share(&[0; 20], took, &mut out), took);
     }
 
     #[test]
