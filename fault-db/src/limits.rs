@@ -81,6 +81,7 @@ impl RunRecord {
             "the unit's connection",
             self.connection.as_deref().unwrap_or_default(),
         )?;
+        name("the symptom", self.symptom.as_deref().unwrap_or_default())?;
         let injected = self.injected.as_deref().unwrap_or_default();
         list("the list of injected faults", injected)?;
         for script in &self.scripts {

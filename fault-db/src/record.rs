@@ -63,6 +63,8 @@ pub struct RunRecord {
     pub source: String,
     /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
     pub connection: Option<String>,
+    /// What was wrong with the unit, as who brought it said: a name of `symptoms.toml`.
+    pub symptom: Option<String>,
     /// When it began.
     pub started_at_us: i64,
     /// Version of the program.

@@ -55,6 +55,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         stop_on_fail: false,
         operator: String::new(),
         train: String::new(),
+        symptom: None,
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,

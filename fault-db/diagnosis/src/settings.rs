@@ -51,6 +51,8 @@ pub struct Settings {
     pub recurrence_factor: f64,
     /// Factor on a part's prior when it was replaced and the same fault came back.
     pub replaced_in_vain_factor: f64,
+    /// Factor on the prior of each part that the symptom the unit was brought with may come from.
+    pub symptom_factor: f64,
     /// A repair is proven by runs that pass with at most this probability while the fault is still there.
     pub hidden_fault: f64,
     /// How far back a unit's history counts, days.
@@ -205,6 +207,7 @@ impl Settings {
             ("bring_up_s", self.bring_up_s),
             ("recurrence_factor", self.recurrence_factor),
             ("replaced_in_vain_factor", self.replaced_in_vain_factor),
+            ("symptom_factor", self.symptom_factor),
             ("repairs_like_prior", self.repairs_like_prior),
         ];
         for (key, value) in positive {
@@ -242,6 +245,7 @@ impl Default for Settings {
             bring_up_s: 3.0,
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,
+            symptom_factor: 3.0,
             history_days: 90,
             repairs_like_prior: 50.0,
             likelihood: LikelihoodSettings::default(),

@@ -268,6 +268,7 @@ fn run_record(fleet: &Fleet, visit: &Visit, chance: &mut Chance) -> RunRecord {
         owner: "history".to_owned(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: if visit.of_log {
             Vec::new()
         } else {

@@ -91,6 +91,8 @@ pub struct RunSummary {
     pub continues: Option<Id>,
     /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
     pub connection: Option<String>,
+    /// What was wrong with the unit, as who brought it said: a name of `symptoms.toml`.
+    pub symptom: Option<String>,
     /// Steps recorded, and what failed outside them.
     pub steps: u32,
     /// Of these, what failed, could not be tested or was stopped.
@@ -152,7 +154,7 @@ const SELECT_RUN: &str = "
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
         (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq, r.train, r.continues, r.connection
+        r.seq, r.train, r.continues, r.connection, r.symptom
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -322,6 +324,7 @@ fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummar
         injected: row.get(17)?,
         continues: row.get(23)?,
         connection: row.get(24)?,
+        symptom: row.get(25)?,
         steps: row.get(18)?,
         steps_not_passed: row.get(19)?,
         faults: row.get(20)?,

@@ -1,7 +1,8 @@
--- Eighth schema: a run that runs what an earlier one left open names it, and says how its unit was reached; limits say where
--- they come from.
+-- Eighth schema: a run that runs what an earlier one left open names it, and says how its unit was reached and what was
+-- wrong with it; limits say where they come from.
 ALTER TABLE run ADD COLUMN continues BLOB; -- id of that run, which may be in another file; NULL: none
 ALTER TABLE run ADD COLUMN connection TEXT; -- harness, or ptu for the maintenance port alone; NULL: nobody said
+ALTER TABLE run ADD COLUMN symptom TEXT; -- what was wrong with the unit, as who brought it said; NULL: nobody said
 ALTER TABLE step ADD COLUMN limit_source TEXT; -- of the numbers in what it expected; NULL: none is known
 ALTER TABLE measurement ADD COLUMN limit_source TEXT; -- of its limits; NULL: none is known
 
@@ -10,7 +11,7 @@ CREATE VIEW runs AS
   SELECT
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS id,
-    u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source, r.connection,
+    u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source, r.connection, r.symptom,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.finished_at_us / 1000 / 1000.0, 'unixepoch') AS finished_at, r.verdict,
     CAST(r.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, r.injected, r.app_version,

@@ -76,6 +76,7 @@ pub(crate) struct RunDigest {
     payload: RunPayload,
     continues: Option<Id>,
     connection: Option<String>,
+    symptom: Option<String>,
 }
 
 impl RunDigest {
@@ -119,6 +120,7 @@ impl RunDigest {
             payload: RunPayload::default(),
             continues: record.continues,
             connection: record.connection.clone(),
+            symptom: record.symptom.clone(),
         }
     }
 
@@ -212,8 +214,8 @@ impl RunDigest {
         if let Some(earlier) = self.continues {
             run.values(&values![earlier]);
         }
-        if let Some(connection) = &self.connection {
-            run.values(&values![connection]);
+        if self.connection.is_some() || self.symptom.is_some() {
+            run.values(&values![self.connection.as_ref(), self.symptom.as_ref()]);
         }
         add_sources(&mut run, self.sources.clone());
         let payload = self.payload.text();
@@ -267,7 +269,8 @@ const RUN: &str =
 const CONTINUES: &str = "SELECT continues FROM run WHERE seq = ?1 AND continues IS NOT NULL";
 
 /// Of a run that nobody led it adds nothing.
-const CONNECTION: &str = "SELECT connection FROM run WHERE seq = ?1 AND connection IS NOT NULL";
+const CONNECTION: &str = "SELECT connection, symptom FROM run
+     WHERE seq = ?1 AND (connection IS NOT NULL OR symptom IS NOT NULL)";
 
 /// Those of its limits; a step's own stands before those of its measurements.
 const SOURCES: &str = "SELECT step_index, -1 AS ordinal, limit_source FROM step WHERE run = ?1 AND limit_source IS NOT NULL

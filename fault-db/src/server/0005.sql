@@ -1,6 +1,7 @@
--- The earlier run that a run continues, how its unit was reached, and where limits come from, as in a file: fault-db/src/schema/0008.sql.
+-- The earlier run that a run continues, how its unit was reached, what was wrong with it, and where limits come from, as in a file: fault-db/src/schema/0008.sql.
 ALTER TABLE run ADD COLUMN continues bytea;
 ALTER TABLE run ADD COLUMN connection text COLLATE "C";
+ALTER TABLE run ADD COLUMN symptom text COLLATE "C";
 ALTER TABLE step ADD COLUMN limit_source text COLLATE "C";
 ALTER TABLE measurement ADD COLUMN limit_source text COLLATE "C";
 
@@ -8,6 +9,8 @@ CREATE TRIGGER in_domain_of_continues BEFORE INSERT ON run FOR EACH ROW
   WHEN (NOT is_id(NEW.continues)) EXECUTE FUNCTION refuse_row();
 CREATE TRIGGER in_domain_of_connection BEFORE INSERT ON run FOR EACH ROW
   WHEN (NOT is_name(NEW.connection)) EXECUTE FUNCTION refuse_row();
+CREATE TRIGGER in_domain_of_symptom BEFORE INSERT ON run FOR EACH ROW
+  WHEN (NOT is_name(NEW.symptom)) EXECUTE FUNCTION refuse_row();
 CREATE TRIGGER in_domain_of_limit_source BEFORE INSERT ON step FOR EACH ROW
   WHEN (NOT is_text(NEW.limit_source)) EXECUTE FUNCTION refuse_row();
 CREATE TRIGGER in_domain_of_limit_source BEFORE INSERT ON measurement FOR EACH ROW
@@ -15,7 +18,7 @@ CREATE TRIGGER in_domain_of_limit_source BEFORE INSERT ON measurement FOR EACH R
 
 DROP VIEW runs;
 CREATE VIEW runs AS
-  SELECT id_text(r.id) AS id, u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source, r.connection,
+  SELECT id_text(r.id) AS id, u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source, r.connection, r.symptom,
     time_text(r.started_at_us) AS started_at, time_text(r.finished_at_us) AS finished_at, r.verdict,
     CAST(r.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, r.injected, r.app_version,
     id_text(r.continues) AS continues, r.started_at_us

@@ -101,6 +101,7 @@ pub fn run_record(serial: &str) -> RunRecord {
         owner: "pid 1 started 2".to_owned(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: vec![ScriptRecord {
             path: "scripts/atp/speed.star".to_owned(),
             sha256: "ef".repeat(32),

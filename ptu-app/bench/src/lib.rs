@@ -39,6 +39,7 @@ pub mod stdio;
 pub mod stop;
 pub mod stored;
 pub mod structure;
+pub mod symptoms;
 pub mod table;
 #[cfg(test)]
 mod test_support;

@@ -78,6 +78,7 @@ pub fn write(file: &Path) {
         owner: String::new(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &record).expect("a run");

@@ -51,6 +51,7 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
         "seed": run.seed,
         "source": run.source,
         "connection": run.connection,
+        "symptom": run.symptom,
         "operator": run.operator,
         "started_at": rfc3339(run.started_at_us),
         "finished_at": run.finished_at_us.map(rfc3339),

@@ -11,9 +11,10 @@ use serde_json::{Value, json};
 use super::{ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::structure::Structure;
+use ptu_bench::symptoms;
 use ptu_bench::table::Table;
 
-/// Show faults, signals, speed codes, lines, parts, the structure or a train's cars
+/// Show faults, signals, speed codes, lines, parts, the structure, symptoms or a train's cars
 #[derive(Debug, Args)]
 pub struct CatalogArguments {
     /// What to show
@@ -46,6 +47,8 @@ enum CatalogTopic {
     Lrus,
     /// Parts that each signal comes through, from the sensors on
     Structure,
+    /// What may be wrong with a unit, and the parts it may come from
+    Symptoms,
     /// Masses and brake forces of a train's cars, its MT pairs and the whole of it
     Train,
 }
@@ -60,6 +63,7 @@ impl CatalogArguments {
             CatalogTopic::Lines => self.lines()?,
             CatalogTopic::Lrus => self.lrus()?,
             CatalogTopic::Structure => self.structure()?,
+            CatalogTopic::Symptoms => self.symptoms()?,
             CatalogTopic::Train => self.train()?,
         };
         if self.json {
@@ -94,6 +98,12 @@ impl CatalogArguments {
         let entry =
             |(signal, parts): (Signal, _)| json!({ "signal": signal.name(), "parts": parts });
         Ok(structure.signals().map(entry).collect())
+    }
+
+    fn symptoms(&self) -> Result<Vec<Value>, Failure> {
+        let entry = |symptom: symptoms::Symptom| json!({ "id": symptom.id, "name": symptom.name, "parts": symptom.parts });
+        let symptoms = symptoms::load(&self.scripts.find()?)?;
+        Ok(symptoms.into_iter().map(entry).collect())
     }
 
     fn codes(&self) -> Result<Vec<Value>, Failure> {

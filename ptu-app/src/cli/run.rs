@@ -26,6 +26,7 @@ use ptu_bench::run::{
 use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
+use ptu_bench::symptoms;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";
@@ -85,6 +86,9 @@ pub struct RunArguments {
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
     operator: String,
+    /// What was wrong with the unit, as who brought it says, see `ptu catalog symptoms`: a weak sign of the part
+    #[arg(long, value_name = "SYMPTOM")]
+    symptom: Option<String>,
     /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
@@ -207,6 +211,7 @@ impl RunArguments {
             stop_on_fail: self.stop_on_fail,
             operator: self.operator.clone(),
             train: self.train_no.clone(),
+            symptom: self.symptom.clone(),
             scripts_sha256,
             adaptive: None,
             continues: earlier.map(|earlier| earlier.run.id),
@@ -316,6 +321,10 @@ impl RunArguments {
         directory: &ScriptsDirectory,
     ) -> Result<Exit, Failure> {
         self.reports.check()?;
+        let symptom = self.symptom.as_deref();
+        let symptom = symptom
+            .map(|id| symptoms::find(directory, id))
+            .transpose()?;
         let store = self.database.open_file()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
             return Err(Failure::usage(
@@ -338,7 +347,7 @@ impl RunArguments {
                         connection,
                         practice,
                     };
-                    adaptive(store, directory, serial, &bench)
+                    adaptive(store, directory, (serial, symptom.as_ref()), &bench)
                 };
                 run::search(plan, setup, store, &stop, &mut console, prepare)
             }

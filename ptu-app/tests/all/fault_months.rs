@@ -38,6 +38,7 @@ fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
         owner: String::new(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(store, &record).expect("begun");

@@ -32,6 +32,7 @@ mod saved_questions;
 mod scatter;
 mod server;
 mod suite;
+mod symptoms;
 mod trace_files;
 mod traces_page;
 mod train_faults;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Place, list};
+use crate::common::{Place, list, text};
 use fault_db::Store;
 use ptu_report::run::{Sheet, html};
 use ptu_report::words::Language;
@@ -112,9 +112,9 @@ fn a_korean_sheet_of_a_failed_run_has_no_english_sentence() {
     assert!(english.is_empty(), "{english:#?}");
 }
 
-/// Goal: who adds a step or a reason for a limit adds its Korean.
+/// Goal: who adds a step, a reason for a limit or a symptom adds its Korean.
 #[test]
-fn every_step_and_every_reason_of_a_limit_has_korean() {
+fn every_step_symptom_and_reason_of_a_limit_has_korean() {
     let place = Place::new();
     let suite = ["run", "--list", "--json"];
     let on_request = [
@@ -131,7 +131,14 @@ fn every_step_and_every_reason_of_a_limit_has_korean() {
     ];
     let words = Language::Korean.words();
     let is_missing = |text: &str| words.content(text) == text;
-    let mut missing = BTreeSet::new();
+    let symptoms = place.json(&["catalog", "symptoms", "--json"]);
+    let names = list(&symptoms).iter().map(|symptom| text(&symptom["name"]));
+    let names: Vec<_> = names.map(str::to_owned).collect();
+    let mut missing: BTreeSet<_> = names
+        .iter()
+        .map(String::as_str)
+        .filter(|name| is_missing(name))
+        .collect();
     for procedure in listed.iter().flat_map(list) {
         for step in list(&procedure["steps"]) {
             let texts = [&step["name"], &step["note"]].into_iter();

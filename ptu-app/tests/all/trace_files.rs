@@ -143,6 +143,7 @@ fn kept(place: &Place, trace: &TraceData) -> Id {
         owner: String::new(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &run).expect("begun");

@@ -13,6 +13,9 @@ use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 /// Patience with a busy machine that paints in software.
 pub const PATIENCE: Duration = Duration::from_secs(300);
 
+/// Of the dump in the frame buffer file (XWDFile.h).
+const DUMP_VERSION: u32 = 7;
+
 /// A private X server; ends with the value.
 pub struct Display {
     server: Child,
@@ -59,11 +62,19 @@ impl Display {
 
     /// The server's frame buffer file is an X window dump, 32 bits a pixel.
     pub fn picture(&self) -> Picture {
-        let dump = std::fs::read(&self.frame_buffer).expect("the frame buffer");
-        let word = |place: usize| {
+        let word = |dump: &[u8], place: usize| {
             let bytes = dump[4 * place..4 * place + 4].try_into().expect("a word");
             u32::from_be_bytes(bytes)
         };
+        let dump = loop {
+            let dump = std::fs::read(&self.frame_buffer).expect("the frame buffer");
+            // The server turns the bytes of the header round in place when it changes colours.
+            if word(&dump, 1) == DUMP_VERSION {
+                break dump;
+            }
+            std::thread::yield_now();
+        };
+        let word = |place| word(&dump, place);
         let (header, width, height, line, colours) =
             (word(0), word(4), word(5), word(12), word(19));
         let pixels = &dump[(header + 12 * colours) as usize..];

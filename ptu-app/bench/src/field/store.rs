@@ -164,6 +164,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         owner: crate::process_id::this_process(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     }
 }

@@ -253,6 +253,7 @@ fn run_record(
         owner: crate::process_id::this_process(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     }
 }

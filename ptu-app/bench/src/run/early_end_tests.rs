@@ -85,6 +85,7 @@ fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
         stop_on_fail: false,
         operator: String::new(),
         train: String::new(),
+        symptom: None,
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,

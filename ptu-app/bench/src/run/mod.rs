@@ -101,6 +101,8 @@ pub struct RunPlan {
     pub operator: String,
     /// The train the unit is in, as the tester names it; empty if nobody said.
     pub train: String,
+    /// What was wrong with the unit, as who brought it said: a name of `symptoms.toml`.
+    pub symptom: Option<String>,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
     /// Isolates a fault by itself, instead of running all tasks in order.
@@ -317,6 +319,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         owner: crate::process_id::this_process(),
         continues: plan.continues,
         connection: None,
+        symptom: plan.symptom.clone(),
         scripts: plan
             .tasks
             .iter()

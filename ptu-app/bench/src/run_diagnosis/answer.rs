@@ -20,6 +20,7 @@ use crate::failure::{Failure, did_you_mean};
 use crate::process_id;
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
+use crate::symptoms::{self, Symptom};
 
 /// What decides what a healthy unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,6 +126,11 @@ pub fn diagnose(
         practice: run.run.is_practice(),
     };
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
+    // A symptom that this directory's file no longer has says nothing.
+    let said = run.run.symptom.as_deref();
+    if let Some(symptom) = said.and_then(|id| symptoms::find(directory, id).ok()) {
+        history.add_symptom(&symptom, &settings);
+    }
     let model = Model::new(&dictionary, &settings, &history.factors);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
@@ -217,14 +223,14 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
     }
 }
 
-/// What an adaptive run on the unit called `serial` decides by.
+/// What an adaptive run on the unit called `serial`, which was brought with this symptom, decides by.
 ///
 /// # Errors
 /// There is no dictionary, or one of another bench or other scripts only.
 pub fn adaptive(
     store: &Store,
     directory: &ScriptsDirectory,
-    serial: &str,
+    (serial, symptom): (&str, Option<&Symptom>),
     bench: &Bench<'_>,
 ) -> Result<Adaptive, Failure> {
     let chosen = choose(Some(store), directory, bench.connection)?;
@@ -258,6 +264,9 @@ pub fn adaptive(
         practice: bench.practice,
     };
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
+    if let Some(symptom) = symptom {
+        history.add_symptom(symptom, &settings);
+    }
     Ok(Adaptive {
         dictionary,
         settings,

@@ -9,6 +9,7 @@ use protocol::lru::{LruId, from_stored};
 
 use crate::clock::{local_day, now_us};
 use crate::failure::Failure;
+use crate::symptoms::Symptom;
 
 /// More earlier runs than these say no more: a unit may lie on the bench for days with one fault.
 const MOST_RUNS: u32 = 4;
@@ -79,6 +80,14 @@ impl OwnHistory {
             history.factors.insert(part, factor);
         }
         history
+    }
+
+    /// Adds what who brought the unit said is wrong with it.
+    pub(super) fn add_symptom(&mut self, symptom: &Symptom, settings: &Settings) {
+        for part in &symptom.parts {
+            self.add_for(part, format!("brought with: {}", symptom.name));
+            *self.factors.entry(part.clone()).or_insert(1.0) *= settings.symptom_factor;
+        }
     }
 
     /// Adds what speaks for a part.

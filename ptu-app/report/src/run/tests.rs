@@ -93,6 +93,7 @@ fn run() -> RunRecord {
         owner: "nobody".into(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: vec![ScriptRecord {
             path: "atp/overspeed.star".into(),
             sha256: "ef".repeat(32),

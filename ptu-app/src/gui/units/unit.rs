@@ -337,6 +337,7 @@ mod tests {
                 stop_on_fail: false,
                 operator: String::new(),
                 train: String::new(),
+                symptom: None,
                 scripts_sha256: suite.sha256,
                 adaptive: None,
                 continues: None,

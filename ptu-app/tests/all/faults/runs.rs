@@ -89,6 +89,7 @@ impl TestBench {
             stop_on_fail: false,
             operator: String::new(),
             train: String::new(),
+            symptom: None,
             scripts_sha256: self.suite.sha256.clone(),
             adaptive: None,
             continues: None,

@@ -17,7 +17,7 @@ fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
     };
     let serial = setup.expected_serial();
     let (_folder, store) = store();
-    let adaptive = run_diagnosis::adaptive(&store, &scripts(), &serial, &bench);
+    let adaptive = run_diagnosis::adaptive(&store, &scripts(), (&serial, None), &bench);
     plan.adaptive = Some(adaptive.expect("the shipped dictionary"));
     plan
 }

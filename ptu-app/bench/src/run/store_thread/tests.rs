@@ -28,6 +28,7 @@ fn record() -> RunRecord {
         owner: String::new(),
         continues: None,
         connection: None,
+        symptom: None,
         scripts: Vec::new(),
     }
 }

@@ -126,6 +126,7 @@ fn workers_start_only_a_limited_number_of_procedures_ahead() {
         stop_on_fail: false,
         operator: String::new(),
         train: String::new(),
+        symptom: None,
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,

@@ -178,6 +178,7 @@ impl ProceduresPage {
             repeat: 1,
             stop_on_fail: false,
             adaptive: false,
+            symptom: None,
         };
         self.order_of(unit, only, how, context);
     }
@@ -199,6 +200,7 @@ impl ProceduresPage {
             repeat: if adaptive { 1 } else { self.repeat },
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
+            symptom: None,
         };
         let connection = context.units.of_id(unit).map(|unit| unit.connection());
         if let Some(connection) = connection {

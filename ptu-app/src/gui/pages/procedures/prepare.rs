@@ -10,6 +10,7 @@ use ptu_bench::bench_worker::RunOrder;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::{BenchChoice, RunPlan, Suite};
 use ptu_bench::run_diagnosis;
+use ptu_bench::symptoms::Symptom;
 
 /// How the chosen procedures are run.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub struct RunSettings {
     pub stop_on_fail: bool,
     /// As few steps as it takes to find the part.
     pub adaptive: bool,
+    /// What who brought the unit said is wrong with it.
+    pub symptom: Option<Symptom>,
 }
 
 /// Evaluates the scripts as they are on the disk now, for this unit.
@@ -91,7 +94,7 @@ pub fn order(
             Some(run_diagnosis::adaptive(
                 &store,
                 &paths.scripts,
-                serial,
+                (serial, how.symptom.as_ref()),
                 &bench,
             )?)
         }
@@ -104,6 +107,7 @@ pub fn order(
             stop_on_fail: how.stop_on_fail,
             operator: how.operator,
             train: choice.train_no.trim().to_owned(),
+            symptom: how.symptom.map(|symptom| symptom.id),
             scripts_sha256: suite.sha256.clone(),
             adaptive,
             continues: None,
@@ -157,6 +161,7 @@ mod tests {
             repeat: 1,
             stop_on_fail: false,
             adaptive: false,
+            symptom: None,
         };
         order(
             paths,

@@ -1,0 +1,99 @@
+//! What is wrong with a unit as who brings it says (`scripts/symptoms.toml`): a weak sign of the parts that it may come from.
+
+use protocol::LruId;
+use protocol::injection::FaultCatalogue;
+use serde::Deserialize;
+
+use crate::data::{ScriptsDirectory, read};
+use crate::failure::{Failure, did_you_mean};
+
+/// Where it stands in the scripts directory.
+pub const FILE: &str = "symptoms.toml";
+
+/// A symptom.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Symptom {
+    /// Its name in commands and in the database.
+    pub id: String,
+    /// What a person reads.
+    pub name: String,
+    /// Parts that it may come from.
+    pub parts: Vec<LruId>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    symptoms: Vec<Symptom>,
+}
+
+/// The symptoms of a scripts directory, in the order of its file.
+///
+/// # Errors
+/// The file cannot be read, or is wrong: a name given twice, a part that the catalogue does not know.
+pub fn load(directory: &ScriptsDirectory) -> Result<Vec<Symptom>, Failure> {
+    let file = directory.path().join(FILE);
+    of_toml(&read(&file)?, &directory.faults()?)
+        .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+}
+
+fn of_toml(text: &str, catalogue: &FaultCatalogue) -> Result<Vec<Symptom>, String> {
+    let written: Written = toml::from_str(text).map_err(|error| error.to_string())?;
+    for (place, symptom) in written.symptoms.iter().enumerate() {
+        let id = &symptom.id;
+        if written.symptoms[..place]
+            .iter()
+            .any(|other| other.id == *id)
+        {
+            return Err(format!("there are two symptoms \"{id}\""));
+        }
+        let known = |part: &&LruId| catalogue.lrus.iter().any(|lru| lru.id == **part);
+        if let Some(part) = symptom.parts.iter().find(|part| !known(part)) {
+            return Err(format!("symptom \"{id}\": no part \"{part}\""));
+        }
+    }
+    Ok(written.symptoms)
+}
+
+/// The symptom of this name.
+///
+/// # Errors
+/// There is none, or the file cannot be read.
+pub fn find(directory: &ScriptsDirectory, id: &str) -> Result<Symptom, Failure> {
+    let mut symptoms = load(directory)?;
+    let found = symptoms.iter().position(|symptom| symptom.id == id);
+    let found = found.ok_or_else(|| {
+        let known = symptoms.iter().map(|symptom| symptom.id.as_str());
+        Failure::usage(format!(
+            "no symptom \"{id}\"{}; `ptu catalog symptoms` lists them",
+            did_you_mean(id, known)
+        ))
+    })?;
+    Ok(symptoms.swap_remove(found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support;
+
+    #[test]
+    fn the_file_names_parts_of_the_catalogue() {
+        let symptoms = load(&test_support::scripts()).expect("symptoms");
+        assert!(symptoms.iter().any(|symptom| symptom.id == "brakes_late"));
+    }
+
+    #[test]
+    fn an_unknown_part_and_a_name_given_twice_are_told() {
+        let catalogue = test_support::scripts().faults().expect("a catalogue");
+        let one = |id: &str, part: &str| {
+            format!("[[symptoms]]\nid = \"{id}\"\nname = \"-\"\nparts = [\"{part}\"]\n")
+        };
+        let wrong = |text: String| of_toml(&text, &catalogue).expect_err("wrong");
+        let said = wrong(one("a", "eb_rely"));
+        assert_eq!(said, "symptom \"a\": no part \"eb_rely\"");
+        let said = wrong(one("a", "eb_relay") + &one("a", "tra"));
+        assert_eq!(said, "there are two symptoms \"a\"");
+    }
+}
