@@ -9,8 +9,10 @@ use ptu_report::words::Words;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Page {
-    /// The unit live, and stimuli by hand.
+    /// One case: from the symptom to the signed sheet.
     #[default]
+    Case,
+    /// The unit live, and stimuli by hand.
     Bench,
     /// Choosing and running procedures.
     Procedures,
@@ -26,7 +28,8 @@ pub enum Page {
 
 impl Page {
     /// All, in the order they are shown.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
+        Self::Case,
         Self::Bench,
         Self::Procedures,
         Self::Traces,
@@ -38,6 +41,7 @@ impl Page {
     /// Its name on the command line.
     fn word(self) -> &'static str {
         match self {
+            Self::Case => "case",
             Self::Bench => "bench",
             Self::Procedures => "procedures",
             Self::Traces => "traces",
@@ -50,6 +54,7 @@ impl Page {
     /// Its name.
     pub fn name(self, words: &Words) -> &'static str {
         match self {
+            Self::Case => words.case.title,
             Self::Bench => words.bench.title,
             Self::Procedures => words.procedures.title,
             Self::Traces => words.traces.title,
@@ -62,6 +67,7 @@ impl Page {
     /// The key that shows it.
     pub fn key(self) -> Key {
         match self {
+            Self::Case => Key::F7,
             Self::Bench => Key::F1,
             Self::Procedures => Key::F2,
             Self::Traces => Key::F3,

@@ -1,5 +1,7 @@
 //! What a page reads and changes while it is drawn, and how it leads to another page.
 
+use std::collections::BTreeSet;
+
 use fault_db::Id;
 
 use super::data_watch::DataWatch;
@@ -7,6 +9,7 @@ use super::messages::Messages;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
+use ptu_bench::symptoms::Symptom;
 use ptu_report::words::Words;
 
 /// What a page reads and changes while it is drawn.
@@ -39,6 +42,13 @@ pub enum Destination {
     /// The test sheet of a run.
     Report(Id),
     Diagnosis(Id),
+    /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.
+    FindPart(Option<Symptom>),
+    /// Runs these procedures, and those that this part can fail, on the chosen unit; stays with the case.
+    Prove {
+        procedures: BTreeSet<String>,
+        part: String,
+    },
     /// The procedures, running one step at once.
     RunStep {
         /// Procedure, as `atp/overspeed`.

@@ -10,6 +10,7 @@ mod bad_scripts;
 mod bench_page;
 mod by_the_clock;
 mod care;
+mod case_page;
 mod cases;
 mod diagnose;
 mod diagnose_matrix;

@@ -4,6 +4,7 @@
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
 
 mod bench;
+mod case;
 mod common;
 mod content;
 mod diagnosis;
@@ -16,6 +17,7 @@ mod report;
 mod traces;
 
 pub use bench::Bench;
+pub use case::Case;
 pub use common::Common;
 pub use diagnosis::Diagnosis;
 pub use faults::Faults;
@@ -113,6 +115,8 @@ pub struct Words {
     pub frame: Frame,
     /// Live view and stimuli.
     pub bench: Bench,
+    /// One case, from the symptom to the signed sheet.
+    pub case: Case,
     /// Choosing and running procedures.
     pub procedures: Procedures,
     /// Recorded traces.
@@ -143,6 +147,7 @@ static ENGLISH: Words = Words {
     common: Common::ENGLISH,
     frame: Frame::ENGLISH,
     bench: Bench::ENGLISH,
+    case: Case::ENGLISH,
     procedures: Procedures::ENGLISH,
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
@@ -156,6 +161,7 @@ static KOREAN: Words = Words {
     common: Common::KOREAN,
     frame: Frame::KOREAN,
     bench: Bench::KOREAN,
+    case: Case::KOREAN,
     procedures: Procedures::KOREAN,
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
@@ -173,6 +179,7 @@ mod tests {
             Common::all(),
             Frame::all(),
             Bench::all(),
+            Case::all(),
             Procedures::all(),
             Traces::all(),
             Faults::all(),

@@ -1,6 +1,7 @@
 //! The pages, one folder each.
 
 mod bench;
+mod case;
 mod diagnosis;
 mod faults;
 mod procedures;
@@ -16,6 +17,7 @@ use super::page_context::PageContext;
 /// What the pages keep while the window is open.
 #[derive(Default)]
 pub struct Pages {
+    case: case::CasePage,
     bench: bench::BenchPage,
     procedures: procedures::ProceduresPage,
     traces: traces::TracesPage,
@@ -28,12 +30,18 @@ impl Pages {
     /// Takes what has come for the pages, whichever is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         self.procedures.poll(context);
+        self.case.poll(self.procedures.concluded(), context);
         self.faults.poll(context);
         self.report.poll(context);
     }
 
     pub fn show(&mut self, page: Page, ui: &mut Ui, context: &mut PageContext<'_>) {
         match page {
+            Page::Case => {
+                if let Some(run) = self.case.show(ui, self.procedures.has_orders(), context) {
+                    self.report.show_of_case(run, ui, context);
+                }
+            }
             Page::Bench => self.bench.show(ui, context),
             Page::Procedures => self.procedures.show(ui, context),
             Page::Traces => self.traces.show(ui, context),
@@ -57,6 +65,14 @@ impl Pages {
             Destination::Diagnosis(run) => {
                 self.diagnosis.open(run, context);
                 Page::Diagnosis
+            }
+            Destination::FindPart(symptom) => {
+                self.procedures.find_part(symptom, context);
+                Page::Case
+            }
+            Destination::Prove { procedures, part } => {
+                self.procedures.prove(procedures, part, context);
+                Page::Case
             }
             Destination::RunStep {
                 procedure,

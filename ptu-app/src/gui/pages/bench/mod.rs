@@ -10,7 +10,7 @@ mod plot;
 mod rolling;
 mod scale;
 mod stimuli;
-mod text;
+pub mod text;
 mod track;
 
 use std::collections::BTreeMap;

@@ -7,6 +7,7 @@ mod present;
 mod results;
 mod selection;
 mod tree;
+mod wanted;
 
 use std::sync::Arc;
 
@@ -18,12 +19,15 @@ use crate::gui::parts::RunNoteForm;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use prepare::{Prepared, RunSettings, ShownSuite};
+pub use present::present;
 use ptu_bench::run::{BenchChoice, Suite};
-use ptu_bench::run_diagnosis::{diagnose_run, prove_repairs};
+use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_report::proof_text;
-use ptu_report::words::fill;
+
 use results::ResultsView;
+pub use results::measurements;
 use selection::Selection;
+use wanted::Wanted;
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
@@ -37,13 +41,23 @@ pub struct ProceduresPage {
     orders: Vec<PendingOrder>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
-    /// A step to run as soon as the suite is there: procedure, step, unit by its own number.
-    wanted: Option<(String, String, u64)>,
+    /// What to run as soon as the suite is there, on a unit by its own number.
+    wanted: Option<(Wanted, u64)>,
     shown: ResultsView,
     /// The conclusion of the diagnosis of the last run.
-    conclusion: Request<String>,
+    conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
     note: RunNoteForm,
+}
+
+/// What is said of a run that has ended.
+pub struct Concluded {
+    /// The conclusion, or what the run says of repairs before it.
+    pub text: String,
+    /// The diagnosis of a run that failed.
+    pub answer: Option<Box<Answer>>,
+    /// Of a run that passed.
+    pub proofs: Vec<RepairProof>,
 }
 
 /// An order that is being prepared.
@@ -93,27 +107,14 @@ impl ProceduresPage {
         });
     }
 
-    /// Runs this step on the chosen unit if it is the one called `unit`.
-    pub fn run_step(
-        &mut self,
-        procedure: String,
-        step: String,
-        unit: &str,
-        context: &mut PageContext<'_>,
-    ) {
-        let words = &context.words.procedures;
-        let chosen = context.units.chosen();
-        if !chosen.may_run() {
-            context
-                .messages
-                .trouble(controls::why_not(chosen, words), "");
-        } else if chosen.name() != unit {
-            let said = fill(words.other_unit, &[("unit", &unit)]);
-            context.messages.trouble(said, "");
-        } else {
-            self.wanted = Some((procedure, step, chosen.id));
-            self.keep_loaded(context);
-        }
+    /// Something is about to be run.
+    pub fn has_orders(&self) -> bool {
+        self.wanted.is_some() || !self.orders.is_empty()
+    }
+
+    /// What is said of the last run of the chosen unit, once it is known.
+    pub fn concluded(&self) -> Option<(fault_db::Id, &Request<Concluded>)> {
+        Some((self.concluded?, &self.conclusion))
     }
 
     /// Scripts are loaded for the unit's configuration, line and train: anew when these change.
@@ -154,33 +155,6 @@ impl ProceduresPage {
         self.note.poll(context.words, context.messages);
         self.poll_orders(context);
         self.conclude(context);
-    }
-
-    /// Runs the step another page asked for, once the suite is there; what is chosen here stays chosen.
-    fn run_wanted(&mut self, context: &mut PageContext<'_>) {
-        let Some(suite) = self.suite.value() else {
-            return;
-        };
-        let Some((procedure, step, unit)) = self.wanted.take() else {
-            return;
-        };
-        let found = suite.procedures.iter().find(|known| known.id == procedure);
-        let only = found.map(|found| Selection::only(found, &step));
-        let Some(only) = only.filter(|only| only.extent(&suite.procedures).0 > 0) else {
-            let what = format!("{procedure} {step}");
-            context
-                .messages
-                .trouble(context.words.procedures.no_such_step, what);
-            return;
-        };
-        let how = RunSettings {
-            operator: context.settings.operator.clone(),
-            repeat: 1,
-            stop_on_fail: false,
-            adaptive: false,
-            symptom: None,
-        };
-        self.order_of(unit, only, how, context);
     }
 
     /// What is chosen, or would be run without a choice.
@@ -285,10 +259,15 @@ impl ProceduresPage {
                     let store = paths.open()?;
                     let answer = diagnose_run(&store, &paths.scripts, id)?;
                     let conclusion = words.sentence(&answer.diagnosis.conclusion);
-                    Ok(match answer.attribute(&store) {
+                    let text = match answer.attribute(&store) {
                         Ok(()) => conclusion.into_owned(),
                         // The part is known all the same.
                         Err(failure) => format!("{conclusion} ({failure})"),
+                    };
+                    Ok(Concluded {
+                        text,
+                        answer: Some(Box::new(answer)),
+                        proofs: Vec::new(),
                     })
                 }))
             }
@@ -296,7 +275,11 @@ impl ProceduresPage {
                 let words = context.words;
                 Request::Pending(context.queries.run(move |paths| {
                     let proofs = prove_repairs(&paths.open()?, &paths.scripts, id)?;
-                    Ok(proof_text(&proofs, words))
+                    Ok(Concluded {
+                        text: proof_text(&proofs, words),
+                        answer: None,
+                        proofs,
+                    })
                 }))
             }
             _ => Request::Idle,
@@ -319,7 +302,7 @@ impl ProceduresPage {
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
         // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
         let conclusion = match &self.conclusion {
-            Request::Ready(conclusion) => Some(conclusion.as_str()),
+            Request::Ready(concluded) => Some(concluded.text.as_str()),
             Request::Pending(_) => Some(words.common.loading),
             Request::Idle | Request::Failed(_) => None,
         };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
-use protocol::Duration;
+use protocol::{Duration, LruId};
 
 use ptu_bench::run::Task;
 
@@ -36,6 +36,26 @@ impl Selection {
             }
         }
         usual
+    }
+
+    /// What shows whether a repair of `part` holds: these procedures, and those that suspect the part somewhere.
+    pub fn proof(
+        procedures: &[Arc<Procedure>],
+        connection: Connection,
+        failed: &BTreeSet<String>,
+        part: &str,
+    ) -> Self {
+        let is_it = |suspect: &Option<LruId>| suspect.as_ref().is_some_and(|lru| *lru == *part);
+        let mut proof = Self::default();
+        for procedure in procedures {
+            let suspects = is_it(&procedure.suspect)
+                || procedure.steps.iter().any(|step| is_it(&step.suspect));
+            let wanted = failed.contains(&procedure.id) || suspects && !procedure.on_request;
+            if possible(procedure, connection) && wanted {
+                proof.set(procedure, true);
+            }
+        }
+        proof
     }
 
     /// One step of a procedure; nothing if there is none of that name.

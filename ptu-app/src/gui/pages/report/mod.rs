@@ -60,6 +60,12 @@ impl ReportPage {
         self.ask(run, context);
     }
 
+    /// The sheet of a case's last run, without the list of runs.
+    pub fn show_of_case(&mut self, run: Id, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_up(ui, context, Some(run));
+        self.sheet(ui, context);
+    }
+
     /// Asks when another run is to be shown, and again when something may have been added to this one:
     /// the data have changed, or the page was away.
     fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, run: Option<Id>) {

@@ -1,0 +1,52 @@
+//! One case: from the symptom to the signed sheet.
+
+use super::wordings;
+
+wordings! {
+    /// One case: from the symptom to the signed sheet.
+    Case {
+        title: "Case", "정비 작업";
+        stage_start: "Connect", "연결";
+        stage_unit: "Symptom", "증상";
+        stage_run: "Test", "시험";
+        stage_result: "Result", "결과";
+        stage_repair: "Repair", "수리";
+        stage_prove: "Proof", "확인 시험";
+        stage_sheet: "Sheet", "성적서";
+        new_case: "New case", "새 작업";
+        your_name: "Your name", "시험자 이름";
+        name_first: "Write your name first", "먼저 이름을 적으십시오";
+        reached_at: "The unit is reached at {place}; another place is chosen above, at Setup.", "장치 연결 위치: {place}. 다른 위치는 위의 설정에서 고르십시오.";
+        open_faults: "Open faults of this unit", "이 장치의 미해결 고장";
+        repairs: "Earlier repairs", "이전 수리";
+        nothing_known: "Nothing is recorded about this unit.", "이 장치에 대한 기록이 없습니다.";
+        what_is_wrong: "What is wrong with it?", "증상이 무엇입니까?";
+        unknown: "not known", "모름";
+        find_part: "Find the part", "고장 부품 찾기";
+        preparing: "The run is being prepared", "시험을 준비하는 중";
+        not_begun: "No run is under way.", "진행 중인 시험이 없습니다.";
+        back: "Back", "뒤로";
+        no_fault: "The test found no fault.", "시험에서 고장을 찾지 못했습니다.";
+        not_finished: "The test did not come to its end: {verdict}", "시험이 끝까지 진행되지 않음: {verdict}";
+        because: "Because", "근거";
+        record_repair: "Record repair", "수리 기록";
+        to_sheet: "Sheet", "성적서";
+        part: "Part", "부품";
+        serial_old: "Serial number taken out", "떼어 낸 부품의 일련번호";
+        serial_new: "Serial number put in", "새 부품의 일련번호";
+        note: "Note", "비고";
+        save: "Save", "저장";
+        serial_or_note: "Write the new serial number, or in the note what was done instead", "새 일련번호를 적거나, 다른 조치를 했으면 비고에 적으십시오";
+        recorded: "Repair of {part} recorded", "{part} 수리를 기록함";
+        not_recorded: "The repair was not recorded", "수리를 기록하지 못했습니다";
+        fitted: "Fitted: connect again", "조립 완료: 다시 연결";
+        fitted_hint: "Switch the unit off before the part is changed. In practice the injected faults of the part go with it.", "부품을 바꾸기 전에 장치 전원을 끄십시오. 연습에서는 그 부품에 주입한 고장도 함께 없어집니다.";
+        prove: "Prove the repair", "수리 확인 시험";
+        prove_hint: "Runs what failed, and what this part can break", "불합격한 절차와 이 부품이 영향을 주는 절차를 시험합니다";
+        sign: "Sign", "서명";
+        signed: "Checked and signed", "확인하고 서명함";
+        signed_by: "Signed by {who}", "서명: {who}";
+        not_signed: "Not signed", "서명하지 못했습니다";
+        print: "PDF", "PDF";
+    }
+}

@@ -1,0 +1,122 @@
+//! What the history knows of a unit: open faults and earlier repairs.
+
+use eframe::egui::{RichText, Ui};
+use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
+
+use super::TEXT;
+use crate::gui::request::CachedResponse;
+use crate::gui::{DataPaths, PageContext, Palette};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_report::words::Words;
+
+/// As many faults are read for their repairs, the latest first.
+const MOST: u32 = 50;
+/// As many lines of each kind are shown.
+const SHOWN: usize = 5;
+
+/// The history of one unit, read when it is asked for.
+#[derive(Default)]
+pub struct KnownUnit {
+    of: Option<(String, (usize, u64))>,
+    history: CachedResponse<History>,
+}
+
+#[derive(Default)]
+struct History {
+    open: Vec<FaultSummary>,
+    /// When and what, the latest first.
+    repairs: Vec<(i64, RepairRecord)>,
+}
+
+impl KnownUnit {
+    pub fn poll(&mut self) {
+        self.history.poll();
+    }
+
+    /// It is read again when it is shown next.
+    pub fn forget(&mut self) {
+        self.of = None;
+    }
+
+    /// Reads the history of this unit unless it is known.
+    pub fn keep(&mut self, serial: &str, context: &PageContext<'_>) {
+        let of = (serial.to_owned(), context.data_version());
+        if self.of.as_ref() == Some(&of) {
+            return;
+        }
+        self.of = Some(of);
+        let serial = serial.to_owned();
+        let asked = context.queries.run(move |paths| read(paths, serial));
+        self.history.request(asked);
+    }
+
+    /// Serial number of the part that is in the unit, as its last repair has it.
+    pub fn serial_of(&self, part: &str) -> Option<String> {
+        let repairs = &self.history.get().value()?.repairs;
+        let last = repairs.iter().find(|(_, repair)| repair.part == part);
+        last.and_then(|(_, repair)| repair.serial_new.clone())
+    }
+
+    pub fn show(&self, ui: &mut Ui, words: &Words) {
+        let Some(history) = self.history.get().value() else {
+            ui.label(words.common.loading);
+            return;
+        };
+        if history.open.is_empty() && history.repairs.is_empty() {
+            let quiet = Palette::of(ui).quiet;
+            ui.label(RichText::new(words.case.nothing_known).color(quiet));
+            return;
+        }
+        let open = history.open.iter().map(|fault| {
+            let (at, name) = (clock::local(fault.last_at_us), &fault.code_name);
+            format!("{at}  {}: {name}", fault.cause())
+        });
+        lines(ui, words.case.open_faults, open);
+        let repairs = history.repairs.iter().map(|(at_us, repair)| {
+            let serials = [&repair.serial_old, &repair.serial_new];
+            let serials = serials.map(|serial| serial.as_deref().unwrap_or("–"));
+            let (at, part) = (clock::local(*at_us), &repair.part);
+            format!(
+                "{at}  {part}: {} → {}  {}",
+                serials[0], serials[1], repair.note
+            )
+        });
+        lines(ui, words.case.repairs, repairs);
+    }
+}
+
+fn lines(ui: &mut Ui, title: &str, lines: impl ExactSizeIterator<Item = String>) {
+    if lines.len() == 0 {
+        return;
+    }
+    ui.label(RichText::new(title).size(TEXT).strong());
+    for line in lines.take(SHOWN) {
+        ui.label(line);
+    }
+}
+
+fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
+    if !paths.database.exists() {
+        return Ok(History::default());
+    }
+    let store = paths.read()?;
+    let filter = FaultFilter {
+        unit: Some(serial),
+        limit: Some(MOST),
+        ..FaultFilter::default()
+    };
+    let mut history = History::default();
+    for fault in store.faults(&filter)? {
+        let events = store.fault(fault.id)?.events.into_iter();
+        let repairs = events.filter_map(|event| Some((event.at_us, event.repair?)));
+        history.repairs.extend(repairs);
+        if matches!(fault.state, FaultState::Open | FaultState::Acknowledged) {
+            history.open.push(fault);
+        }
+    }
+    history.repairs.sort_by_key(|(at_us, _)| -at_us);
+    // A repair of a case is written at each of its faults.
+    history.repairs.dedup();
+    Ok(history)
+}

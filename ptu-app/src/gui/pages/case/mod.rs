@@ -1,0 +1,228 @@
+//! One case in ten clicks: connect, symptom, test, result, repair, proof, sheet.
+
+mod known;
+mod prove;
+mod repair;
+mod result;
+mod running;
+mod stage;
+mod symptom;
+
+use std::collections::BTreeSet;
+
+use btu_rig::procedure::Verdict;
+use eframe::egui::{Button, Response, RichText, ScrollArea, Ui, vec2};
+use fault_db::Id;
+
+use super::procedures::Concluded;
+use crate::gui::parts::{ActionPlace, name_edit};
+use crate::gui::request::Request;
+use crate::gui::{PageContext, Palette};
+use known::KnownUnit;
+use prove::Proof;
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::run_diagnosis::RepairProof;
+use ptu_report::words::fill;
+use repair::Repair;
+use result::Found;
+use stage::Stage;
+use symptom::SymptomTiles;
+
+/// Size of what is read first, points.
+const HEADLINE: f32 = 24.0;
+/// Size of other text on this page, points: it is read at arm's length.
+const TEXT: f32 = 17.0;
+/// Height of what is touched, points.
+const TARGET: f32 = 48.0;
+
+#[derive(Default)]
+pub struct CasePage {
+    stage: Stage,
+    /// Serial number of the unit the case is about.
+    unit: Option<String>,
+    known: KnownUnit,
+    tiles: SymptomTiles,
+    /// Its last run that was looked at.
+    seen: Option<Id>,
+    found: Option<Found>,
+    repair: Repair,
+    proof: Proof,
+}
+
+impl CasePage {
+    /// Takes what has come, whatever page is in front; `concluded` is what is said of the chosen unit's last run.
+    pub fn poll(
+        &mut self,
+        concluded: Option<(Id, &Request<Concluded>)>,
+        context: &mut PageContext<'_>,
+    ) {
+        self.follow_unit(context);
+        self.known.poll();
+        self.tiles.poll(context);
+        self.proof.poll(context);
+        if self.repair.poll(context) {
+            self.known.forget();
+            self.stage = Stage::Prove;
+        }
+        if matches!(self.stage, Stage::Find | Stage::Prove) {
+            self.take_run(concluded, context);
+        }
+    }
+
+    /// The case is about the connected unit; another unit is another case.
+    fn follow_unit(&mut self, context: &PageContext<'_>) {
+        let unit = context.units.chosen();
+        if !unit.is_connected() || unit.identity().is_none() {
+            return;
+        }
+        let serial = unit.name();
+        if self.unit.as_ref() != Some(&serial) {
+            let last = unit.run.as_ref().and_then(|run| run.id());
+            self.begin(last);
+            self.unit = Some(serial);
+            self.stage = Stage::Unit;
+        } else if self.stage == Stage::Start {
+            self.stage = Stage::Unit;
+        }
+    }
+
+    /// A case about nothing yet; the run `last` belongs to no case.
+    fn begin(&mut self, last: Option<Id>) {
+        *self = Self {
+            seen: last,
+            ..Self::default()
+        };
+    }
+
+    /// Goes on when the run of this stage is over and it is known what it says.
+    fn take_run(
+        &mut self,
+        concluded: Option<(Id, &Request<Concluded>)>,
+        context: &PageContext<'_>,
+    ) {
+        let unit = context.units.chosen();
+        let Some(run) = unit.run.as_ref() else { return };
+        let Some(Some(outcome)) = &run.ended else {
+            return;
+        };
+        if self.seen == Some(outcome.id) {
+            return;
+        }
+        let said = concluded.filter(|(of, _)| *of == outcome.id);
+        let said = match said {
+            Some((_, Request::Pending(_))) | None => return,
+            Some((_, said)) => said.value(),
+        };
+        self.seen = Some(outcome.id);
+        let proven =
+            said.is_some_and(|said| !said.proofs.is_empty() && said.proofs.iter().all(is_proven));
+        let next = self.stage.after_run(outcome.exit, proven);
+        if next == Stage::Result {
+            self.found = Some(Found::of(outcome, run, said));
+        }
+        if self.stage == Stage::Prove {
+            self.proof.ran(said, outcome.verdict);
+        }
+        self.known.forget();
+        self.stage = next;
+    }
+
+    /// Draws it; the run whose sheet is to be drawn below.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        has_orders: bool,
+        context: &mut PageContext<'_>,
+    ) -> Option<Id> {
+        self.way(ui, context);
+        ui.separator();
+        if self.stage == Stage::Sheet {
+            let run = self.seen?;
+            self.proof.sign(ui, run, context);
+            return Some(run);
+        }
+        ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| match self.stage {
+                Stage::Start => self.start(ui, context),
+                Stage::Unit => self.unit(ui, context),
+                Stage::Find => self.running(ui, has_orders, Stage::Unit, context),
+                Stage::Result => self.result(ui, context),
+                Stage::Repair => self.repair(ui, context),
+                Stage::Prove => self.prove(ui, has_orders, context),
+                Stage::Sheet => {}
+            });
+        None
+    }
+
+    /// The stages with the present one marked, and the way to a new case.
+    fn way(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
+        let palette = Palette::of(ui);
+        ui.horizontal_wrapped(|ui| {
+            for (place, stage) in (1..).zip(Stage::ALL) {
+                let text = format!("{place} {}", stage.name(context.words));
+                let text = RichText::new(text).size(TEXT);
+                ui.label(match stage == self.stage {
+                    true => text.strong().color(palette.accent),
+                    false => text.color(palette.quiet),
+                });
+            }
+            let place = ActionPlace::new(ui, "new case", self.stage);
+            let begun = !matches!(self.stage, Stage::Start | Stage::Unit);
+            let unit = context.units.chosen();
+            let new = ui.add_enabled(
+                begun && unit.phase() != Phase::Running,
+                Button::new(context.words.case.new_case),
+            );
+            if place.clicked(&new) {
+                self.begin(unit.run.as_ref().and_then(|run| run.id()));
+            }
+        });
+    }
+
+    fn start(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        self.name(ui, context);
+        let unit = context.units.chosen_mut();
+        let place = fill(words.reached_at, &[("place", &unit.choice.endpoint)]);
+        ui.label(RichText::new(place).size(TEXT));
+        let offline = unit.phase() == Phase::Offline;
+        let action = ActionPlace::new(ui, "case connect", offline);
+        let connect = large(ui, context.words.frame.connect, offline);
+        if action.clicked(&connect) {
+            unit.connect(context.queries);
+        }
+        if !offline {
+            ui.spinner();
+        }
+    }
+
+    /// Who works on the case.
+    fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        ui.horizontal(|ui| {
+            let label = ui.label(RichText::new(context.words.case.your_name).size(TEXT));
+            ui.add(name_edit(&mut context.settings.operator, 220.0))
+                .labelled_by(label.id);
+        });
+    }
+}
+
+fn is_proven(proof: &RepairProof) -> bool {
+    proof.says.is_proven()
+}
+
+/// A button that is found and hit at arm's length.
+fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
+    let button = Button::new(RichText::new(text).size(TEXT).strong());
+    ui.add_enabled(enabled, button.min_size(vec2(180.0, TARGET)))
+}
+
+/// Procedures of a run that did not pass.
+fn not_passed(run: &ptu_bench::bench_worker::Progress) -> BTreeSet<String> {
+    let bad = |verdict: Verdict| !matches!(verdict, Verdict::Passed | Verdict::Skipped);
+    let procedures = run.procedures.iter();
+    let failed = procedures.filter(|procedure| {
+        procedure.verdict.is_some_and(bad) || procedure.results.iter().any(|step| bad(step.verdict))
+    });
+    failed.map(|failed| failed.procedure.id.clone()).collect()
+}

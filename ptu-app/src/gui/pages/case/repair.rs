@@ -1,0 +1,151 @@
+//! What was done: part, serial numbers, note.
+
+use eframe::egui::{ComboBox, Grid, RichText, Ui};
+use fault_db::{FaultAction, Id, RepairRecord};
+
+use super::known::KnownUnit;
+use super::result::Found;
+use super::{CasePage, TEXT, large};
+use crate::gui::parts::{ActionPlace, name_edit, named_combo, note_edit};
+use crate::gui::request::Request;
+use crate::gui::{DataPaths, PageContext};
+use ptu_bench::clock::now_us;
+use ptu_bench::failure::Failure;
+use ptu_report::words::fill;
+
+/// Width of a field, points.
+const FIELD: f32 = 300.0;
+
+/// The form, and what becomes of it.
+#[derive(Default)]
+pub struct Repair {
+    run: Option<Id>,
+    /// Parts to choose from, the likeliest first.
+    parts: Vec<String>,
+    pub part: String,
+    serial_old: String,
+    serial_new: String,
+    note: String,
+    saving: Request<()>,
+}
+
+impl Repair {
+    /// Fills in what is known: the part that was found, and the serial number it has by its last repair.
+    pub fn prepare(&mut self, found: &Found, known: &KnownUnit) {
+        if self.run == Some(found.run) {
+            return;
+        }
+        let part = found.parts.first().cloned().unwrap_or_default();
+        *self = Self {
+            run: Some(found.run),
+            serial_old: known.serial_of(&part).unwrap_or_default(),
+            parts: found.parts.clone(),
+            part,
+            ..Self::default()
+        };
+    }
+
+    /// True once it has been stored.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) -> bool {
+        if !self.saving.poll() {
+            return false;
+        }
+        let words = &context.words.case;
+        match std::mem::take(&mut self.saving) {
+            Request::Failed(why) => {
+                context.messages.trouble(words.not_recorded, why);
+                false
+            }
+            _ => {
+                let said = fill(words.recorded, &[("part", &self.part)]);
+                context.messages.note(said);
+                true
+            }
+        }
+    }
+
+    /// A part was put in, or it is said what else was done.
+    fn says_what(&self) -> bool {
+        !self.serial_new.trim().is_empty() || !self.note.trim().is_empty()
+    }
+
+    fn record(&self) -> RepairRecord {
+        let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
+        RepairRecord {
+            part: self.part.trim().to_owned(),
+            serial_old: some(&self.serial_old),
+            serial_new: some(&self.serial_new),
+            note: self.note.trim().to_owned(),
+        }
+    }
+}
+
+impl CasePage {
+    pub(super) fn repair(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        let known = &self.known;
+        let form = &mut self.repair;
+        Grid::new("repair").num_columns(2).show(ui, |ui| {
+            ui.label(RichText::new(words.part).size(TEXT));
+            let before = form.part.clone();
+            let combo = ComboBox::from_id_salt("repaired part").selected_text(&form.part);
+            let combo = combo.width(FIELD).show_ui(ui, |ui| {
+                for part in &form.parts {
+                    ui.selectable_value(&mut form.part, part.clone(), part);
+                }
+            });
+            named_combo(&combo.response, words.part, &form.part);
+            if form.part != before {
+                form.serial_old = known.serial_of(&form.part).unwrap_or_default();
+            }
+            ui.end_row();
+            for (name, text) in [
+                (words.serial_old, &mut form.serial_old),
+                (words.serial_new, &mut form.serial_new),
+            ] {
+                let label = ui.label(RichText::new(name).size(TEXT));
+                ui.add(name_edit(text, FIELD)).labelled_by(label.id);
+                ui.end_row();
+            }
+            let label = ui.label(RichText::new(words.note).size(TEXT));
+            ui.add(note_edit(&mut form.note, FIELD))
+                .labelled_by(label.id);
+            ui.end_row();
+        });
+        self.name(ui, context);
+        let form = &mut self.repair;
+        let who = context.settings.operator.trim().to_owned();
+        let may = !who.is_empty() && form.says_what() && form.saving.is_idle();
+        let place = ActionPlace::new(ui, "case save", form.saving.is_idle());
+        let hint = match who.is_empty() {
+            true => words.name_first,
+            false => words.serial_or_note,
+        };
+        let save = large(ui, words.save, may).on_disabled_hover_text(hint);
+        if let (true, Some(run)) = (place.clicked(&save), form.run) {
+            let repair = form.record();
+            let store = move |paths: &DataPaths| store(paths, run, &repair, &who);
+            form.saving = Request::Pending(context.queries.run(store));
+        }
+    }
+}
+
+/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases.
+fn store(paths: &DataPaths, run: Id, repair: &RepairRecord, who: &str) -> Result<(), Failure> {
+    let store = paths.open()?;
+    let mut faults: Vec<Id> = store
+        .run_occurrences(run)?
+        .iter()
+        .map(|seen| seen.fault)
+        .collect();
+    faults.sort_unstable();
+    faults.dedup();
+    for fault in faults {
+        // The one before may have been of the same case.
+        let state = store.fault(fault)?.fault.state;
+        if state.next(FaultAction::Repair).is_ok() {
+            store.repair_case(fault, repair, who, now_us())?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,152 @@
+//! What a run found: the part, the values that show it, three reasons, and what to do next.
+
+use btu_rig::procedure::{Measurement, Verdict};
+use diagnosis::Finding;
+use eframe::egui::{RichText, Ui};
+use fault_db::Id;
+use std::collections::BTreeSet;
+
+use super::{CasePage, HEADLINE, Stage, TEXT, large, not_passed};
+use crate::gui::pages::procedures::{Concluded, measurements};
+use crate::gui::parts::ActionPlace;
+use crate::gui::{Destination, PageContext, Palette};
+use ptu_bench::bench_worker::Progress;
+use ptu_bench::failure::Exit;
+use ptu_bench::run::Outcome;
+use ptu_report::words::{Words, fill};
+
+/// As many reasons are given.
+const REASONS: usize = 3;
+
+/// What was found in a run.
+pub struct Found {
+    pub run: Id,
+    exit: Exit,
+    verdict: Verdict,
+    /// The conclusion of the diagnosis, in the language of the window.
+    headline: String,
+    /// Parts in the order of their probability.
+    pub parts: Vec<String>,
+    reasons: Vec<String>,
+    /// The first measured values that were out of their limits, with their step.
+    shown_by: Option<(String, Vec<Measurement>)>,
+    trace: Option<Id>,
+    next: Option<(String, String)>,
+    /// Procedures that did not pass.
+    pub procedures: BTreeSet<String>,
+}
+
+impl Found {
+    pub fn of(outcome: &Outcome, run: &Progress, said: Option<&Concluded>) -> Self {
+        let answer = said.and_then(|said| said.answer.as_deref());
+        let diagnosis = answer.map(|answer| &answer.diagnosis);
+        let candidates = || diagnosis.into_iter().flat_map(|said| &said.candidates);
+        let mut parts: Vec<String> = Vec::new();
+        for candidate in candidates() {
+            let part = candidate.lru.to_string();
+            if !parts.contains(&part) {
+                parts.push(part);
+            }
+        }
+        let first = candidates().next();
+        let traces = answer.and_then(|answer| answer.traces.get(parts.first()?));
+        let any = answer.and_then(|answer| answer.traces.values().flatten().next());
+        let next = diagnosis.and_then(|said| said.next_check.as_ref());
+        Self {
+            run: outcome.id,
+            exit: outcome.exit,
+            verdict: outcome.verdict,
+            headline: said.map(|said| said.text.clone()).unwrap_or_default(),
+            reasons: first.map(|first| first.for_it.clone()).unwrap_or_default(),
+            shown_by: shown_by(run),
+            trace: traces.and_then(|traces| traces.first()).or(any).copied(),
+            next: next
+                .filter(|_| diagnosis.is_some_and(|said| said.finding == Finding::CannotTell))
+                .map(|next| (next.check.procedure.clone(), next.check.step.clone())),
+            procedures: not_passed(run),
+            parts,
+        }
+    }
+}
+
+/// Values of the first step that failed by one.
+fn shown_by(run: &Progress) -> Option<(String, Vec<Measurement>)> {
+    let results = run.procedures.iter().flat_map(|progress| &progress.results);
+    let bad = |measured: &&Measurement| measured.verdict == Verdict::Failed;
+    results
+        .map(|result| {
+            let measured = result.measurements.iter().filter(bad).cloned();
+            (result.name.clone(), measured.collect::<Vec<_>>())
+        })
+        .find(|(_, measured)| !measured.is_empty())
+}
+
+impl CasePage {
+    pub(super) fn result(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let Some(found) = &self.found else { return };
+        let headline = match found.exit {
+            Exit::Failed => found.headline.clone(),
+            Exit::Passed => words.case.no_fault.to_owned(),
+            _ => {
+                let verdict = words.common.verdict(found.verdict);
+                fill(words.case.not_finished, &[("verdict", &verdict)])
+            }
+        };
+        ui.label(RichText::new(headline).size(HEADLINE).strong());
+        if let Some((step, measured)) = &found.shown_by {
+            ui.label(RichText::new(&*words.content(step)).size(TEXT));
+            measurements(ui, words, measured);
+        }
+        reasons(ui, words, found);
+        ui.horizontal_wrapped(|ui| {
+            if let Some(trace) = found.trace
+                && ui.button(words.diagnosis.traces).clicked()
+            {
+                context.go_to.push(Destination::Trace(trace));
+            }
+            if ui.button(words.procedures.to_diagnosis).clicked() {
+                context.go_to.push(Destination::Diagnosis(found.run));
+            }
+            if let (Some((procedure, step)), Some(unit)) = (&found.next, &self.unit)
+                && ui
+                    .button(words.diagnosis.run_it)
+                    .on_hover_text(step)
+                    .clicked()
+            {
+                context.go_to.push(Destination::RunStep {
+                    procedure: procedure.clone(),
+                    step: step.clone(),
+                    unit: unit.clone(),
+                });
+            }
+        });
+        ui.add_space(8.0);
+        let place = ActionPlace::new(ui, "case result", found.run);
+        let mut next = None;
+        ui.horizontal_wrapped(|ui| {
+            let failed = found.exit == Exit::Failed;
+            if failed && place.clicked(&large(ui, words.case.record_repair, true)) {
+                next = Some(Stage::Repair);
+            }
+            if place.clicked(&large(ui, words.case.to_sheet, true)) {
+                next = Some(Stage::Sheet);
+            }
+        });
+        if let Some(next) = next {
+            self.repair.prepare(found, &self.known);
+            self.stage = next;
+        }
+    }
+}
+
+fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
+    if found.reasons.is_empty() {
+        return;
+    }
+    let quiet = Palette::of(ui).quiet;
+    ui.label(RichText::new(words.case.because).color(quiet));
+    for reason in found.reasons.iter().take(REASONS) {
+        ui.label(format!("+ {}", words.content(reason)));
+    }
+}

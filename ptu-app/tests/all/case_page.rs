@@ -1,0 +1,126 @@
+//! The way of one case: from the symptom to the signed sheet in ten clicks, in both languages.
+
+use crate::common::Place;
+use crate::common::window::{Window, latest, settings};
+use crate::common::{list, scripts, text};
+use ptu_app::gui::{Page, Settings};
+use ptu_report::words::{Language, Words, fill};
+
+/// Clicks that a case may take.
+const CLICKS: usize = 10;
+
+/// A window whose clicks are counted.
+struct Counted {
+    window: Window,
+    clicks: usize,
+}
+
+impl Counted {
+    fn click(&mut self, label: &str) {
+        self.window.click_last(label);
+        self.clicks += 1;
+    }
+}
+
+/// A window on the case page, small or as a laptop has it, and an embedded unit with these faults.
+fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
+    let mut settings = Settings {
+        language,
+        operator: "Kim".into(),
+        ..settings(Page::Case)
+    };
+    settings.unit.faults = faults.split(',').map(str::to_owned).collect();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.harness().set_size(size.into());
+    Counted { window, clicks: 0 }
+}
+
+/// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was
+/// done. Method: a slow EB relay, in both languages, on both sizes of a depot's laptop.
+fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
+    let words: &Words = language.words();
+    let case = &words.case;
+    let mut counted = window(language, size, "eb_relay.slow");
+    counted.click(words.frame.connect);
+    counted.window.wait_for("SIM-0001");
+    counted.click(&words.content("brakes late or not at all"));
+    counted.click(case.find_part);
+    counted.window.wait_for(case.record_repair);
+    counted.window.wait_for_part("eb_relay");
+    let found = latest(&counted.window);
+    assert_eq!(found["run"]["symptom"], "brakes_late");
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.window.write(case.serial_old, "R-0815");
+    counted.window.write(case.serial_new, "R-4711");
+    counted.click(case.save);
+    counted.window.wait_for(case.fitted);
+    let repaired = fill(case.recorded, &[("part", &"eb_relay")]);
+    counted.window.wait_for(&repaired);
+    counted.click(case.fitted);
+    counted.click(case.prove);
+    counted.window.wait_for(case.sign);
+    counted.click(case.sign);
+    let signed = fill(case.signed_by, &[("who", &"Kim")]);
+    counted.window.wait_for(&signed);
+    assert!(counted.clicks <= CLICKS, "{} clicks", counted.clicks);
+
+    let window = counted.window;
+    let proof = latest(&window);
+    assert_eq!(proof["run"]["verdict"], "passed");
+    assert_eq!(list(&proof["notes"])[0]["who"], "Kim", "{}", proof["notes"]);
+    let faults = window.place.json(&["faults", "list", "--json"]);
+    assert!(!list(&faults).is_empty());
+    for fault in list(&faults) {
+        assert_eq!(fault["state"], "verified", "{fault}");
+        let shown = window
+            .place
+            .json(&["faults", "show", text(&fault["id"]), "--json"]);
+        let mut events = list(&shown["events"]).iter();
+        let repair = events.find(|event| event["kind"] == "repair");
+        let repair = &repair.expect("a repair")["repair"];
+        assert_eq!(repair["part"], "eb_relay");
+        assert_eq!(repair["serial_old"], "R-0815");
+        assert_eq!(repair["serial_new"], "R-4711");
+    }
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_english() {
+    from_symptom_to_signed_sheet(Language::English, [1280.0, 800.0]);
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_korean_on_a_small_screen() {
+    from_symptom_to_signed_sheet(Language::Korean, [900.0, 600.0]);
+}
+
+/// Goal: a repair that did not help is found out. Method: the part that was found is changed, and a second fault is still
+/// there; the run that is to prove the repair fails, and the case is back at a result.
+#[test]
+fn a_repair_that_did_not_help_leads_back_to_the_result() {
+    let case = &Language::English.words().case;
+    let mut counted = window(
+        Language::English,
+        [1280.0, 800.0],
+        "eb_relay.slow,fsb_output.dead",
+    );
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.window.write(case.note, "cleaned its contacts");
+    counted.click(case.save);
+    counted.click(case.fitted);
+    counted.click(case.prove);
+    counted.window.wait_for(case.record_repair);
+    assert_eq!(latest(&counted.window)["run"]["verdict"], "failed");
+    let faults = counted.window.place.json(&["faults", "list", "--json"]);
+    assert!(
+        list(&faults)
+            .iter()
+            .all(|fault| fault["state"] != "verified")
+    );
+}
