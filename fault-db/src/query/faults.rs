@@ -39,6 +39,8 @@ pub struct FaultSummary {
     pub occurrences: u32,
     /// Its latest trace.
     pub trace_id: Option<Id>,
+    /// What was seen last.
+    pub message: String,
 }
 
 impl FaultSummary {
@@ -114,7 +116,9 @@ const SELECT_FAULT: &str = "
         x.last_at_us, x.occurrences,
         (SELECT t.id FROM fault_occurrence o JOIN trace t ON t.seq = o.trace
          WHERE o.fault = x.seq AND o.trace IS NOT NULL ORDER BY o.at_us DESC, o.seq DESC LIMIT 1),
-        x.seq, x.cause
+        x.seq, x.cause,
+        (SELECT o.message FROM fault_occurrence o WHERE o.fault = x.seq
+         ORDER BY o.at_us DESC, o.seq DESC LIMIT 1)
     FROM fault x JOIN unit u ON u.seq = x.unit";
 
 impl Store {
@@ -215,6 +219,7 @@ fn summary(row: Row<'_>) -> SqlResult<FaultSummary> {
         last_at_us: row.get(8)?,
         occurrences: row.get(9)?,
         trace_id: row.get(10)?,
+        message: row.get::<Option<String>>(13)?.unwrap_or_default(),
     })
 }
 

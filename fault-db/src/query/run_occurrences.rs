@@ -22,6 +22,8 @@ pub struct RunOccurrence {
     pub bench_us: i64,
     /// Trace that shows it.
     pub trace_id: Option<Id>,
+    /// What was seen.
+    pub message: String,
 }
 
 impl Store {
@@ -29,7 +31,7 @@ impl Store {
     pub fn run_occurrences(&self, run: Id) -> Result<Vec<RunOccurrence>, StoreError> {
         self.select(
             "listing a run's faults",
-            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id, f.id
+            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id, f.id, o.message
                      FROM run r JOIN fault_occurrence o ON o.run = r.seq
                      JOIN fault f ON f.seq = o.fault LEFT JOIN trace t ON t.seq = o.trace
                      WHERE r.id = ?1 ORDER BY o.seq",
@@ -43,6 +45,7 @@ impl Store {
                     step_index: row.get(3)?,
                     bench_us: row.get(4)?,
                     trace_id: row.get(5)?,
+                    message: row.get(7)?,
                 })
             },
         )

@@ -17,6 +17,7 @@ mod json;
 mod junit;
 mod left_out;
 pub mod limits;
+pub mod naming;
 pub mod plot;
 mod proof;
 pub mod record;

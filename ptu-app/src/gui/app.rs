@@ -15,9 +15,10 @@ use super::page_context::PageContext;
 use super::pages::Pages;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
-use super::units::Units;
+use super::units::{Unit, Units};
 use super::{fonts, theme};
 use ptu_bench::bench_worker::Wake;
+use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_bench::stop::Stop;
 use ptu_report::words::Words;
@@ -47,6 +48,8 @@ pub struct App {
     told_gone: bool,
     units: Units,
     settings: Settings,
+    /// The name of the operator as it was written last.
+    operator: String,
     saved: Settings,
     settings_file: Option<PathBuf>,
     messages: Messages,
@@ -82,6 +85,7 @@ impl App {
             database,
             told_gone: false,
             saved: settings.clone(),
+            operator: settings.operator.clone(),
             settings,
             settings_file: options.settings_file,
             messages: Messages::default(),
@@ -97,6 +101,7 @@ impl App {
 
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
+        self.follow_operator();
         let words = self.settings.language.words();
         self.units.poll(words, &mut self.messages);
         self.tell_if_gone(words);
@@ -160,6 +165,19 @@ impl App {
             let file = self.queries.paths().database.display().to_string();
             self.messages
                 .trouble_about(About::Database, words.frame.database_gone, file);
+        }
+    }
+
+    /// Notes when the name was written; one of another shift is asked for again, unless a run goes on under it.
+    fn follow_operator(&mut self) {
+        let now_us = clock::now_us();
+        if self.settings.operator != self.operator || self.settings.operator_at_us == 0 {
+            self.operator.clone_from(&self.settings.operator);
+            self.settings.operator_at_us = now_us;
+        }
+        let running = |unit: &Unit| unit.run.as_ref().is_some_and(|run| run.is_running());
+        if !self.units.iter().any(running) {
+            self.settings.forget_operator(now_us);
         }
     }
 

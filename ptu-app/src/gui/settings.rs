@@ -6,6 +6,7 @@ use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::Page;
+use ptu_bench::clock;
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;
 use ptu_bench::run::BenchChoice;
@@ -15,6 +16,9 @@ use ptu_report::words::Language;
 pub const SMALLEST_ZOOM: f32 = 0.7;
 /// See [`SMALLEST_ZOOM`].
 pub const LARGEST_ZOOM: f32 = 2.5;
+
+/// A name is asked for again after so long: another shift has begun.
+const SHIFT_US: i64 = 10 * 3_600_000_000;
 
 /// What the window keeps between starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,6 +36,8 @@ pub struct Settings {
     pub page: Page,
     /// Who tests.
     pub operator: String,
+    /// When the name was written, µs since 1970; 0 = not known.
+    pub operator_at_us: i64,
     /// The unit connected last.
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
@@ -49,6 +55,7 @@ impl Default for Settings {
             window_size: None,
             page: Page::default(),
             operator: String::new(),
+            operator_at_us: 0,
             unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
@@ -70,7 +77,16 @@ impl Settings {
         let text = read_regular_file(file, LONGEST_FILE).unwrap_or_default();
         let mut settings: Self = serde_json::from_slice(&text).unwrap_or_default();
         settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
+        settings.forget_operator(clock::now_us());
         settings
+    }
+
+    /// Takes the name away when it was written in another shift, so that nobody signs for somebody else.
+    pub fn forget_operator(&mut self, now_us: i64) {
+        let since_us = now_us.saturating_sub(self.operator_at_us);
+        if !(0..SHIFT_US).contains(&since_us) {
+            self.operator.clear();
+        }
     }
 
     /// Keeps them in `file`, at once or not at all.
@@ -94,10 +110,17 @@ mod tests {
             language: Language::Korean,
             zoom: 1.25,
             operator: "김".into(),
+            operator_at_us: clock::now_us(),
             ..Settings::default()
         };
         kept.save(&file).expect("saved");
         assert_eq!(Settings::load(&file), kept);
+        let yesterday = Settings {
+            operator_at_us: clock::now_us() - 2 * SHIFT_US,
+            ..kept
+        };
+        yesterday.save(&file).expect("saved");
+        assert_eq!(Settings::load(&file).operator, "", "asked for again");
         std::fs::write(&file, "{\"zoom\":").expect("damaged");
         assert_eq!(Settings::load(&file), Settings::default());
     }

@@ -64,6 +64,9 @@ const LIGHT: Palette = Palette {
     ],
 };
 
+/// Height of what can be clicked, at least, points.
+const LOWEST: f32 = 24.0;
+
 /// Gives the window its look: text large enough to be read at arm's length.
 pub fn set(context: &Context) {
     for theme in [Theme::Dark, Theme::Light] {
@@ -85,7 +88,9 @@ pub fn set(context: &Context) {
             }
         }
         style.spacing.item_spacing = [8.0, 5.0].into();
-        style.spacing.button_padding = [8.0, 3.0].into();
+        style.spacing.button_padding = [8.0, 3.5].into();
+        // What can be clicked is at least so high.
+        style.spacing.interact_size.y = LOWEST;
         // What cannot be seen moving need not be painted again and again.
         style.animation_time = 0.0;
     });

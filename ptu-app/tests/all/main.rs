@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod at_hand;
 mod automatic_runs;
 mod bad_database;
 mod bad_input;
@@ -22,6 +23,7 @@ mod faults;
 mod figures;
 mod history;
 mod history_page;
+mod layout;
 mod lock_step;
 mod no_unit;
 mod on_ports;

@@ -35,6 +35,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
     window.wait_for("Failed");
     window.wait_for_part("Unit BAD-1, run");
     window.wait_for("code 25: alarm, FSB, EB");
+    window.key(Key::PageDown);
     window.wait_for("472");
     let file = window.place.text_path("mine.pdf");
     window.write_over("file", &file);
@@ -97,14 +98,9 @@ fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
         window.key(Page::Report.key());
         window.wait_for_part(&format!("Unit ABC-1, run {short}"));
         assert!(!window.shows_part("of another unit"));
+        window.click_part(" · SIM-0001");
         let short = first.get(first.len() - 8..).expect("an id");
-        let row = |window: &Window| {
-            let shown = window.shown();
-            shown.into_iter().find(|text| text.starts_with(short))
-        };
-        let row = row(&window).expect("the first run is listed");
-        window.click(&row);
-        window.wait_for_part("Unit SIM-0001, run");
+        window.wait_for_part(&format!("Unit SIM-0001, run {short}"));
         window.wait_for_part("of another unit: SIM-0001, not ABC-1");
     }
 }
@@ -229,7 +225,7 @@ fn the_sheet_leads_to_the_traces_and_is_there_again_afterwards() {
         .into_iter()
         .find(|name| name.starts_with("Traces ("));
     window.click(&traces.expect("traces of failures"));
-    let of_run = |name: &String| name.ends_with(": check_failed");
+    let of_run = |name: &String| name.starts_with("EB relay · code 25: EB reaction 640 ms");
     let first = window.shown().into_iter().find(of_run);
     window.click(&first.expect("a trace"));
     window.until("the traces page", |window| {

@@ -73,7 +73,7 @@ fn the_latest_trace_is_open_and_the_cursor_tells_what_the_table_has() {
     let mut window = window(Settings::default());
     window.wait_for_part("unit BAD-1");
     // What was wrong is marked, and is a way to where it was.
-    window.wait_for_part("9000 check_failed eb_relay");
+    window.wait_for_part("s EB relay · code 25: EB reaction 640 ms, limit 472");
     window.wait_for("0.00 s trigger");
     window.wait_for("speed");
 
@@ -186,7 +186,7 @@ fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
     window.until("fewer traces", |window| {
         let shown = window.shown();
         let rows = |part: &str| shown.iter().filter(|text| text.contains(part)).count();
-        rows("9000 check_failed atp_cpu") > 0
+        rows("ATP CPU 보드 · ") > 0
     });
     clear(&mut window, filter);
     window.write(filter, "GOOD-9");

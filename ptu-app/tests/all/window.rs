@@ -45,6 +45,13 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.click("Run");
     window.wait_for_part("Run over: failed");
     window.wait_for_part("replace eb_relay");
+    // A step that failed is a click from the trace that shows it.
+    window.click("Trace");
+    window.until("the traces page", |window| {
+        window.app().page() == Page::Traces
+    });
+    window.wait_for("0.00 s trigger");
+    window.key(Page::Procedures.key());
     window.click("Diagnosis");
     window.until("the diagnosis page", |window| {
         window.app().page() == Page::Diagnosis

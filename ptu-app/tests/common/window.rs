@@ -16,6 +16,8 @@ use super::{Place, scripts};
 const PATIENCE: Duration = Duration::from_secs(300);
 /// A person takes longer between two things that are meant, s.
 const MOMENT_S: f64 = 0.7;
+/// Height of the messages below every page, points.
+const MESSAGES: f32 = 32.0;
 const STEP: Duration = Duration::from_millis(15);
 
 /// A window in a place of its own.
@@ -36,6 +38,16 @@ impl Window {
 
     /// A window with these settings on these scripts.
     pub fn with(place: Place, scripts: impl AsRef<std::path::Path>, settings: Settings) -> Self {
+        Self::sized([1280.0, 800.0], place, scripts, settings)
+    }
+
+    /// A window of this size, points. A display of 1280 by 800 pixels at 150 % has 853 by 533.
+    pub fn sized(
+        size: [f32; 2],
+        place: Place,
+        scripts: impl AsRef<std::path::Path>,
+        settings: Settings,
+    ) -> Self {
         let paths = DataPaths::new(
             place.path("history.db"),
             ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
@@ -57,7 +69,7 @@ impl Window {
             }
         };
         let harness = Harness::builder()
-            .with_size([1280.0, 800.0])
+            .with_size(size)
             .with_max_steps(8)
             .build_ui_state(show, None);
         Self { harness, place }
@@ -110,14 +122,26 @@ impl Window {
         self.click_once_still(label, |places| places.first().copied(), 1);
     }
 
+    /// Clicks the first whose name contains this.
+    pub fn click_part(&mut self, part: &str) {
+        self.wait_for_part(part);
+        let shown = self.shown().into_iter().find(|name| name.contains(part));
+        self.click(&shown.expect("just seen"));
+    }
+
     /// Clicks it twice within 180 ms, as many do.
     pub fn double_click(&mut self, label: &str) {
         self.click_once_still(label, |places| places.first().copied(), 2);
     }
 
-    /// Clicks the last of several of this name.
+    /// Clicks the last of several of this name that is in view.
     pub fn click_last(&mut self, label: &str) {
-        self.click_once_still(label, |places| places.last().copied(), 1);
+        let seen = self.harness.ctx.content_rect().shrink(MESSAGES);
+        let last = |places: &[Rect]| {
+            let mut places = places.iter().rev();
+            places.find(|place| seen.contains_rect(**place)).copied()
+        };
+        self.click_once_still(label, last, 1);
     }
 
     /// Clicks what has been in the same place for two frames. The whole click is of the next frame, which

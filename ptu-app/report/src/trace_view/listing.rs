@@ -3,6 +3,8 @@
 use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 
 use super::TraceView;
+use crate::naming::PartNames;
+use crate::words::Language;
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_bench::process_id;
@@ -37,10 +39,51 @@ pub struct ListedTrace {
     pub id: Id,
     /// Its length, s.
     pub length_s: f64,
-    /// Faults it shows, as `9000 check_failed eb_relay`, each once.
-    pub faults: Vec<String>,
+    /// Faults it shows, each once.
+    pub faults: Vec<ListedFault>,
     /// What a filter looks in, in small letters.
     text: String,
+}
+
+/// A fault that a trace shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ListedFault {
+    /// As `9000 check_failed eb_relay`.
+    pub code: String,
+    /// What people call it, in each language.
+    said: [String; 2],
+}
+
+impl ListedFault {
+    fn of(occurrence: &RunOccurrence, parts: &PartNames) -> Self {
+        let said = |language: Language| {
+            parts.fault(&occurrence.lru, &occurrence.message, language.words())
+        };
+        Self {
+            code: fault_name(occurrence),
+            said: [said(Language::English), said(Language::Korean)],
+        }
+    }
+
+    /// What people call it.
+    pub fn said(&self, language: Language) -> &str {
+        match language {
+            Language::English => &self.said[0],
+            Language::Korean => &self.said[1],
+        }
+    }
+}
+
+impl ListedTrace {
+    /// What it shows, in one line; empty where no fault is in it.
+    pub fn said(&self, language: Language) -> String {
+        let said: Vec<_> = self
+            .faults
+            .iter()
+            .map(|fault| fault.said(language))
+            .collect();
+        said.join("; ")
+    }
 }
 
 /// Something that happened in a trace.
@@ -49,7 +92,7 @@ pub struct Event {
     /// Row at which it happened.
     pub row: usize,
     /// What it was; none = the trigger.
-    pub name: Option<String>,
+    pub fault: Option<ListedFault>,
 }
 
 /// A trace that is open.
@@ -69,7 +112,7 @@ pub struct OpenTrace {
 ///
 /// # Errors
 /// The database fails.
-pub fn list(store: &Store) -> Result<Vec<ListedRun>, Failure> {
+pub fn list(store: &Store, parts: &PartNames) -> Result<Vec<ListedRun>, Failure> {
     let newest = RunFilter {
         limit: Some(RUNS),
         ..RunFilter::default()
@@ -83,11 +126,11 @@ pub fn list(store: &Store) -> Result<Vec<ListedRun>, Failure> {
         let occurrences = store.run_occurrences(run.id)?;
         let began = clock::local(run.started_at_us);
         let trace = |trace: fault_db::TraceSummary| {
-            let mut faults: Vec<String> = Vec::new();
+            let mut faults: Vec<ListedFault> = Vec::new();
             for occurrence in occurrences.iter().filter(|o| o.trace_id == Some(trace.id)) {
-                let name = fault_name(occurrence);
-                if !faults.contains(&name) {
-                    faults.push(name);
+                let fault = ListedFault::of(occurrence, parts);
+                if !faults.contains(&fault) {
+                    faults.push(fault);
                 }
             }
             ListedTrace {
@@ -109,8 +152,10 @@ pub fn list(store: &Store) -> Result<Vec<ListedRun>, Failure> {
     Ok(listed)
 }
 
-fn text(run: &RunSummary, began: &str, trace: Id, faults: &[String]) -> String {
+fn text(run: &RunSummary, began: &str, trace: Id, faults: &[ListedFault]) -> String {
     let injected = run.injected.as_deref().unwrap_or_default();
+    let of = |fault: &ListedFault| format!("{} {}", fault.code, fault.said.join(" "));
+    let faults: Vec<String> = faults.iter().map(of).collect();
     let (run_id, faults) = (run.id.short(), faults.join(" "));
     format!(
         "{run_id} {} {began} {injected} {} {faults}",
@@ -134,7 +179,12 @@ impl ListedTrace {
 ///
 /// # Errors
 /// It is gone or damaged, or the database fails.
-pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<OpenTrace, Failure> {
+pub fn open(
+    store: &Store,
+    parts: &PartNames,
+    id: Id,
+    run: Option<Id>,
+) -> Result<OpenTrace, Failure> {
     let data = store.trace(id)?;
     if !PERIODS_US.contains(&data.period_us) {
         return Err(Failure::bench(format!(
@@ -158,13 +208,13 @@ pub fn open(store: &Store, id: Id, run: Option<Id>) -> Result<OpenTrace, Failure
             let row = usize::try_from(since_us.div_euclid(data.period_us)).ok()?;
             (row < data.rows()).then(|| Event {
                 row,
-                name: Some(fault_name(occurrence)),
+                fault: Some(ListedFault::of(occurrence, parts)),
             })
         })
         .collect();
     events.extend(data.trigger_row.map(|row| Event {
         row: row as usize,
-        name: None,
+        fault: None,
     }));
     events.sort_by_key(|event| event.row);
     Ok(OpenTrace {

@@ -39,6 +39,7 @@ wordings! {
         step: "step", "단계";
         procedure: "procedure", "절차";
         code: "code", "코드";
+        number: "number", "번호";
         state: "state", "상태";
         severity: "severity", "심각도";
         time: "time", "시각";
@@ -52,6 +53,8 @@ wordings! {
         train_no: "train number", "편성 번호";
         loading: "loading …", "불러오는 중 …";
         other_unit: "of another unit: {unit}, not {connected}", "다른 장치의 시험: {unit} (연결됨: {connected})";
+        only_unit: "only unit {unit}", "장치 {unit}만";
+        limit_is: "limit {limit}", "허용 {limit}";
         nothing: "nothing here yet", "아직 아무것도 없음";
         refresh: "refresh", "새로 고침";
         save: "save", "저장";

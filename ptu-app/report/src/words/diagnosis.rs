@@ -11,7 +11,7 @@ wordings! {
     Diagnosis {
         title: "Diagnosis", "진단";
         choose_run: "Choose a run on the left", "왼쪽에서 시험을 고르십시오";
-        of_run: "run {run}, unit {unit}, {time}", "시험 {run}, 장치 {unit}, {time}";
+        of_run: "unit {unit}, run of {time}", "장치 {unit}, {time} 시험";
         no_answer: "This run cannot be diagnosed", "이 시험은 진단할 수 없습니다";
         speaks_for: "speaks for it", "근거";
         speaks_against: "speaks against it", "반대 근거";

@@ -14,6 +14,7 @@ wordings! {
         shown: "{n} of {of} faults", "고장 {of}건 중 {n}건";
         seen: "seen", "횟수";
         last_seen: "last seen", "최근 발생";
+        charts: "charts", "차트";
         over_time: "occurrences, {days} day(s) a bar", "발생 횟수, 막대당 {days}일";
         by_unit: "by unit", "장치별";
         by_code: "by code", "코드별";
@@ -40,6 +41,7 @@ wordings! {
         what_was_done: "what was done", "조치 이력";
         occurrences: "occurrences", "발생 기록";
         freeze_frame: "freeze frame: every signal at the moment", "프리즈 프레임: 발생 순간의 모든 신호";
+        freeze_trace: "Trace around this moment", "이 순간의 신호 기록";
         not_known: "not known", "알 수 없음";
         to_trace: "Trace", "신호 기록";
         to_run: "Run", "시험";

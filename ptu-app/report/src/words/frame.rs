@@ -55,6 +55,7 @@ wordings! {
         scatter: "vary as good units do", "정상 장치의 편차 적용";
         realtime: "real-time runs", "실시간 시험";
         inject: "injected faults", "주입 고장";
+        take_out: "Remove", "제거";
         find: "find a fault", "고장 찾기";
         injected: "injected: {faults}", "주입됨: {faults}";
         none: "none", "없음";

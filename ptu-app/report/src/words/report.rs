@@ -124,9 +124,11 @@ wordings! {
         writing: "writing …", "저장하는 중 …";
         written: "Written: {file}", "저장 완료: {file}";
         not_written: "The report was not written", "성적서를 저장하지 못했습니다";
+        open_file: "Open, print", "열기, 인쇄";
+        not_opened: "The file cannot be opened", "파일을 열 수 없습니다";
         name_file: "name a file", "파일 이름을 적으십시오";
         to_diagnosis: "Diagnosis", "진단";
-        to_trace: "Trace {id}", "신호 기록 {id}";
+        to_trace: "Trace", "신호 기록";
         to_traces: "Traces ({n})", "신호 기록 ({n})";
         page: "page {n} of {of}", "{of}쪽 중 {n}쪽";
     }

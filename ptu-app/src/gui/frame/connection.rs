@@ -12,20 +12,41 @@ use crate::gui::{Page, PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{self, Words, fill};
 
+/// Letters of a chip that names faults, at most.
+const LINE: usize = 36;
+
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
-    ui.horizontal(|ui| {
-        units(ui, context);
-        setup.endpoint(ui, context);
-        connect(ui, context);
-        identity(ui, context);
-        running(ui, context);
-        if context.units.iter().any(|unit| unit.stopping) {
-            chip(ui, context.words.frame.stopping, Palette::of(ui).warn);
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    both_ends(
+        ui,
+        context,
+        |ui, context| {
             stop_button(ui, context);
             arming(ui, context);
-        });
+        },
+        |ui, context| {
+            units(ui, context);
+            setup.endpoint(ui, context);
+            connect(ui, context);
+            identity(ui, context);
+            running(ui, context);
+            if context.units.iter().any(|unit| unit.stopping) {
+                chip(ui, context.words.frame.stopping, Palette::of(ui).warn);
+            }
+        },
+    );
+}
+
+/// A bar with something at its right end, and the rest in the lines that it takes.
+pub(super) fn both_ends(
+    ui: &mut Ui,
+    context: &mut PageContext<'_>,
+    right: impl FnOnce(&mut Ui, &mut PageContext<'_>),
+    left: impl FnOnce(&mut Ui, &mut PageContext<'_>),
+) {
+    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+        right(ui, context);
+        let lines = Layout::left_to_right(Align::Min).with_main_wrap(true);
+        ui.with_layout(lines, |ui| left(ui, context));
     });
 }
 
@@ -107,11 +128,8 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
     }
     if let Some(setup) = unit.setup.value().filter(|setup| !setup.faults.is_empty()) {
         let names = setup.injected().unwrap_or_default();
-        chip(
-            ui,
-            &fill(frame.injected, &[("faults", &names)]),
-            palette.warn,
-        );
+        let said = fill(frame.injected, &[("faults", &names)]);
+        chip(ui, &shortened(&said), palette.warn).on_hover_text(said);
     }
     if let Some(identity) = identity {
         let serial = ptu_bench::run::unit_text::serial(&identity);
@@ -132,6 +150,14 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
             colour,
         );
     }
+}
+
+/// What fits a line of the bar.
+fn shortened(text: &str) -> String {
+    if text.chars().count() <= LINE {
+        return text.to_owned();
+    }
+    text.chars().take(LINE).chain(['…']).collect()
 }
 
 /// What of the unit is not as the record of its train says.

@@ -1,6 +1,6 @@
 //! Shows the latest trouble until it is acknowledged, the latest message, and all messages on demand.
 
-use eframe::egui::{RichText, ScrollArea, Ui};
+use eframe::egui::{RichText, ScrollArea, TextWrapMode, Ui};
 
 use crate::gui::messages::Message;
 use crate::gui::{PageContext, Palette};
@@ -29,6 +29,8 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
             });
             clear = ui.button(context.words.frame.clear).clicked();
         });
+        // There is one line; what is cut is told when it is pointed at, and in the menu.
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         if let Some(trouble) = context.messages.unread_trouble() {
             noted = ui.button(context.words.frame.dismiss).clicked();
             said(ui, trouble);

@@ -1,8 +1,9 @@
 //! Selects the page, the language, light or dark, and the zoom.
 
-use eframe::egui::{Align, ComboBox, Layout, RichText, Ui};
+use eframe::egui::{ComboBox, RichText, Ui};
 
 use super::about::About;
+use super::connection::both_ends;
 use crate::gui::parts::{ActionPlace, named_combo};
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::gui::{Page, PageContext};
@@ -11,20 +12,24 @@ use ptu_report::words::Language;
 const STEP: f32 = 0.1;
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, about: &mut About) {
-    ui.horizontal(|ui| {
-        for page in Page::ALL {
-            let chosen = context.settings.page == page;
-            let text = RichText::new(page.name(context.words)).size(16.0);
-            let button = ui.selectable_label(chosen, text);
-            if button.on_hover_text(page.key().name()).clicked() {
-                context.settings.page = page;
-            }
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    both_ends(
+        ui,
+        context,
+        |ui, context| {
             about.button(ui, context);
             look(ui, context);
-        });
-    });
+        },
+        |ui, context| {
+            for page in Page::ALL {
+                let chosen = context.settings.page == page;
+                let text = RichText::new(page.name(context.words)).size(16.0);
+                let button = ui.selectable_label(chosen, text);
+                if button.on_hover_text(page.key().name()).clicked() {
+                    context.settings.page = page;
+                }
+            }
+        },
+    );
 }
 
 fn look(ui: &mut Ui, context: &mut PageContext<'_>) {

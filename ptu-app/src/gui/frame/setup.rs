@@ -2,8 +2,8 @@
 
 use btu_rig::rig::Harness;
 use eframe::egui::{
-    ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, ScrollArea,
-    TextEdit, Ui, Window,
+    ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, Role,
+    ScrollArea, TextEdit, Ui, WidgetInfo, Window,
 };
 
 use crate::gui::parts::{name_edit, named_combo};
@@ -13,6 +13,15 @@ use ptu_bench::bench_worker::Phase;
 use ptu_bench::link::ports;
 use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
+
+/// A window so wide has the faults beside what else is set up, points.
+const BESIDE: f32 = 1000.0;
+/// Width of the faults, and of the field that finds one.
+const FAULTS: f32 = 430.0;
+const FIND: f32 = 220.0;
+/// Title and edges of the dialog, and the least height of what scrolls in it.
+const AROUND: f32 = 60.0;
+const LOWEST: f32 = 120.0;
 
 struct Names {
     ports: Vec<String>,
@@ -83,13 +92,32 @@ impl Setup {
         let words = context.words;
         let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
         let choice = &mut context.units.chosen_mut().choice;
+        let screen = ui.ctx().content_rect();
+        let high = (screen.bottom() - below.y - AROUND).max(LOWEST);
         Window::new(words.frame.setup)
             .id(Id::unique("setup"))
             .open(&mut open)
             .collapsible(false)
             .resizable(false)
             .default_pos(below)
-            .show(ui.ctx(), |ui| self.surroundings(ui, words, choice));
+            .show(ui.ctx(), |ui| {
+                if screen.width() >= BESIDE && choice.is_simulated() {
+                    ui.horizontal_top(|ui| {
+                        ui.vertical(|ui| self.surroundings(ui, words, choice));
+                        ui.separator();
+                        ui.vertical(|ui| self.injected(ui, words, choice, Some(high)));
+                    });
+                    return;
+                }
+                let area = ScrollArea::vertical().max_height(high);
+                area.min_scrolled_height(high).show(ui, |ui| {
+                    self.surroundings(ui, words, choice);
+                    if choice.is_simulated() {
+                        ui.separator();
+                        self.injected(ui, words, choice, None);
+                    }
+                });
+            });
         self.open = open;
     }
 
@@ -183,50 +211,75 @@ impl Setup {
         });
         if choice.is_simulated() {
             ui.checkbox(&mut choice.realtime, frame.realtime);
-            ui.separator();
-            self.injected(ui, words, choice);
         }
     }
 
-    fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
-        let chosen = match choice.faults.as_slice() {
-            [] => words.frame.none.to_owned(),
-            faults => faults.join(", "),
-        };
-        ui.label(format!("{}: {chosen}", words.frame.inject));
-        let label = ui.label(words.frame.find);
-        let find = ui.add(TextEdit::singleline(&mut self.find));
-        // What is mostly wanted can be typed at once.
-        if std::mem::take(&mut self.opened) {
-            find.request_focus();
+    /// The injected faults, each with a button that takes it out, and all there are: in a list of its own that ends at
+    /// this height, or as a part of what scrolls already.
+    fn injected(
+        &mut self,
+        ui: &mut Ui,
+        words: &Words,
+        choice: &mut BenchChoice,
+        high: Option<f32>,
+    ) {
+        let top = ui.cursor().top();
+        ui.set_width(FAULTS);
+        let frame = &words.frame;
+        ui.label(RichText::new(frame.inject).strong());
+        if choice.faults.is_empty() {
+            ui.label(RichText::new(frame.none).color(Palette::of(ui).quiet));
         }
-        find.labelled_by(label.id);
-        let known = self
-            .names
-            .value()
-            .map(|names| names.faults.as_slice())
-            .unwrap_or_default();
+        choice.faults.retain(|fault| {
+            let taken_out = ui.horizontal(|ui| {
+                let button = ui.button("×").on_hover_text(frame.take_out);
+                let name = format!("{}: {fault}", frame.take_out);
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                ui.add(Label::new(RichText::new(fault).strong()).truncate());
+                button.clicked()
+            });
+            !taken_out.inner
+        });
+        ui.horizontal(|ui| {
+            let label = ui.label(frame.find);
+            let find = ui.add(TextEdit::singleline(&mut self.find).desired_width(FIND));
+            // What is mostly wanted can be typed at once.
+            if std::mem::take(&mut self.opened) {
+                find.request_focus();
+            }
+            find.labelled_by(label.id);
+        });
+        let Some(high) = high else {
+            return self.all_faults(ui, words, choice);
+        };
+        let left = (high - (ui.cursor().top() - top)).max(LOWEST);
+        let area = ScrollArea::vertical().max_height(left).auto_shrink(false);
+        let area = area.min_scrolled_height(left);
+        area.show(ui, |ui| self.all_faults(ui, words, choice));
+    }
+
+    fn all_faults(&self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
+        let known = self.names.value().map(|names| names.faults.as_slice());
         let wanted = self.find.trim().to_lowercase();
-        ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
-            for (id, mode) in known {
-                if !id.contains(&wanted) && !mode.to_lowercase().contains(&wanted) {
-                    continue;
-                }
-                let mut on = choice.faults.contains(id);
-                let box_of_it = ui.horizontal(|ui| {
-                    let clicked = ui.checkbox(&mut on, id).clicked();
-                    let mode = RichText::new(mode).small().color(Palette::of(ui).quiet);
-                    ui.add(Label::new(mode).truncate());
-                    clicked
-                });
-                if box_of_it.inner {
-                    choice.faults.retain(|fault| fault != id);
-                    if on {
-                        choice.faults.push(id.clone());
-                    }
+        for (id, mode) in known.unwrap_or_default() {
+            let mode = words.content(mode);
+            if !id.contains(&wanted) && !mode.to_lowercase().contains(&wanted) {
+                continue;
+            }
+            let mut on = choice.faults.contains(id);
+            let clicked = ui.horizontal(|ui| {
+                let clicked = ui.checkbox(&mut on, id).clicked();
+                let mode = RichText::new(mode).small().color(Palette::of(ui).quiet);
+                ui.add(Label::new(mode).truncate());
+                clicked
+            });
+            if clicked.inner {
+                choice.faults.retain(|fault| fault != id);
+                if on {
+                    choice.faults.push(id.clone());
                 }
             }
-        });
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! A word on a coloured background.
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{Color32, Frame, Margin, Response, RichText, Ui};
+use eframe::egui::{
+    Button, Color32, Response, RichText, Role, Sense, TextWrapMode, Ui, WidgetInfo,
+};
 
 use crate::gui::Palette;
 use ptu_report::words::Words;
@@ -9,14 +11,16 @@ use ptu_report::words::Words;
 /// A word on a coloured ground.
 pub fn chip(ui: &mut Ui, text: &str, colour: Color32) -> Response {
     let ground = colour.gamma_multiply(if ui.visuals().dark_mode { 0.22 } else { 0.15 });
-    Frame::new()
+    let words = RichText::new(text).color(colour).strong();
+    // Its size is known before it is placed, so that it begins a new line rather than break its word.
+    let chip = Button::new(words)
         .fill(ground)
         .corner_radius(4)
-        .inner_margin(Margin::symmetric(6, 1))
-        .show(ui, |ui| {
-            ui.label(RichText::new(text).color(colour).strong())
-        })
-        .inner
+        .sense(Sense::hover())
+        .wrap_mode(TextWrapMode::Extend);
+    let response = ui.add(chip);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    response
 }
 
 pub fn verdict_chip(ui: &mut Ui, verdict: Verdict, words: &Words) -> Response {

@@ -2,6 +2,7 @@
 //! stretches of pixels ([`ptu_report::trace_view`]); it reads no samples.
 
 use eframe::egui::epaint::Vertex;
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2,
 };
@@ -162,18 +163,25 @@ pub fn choice(
         }
         let line = Stroke::new(1.0, colour);
         painter.rect(area, 2.0, ground, line, StrokeKind::Inside);
-        let clip = area.shrink2(vec2(3.0, 0.0));
-        painter
-            .with_clip_rect(painter.clip_rect().intersect(clip))
-            .text(
-                pos2(clip.left(), area.center().y),
-                Align2::LEFT_CENTER,
-                label(value),
-                FontId::proportional(TEXT),
-                text,
-            );
+        let inner = area.shrink2(vec2(3.0, 0.0));
+        cut_text(
+            &painter,
+            inner,
+            label(value),
+            FontId::proportional(TEXT),
+            text,
+        );
     }
     narrow.paint(&painter);
+}
+
+/// One line of text from the left of `area` on, with "…" where it has no room.
+pub fn cut_text(painter: &Painter, area: Rect, text: String, font: FontId, colour: Color32) {
+    let mut job = LayoutJob::simple_singleline(text, font, colour);
+    job.wrap = TextWrapping::truncate_at_width(area.width());
+    let laid = painter.layout_job(job);
+    let at = pos2(area.left(), area.center().y - laid.size().y / 2.0);
+    painter.galley(at, laid, colour);
 }
 
 /// A bit: a line that is up where it is set, with the ground below it filled.

@@ -10,9 +10,3 @@ pub fn named_combo(response: &Response, name: &str, chosen: &str) {
         info
     });
 }
-
-/// Says what a text that stands in a column is, to whoever does not see the column's heading.
-pub fn named_cell(response: &Response, heading: &str, text: &str) {
-    let name = format!("{heading}: {text}");
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
-}

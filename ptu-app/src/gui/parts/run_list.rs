@@ -1,6 +1,6 @@
 //! A list of runs to choose from, the latest first.
 
-use eframe::egui::{RichText, ScrollArea, TextEdit, TextStyle, Ui};
+use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::{Id, RunFilter, RunState, RunSummary};
 
 use super::chip;
@@ -10,6 +10,7 @@ use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::process_id;
 use ptu_bench::run::unit_text;
+use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 
 /// As many runs as are listed.
@@ -95,7 +96,8 @@ impl RunList {
         if shown.is_empty() {
             ui.label(words.common.nothing);
         }
-        let height = 2.0 * ui.text_style_height(&TextStyle::Body) + 8.0;
+        let height = 2.0 * ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         let mut clicked = None;
         ScrollArea::vertical().auto_shrink(false).show_rows(
             ui,
@@ -161,10 +163,12 @@ impl RunList {
 fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
     let mut clicked = false;
     ui.horizontal(|ui| {
-        let name = format!("{}  {}", run.id.short(), clock::local(run.started_at_us));
-        clicked = ui.selectable_label(chosen, name).clicked();
+        let name = [&*clock::local(run.started_at_us), &*run.unit_serial].join(DOT);
+        let row = ui.selectable_label(chosen, name);
+        clicked = row.on_hover_text(run.id.to_string()).clicked();
     });
     ui.horizontal(|ui| {
+        ui.set_min_height(ui.spacing().interact_size.y);
         ui.add_space(14.0);
         let palette = Palette::of(ui);
         let common = &words.common;
@@ -177,7 +181,13 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
             (None, _) => (common.interrupted, palette.warn),
         };
         chip(ui, said, colour);
-        ui.label(RichText::new(&run.unit_serial).color(palette.quiet));
+        let counts: [(&str, &dyn std::fmt::Display); 2] =
+            [("n", &run.steps_not_passed), ("of", &run.steps)];
+        let counts = match run.steps_not_passed {
+            0 => fill(words.report.all_passed, &counts),
+            _ => fill(words.report.not_passed, &counts),
+        };
+        ui.label(RichText::new(counts).color(palette.quiet));
     });
     clicked
 }

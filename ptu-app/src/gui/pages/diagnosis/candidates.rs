@@ -4,9 +4,9 @@ use diagnosis::Candidate;
 use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
 use super::NamedAnswer;
-use crate::gui::parts::share_bar;
+use crate::gui::parts::{link, share_bar};
 use crate::gui::{Destination, PageContext, Palette};
-use ptu_report::words::{Diagnosis, Words, fill};
+use ptu_report::words::{Diagnosis, fill};
 
 /// Candidates, and reasons of each, that are shown at once; the others are behind "more".
 const AT_ONCE: usize = 3;
@@ -52,7 +52,7 @@ fn behind_more(
 }
 
 fn likely(ui: &mut Ui, probability: f64, text: &str) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         share_bar(ui, probability, Palette::of(ui).quiet);
         ui.label(text);
     });
@@ -66,15 +66,15 @@ fn show(
     open: bool,
 ) {
     let words = &context.words.diagnosis;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         share_bar(ui, candidate.probability, Palette::of(ui).accent);
-        ui.label(RichText::new(candidate.lru.as_str()).strong().size(17.0));
-        ui.label(RichText::new(named.part(candidate.lru.as_str(), context.words)).strong());
-        ui.label(format!(
-            "{}: {}",
-            candidate.fault,
-            context.words.content(&candidate.text)
-        ));
+        let (part, language) = (candidate.lru.as_str(), context.words.language);
+        let name = RichText::new(named.parts.name(part, language));
+        ui.label(name.strong().size(17.0));
+        ui.label(&*context.words.content(&candidate.text));
+        // As it is typed.
+        let typed = RichText::new(&candidate.fault).small();
+        ui.label(typed.color(Palette::of(ui).quiet));
     });
     CollapsingHeader::new(words.reasons)
         .id_salt(&candidate.fault)
@@ -86,7 +86,7 @@ fn show(
                 ("+", words.speaks_for, &candidate.for_it, good),
                 ("−", words.speaks_against, &candidate.against, warn),
             ] {
-                reasons(ui, context.words, (sign, what), texts, colour);
+                reasons(ui, context, named, (sign, what), texts, colour);
             }
             let traces = named
                 .answer
@@ -99,7 +99,8 @@ fn show(
                 ui.horizontal_wrapped(|ui| {
                     ui.label(words.traces);
                     for trace in traces {
-                        if ui.button(trace.short()).clicked() {
+                        let shows = named.shown_by(*trace, context.words);
+                        if link(ui, shows).clicked() {
                             context.go_to.push(Destination::Trace(*trace));
                         }
                     }
@@ -110,7 +111,8 @@ fn show(
 
 fn reasons(
     ui: &mut Ui,
-    words: &Words,
+    context: &mut PageContext<'_>,
+    named: &NamedAnswer,
     (sign, what): (&str, &str),
     texts: &[String],
     colour: Color32,
@@ -119,11 +121,17 @@ fn reasons(
         return;
     }
     ui.label(RichText::new(what).small().color(colour));
-    let list = |ui: &mut Ui, texts: &[String]| {
+    let words = context.words;
+    let mut list = |ui: &mut Ui, texts: &[String]| {
         for text in texts {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).strong().color(colour));
                 ui.label(&*words.content(text));
+                if let Some(trace) = named.trace_of(text)
+                    && link(ui, words.faults.to_trace).clicked()
+                {
+                    context.go_to.push(Destination::Trace(trace));
+                }
             });
         }
     };

@@ -2,19 +2,25 @@
 
 mod candidates;
 
-use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
 use fault_db::Id;
-use protocol::injection::Lru;
 
-use crate::gui::parts::RunList;
+use crate::gui::parts::{FirstHalf, RunList};
 use crate::gui::request::Request;
-use crate::gui::{Destination, PageContext, Palette};
+use crate::gui::{DataPaths, Destination, PageContext, Palette};
 use ptu_bench::clock;
+use ptu_bench::failure::Failure;
 use ptu_bench::run_diagnosis::{Answer, diagnose_run};
-use ptu_report::words::{Language, Words, fill};
+use ptu_report::naming::{PartNames, place};
+use ptu_report::words::{Words, fill};
 
 /// Size of the conclusion, points: it is read first, and may fill two lines.
 const HEADLINE: f32 = 20.0;
+const RUNS: FirstHalf = FirstHalf {
+    name: "diagnosed runs",
+    width: 270.0,
+    share: 0.3,
+};
 
 #[derive(Default)]
 pub struct DiagnosisPage {
@@ -23,29 +29,51 @@ pub struct DiagnosisPage {
     answer: Request<NamedAnswer>,
 }
 
-/// An answer, and what people call the parts.
+/// An answer, what people call the parts, and what the run's traces show.
 pub struct NamedAnswer {
     answer: Answer,
-    parts: Vec<Lru>,
+    parts: PartNames,
+    /// Part, message and trace of each fault that has one.
+    traced: Vec<(String, String, Id)>,
 }
 
 impl NamedAnswer {
-    /// What people call a part, in their language.
-    fn part(&self, id: &str, words: &Words) -> String {
-        let known = self.parts.iter().find(|part| part.id == id);
-        let name = known.map(|part| match words.language {
-            Language::English => part.name.clone(),
-            Language::Korean => part.name_ko.clone(),
-        });
-        name.unwrap_or_default()
+    fn of(paths: &DataPaths, run: Id) -> Result<Self, Failure> {
+        let store = paths.read()?;
+        let traced = store.run_occurrences(run)?.into_iter();
+        let traced = traced.filter_map(|seen| Some((seen.lru, seen.message, seen.trace_id?)));
+        Ok(Self {
+            answer: diagnose_run(&store, &paths.scripts, run)?,
+            parts: PartNames::of(&paths.scripts),
+            traced: traced.collect(),
+        })
+    }
+
+    /// What a trace shows.
+    fn shown_by(&self, trace: Id, words: &Words) -> String {
+        let shown = self.traced.iter().find(|(.., id)| *id == trace);
+        shown.map_or_else(
+            || trace.short(),
+            |(part, message, _)| self.parts.fault(part, message, words),
+        )
+    }
+
+    /// The trace of the step that a reason is about.
+    fn trace_of(&self, reason: &str) -> Option<Id> {
+        let mut traced = self.traced.iter();
+        let about = |message: &str| {
+            place(message).is_some_and(|(procedure, step, _)| {
+                reason.starts_with(&format!("{procedure}: {step} "))
+            })
+        };
+        Some(traced.find(|(_, message, _)| about(message))?.2)
     }
 }
 
 impl DiagnosisPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
-        let list = Panel::left("diagnosed runs").default_size(270.0);
-        let run = list.show(ui, |ui| self.runs.show(ui, context)).inner;
+        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
         if run != self.run {
             self.ask(run, context);
         }
@@ -66,12 +94,11 @@ impl DiagnosisPage {
     fn ask(&mut self, run: Option<Id>, context: &PageContext<'_>) {
         self.run = run;
         self.answer = run.map_or(Request::Idle, |run| {
-            Request::Pending(context.queries.run(move |paths| {
-                Ok(NamedAnswer {
-                    answer: diagnose_run(&paths.read()?, &paths.scripts, run)?,
-                    parts: paths.scripts.faults()?.lrus,
-                })
-            }))
+            Request::Pending(
+                context
+                    .queries
+                    .run(move |paths| NamedAnswer::of(paths, run)),
+            )
         });
     }
 
@@ -112,13 +139,10 @@ impl DiagnosisPage {
         let time = clock::local(run.started_at_us);
         let of_run = fill(
             words.diagnosis.of_run,
-            &[
-                ("run", &run.id.short()),
-                ("unit", &run.unit_serial),
-                ("time", &time),
-            ],
+            &[("unit", &run.unit_serial), ("time", &time)],
         );
-        ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
+        let of_run = ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
+        of_run.on_hover_text(run.id.to_string());
         let conclusion = words.sentence(&answer.diagnosis.conclusion);
         ui.label(RichText::new(conclusion).strong().size(HEADLINE));
         next_check(ui, context, answer);

@@ -5,6 +5,7 @@ use fault_db::DailyCount;
 
 use super::charts::{CountsOverTime, DAY_US, by_name, over_time};
 use crate::gui::Palette;
+use crate::gui::parts::lane::cut_text;
 use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
 
@@ -92,10 +93,10 @@ fn named(
     let painter = ui.painter().with_clip_rect(rect);
     for (place, (name, count)) in (0..).zip(rows) {
         let middle = rect.top() + height * (place as f32 + 0.5);
-        let text = pos2(rect.left(), middle);
-        let ink = ui.visuals().text_color();
-        painter.text(text, Align2::LEFT_CENTER, name, small.clone(), ink);
         let left = rect.left() + NAME.min(rect.width() / 2.0);
+        let ink = ui.visuals().text_color();
+        let row = Rect::from_x_y_ranges(rect.left()..=left - 4.0, middle..=middle);
+        cut_text(&painter, row, name.to_owned(), small.clone(), ink);
         let room = (rect.right() - left - 26.0).max(1.0);
         let size = vec2(room * (count as f32 / most).min(1.0), height - 3.0);
         let bar = Rect::from_min_size(pos2(left, middle - size.y / 2.0), size);

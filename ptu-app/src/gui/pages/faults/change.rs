@@ -1,6 +1,6 @@
 //! Changes to a fault: state, repairs and notes.
 
-use eframe::egui::{Button, RichText, Ui};
+use eframe::egui::{Button, Grid, RichText, TextEdit, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
 use crate::gui::parts::{ActionPlace, name_edit, note_edit};
@@ -17,6 +17,11 @@ const TOWARDS: [FaultState; 5] = [
     FaultState::Closed,
     FaultState::Open,
 ];
+
+/// Room for the names of the fields, and how wide these are, points.
+const NAMES: f32 = 200.0;
+const NARROWEST: f32 = 120.0;
+const WIDEST: f32 = 420.0;
 
 /// The form, and what becomes of it.
 #[derive(Default)]
@@ -100,26 +105,18 @@ impl Change {
             // What was begun about another fault is not meant for this one.
             self.form = Form::about(fault.id);
         }
-        ui.horizontal(|ui| {
-            let label = ui.label(words.common.operator);
-            ui.add(name_edit(&mut context.settings.operator, 110.0))
-                .labelled_by(label.id);
-            let label = ui.label(words.common.note);
-            ui.add(note_edit(&mut self.form.note, f32::INFINITY))
-                .labelled_by(label.id);
+        let wide = (ui.available_width() - NAMES).clamp(NARROWEST, WIDEST);
+        Grid::new("change").num_columns(2).show(ui, |ui| {
+            let operator = &mut context.settings.operator;
+            field(ui, words.common.operator, name_edit(operator, wide));
+            field(ui, words.common.note, note_edit(&mut self.form.note, wide));
+            if fault.state.next(FaultAction::Repair).is_ok() {
+                let (old, new) = (&mut self.form.serial_old, &mut self.form.serial_new);
+                field(ui, words.faults.serial_old, name_edit(old, wide));
+                field(ui, words.faults.serial_new, name_edit(new, wide));
+            }
         });
         let who = context.settings.operator.trim().to_owned();
-        if fault.state.next(FaultAction::Repair).is_ok() {
-            ui.horizontal(|ui| {
-                for (name, text) in [
-                    (words.faults.serial_old, &mut self.form.serial_old),
-                    (words.faults.serial_new, &mut self.form.serial_new),
-                ] {
-                    let label = ui.label(name);
-                    ui.add(name_edit(text, 90.0)).labelled_by(label.id);
-                }
-            });
-        }
         let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
         let place = ActionPlace::new(ui, "fault", (fault.id, fault.state.as_str()));
         ui.add_enabled_ui(may, |ui| {
@@ -178,6 +175,13 @@ impl Change {
             Ok(id)
         }));
     }
+}
+
+/// A field with its name before it, as one row of the form.
+fn field(ui: &mut Ui, name: &str, edit: TextEdit<'_>) {
+    let label = ui.label(name);
+    ui.add(edit).labelled_by(label.id);
+    ui.end_row();
 }
 
 fn name(state: FaultState, words: &Words) -> &'static str {

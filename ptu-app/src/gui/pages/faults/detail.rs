@@ -4,20 +4,24 @@ use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
 use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
+use crate::gui::parts::link;
 use crate::gui::{Destination, Palette};
 use ptu_bench::clock;
 use ptu_report::diagnosis::cause_text;
 use ptu_report::limits::short;
+use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
 
 /// Occurrences shown at most; the command line shows all.
 const MOST: usize = 50;
+/// Where a freeze frame has two signals beside each other, points.
+const TWO_BESIDE: f32 = 560.0;
 
 /// What the fault is and where it stands.
-pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
+pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames) {
     let fault = &detail.fault;
     ui.horizontal_wrapped(|ui| {
-        let name = format!("{} {}", fault.code, fault.code_name);
+        let name = parts.fault(&fault.lru, &fault.message, words);
         ui.label(RichText::new(name).strong().size(19.0));
         state_chip(ui, words, fault.state);
     });
@@ -25,7 +29,7 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
         clock::local(fault.first_at_us),
         clock::local(fault.last_at_us),
     );
-    Grid::new("fault").num_columns(2).show(ui, |ui| {
+    ui.scope(|ui| {
         let seen = fill(
             words.faults.times_seen,
             &[
@@ -35,15 +39,20 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail) {
             ],
         );
         let part = part(words, detail);
+        let code = format!("{} {}", fault.code, fault.code_name);
+        let id = fault.id.to_string();
         for (what, value) in [
             (words.common.unit, fault.unit_serial.as_str()),
             (words.common.part, &part),
+            (words.common.code, &code),
+            (words.common.number, &id),
             (words.common.severity, &fault.severity),
             (words.faults.seen, &seen),
         ] {
-            ui.label(RichText::new(what).color(Palette::of(ui).quiet));
-            ui.label(value);
-            ui.end_row();
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(what).color(Palette::of(ui).quiet));
+                ui.label(value);
+            });
         }
     });
 }
@@ -83,20 +92,25 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
         ui.horizontal_wrapped(|ui| {
             ui.label(clock::local(seen.at_us));
             if let Some(trace) = seen.trace_id
-                && ui.small_button(words.faults.to_trace).clicked()
+                && ui.button(words.faults.to_trace).clicked()
             {
                 go_to.push(Destination::Trace(trace));
             }
-            if ui.small_button(words.faults.to_run).clicked() {
+            if ui.button(words.faults.to_run).clicked() {
                 go_to.push(Destination::Report(seen.run_id));
             }
-            if ui.small_button(words.faults.to_diagnosis).clicked() {
+            if ui.button(words.faults.to_diagnosis).clicked() {
                 go_to.push(Destination::Diagnosis(seen.run_id));
             }
             ui.label(RichText::new(&*words.content(&seen.message)).color(Palette::of(ui).quiet));
         });
     }
     if let Some(latest) = detail.occurrences.first() {
+        if let Some(trace) = latest.trace_id
+            && link(ui, words.faults.freeze_trace).clicked()
+        {
+            go_to.push(Destination::Trace(trace));
+        }
         CollapsingHeader::new(words.faults.freeze_frame)
             .default_open(true)
             .show(ui, |ui| freeze_frame(ui, words, &latest.freeze));
@@ -104,7 +118,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
 }
 
 fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
         match event.state {
             Some(state) => state_chip(ui, words, state),
@@ -132,11 +146,16 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
 }
 
 fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
-    Grid::new("freeze")
-        .num_columns(4)
+    let beside = if ui.available_width() < TWO_BESIDE {
+        1
+    } else {
+        2
+    };
+    Grid::new(("freeze", beside))
+        .num_columns(2 * beside)
         .striped(true)
         .show(ui, |ui| {
-            for pair in samples.chunks(2) {
+            for pair in samples.chunks(beside) {
                 for sample in pair {
                     ui.label(&sample.name);
                     let value = match (&sample.label, sample.value) {

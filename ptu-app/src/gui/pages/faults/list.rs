@@ -1,18 +1,14 @@
 //! The filters, and the list of faults that match.
 
-use eframe::egui::{
-    ComboBox, Label, Response, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui,
-};
+use eframe::egui::{ComboBox, RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::{FaultState, FaultSummary, Id};
 
 use super::filter::{Filter, SPANS, names};
 use crate::gui::Palette;
-use crate::gui::parts::{chip, named_cell, named_combo};
+use crate::gui::parts::{UnitFilter, chip, named_combo};
 use ptu_bench::clock;
+use ptu_report::naming::{DOT, PartNames};
 use ptu_report::words::{Words, fill};
-
-/// Widths of the columns, points.
-const COLUMNS: [f32; 7] = [148.0, 68.0, 126.0, 108.0, 108.0, 62.0, 30.0];
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
     let faults_of = || faults.iter();
@@ -82,43 +78,27 @@ fn span(ui: &mut Ui, words: &Words, chosen: &mut Option<i64>) {
 pub fn list(
     ui: &mut Ui,
     words: &Words,
-    filter: &Filter,
-    faults: &[FaultSummary],
+    (filter, units): (&Filter, &UnitFilter),
+    (faults, parts): (&[FaultSummary], &PartNames),
     chosen: Option<Id>,
 ) -> Option<Id> {
     let palette = Palette::of(ui);
-    let shown: Vec<_> = faults.iter().filter(|fault| filter.takes(fault)).collect();
+    let shown: Vec<_> = (faults.iter())
+        .filter(|fault| filter.takes(fault) && units.takes(&fault.unit_serial))
+        .collect();
     let count = fill(
         words.faults.shown,
         &[("n", &shown.len()), ("of", &faults.len())],
     );
     ui.label(RichText::new(count).color(palette.quiet));
-    let headings = [
-        words.faults.last_seen,
-        words.common.unit,
-        words.common.code,
-        words.common.part,
-        words.faults.cause,
-        words.common.state,
-        words.faults.seen,
-    ];
-    ui.horizontal(|ui| {
-        for (heading, width) in headings.into_iter().zip(COLUMNS) {
-            cell(
-                ui,
-                width,
-                RichText::new(heading).small().color(palette.quiet),
-            );
-        }
-    });
-    let height = ui.text_style_height(&TextStyle::Body) + 6.0;
+    let height = ui.spacing().interact_size.y;
     let mut clicked = None;
     ScrollArea::vertical()
         .id_salt("faults")
         .auto_shrink(false)
         .show_rows(ui, height, shown.len(), |ui, range| {
             for fault in shown.get(range).into_iter().flatten() {
-                if row(ui, words, fault, chosen == Some(fault.id)) {
+                if row(ui, words, (fault, parts), chosen == Some(fault.id)) {
                     clicked = Some(fault.id);
                 }
             }
@@ -126,29 +106,39 @@ pub fn list(
     clicked
 }
 
-fn row(ui: &mut Ui, words: &Words, fault: &FaultSummary, chosen: bool) -> bool {
-    let mut clicked = false;
-    ui.horizontal(|ui| {
-        let (time, rest) = (COLUMNS[0], &COLUMNS[1..]);
-        let at = clock::local(fault.last_at_us);
-        ui.allocate_ui([time, ui.spacing().interact_size.y].into(), |ui| {
-            ui.set_min_width(time);
-            clicked |= ui.selectable_label(chosen, at).clicked();
-        });
-        clicked |= cell(ui, rest[0], RichText::new(&fault.unit_serial));
-        let code = format!("{} {}", fault.code, fault.code_name);
-        clicked |= cell(ui, rest[1], RichText::new(code).strong());
-        clicked |= cell(ui, rest[2], RichText::new(&fault.lru));
-        let cause = cell_of(ui, rest[3], RichText::new(fault.cause()));
-        named_cell(&cause, words.faults.cause, fault.cause());
-        clicked |= cause.clicked();
-        ui.allocate_ui([rest[4], ui.spacing().interact_size.y].into(), |ui| {
-            ui.set_min_width(rest[4]);
-            state_chip(ui, words, fault.state);
-        });
-        clicked |= cell(ui, rest[5], RichText::new(fault.occurrences.to_string()));
+fn row(
+    ui: &mut Ui,
+    words: &Words,
+    (fault, parts): (&FaultSummary, &PartNames),
+    chosen: bool,
+) -> bool {
+    let said = ui.horizontal(|ui| {
+        state_chip(ui, words, fault.state);
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        let row = ui.selectable_label(chosen, title(fault, parts, words));
+        row.on_hover_ui(|ui| {
+            ui.label(fault.id.to_string());
+            ui.label(&*words.content(&fault.message));
+        })
     });
-    clicked
+    said.inner.clicked()
+}
+
+/// The part, what was seen of it last, the unit and when.
+pub fn title(fault: &FaultSummary, parts: &PartNames, words: &Words) -> String {
+    let mut said = parts.fault(&fault.lru, &fault.message, words);
+    if fault.cause() != fault.lru {
+        let cause = parts.name(fault.cause(), words.language);
+        said = format!("{said} ({}: {cause})", words.faults.cause);
+    }
+    let when = clock::local_minute(fault.last_at_us);
+    let today = clock::local_minute(clock::now_us());
+    // Of today the time says enough.
+    let when = match (when.split_once(' '), today.split_once(' ')) {
+        (Some((day, time)), Some((now, _))) if day == now => time,
+        _ => &when,
+    };
+    [&*said, &*fault.unit_serial, when].join(DOT)
 }
 
 /// A fault's state.
@@ -161,18 +151,4 @@ pub fn state_chip(ui: &mut Ui, words: &Words, state: FaultState) {
         FaultState::Verified | FaultState::Closed => palette.good,
     };
     chip(ui, words.common.fault_state(state), colour);
-}
-
-fn cell(ui: &mut Ui, width: f32, text: RichText) -> bool {
-    cell_of(ui, width, text).clicked()
-}
-
-fn cell_of(ui: &mut Ui, width: f32, text: RichText) -> Response {
-    let size = [width, ui.spacing().interact_size.y];
-    let label = Label::new(text).truncate().sense(Sense::click());
-    let response = ui.allocate_ui(size.into(), |ui| {
-        ui.set_min_width(width);
-        ui.add(label)
-    });
-    response.inner
 }

@@ -7,10 +7,10 @@ mod detail;
 mod filter;
 mod list;
 
-use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, CollapsingHeader, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
-use crate::gui::parts::MemoryReader;
+use crate::gui::parts::{FirstHalf, MemoryReader, UnitFilter};
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
@@ -18,19 +18,29 @@ use crate::gui::{PageContext, Palette};
 use change::Change;
 use filter::Filter;
 use ptu_bench::clock;
+use ptu_report::naming::PartNames;
 
 /// As many faults as are listed.
 const MOST: u32 = 20_000;
+/// Height that the charts are shown in from the beginning, points.
+const HIGH: f32 = 400.0;
+const LIST: FirstHalf = FirstHalf {
+    name: "fault list",
+    width: 620.0,
+    share: 0.5,
+};
 
 /// What the list and the charts show.
 struct History {
     faults: Vec<FaultSummary>,
     daily: Vec<DailyCount>,
+    parts: PartNames,
 }
 
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
+    units: UnitFilter,
     history: CachedResponse<History>,
     /// What the history was asked for with: days, and its version.
     asked: Option<(Option<i64>, (usize, u64))>,
@@ -46,9 +56,7 @@ pub struct FaultsPage {
 impl FaultsPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
-        let list = Panel::left("fault list").default_size(720.0);
-        let list = list.size_range(420.0..=900.0);
-        let clicked = list.show(ui, |ui| self.list(ui, context)).inner;
+        let clicked = LIST.show(ui, |ui| self.list(ui, context));
         if let Some(id) = clicked {
             self.open(id, context);
         }
@@ -84,6 +92,7 @@ impl FaultsPage {
                 };
                 Ok(History {
                     faults: store.faults(&filter)?,
+                    parts: PartNames::of(&paths.scripts),
                     daily: store.daily_occurrences(since_us, utc_offset_us)?,
                 })
             }));
@@ -118,12 +127,18 @@ impl FaultsPage {
         match self.history.get() {
             Request::Ready(history) => {
                 list::filters(ui, words, &mut self.filter, &history.faults);
-                let counts = history
-                    .daily
-                    .iter()
-                    .filter(|count| self.filter.counts(count));
-                bars::charts(ui, words, &counts.collect::<Vec<_>>());
-                list::list(ui, words, &self.filter, &history.faults, self.chosen)
+                self.units.show(ui, context);
+                let counts = (history.daily.iter())
+                    .filter(|count| self.filter.counts(count))
+                    .filter(|count| self.units.takes(&count.unit_serial));
+                let counts: Vec<_> = counts.collect();
+                // In a low window they would leave no room for the list.
+                CollapsingHeader::new(words.faults.charts)
+                    .default_open(ui.available_height() > HIGH)
+                    .show_unindented(ui, |ui| bars::charts(ui, words, &counts));
+                let shown = (&self.filter, &self.units);
+                let known = (history.faults.as_slice(), &history.parts);
+                list::list(ui, words, shown, known, self.chosen)
             }
             Request::Failed(why) => {
                 let said = RichText::new(words.faults.not_read).color(Palette::of(ui).bad);
@@ -144,9 +159,15 @@ impl FaultsPage {
     fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         // What others write takes no click away; the store refuses what it no longer allows.
         let stale = self.changed_here;
+        let none = PartNames::default();
+        let parts = self
+            .history
+            .get()
+            .value()
+            .map_or(&none, |known| &known.parts);
         match self.detail.get() {
             Request::Ready(detail) => {
-                detail::head(ui, context.words, detail);
+                detail::head(ui, context.words, detail, parts);
                 self.change.show(ui, context, &detail.fault, stale);
                 detail::rest(ui, context.words, detail, context.go_to);
             }

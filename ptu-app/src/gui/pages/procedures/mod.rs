@@ -12,10 +12,10 @@ mod wanted;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
 
 use crate::gui::messages::About;
-use crate::gui::parts::RunNoteForm;
+use crate::gui::parts::{FirstHalf, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use prepare::{Prepared, RunSettings, ShownSuite};
@@ -28,6 +28,12 @@ use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
 use wanted::Wanted;
+
+const TREE: FirstHalf = FirstHalf {
+    name: "procedures",
+    width: 380.0,
+    share: 0.35,
+};
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
@@ -47,6 +53,8 @@ pub struct ProceduresPage {
     /// The conclusion of the diagnosis of the last run.
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
+    /// What the faults of that run said, with their traces.
+    traced: Request<Vec<(String, fault_db::Id)>>,
     note: RunNoteForm,
 }
 
@@ -82,6 +90,7 @@ impl Default for ProceduresPage {
             shown: ResultsView::default(),
             conclusion: Request::Idle,
             concluded: None,
+            traced: Request::Idle,
             note: RunNoteForm::default(),
         }
     }
@@ -90,10 +99,7 @@ impl Default for ProceduresPage {
 impl ProceduresPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_loaded(context);
-        Panel::left("procedures")
-            .default_size(380.0)
-            .size_range(260.0..=640.0)
-            .show(ui, |ui| self.tree(ui, context));
+        TREE.show(ui, |ui| self.tree(ui, context));
         CentralPanel::default().show(ui, |ui| {
             self.controls(ui, context);
             overview::overview(ui, context);
@@ -103,7 +109,11 @@ impl ProceduresPage {
             {
                 script_errors(ui, suite, context);
             }
-            self.run(ui, context);
+            // What is said of a run scrolls as one, so that each part of it is reached in a low window.
+            ScrollArea::vertical()
+                .id_salt("run")
+                .auto_shrink(false)
+                .show(ui, |ui| self.run(ui, context));
         });
     }
 
@@ -243,6 +253,7 @@ impl ProceduresPage {
     /// Requests the diagnosis of a run that failed, and of one that passed what it says of repairs.
     fn conclude(&mut self, context: &PageContext<'_>) {
         self.conclusion.poll();
+        self.traced.poll();
         let run = context.units.chosen().run.as_ref();
         let Some(outcome) = run.and_then(|run| run.ended.as_ref()?.as_ref()) else {
             return;
@@ -252,6 +263,11 @@ impl ProceduresPage {
         }
         self.concluded = Some(outcome.id);
         let id = outcome.id;
+        self.traced = Request::Pending(context.queries.run(move |paths| {
+            let seen = paths.read()?.run_occurrences(id)?.into_iter();
+            let traced = seen.filter_map(|seen| Some((seen.message, seen.trace_id?)));
+            Ok(traced.collect())
+        }));
         self.conclusion = match outcome.exit {
             ptu_bench::failure::Exit::Failed => {
                 let words = context.words;
@@ -309,7 +325,10 @@ impl ProceduresPage {
         if let Some(conclusion) = conclusion.filter(|_| self.concluded == run.id()) {
             ui.label(RichText::new(conclusion).strong().size(17.0));
         }
-        results::results(ui, words, run, &mut self.shown, texts);
+        let traced = self.traced.value().filter(|_| self.concluded == run.id());
+        let traced = traced.map(Vec::as_slice).unwrap_or_default();
+        let ways = (traced, &mut *context.go_to);
+        results::results(ui, words, run, &mut self.shown, texts, ways);
         if let Some(yes) = answer {
             context.units.chosen_mut().answer(yes);
         }

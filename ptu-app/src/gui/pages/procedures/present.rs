@@ -56,7 +56,7 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
     let quiet = Palette::of(ui).quiet;
     let of_unit = fill(procedures.of_unit, &[("unit", &run.unit)]);
     ui.label(RichText::new(of_unit).color(quiet));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.add(
             ProgressBar::new(run.share())
                 .desired_width(260.0)

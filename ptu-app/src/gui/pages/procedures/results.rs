@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
-use eframe::egui::{Button, Grid, Id, RichText, ScrollArea, Ui, UiBuilder};
+use eframe::egui::{Button, Grid, Id, RichText, Ui, UiBuilder};
 use protocol::lru;
 
-use crate::gui::parts::{RunNoteForm, limit_bar, value_text, verdict_chip};
+use crate::gui::parts::{self, RunNoteForm, limit_bar, link, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use ptu_bench::bench_worker::{Progress, outside_place};
 use ptu_bench::run::CHECK_FAILED;
+use ptu_report::naming::place;
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 
@@ -49,7 +50,7 @@ pub fn after_run(
         }
         note.show(ui, words, queries, who, id);
     };
-    ui.scope_builder(named, |ui| ui.horizontal(row));
+    ui.scope_builder(named, |ui| ui.horizontal_wrapped(row));
 }
 
 /// Steps that did not pass, or all, and faults.
@@ -59,6 +60,7 @@ pub fn results(
     run: &Progress,
     shown: &mut ResultsView,
     texts: Option<&BTreeMap<String, String>>,
+    (traced, go_to): (&[(String, fault_db::Id)], &mut Vec<Destination>),
 ) {
     ui.separator();
     ui.horizontal(|ui| {
@@ -68,7 +70,7 @@ pub fn results(
         shown.all = !only_bad;
     });
     let all = shown.all;
-    let rows: Vec<(usize, usize, &StepResult)> = run
+    let found: Vec<(usize, usize, &StepResult)> = run
         .procedures
         .iter()
         .enumerate()
@@ -83,32 +85,53 @@ pub fn results(
         ui.separator();
     }
     faults(ui, words, run);
-    let height = ui.text_style_height(&eframe::egui::TextStyle::Body) + 4.0;
-    ScrollArea::vertical()
-        .id_salt("results")
-        .auto_shrink(false)
-        .stick_to_bottom(run.is_running())
-        .show_rows(ui, height, rows.len(), |ui, range| {
-            for (p, r, result) in rows.get(range).into_iter().flatten() {
-                let on = shown.chosen == Some((*p, *r));
-                row(ui, words, run, (*p, *r), result, on, shown);
+    let height = ui.spacing().interact_size.y;
+    parts::rows(ui, height, found.len(), |ui, range| {
+        for (p, r, result) in found.get(range).into_iter().flatten() {
+            let on = shown.chosen == Some((*p, *r));
+            let trace = trace_of(run, *p, result, traced);
+            if row(
+                ui,
+                words,
+                run,
+                ((*p, *r), result, trace.is_some()),
+                on,
+                shown,
+            ) {
+                go_to.extend(trace.map(Destination::Trace));
             }
-        });
+        }
+    });
 }
 
+/// The trace that shows a step of the run's procedure of this place.
+fn trace_of(
+    run: &Progress,
+    procedure: usize,
+    result: &StepResult,
+    traced: &[(String, fault_db::Id)],
+) -> Option<fault_db::Id> {
+    let procedure = &run.procedures.get(procedure)?.procedure.id;
+    let of_step = |message: &str| {
+        place(message).is_some_and(|(of, step, _)| of == procedure && step == result.name)
+    };
+    Some(traced.iter().find(|(message, _)| of_step(message))?.1)
+}
+
+/// A result; true when its trace is wanted.
 fn row(
     ui: &mut Ui,
     words: &Words,
     run: &Progress,
-    place: (usize, usize),
-    result: &StepResult,
+    (place, result, has_trace): ((usize, usize), &StepResult, bool),
     on: bool,
     shown: &mut ResultsView,
-) {
-    ui.horizontal(|ui| {
+) -> bool {
+    let row = ui.horizontal(|ui| {
         verdict_chip(ui, result.verdict, words);
         let id = run.procedures.get(place.0).map(|p| p.procedure.id.as_str());
         let name = format!("{}: {}", id.unwrap_or_default(), name(result, words));
+        let to_trace = has_trace && link(ui, words.faults.to_trace).clicked();
         if ui.selectable_label(on, name).clicked() {
             shown.chosen = (!on).then_some(place);
         }
@@ -117,7 +140,9 @@ fn row(
                 RichText::new(&*words.content(&result.message)).color(Palette::of(ui).quiet);
             ui.add(eframe::egui::Label::new(message).truncate());
         }
+        to_trace
     });
+    row.inner
 }
 
 /// The step's name, or where it failed if that is no step.
@@ -235,18 +260,13 @@ fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
         return;
     }
     ui.label(RichText::new(words.procedures.faults_found).strong());
-    ScrollArea::vertical()
-        .id_salt("faults")
-        .max_height(110.0)
-        .show(ui, |ui| {
-            for fault in reported() {
-                let bad = Palette::of(ui).bad;
-                ui.horizontal(|ui| {
-                    ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
-                    let part = lru::stored(fault.lru.as_ref());
-                    ui.label(fill(words.procedures.suspect, &[("part", &part)]));
-                    ui.label(&*words.content(&fault.message));
-                });
-            }
+    for fault in reported() {
+        let bad = Palette::of(ui).bad;
+        ui.horizontal_wrapped(|ui| {
+            ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
+            let part = lru::stored(fault.lru.as_ref());
+            ui.label(fill(words.procedures.suspect, &[("part", &part)]));
+            ui.label(&*words.content(&fault.message));
         });
+    }
 }

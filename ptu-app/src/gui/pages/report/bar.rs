@@ -1,13 +1,13 @@
 //! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
-use eframe::egui::{Button, ComboBox, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, Label, RichText, TextEdit, Ui};
 use fault_db::Id;
 
 use super::{ReportPage, Shown, file};
 use crate::gui::data_paths::DataPaths;
-use crate::gui::parts::{name_edit, named_combo};
+use crate::gui::parts::{name_edit, named_combo, open_file};
 use crate::gui::request::Request;
-use crate::gui::{Destination, PageContext};
+use crate::gui::{Destination, PageContext, Palette};
 use ptu_report::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
@@ -21,14 +21,15 @@ impl ReportPage {
         let language = self.language(context);
         let Some(shown) = &self.shown else { return };
         let run = shown.run;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ways_on(ui, words, shown, context.go_to);
             if let Some(other) = languages(ui, words, language) {
                 self.language = Some(other);
             }
         });
         ui.horizontal(|ui| self.files(ui, context, run, language));
-        ui.horizontal(|ui| {
+        self.open_written(ui, context);
+        ui.horizontal_wrapped(|ui| {
             let label = ui.label(words.common.operator);
             ui.add(name_edit(&mut context.settings.operator, NAME))
                 .labelled_by(label.id);
@@ -59,6 +60,21 @@ impl ReportPage {
         }
     }
 
+    /// What was written, with the way to see and to print it.
+    fn open_written(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.report;
+        let Some(path) = &self.written else { return };
+        ui.horizontal(|ui| {
+            if ui.button(words.open_file).clicked()
+                && let Err(failure) = open_file(path)
+            {
+                context.messages.trouble(words.not_opened, failure.message);
+            }
+            let file = RichText::new(path.display().to_string());
+            ui.add(Label::new(file.color(Palette::of(ui).quiet)).truncate());
+        });
+    }
+
     fn write(&mut self, context: &mut PageContext<'_>, run: Id, language: Language, ending: &str) {
         let words = &context.words.report;
         let Some(path) = file::with_ending(&self.file, ending) else {
@@ -77,11 +93,10 @@ fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destinatio
     if diagnosis.clicked() {
         go_to.push(Destination::Diagnosis(shown.run));
     }
-    let name = |id: &Id| fill(words.to_trace, &[("id", &id.short())]);
     match &shown.traces[..] {
         [] => {}
         [(only, faults)] => {
-            if ui.button(name(only)).on_hover_text(faults).clicked() {
+            if ui.button(words.to_trace).on_hover_text(faults).clicked() {
                 go_to.push(Destination::Trace(*only));
             }
         }
@@ -89,7 +104,7 @@ fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destinatio
             let title = fill(words.to_traces, &[("n", &all.len())]);
             ui.menu_button(title, |ui| {
                 for (id, faults) in all {
-                    if ui.button(format!("{}: {faults}", name(id))).clicked() {
+                    if ui.button(faults).on_hover_text(id.to_string()).clicked() {
                         go_to.push(Destination::Trace(*id));
                     }
                 }

@@ -6,16 +6,23 @@ mod sheet_view;
 
 use std::path::PathBuf;
 
-use eframe::egui::{CentralPanel, Panel, RichText, Ui};
-use fault_db::Id;
+use eframe::egui::{CentralPanel, RichText, Ui};
+use fault_db::{Id, RunOccurrence};
 
-use crate::gui::parts::{RunList, RunNoteForm};
+use crate::gui::parts::{FirstHalf, RunList, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::failure::Failure;
+use ptu_report::naming::PartNames;
 use ptu_report::run::Sheet;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
+
+const RUNS: FirstHalf = FirstHalf {
+    name: "reported runs",
+    width: 270.0,
+    share: 0.25,
+};
 
 #[derive(Default)]
 pub struct ReportPage {
@@ -32,6 +39,8 @@ pub struct ReportPage {
     language: Option<Language>,
     file: String,
     writing: Request<PathBuf>,
+    /// The file written last of the run that is shown.
+    written: Option<PathBuf>,
     note: RunNoteForm,
 }
 
@@ -46,8 +55,7 @@ struct Shown {
 
 impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let list = Panel::left("reported runs").default_size(270.0);
-        let run = list.show(ui, |ui| self.runs.show(ui, context)).inner;
+        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
         self.keep_up(ui, context, run);
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
@@ -87,13 +95,16 @@ impl ReportPage {
         if self.run() != Some(run) {
             self.shown = None;
             self.file = file::named_after(run, &self.file);
+            self.written = None;
         }
         let language = self.language(context);
         self.asked_for = Some((run, language));
         self.version = context.data_version();
         self.asked = Request::Pending(context.queries.run(move |paths| {
-            let sheet = Sheet::gather(&paths.read()?, Some(&paths.scripts), run)?;
-            Shown::of(&sheet, language)
+            let store = paths.read()?;
+            let sheet = Sheet::gather(&store, Some(&paths.scripts), run)?;
+            let seen = store.run_occurrences(run)?;
+            Shown::of(&sheet, &seen, &PartNames::of(&paths.scripts), language)
         }));
     }
 
@@ -121,6 +132,7 @@ impl ReportPage {
                     let file = path.display();
                     let said = fill(context.words.report.written, &[("file", &file)]);
                     context.messages.note(said);
+                    self.written = Some(path);
                 }
                 Request::Failed(why) => context
                     .messages
@@ -159,15 +171,23 @@ impl ReportPage {
 }
 
 impl Shown {
-    fn of(sheet: &Sheet, language: Language) -> Result<Self, Failure> {
+    fn of(
+        sheet: &Sheet,
+        seen: &[RunOccurrence],
+        parts: &PartNames,
+        language: Language,
+    ) -> Result<Self, Failure> {
         let run = &sheet.run.run;
         let traces = sheet.traces.iter();
+        let shows = |trace: Id| {
+            let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
+            let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, language.words()));
+            said.collect::<Vec<_>>().join("; ")
+        };
         Ok(Self {
             run: run.id,
             pages: pages(sheet, language.words())?,
-            traces: traces
-                .map(|trace| (trace.id, trace.faults.join(", ")))
-                .collect(),
+            traces: traces.map(|trace| (trace.id, shows(trace.id))).collect(),
             faulty: run.steps_not_passed > 0 || run.faults > 0,
         })
     }

@@ -1,5 +1,5 @@
-//! The pages of a sheet in the window, as they will be printed: scaled to the room there is, in the window's
-//! colours. Only what is in view is drawn.
+//! The pages of a sheet in the window, as they will be printed: scaled to the room there is, dark on
+//! white. Only what is in view is drawn.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use eframe::egui::epaint::TextShape;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{
     Color32, FontId, Galley, Key, Label, Pos2, Rangef, Rect, Role, ScrollArea, Sense, Shape,
-    Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Stroke, StrokeKind, Theme, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use fault_db::Id;
 
@@ -34,6 +34,8 @@ pub fn show(ui: &mut Ui, run: Id, pages: &[Page]) {
         .id_salt(("sheet", run))
         .auto_shrink(false);
     area.show_viewport(ui, |ui, viewport| {
+        // Paper is white in a dark window, too: it is seen as it will be printed.
+        ui.style_mut().visuals = ui.ctx().style_of(Theme::Light).visuals.clone();
         let room = viewport.width() - 2.0 * BETWEEN;
         let wide = room.clamp(*WIDE.start(), *WIDE.end());
         let scale = (wide / STEP).floor() * STEP / WIDTH;

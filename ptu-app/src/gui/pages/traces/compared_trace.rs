@@ -10,6 +10,7 @@ use crate::gui::parts::named_combo;
 use crate::gui::query_worker::Pending;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
+use ptu_report::naming::DOT;
 use ptu_report::trace_view::{FirstDifference, Overlay, OverlaySource, TracePlot};
 use ptu_report::words::fill;
 
@@ -88,10 +89,10 @@ impl OverlayRequest {
                 ui.selectable_value(&mut against, Some(OverlaySource::Twin), words.good_twin);
                 let own = scene.opened().id;
                 for (run, trace) in list.all().filter(|(_, t)| t.id != own).take(OFFERED) {
-                    let name = format!("{} {} {}", run.unit, run.began, trace.id.short());
-                    let faults = trace.faults.join(", ");
+                    let said = trace.said(context.words.language);
+                    let name = [&*run.unit, &*run.began, &*said].join(DOT);
                     ui.selectable_value(&mut against, Some(OverlaySource::Trace(trace.id)), name)
-                        .on_hover_text(faults);
+                        .on_hover_text(trace.id.to_string());
                 }
             });
         named_combo(&combo.response, words.overlay_choice, &chosen);

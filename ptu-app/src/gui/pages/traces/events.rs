@@ -5,7 +5,8 @@ use eframe::egui::{Align2, FontId, Painter, Rect, RichText, Stroke, Ui, pos2};
 use super::bar;
 use super::row::Sheet;
 use crate::gui::Palette;
-use crate::gui::parts::lane;
+use crate::gui::parts::{lane, link};
+use ptu_report::naming::DOT;
 use ptu_report::trace_view::listing::Event;
 use ptu_report::trace_view::{Cursor, TracePlot};
 use ptu_report::words::Words;
@@ -25,7 +26,12 @@ pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
         ui.label(RichText::new(words.traces.events).color(palette.quiet));
         for event in opened.events.iter().take(LINKS) {
             let text = format!("{} {}", bar::place(scene, event.row), name(event, words));
-            if ui.link(text).clicked() {
+            let link = link(ui, text);
+            let link = match &event.fault {
+                Some(fault) => link.on_hover_text(&fault.code),
+                None => link,
+            };
+            if link.clicked() {
                 let place = scene.axis().at(event.row);
                 scene.camera().centre(place);
             }
@@ -51,7 +57,7 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
         if !lanes.x_range().contains(x) {
             continue;
         }
-        let colour = match event.name {
+        let colour = match event.fault {
             None => palette.accent,
             Some(_) => palette.bad,
         };
@@ -61,7 +67,9 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
             let y = strip.top() + row as f32 * STRIP / ROWS as f32;
             let at = pos2(x + 3.0, y);
             let font = FontId::proportional(lane::TEXT);
-            let text = painter.text(at, Align2::LEFT_TOP, name(event, words), font, colour);
+            // The part alone; the links say the rest.
+            let name = name(event, words).split(DOT).next().unwrap_or_default();
+            let text = painter.text(at, Align2::LEFT_TOP, name, font, colour);
             free[row] = text.right() + 6.0;
         }
     }
@@ -91,5 +99,6 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
 }
 
 fn name<'a>(event: &'a Event, words: &'a Words) -> &'a str {
-    event.name.as_deref().unwrap_or(words.traces.trigger)
+    let said = event.fault.as_ref().map(|fault| fault.said(words.language));
+    said.unwrap_or(words.traces.trigger)
 }

@@ -3,9 +3,10 @@
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::Id;
 
-use crate::gui::parts::{MemoryReader, Stored};
+use crate::gui::parts::{MemoryReader, Stored, UnitFilter};
 use crate::gui::request::{CachedResponse, Request};
 use crate::gui::{PageContext, Palette};
+use ptu_report::naming::PartNames;
 use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
 use ptu_report::words::{Words, fill};
 
@@ -14,6 +15,7 @@ use ptu_report::words::{Words, fill};
 pub struct TraceList {
     runs: CachedResponse<Vec<ListedRun>>,
     filter: String,
+    units: UnitFilter,
     /// What fits the filter, by run and trace; told anew when either changes.
     shown: Vec<(usize, Option<usize>)>,
     /// Version of the data it was asked for.
@@ -55,7 +57,7 @@ impl TraceList {
             .desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         super::signals::name_input(&edit, words.traces.filter);
-        if edit.changed() {
+        if self.units.show(ui, context) | edit.changed() {
             self.apply();
         }
         let runs = match self.runs.get() {
@@ -106,7 +108,8 @@ impl TraceList {
 
     /// The latest trace and its run.
     pub fn latest(&self) -> Option<(Id, Id)> {
-        let run = self.runs.items().first()?;
+        let mut runs = self.runs.items().iter();
+        let run = runs.find(|run| self.units.takes(&run.unit))?;
         Some((run.traces.first()?.id, run.id))
     }
 
@@ -130,7 +133,9 @@ impl TraceList {
         let version = context.data_version();
         if version != self.version || self.runs.get().is_idle() {
             self.version = version;
-            let question = context.queries.run(|paths| listing::list(&paths.read()?));
+            let question = context
+                .queries
+                .run(|paths| listing::list(&paths.read()?, &PartNames::of(&paths.scripts)));
             self.runs.request(question);
         }
         if self.runs.poll() {
@@ -141,6 +146,9 @@ impl TraceList {
     fn apply(&mut self) {
         self.shown.clear();
         for (place, run) in self.runs.items().iter().enumerate() {
+            if !self.units.takes(&run.unit) {
+                continue;
+            }
             let traces = run.traces.iter().enumerate();
             let mut fitting = traces
                 .filter(|(_, trace)| trace.fits(&self.filter))
@@ -175,11 +183,16 @@ fn run_row(ui: &mut Ui, run: &ListedRun, words: &Words) {
 fn trace_row(ui: &mut Ui, trace: &ListedTrace, chosen: bool, words: &Words) -> bool {
     let what = match trace.faults.as_slice() {
         [] => words.traces.no_fault.to_owned(),
-        faults => faults.join(", "),
+        _ => trace.said(words.language),
     };
-    let text = format!("{}  {what}", trace.id.short());
-    let hint = format!("{what}\n{:.1} s", trace.length_s);
-    ui.selectable_label(chosen, text)
+    let codes: Vec<_> = trace
+        .faults
+        .iter()
+        .map(|fault| fault.code.as_str())
+        .collect();
+    let (id, codes) = (trace.id.short(), codes.join(", "));
+    let hint = format!("{what}\n{codes}\n{id}, {:.1} s", trace.length_s);
+    ui.selectable_label(chosen, what)
         .on_hover_text(hint)
         .clicked()
 }

@@ -17,12 +17,14 @@ use std::sync::Arc;
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
+use crate::gui::parts::{FirstHalf, link};
 use crate::gui::query_worker::Pending;
 use crate::gui::{Destination, PageContext, Palette};
 use compared_trace::OverlayRequest;
 use export::Export;
 use lanes::LaneCache;
 use list::TraceList;
+use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
@@ -30,6 +32,11 @@ use record_comparison::RecordComparison;
 
 /// Height of a row of controls.
 const ROW: f32 = 24.0;
+const LIST: FirstHalf = FirstHalf {
+    name: "recorded traces",
+    width: 300.0,
+    share: 0.3,
+};
 
 #[derive(Default)]
 pub struct TracesPage {
@@ -51,11 +58,7 @@ impl TracesPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
-        let clicked = Panel::left("recorded traces")
-            .default_size(250.0)
-            .size_range(180.0..=420.0)
-            .show(ui, |ui| self.list.show(ui, context, chosen))
-            .inner;
+        let clicked = LIST.show(ui, |ui| self.list.show(ui, context, chosen));
         // The latest trace is what most people come for.
         let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
@@ -74,7 +77,7 @@ impl TracesPage {
         self.trouble = None;
         let question = context.queries.run(move |paths| {
             Ok((
-                listing::open(&paths.read()?, id, run)?,
+                listing::open(&paths.read()?, &PartNames::of(&paths.scripts), id, run)?,
                 export::usual_name(id),
             ))
         });
@@ -168,15 +171,9 @@ fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageC
             text => text,
         };
         let (unit, when) = (known(unit), known(when));
-        let title = fill(
-            words.traces.of_unit,
-            &[
-                ("trace", &opened.id.short()),
-                ("unit", &unit),
-                ("when", &when),
-            ],
-        );
-        ui.label(RichText::new(title).strong());
+        let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
+        let title = ui.label(RichText::new(title).strong());
+        title.on_hover_text(opened.id.to_string());
         let data = opened.view.data();
         let warn = Palette::of(ui).warn;
         for (amiss, text) in [
@@ -188,10 +185,10 @@ fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageC
             }
         }
         if let Some(run) = opened.run {
-            if ui.link(words.traces.to_report).clicked() {
+            if link(ui, words.traces.to_report).clicked() {
                 context.go_to.push(Destination::Report(run));
             }
-            if ui.link(words.traces.to_diagnosis).clicked() {
+            if link(ui, words.traces.to_diagnosis).clicked() {
                 context.go_to.push(Destination::Diagnosis(run));
             }
         }

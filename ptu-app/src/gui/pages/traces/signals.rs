@@ -82,6 +82,7 @@ fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<La
     for (i, lane) in scene.lanes().iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
+            ui.spacing_mut().button_padding.x = 4.0;
             for (sign, name, what) in [
                 ("▲", words.up, LaneAction::Up(i)),
                 ("▼", words.down, LaneAction::Down(i)),
@@ -90,7 +91,7 @@ fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<La
                 ("×", words.hide, LaneAction::Hide(i)),
             ] {
                 let name = fill(name, &[("signal", &lane.signal)]);
-                let button = ui.small_button(sign);
+                let button = ui.button(sign);
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 if button.on_hover_text(&name).clicked() {
                     pressed = Some(what);

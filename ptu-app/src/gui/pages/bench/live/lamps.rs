@@ -1,10 +1,10 @@
 //! Lamps: dark when off, lit when on, dashed while the value is unknown.
 
-use eframe::egui::{Align2, Color32, Painter, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Align2, Color32, Rect, RichText, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
 use eframe::egui::{pos2, vec2};
 use protocol::signal::Signal;
 
-use super::card::{named, put};
+use super::card::{named, put, write};
 use crate::gui::Palette;
 use crate::gui::pages::bench::live_copy::BenchSnapshot;
 use ptu_report::words::Bench;
@@ -50,7 +50,7 @@ pub fn lamps(ui: &mut Ui, size: Vec2, seen: &BenchSnapshot, words: &Bench, palet
             LampState::Off => lamp.says[1],
             LampState::Unknown => words.not_known,
         };
-        paint(&ui.painter_at(rect), rect, lamp, says, palette);
+        paint(ui, rect, lamp, says, palette);
         named(ui, rect, ("lamp", place), || {
             format!("{}: {says}", lamp.name)
         });
@@ -128,7 +128,8 @@ fn lit(value: Option<bool>, lit_at: bool) -> LampState {
     }
 }
 
-fn paint(painter: &Painter, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
+fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
+    let painter = &ui.painter_at(rect);
     let bulb = pos2(rect.left() + 20.0, rect.center().y);
     let (name, state) = match lamp.lit {
         LampState::On => {
@@ -172,10 +173,11 @@ fn paint(painter: &Painter, rect: Rect, lamp: &Lamp, says: &str, palette: &Palet
         }
     };
     let left = rect.left() + 40.0;
-    let above = pos2(left, rect.center().y - 9.0);
-    put(painter, above, Align2::LEFT_CENTER, 15.0, name, lamp.name);
-    let below = pos2(left, rect.center().y + 9.0);
-    put(painter, below, Align2::LEFT_CENTER, 14.0, state, says);
+    let room = rect.right() - left - BETWEEN;
+    for (text, size, ink, off) in [(lamp.name, 14.0, name, -9.0), (says, 13.0, state, 9.0)] {
+        let text = RichText::new(text).size(size).color(ink);
+        write(ui, pos2(left, rect.center().y + off), room, text);
+    }
 }
 
 fn off_ground(palette: &Palette) -> Color32 {

@@ -43,7 +43,7 @@ pub struct View<'a> {
 /// From this width on there are things beside each other.
 pub const WIDE: f32 = 640.0;
 /// Height of dial and lamps.
-const TOP_HEIGHT: f32 = 172.0;
+const TOP_HEIGHT: f32 = 198.0;
 /// Height of effort and TWC beside each other.
 const MIDDLE_HEIGHT: f32 = 174.0;
 /// Share of the dial in the width.

@@ -1,10 +1,12 @@
 //! The track strip: start, PSM1 to PSM4, stop point, train.
 
-use eframe::egui::{Align2, Color32, Painter, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, Painter, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+};
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{ground, named, put};
+use super::card::{ground, named, put, write};
 use crate::gui::Palette;
 use crate::gui::pages::bench::text;
 use crate::gui::pages::bench::track::Strip;
@@ -22,14 +24,8 @@ pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Pale
     painter.rect_filled(area, 4.0, ground(palette));
     let said = said(strip, view, words);
     let head = pos2(area.left() + 8.0, area.top() + 11.0);
-    put(
-        &painter,
-        head,
-        Align2::LEFT_CENTER,
-        13.0,
-        palette.quiet,
-        &said,
-    );
+    let text = RichText::new(&said).size(13.0).color(palette.quiet);
+    write(ui, head, area.width() - 16.0, text);
     named(ui, area, "track", || format!("{}: {said}", words.track));
     if let Some(strip) = strip {
         paint(ui, area.shrink2(vec2(8.0, 0.0)), strip, words, palette);

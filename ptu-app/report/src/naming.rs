@@ -1,0 +1,116 @@
+//! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
+
+use protocol::injection::Lru;
+
+use crate::words::{Language, Words, fill};
+use ptu_bench::data::ScriptsDirectory;
+
+/// Between the parts of a name.
+pub const DOT: &str = " · ";
+/// What is written in capitals wherever it stands.
+const CAPITALS: [&str; 8] = ["eb", "fsb", "atp", "ato", "twc", "psm", "tcms", "tra"];
+
+/// What people call the parts.
+#[derive(Clone, Debug, Default)]
+pub struct PartNames(Vec<Lru>);
+
+impl PartNames {
+    /// Those of a scripts directory; none where its catalogue cannot be read, and parts go by their identifiers.
+    pub fn of(scripts: &ScriptsDirectory) -> Self {
+        Self(scripts.faults().map(|all| all.lrus).unwrap_or_default())
+    }
+
+    /// What a part is called in this language.
+    pub fn name<'a>(&'a self, id: &'a str, language: Language) -> &'a str {
+        let known = self.0.iter().find(|part| part.id == id);
+        known.map_or(id, |part| match language {
+            Language::English => &part.name,
+            Language::Korean => &part.name_ko,
+        })
+    }
+
+    /// A fault that points at this part, in one line: the part, and what was seen.
+    pub fn fault(&self, part: &str, message: &str, words: &Words) -> String {
+        let part = self.name(part, words.language);
+        match what_failed(message, words) {
+            what if what.is_empty() => part.to_owned(),
+            what => format!("{part}{DOT}{what}"),
+        }
+    }
+}
+
+/// Procedure and step of the message of a failed check, and what stands after them.
+pub fn place(message: &str) -> Option<(&str, &str, &str)> {
+    let (procedure, rest) = message.split_once(", ")?;
+    let (left, value) = rest.split_once(" = ")?;
+    let (step, name) = left.rsplit_once(": ")?;
+    let after = &rest[rest.len() - value.len() - name.len() - " = ".len()..];
+    procedure.contains('/').then_some((procedure, step, after))
+}
+
+/// A message in few words: the step, the measured value, and its limit; as it is where it measures nothing.
+pub fn what_failed(message: &str, words: &Words) -> String {
+    let short = || {
+        let (_, step, measured) = place(message)?;
+        let (name, value) = measured.split_once(" = ")?;
+        let (value, limits) = value.split_once(", allowed ")?;
+        let limits = limits.split_once("; ").map_or(limits, |(first, _)| first);
+        let (limits, unit) = match limits.rsplit_once(' ') {
+            Some((limits, unit)) if unit.parse::<f64>().is_err() => (limits, unit),
+            _ => (limits, ""),
+        };
+        let limit = limits.replace("at most ", "").replace(" to ", "…");
+        let step = words.content(step);
+        let step = step.split(": ").next().unwrap_or_default();
+        let limit = fill(
+            words.common.limit_is,
+            &[("limit", &limit.replace("at least ", "≥ "))],
+        );
+        let value = format!("{value} {unit}");
+        let name = measurement(name, words);
+        Some(format!("{step}: {name} {}, {limit}", value.trim_end()))
+    };
+    short().unwrap_or_else(|| words.content(message).into_owned())
+}
+
+/// A measurement's name without what only scripts write.
+fn measurement(name: &str, words: &Words) -> String {
+    let known = words.bench.measurement(name);
+    if known != name {
+        return known;
+    }
+    let word = |word: &str| match CAPITALS.contains(&word) {
+        true => word.to_uppercase(),
+        false => word.to_owned(),
+    };
+    let said: Vec<String> = name.split('_').map(word).collect();
+    said.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_check_is_said_in_one_line_and_other_messages_as_they_are() {
+        let words = Language::English.words();
+        let said = |message: &str| what_failed(message, words);
+        let relay =
+            "atp/overspeed, code 25: alarm, FSB, EB: eb_reaction = 640, allowed at most 472 ms";
+        assert_eq!(said(relay), "code 25: EB reaction 640 ms, limit 472");
+        let proof = "atp/overspeed, FSB without effect is followed by EB: proof_time = 3400, allowed 2950 to 3050 ms";
+        let expected = "FSB without effect is followed by EB: proof time 3400 ms, limit 2950…3050";
+        assert_eq!(said(proof), expected);
+        let event = "brake line at 3.0 km/h, limit 25.0 km/h";
+        assert_eq!(said(event), event);
+        let place = place(relay).expect("a step");
+        assert_eq!(
+            (place.0, place.1),
+            ("atp/overspeed", "code 25: alarm, FSB, EB")
+        );
+        assert_eq!(
+            PartNames::default().fault("eb_relay", "", words),
+            "eb_relay"
+        );
+    }
+}

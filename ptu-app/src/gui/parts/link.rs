@@ -1,0 +1,9 @@
+//! A way to something else.
+
+use eframe::egui::{Button, Response, RichText, Ui};
+
+/// Words that lead somewhere when they are clicked, as high as a button.
+pub fn link(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let text = RichText::new(text).color(ui.visuals().hyperlink_color);
+    ui.add(Button::new(text.underline()).frame(false))
+}

@@ -1,0 +1,60 @@
+//! Opens a written file with the program that the desktop has for it, which prints it, too.
+
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use ptu_bench::failure::Failure;
+
+/// What opens files here, and what stands before the file's name.
+const OPENER: (&str, &[&str]) = if cfg!(windows) {
+    ("cmd", &["/C", "start", ""])
+} else if cfg!(target_os = "macos") {
+    ("open", &[])
+} else {
+    ("xdg-open", &[])
+};
+
+/// Opens it; waits for nothing.
+///
+/// # Errors
+/// The desktop has no program that opens files.
+pub fn open_file(path: &Path) -> Result<(), Failure> {
+    open_with(OPENER, path)
+}
+
+fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Failure> {
+    let mut command = Command::new(program);
+    command.args(before).arg(path);
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    match command.spawn() {
+        Ok(mut child) => {
+            // It is waited for, so that nothing is left of it; what it shows outlives it.
+            std::thread::spawn(move || child.wait());
+            Ok(())
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::bench(format!(
+            "{program} is not there: open {} by hand",
+            path.display()
+        ))),
+        Err(error) => Err(Failure::bench(format!("{program}: {error}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_desktop_without_an_opener_is_said_with_the_file() {
+        let failure = open_with(("no-such-opener", &[]), Path::new("/a/sheet.pdf"));
+        let said = failure.expect_err("there is none").message;
+        assert!(
+            said.contains("no-such-opener") && said.contains("/a/sheet.pdf"),
+            "{said}"
+        );
+    }
+}

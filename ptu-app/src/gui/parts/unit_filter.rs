@@ -1,0 +1,45 @@
+//! Whether a page shows the connected unit only.
+
+use eframe::egui::Ui;
+
+use crate::gui::PageContext;
+use ptu_bench::run::unit_text;
+use ptu_report::words::fill;
+
+/// The unit connected last, and whether only what belongs to it is shown.
+#[derive(Default)]
+pub struct UnitFilter {
+    unit: Option<String>,
+    all: bool,
+}
+
+impl UnitFilter {
+    /// Follows the connected unit, and offers all of them; true when it takes others than before.
+    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
+        let before = self.taken().map(str::to_owned);
+        let identity = context.units.chosen().identity();
+        let connected = identity.map(|identity| unit_text::serial(&identity));
+        if connected.is_some() && connected != self.unit {
+            self.unit = connected;
+            self.all = false;
+        }
+        if let Some(unit) = &self.unit {
+            let mut only = !self.all;
+            ui.checkbox(
+                &mut only,
+                fill(context.words.common.only_unit, &[("unit", unit)]),
+            );
+            self.all = !only;
+        }
+        before.as_deref() != self.taken()
+    }
+
+    /// The unit that is taken; none = all.
+    fn taken(&self) -> Option<&str> {
+        self.unit.as_deref().filter(|_| !self.all)
+    }
+
+    pub fn takes(&self, unit: &str) -> bool {
+        self.taken().is_none_or(|taken| taken == unit)
+    }
+}

@@ -1,0 +1,232 @@
+//! Where the window's widgets are: none out of reach, none over another, none too low to be hit, no text cut.
+
+use std::collections::BTreeMap;
+
+use crate::common::window::{Window, settings};
+use crate::common::{Place, record_bad_unit, scripts};
+use eframe::egui::accessibility::is_input;
+use eframe::egui::epaint::ClippedShape;
+use eframe::egui::{Rect, Role, Shape, WidgetRect};
+use egui_kittest::kittest::{NodeT, Queryable};
+use ptu_app::gui::Page;
+use ptu_report::words::{Language, Words};
+
+/// The usual window, the smallest, and the usual one at 150 %, points.
+const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [900.0, 600.0], [853.0, 533.0]];
+/// What can be clicked is so high at least, points.
+const LOWEST: f32 = 24.0;
+/// Lines and roundings, points.
+const SLACK: f32 = 1.5;
+/// A part of a page that scrolls is higher than this; what is lower was made for one text.
+const SCROLLS: f32 = 60.0;
+
+/// Goal: everything on every page can be read and clicked in every window. Method: a unit with a slow relay is tested; each
+/// page, the setup and the form of a repair are laid out at three sizes in both languages, and what lies wrong is listed.
+#[test]
+fn every_page_can_be_read_and_clicked_at_every_size() {
+    let mut wrong = Vec::new();
+    for size in SIZES {
+        for language in Language::ALL {
+            laid_out(size, language, &mut |window, what| {
+                let found = complaints(window).into_iter();
+                wrong.extend(found.map(|said| format!("{size:?} {language:?} {what}: {said}")));
+            });
+        }
+    }
+    assert!(wrong.is_empty(), "{}: {wrong:#?}", wrong.len());
+}
+
+fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let words = language.words();
+    let mut settings = settings(Page::Faults);
+    settings.language = language;
+    settings.unit.faults = vec!["eb_relay.slow".into()];
+    let mut window = Window::sized(size, place, scripts(), settings);
+    let relay = match language {
+        Language::English => "EB relay · ",
+        Language::Korean => "비상제동 계전기 · ",
+    };
+    window.wait_for_part(relay);
+    look(&mut window, "faults");
+    window.click_part(relay);
+    window.wait_for(words.faults.serial_new);
+    look(&mut window, "repair");
+    for (page, said) in [
+        (Page::Traces, words.traces.events),
+        (Page::Diagnosis, words.diagnosis.reasons),
+        (Page::Report, words.report.write_pdf),
+    ] {
+        window.key(page.key());
+        window.wait_for(said);
+        look(&mut window, page.name(words));
+    }
+    window.click(words.frame.setup);
+    window.wait_for("eb_relay.slow");
+    look(&mut window, "setup");
+    window.click(words.frame.setup);
+    window.click(words.frame.connect);
+    window.wait_for("SIM-0001");
+    window.key(Page::Bench.key());
+    window.wait_for(words.bench.group_atp);
+    look(&mut window, "bench");
+    armed(&mut window, words);
+    look(&mut window, "armed");
+    window.key(Page::Procedures.key());
+    window.wait_for("atp/overspeed");
+    look(&mut window, "procedures");
+    window.click(words.procedures.run);
+    window.wait_for(words.procedures.to_report);
+    window.step();
+    look(&mut window, "results");
+}
+
+fn armed(window: &mut Window, words: &Words) {
+    window.hold(words.frame.arm, 1.3);
+    window.wait_for(words.frame.armed);
+    // How a window says it is, is part of the bar's layout.
+    window.step();
+}
+
+/// What of the last frame cannot be read or clicked.
+fn complaints(window: &mut Window) -> Vec<String> {
+    window.step();
+    let harness = window.harness();
+    let known: BTreeMap<u64, (Role, String)> = harness
+        .query_all_by(|_| true)
+        .map(|node| {
+            let node = node.accesskit_node();
+            let name = node.label().or_else(|| node.value()).unwrap_or_default();
+            // The number of the tree stands behind that of the widget.
+            ((u128::from(node.id()) >> 64) as u64, (node.role(), name))
+        })
+        .collect();
+    let widgets: Vec<WidgetRect> = harness.ctx.viewport(|viewport| {
+        let all = viewport.prev_pass.widgets.layers();
+        all.flat_map(|(_, widgets)| widgets).copied().collect()
+    });
+    let screen = harness.ctx.content_rect();
+    let bars: Vec<Rect> = widgets
+        .iter()
+        .filter(|widget| {
+            let role = known.get(&widget.id.value()).map(|(role, _)| *role);
+            role.map_or(widget.sense.senses_drag(), |role| role == Role::ScrollBar)
+        })
+        .map(|widget| widget.rect)
+        .collect();
+    let mut wrong = Vec::new();
+    let inputs: Vec<Input<'_>> = widgets
+        .iter()
+        .filter_map(|widget| {
+            let (role, name) = known.get(&widget.id.value())?;
+            // A divider is a line; the dialog's cross does what the button does that opened it.
+            let is_meant = is_input(*role)
+                && !matches!(role, Role::Splitter | Role::ScrollBar)
+                && name != "Close window";
+            is_meant.then_some(Input {
+                widget,
+                role: *role,
+                name,
+            })
+        })
+        .collect();
+    for (place, input) in inputs.iter().enumerate() {
+        wrong.extend(input.misplaced(screen, &bars));
+        for other in inputs.iter().skip(place + 1) {
+            let both = input
+                .widget
+                .interact_rect
+                .intersect(other.widget.interact_rect);
+            let seen = both.is_positive() && both.size().min_elem() > SLACK;
+            if input.widget.layer_id == other.widget.layer_id && seen {
+                wrong.push(format!("{} and {} overlap", input.name, other.name));
+            }
+        }
+    }
+    let fields: Vec<Rect> = inputs
+        .iter()
+        .filter(|input| matches!(input.role, Role::TextInput | Role::MultilineTextInput))
+        .map(|input| input.widget.rect)
+        .collect();
+    for ClippedShape {
+        clip_rect, shape, ..
+    } in &harness.output().shapes
+    {
+        texts(shape, *clip_rect, &bars, &fields, &mut wrong);
+    }
+    wrong
+}
+
+/// Something to click or to write in.
+struct Input<'a> {
+    widget: &'a WidgetRect,
+    role: Role,
+    name: &'a str,
+}
+
+impl Input<'_> {
+    fn misplaced(&self, screen: Rect, bars: &[Rect]) -> Option<String> {
+        let rect = self.widget.rect;
+        let seen = self.widget.interact_rect.intersect(screen);
+        let what = if rect.height() < LOWEST - 0.1 {
+            format!("is {} high", rect.height())
+        } else if seen.width() < rect.width() - SLACK && !scrolls_sideways(seen, bars) {
+            format!("is cut at its side: {rect} seen {seen}")
+        } else if seen.height() < rect.height() - SLACK && !scrolls(rect, bars) {
+            format!("is out of reach: {rect} seen {seen}")
+        } else {
+            return None;
+        };
+        Some(format!("{:?} {:?} {what}", self.role, self.name))
+    }
+}
+
+/// It ends where something that is scrolled up and down does.
+fn ends_with_scrolling(clip: Rect, bars: &[Rect]) -> bool {
+    bars.iter().any(|bar| {
+        let ends = (bar.top() - clip.top(), bar.bottom() - clip.bottom());
+        bar.width() <= 20.0 && ends.0.abs().min(ends.1.abs()) < 12.0
+    })
+}
+
+/// There is a bar by which this is scrolled up and down.
+fn scrolls(rect: Rect, bars: &[Rect]) -> bool {
+    bars.iter()
+        .any(|bar| bar.width() <= 20.0 && bar.height() >= 40.0 && bar.center().x >= rect.left())
+}
+
+/// There is a bar by which what is seen here is scrolled to the side.
+fn scrolls_sideways(seen: Rect, bars: &[Rect]) -> bool {
+    bars.iter()
+        .any(|bar| bar.height() <= 20.0 && bar.width() >= 40.0 && bar.center().y >= seen.top())
+}
+
+fn texts(shape: &Shape, clip: Rect, bars: &[Rect], fields: &[Rect], wrong: &mut Vec<String>) {
+    let text = match shape {
+        Shape::Vec(shapes) => {
+            for shape in shapes {
+                texts(shape, clip, bars, fields, wrong);
+            }
+            return;
+        }
+        Shape::Text(text) if text.angle == 0.0 => text,
+        _ => return,
+    };
+    let rect = text.visual_bounding_rect();
+    let in_field = fields
+        .iter()
+        .any(|field| field.expand(SLACK).contains_rect(clip));
+    if !rect.is_positive() || !rect.intersects(clip) || in_field {
+        return;
+    }
+    let beside = (clip.left() - rect.left()).max(rect.right() - clip.right());
+    let beyond = (clip.top() - rect.top()).max(rect.bottom() - clip.bottom());
+    let sideways = beside > SLACK && !scrolls_sideways(clip, bars);
+    if sideways || (beyond > SLACK && clip.height() < SCROLLS && !ends_with_scrolling(clip, bars)) {
+        wrong.push(format!(
+            "text {:?} is cut: {rect} in {clip}",
+            text.galley.text()
+        ));
+    }
+}
