@@ -85,9 +85,9 @@ fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
     window.wait_for_part("Unit SIM-0001, run");
     window.click("Connect");
     window.wait_for("ABC-1");
-    window.wait_for("Choose a run on the left.");
+    window.wait_for("Choose a run in the list.");
     window.key(Page::Diagnosis.key());
-    window.wait_for("Choose a run on the left");
+    window.wait_for("Choose a run in the list");
     assert!(!window.shows_part("unit SIM-0001,"));
     for _ in 0..2 {
         window.key(Page::Procedures.key());

@@ -10,7 +10,7 @@ wordings! {
     /// Parts to replace.
     Diagnosis {
         title: "Diagnosis", "진단";
-        choose_run: "Choose a run on the left", "왼쪽에서 시험을 고르십시오";
+        choose_run: "Choose a run in the list", "목록에서 시험을 고르십시오";
         of_run: "unit {unit}, run of {time}", "장치 {unit}, {time} 시험";
         no_answer: "This run cannot be diagnosed", "이 시험은 진단할 수 없습니다";
         speaks_for: "speaks for it", "근거";

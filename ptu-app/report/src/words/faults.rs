@@ -22,7 +22,7 @@ wordings! {
         cause: "cause", "원인";
         with_cause: "{part}; cause {cause}", "{part}; 원인 {cause}";
         case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";
-        choose: "Choose a fault on the left", "왼쪽에서 고장을 고르십시오";
+        choose: "Choose a fault in the list", "목록에서 고장을 고르십시오";
         not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
         times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";
         acknowledge: "Acknowledge", "확인";

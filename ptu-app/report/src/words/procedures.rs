@@ -51,6 +51,6 @@ wordings! {
         suspect: "suspect: {part}", "의심 부품: {part}";
         to_diagnosis: "Diagnosis", "진단";
         to_report: "Report", "성적서";
-        choose_and_run: "Choose on the left what to run. Without a choice of your own everything runs but what is on request.", "왼쪽에서 실행할 절차를 고르십시오. 따로 고르지 않으면 요청 시만 하는 것을 빼고 모두 실행합니다.";
+        choose_and_run: "Choose in the list what to run. Without a choice of your own everything runs but what is on request.", "목록에서 실행할 절차를 고르십시오. 따로 고르지 않으면 요청 시만 하는 것을 빼고 모두 실행합니다.";
     }
 }

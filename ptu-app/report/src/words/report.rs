@@ -113,7 +113,7 @@ wordings! {
         note_not_saved: "The note was not saved", "메모를 저장하지 못했습니다";
         from_scripts: "the scripts directory", "스크립트 폴더";
         from_campaign: "a campaign on this machine", "이 컴퓨터에서 수행한 캠페인";
-        choose_run: "Choose a run on the left.", "왼쪽에서 시험을 고르십시오.";
+        choose_run: "Choose a run in the list.", "목록에서 시험을 고르십시오.";
         not_read: "The run cannot be read", "시험 기록을 읽을 수 없습니다";
         language: "language of the sheet", "성적서 언어";
         file: "file", "파일";

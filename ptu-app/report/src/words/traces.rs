@@ -21,7 +21,7 @@ wordings! {
         only_newest: "only the newest {runs} runs are listed", "최근 시험 {runs}건만 표시됨";
         cannot_list: "The traces cannot be listed", "신호 기록 목록을 불러올 수 없습니다";
         cannot_open: "The trace cannot be opened", "신호 기록을 열 수 없습니다";
-        choose_one: "Choose a trace on the left.", "왼쪽에서 신호 기록을 선택하십시오.";
+        choose_one: "Choose a trace in the list.", "목록에서 신호 기록을 선택하십시오.";
         of_unit: "unit {unit}, {when}", "장치 {unit}, {when}";
         cut_short: "cut short: the link dropped or the program was closed", "도중에 끊김: 링크가 끊어졌거나 프로그램이 종료됨";
         has_gaps: "some samples are missing", "일부 표본 없음";

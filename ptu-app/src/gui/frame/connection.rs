@@ -1,7 +1,7 @@
 //! The connection bar: which unit, how it is reached, who it is, and whether it is armed.
 
 use btu_rig::stimulus::Stimulus;
-use eframe::egui::{Align, Button, Color32, Frame, Layout, Margin, RichText, Ui};
+use eframe::egui::{Align, Button, Color32, Frame, Layout, Margin, RichText, Ui, vec2};
 use protocol::message::Identity;
 use protocol::signal::{Sample, Signal};
 
@@ -43,10 +43,13 @@ pub(super) fn both_ends(
     right: impl FnOnce(&mut Ui, &mut PageContext<'_>),
     left: impl FnOnce(&mut Ui, &mut PageContext<'_>),
 ) {
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+    // As high as one line at first: what is in a line is centred in it.
+    let size = |ui: &Ui| vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let ends = Layout::right_to_left(Align::Center);
+    ui.allocate_ui_with_layout(size(ui), ends, |ui| {
         right(ui, context);
-        let lines = Layout::left_to_right(Align::Min).with_main_wrap(true);
-        ui.with_layout(lines, |ui| left(ui, context));
+        let lines = Layout::left_to_right(Align::Center).with_main_wrap(true);
+        ui.allocate_ui_with_layout(size(ui), lines, |ui| left(ui, context));
     });
 }
 

@@ -52,7 +52,8 @@ impl RunNoteForm {
             self.text.clear();
         }
         let label = ui.label(words.report.note_field);
-        let wide = (ui.available_width() - BUTTON).max(BUTTON);
+        let left = ui.available_size_before_wrap().x;
+        let wide = (left - BUTTON).max(BUTTON);
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());

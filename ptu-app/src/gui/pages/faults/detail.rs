@@ -38,7 +38,7 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames)
                 ("last", &last),
             ],
         );
-        let part = part(words, detail);
+        let part = part(words, detail, parts);
         let code = format!("{} {}", fault.code, fault.code_name);
         let id = fault.id.to_string();
         for (what, value) in [
@@ -58,20 +58,19 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames)
 }
 
 /// The part that it points at, the one that it comes from, and how many other faults do.
-fn part(words: &Words, detail: &FaultDetail) -> String {
+fn part(words: &Words, detail: &FaultDetail, parts: &PartNames) -> String {
     let fault = &detail.fault;
-    let cause = match detail.case.len() {
-        0 => fault.cause().to_owned(),
-        n => fill(
-            words.faults.case_of,
-            &[("cause", &fault.cause()), ("n", &n)],
-        ),
+    let part = parts.name(&fault.lru, words.language);
+    let cause = parts.name(fault.cause(), words.language);
+    let said = match detail.case.len() {
+        0 => cause.to_owned(),
+        n => fill(words.faults.case_of, &[("cause", &cause), ("n", &n)]),
     };
-    match cause == fault.lru {
-        true => cause,
+    match cause == part {
+        true => said,
         false => fill(
             words.faults.with_cause,
-            &[("part", &fault.lru), ("cause", &cause)],
+            &[("part", &part), ("cause", &said)],
         ),
     }
 }
