@@ -94,5 +94,5 @@ pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::Store;
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
-pub use verify::RepairToProve;
+pub use verify::{RepairToProve, SettledFault};
 pub use views::VIEWS_PAGE;

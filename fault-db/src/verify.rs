@@ -8,6 +8,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use crate::backend::values;
 use crate::cases::{CASE_FAULT, REST_OF_CASE, case_fault};
 use crate::error::StoreError;
@@ -15,8 +17,8 @@ use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_log::Change;
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
-use crate::query::LOG_SOURCE;
-use crate::record::{RunEnd, Verdict};
+use crate::query::{FaultEvent, LOG_SOURCE};
+use crate::record::{RepairRecord, RunEnd, Verdict};
 use crate::store::Store;
 
 /// Kind of the event that notes a passing run after a repair.
@@ -230,4 +232,49 @@ impl Store {
 /// The run that a note says passed the fault's own step, rather than that of a fault beside it.
 fn noted_run(note: &str) -> Option<Id> {
     note.strip_prefix(IN_RUN)?.parse().ok()
+}
+
+/// A fault whose repair a run has proved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettledFault {
+    /// The fault.
+    pub id: Id,
+    /// Its number.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// The part it points at.
+    pub lru: String,
+    /// The repair that the run has proved; none if only its state was set.
+    pub repair: Option<RepairRecord>,
+}
+
+impl FaultEvent {
+    /// The run that passed after the repair, where the event notes one or is its proof.
+    pub fn passed_run(&self) -> Option<Id> {
+        if !matches!(&*self.kind, PASSED | CONFIRMED) {
+            return None;
+        }
+        let rest = self.note.strip_prefix(IN_RUN)?;
+        rest.split([',', ':']).next()?.parse().ok()
+    }
+
+    /// A run has proved the repair.
+    pub fn is_proof(&self) -> bool {
+        self.kind == CONFIRMED
+    }
+}
+
+/// The faults that run `?1` of the unit has proved to be repaired; `?2` is how its events begin.
+pub(crate) const SETTLED: &str = "
+    SELECT f.id, f.code, f.code_name, f.lru,
+        (SELECT x.body FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND x.at_us <= e.at_us
+         ORDER BY x.at_us DESC, x.seq DESC LIMIT 1)
+    FROM run r JOIN fault f ON f.unit = r.unit
+    JOIN fault_event e ON e.fault = f.seq AND e.kind = 'confirmed' AND e.body LIKE ?2
+    WHERE r.id = ?1 ORDER BY f.seq";
+
+/// What the events that a run has made begin with, as a pattern.
+pub(crate) fn made_by(run: Id) -> String {
+    format!("{IN_RUN}{run}%")
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::faults::json;
 use super::filter::{Conditions, limit};
 use crate::backend::{Row, SqlResult, values};
 use crate::error::StoreError;
@@ -14,6 +15,7 @@ use crate::run_notes::RunNote;
 use crate::seal::{RunSealed, sealed_as};
 use crate::store::Store;
 use crate::text_enum::text_enum;
+use crate::verify::{SETTLED, SettledFault, made_by};
 
 text_enum! {
     /// Whether a run is finished.
@@ -112,6 +114,8 @@ pub struct RunDetail {
     pub steps: Vec<StepRecord>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
+    /// The faults whose repair it has proved.
+    pub settled: Vec<SettledFault>,
     /// Notes on it, oldest first.
     pub notes: Vec<RunNote>,
     /// Its seal; `None` before its end.
@@ -196,11 +200,26 @@ impl Store {
                 scripts: self.scripts(seq)?,
                 steps: self.steps(seq)?,
                 faults: self.run_faults(seq)?,
+                settled: self.settled_by(id)?,
                 notes: self.run_notes(seq)?,
                 seal: sealed_as(self.backend(), id)?,
             })
         };
         rest().map_err(|error| self.failed(DOING, error))
+    }
+
+    fn settled_by(&self, run: Id) -> SqlResult<Vec<SettledFault>> {
+        self.backend()
+            .select(SETTLED, &values![run, made_by(run)], |row| {
+                let has_repair = row.get::<Option<&str>>(4)?.is_some();
+                Ok(SettledFault {
+                    id: row.get(0)?,
+                    code: row.get(1)?,
+                    code_name: row.get(2)?,
+                    lru: row.get(3)?,
+                    repair: has_repair.then(|| json(row, 4)).transpose()?,
+                })
+            })
     }
 
     fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
