@@ -24,6 +24,10 @@ pub fn run_json(run: &RunDetail) -> Value {
         })).collect::<Vec<_>>(),
         "steps": run.steps.iter().map(step_json).collect::<Vec<_>>(),
         "faults": run.faults.iter().map(run_fault_json).collect::<Vec<_>>(),
+        "settles": run.settled.iter().map(|fault| json!({
+            "id": fault.id.to_string(), "code": fault.code, "name": fault.code_name, "lru": fault.lru,
+            "repair": fault.repair,
+        })).collect::<Vec<_>>(),
         "notes": run.notes.iter().map(|note| json!({
             "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
         })).collect::<Vec<_>>(),

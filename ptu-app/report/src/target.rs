@@ -2,14 +2,14 @@
 //! `.json`, `.junit.xml`.
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fault_db::{RunDetail, Store};
 use maud::Markup;
 use protocol::display_text;
 
 use crate::json::{json_text, run_json};
-use crate::run::{self, Sheet};
+use crate::run::{self, CaseSheet, Sheet};
 use crate::words::Language;
 use crate::{csv, junit};
 use ptu_bench::data::{self, ScriptsDirectory};
@@ -63,6 +63,11 @@ impl Target {
         data::check_writable(&self.path)
     }
 
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// It is a test sheet, for people.
     fn is_sheet(&self) -> bool {
         matches!(self.format, Format::Html | Format::Pdf)
@@ -89,6 +94,25 @@ pub fn write(
             &target.path,
             &content(target, run, sheet.as_ref(), language)?,
         )?;
+    }
+    Ok(())
+}
+
+/// Writes reports of a case. Tables are those of the run that tells how the unit is now.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> Result<(), Failure> {
+    let words = language.words();
+    let run = &case.last().run;
+    for target in targets {
+        let content = match target.format {
+            Format::Html => run::html(case, words).into_bytes(),
+            Format::Pdf => run::pdf(case, words)?,
+            Format::Json => json_text(&run::case_json(case))?.into_bytes(),
+            Format::Csv | Format::Junit => content(target, run, None, language)?,
+        };
+        data::write(&target.path, &content)?;
     }
     Ok(())
 }

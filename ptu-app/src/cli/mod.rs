@@ -17,6 +17,7 @@ mod help;
 mod output;
 mod ports;
 mod record;
+mod report;
 mod reports;
 mod run;
 mod run_list;
@@ -72,6 +73,7 @@ enum Verb {
     /// Query and keep the fault history
     Faults(faults::FaultsArguments),
     Record(record::RecordArguments),
+    Report(report::ReportArguments),
     Saved(saved::SavedArguments),
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
@@ -134,6 +136,7 @@ impl Cli {
             Verb::Runs(arguments) => arguments.run(),
             Verb::Faults(arguments) => arguments.run(),
             Verb::Record(arguments) => arguments.run(),
+            Verb::Report(arguments) => arguments.run(),
             Verb::Saved(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
@@ -170,6 +173,14 @@ pub struct ScriptsOption {
 impl ScriptsOption {
     fn find(&self) -> Result<ScriptsDirectory, Failure> {
         ScriptsDirectory::find(self.scripts.as_deref())
+    }
+
+    /// None where there is none: a report without diagnosis is better than none. A wrong --scripts is told.
+    fn find_if_there(&self) -> Result<Option<ScriptsDirectory>, Failure> {
+        match self.find() {
+            Err(failure) if self.scripts.is_some() => Err(failure),
+            found => Ok(found.ok()),
+        }
     }
 }
 

@@ -117,11 +117,7 @@ impl RunsArguments {
                 reports.check()?;
                 let run = store.run(store.resolve_run(&id)?, &process_id::is_alive)?;
                 if !reports.is_empty() {
-                    // A report without diagnosis is better than none; a wrong --scripts is told.
-                    let directory = match scripts.find() {
-                        Err(failure) if scripts.scripts.is_some() => return Err(failure),
-                        found => found.ok(),
-                    };
+                    let directory = scripts.find_if_there()?;
                     reports.write(&store, directory.as_ref(), &run)?;
                 }
                 if json {

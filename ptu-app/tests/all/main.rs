@@ -28,6 +28,7 @@ mod lock_step;
 mod no_unit;
 mod on_ports;
 mod questions;
+mod repair_sheet;
 mod report;
 mod report_page;
 mod resume;

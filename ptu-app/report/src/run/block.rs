@@ -26,12 +26,14 @@ pub enum Block {
     Subheading(String, String),
     /// The verdict, and what stands beside it.
     Verdict(Tone, String, String),
-    /// Names and values.
+    /// Names and values; an empty value is a line to write on.
     Facts(Vec<(String, String)>),
     Text(Tone, String),
     Table(Table),
     /// A drawing.
     Plot(Box<Plot>),
+    /// What follows begins a page.
+    NewPage,
     /// Lines to sign on: who, and the word for the date.
     Signatures(Vec<String>, String),
 }

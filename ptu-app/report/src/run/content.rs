@@ -7,6 +7,7 @@ use protocol::event::Event;
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
 use super::diagnosis::diagnosis;
 use super::plots::plots;
+use super::settled::settled;
 use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
@@ -17,8 +18,24 @@ use ptu_bench::coverage::Coverage;
 use ptu_bench::stored::{outside_of, standing};
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
-    let sources = Sources::of(&sheet.run.steps);
     let mut blocks = head(sheet, words);
+    blocks.extend(body(sheet, words));
+    blocks.push(Block::Heading(words.report.signatures.into()));
+    blocks.push(signatures(words));
+    blocks
+}
+
+/// Lines for who tested and who approves.
+pub fn signatures(words: &Words) -> Block {
+    let report = &words.report;
+    let signing = [report.tester_signs, report.approver_signs];
+    Block::Signatures(signing.map(str::to_owned).into(), report.date.into())
+}
+
+/// All but the head and the signatures.
+pub fn body(sheet: &Sheet, words: &Words) -> Vec<Block> {
+    let sources = Sources::of(&sheet.run.steps);
+    let mut blocks = settled(sheet, words);
     blocks.extend(summary(sheet, words));
     blocks.extend(notes(sheet, words));
     blocks.extend(failures(sheet, &sources, words));
@@ -28,18 +45,11 @@ pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks.extend(all_steps(sheet, &sources, words));
     blocks.extend(sources.blocks(words));
     blocks.extend(scripts(sheet, words));
-    let report = &words.report;
-    let signing = [report.tester_signs, report.approver_signs];
-    blocks.push(Block::Heading(report.signatures.into()));
-    blocks.push(Block::Signatures(
-        signing.map(str::to_owned).into(),
-        report.date.into(),
-    ));
     blocks
 }
 
 /// The verdict in words and how good news it is.
-fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
+pub fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
     match (run.verdict, run.state) {
         (Some(verdict), _) => (tone(verdict), words.common.stored_verdict(verdict)),
         (None, RunState::Running) => (Tone::Soft, words.common.running),
@@ -180,7 +190,7 @@ fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
             if samples.partial {
                 head += &format!(" ({})", report.cut_short);
             }
-            let plots = plots(samples, report).into_iter();
+            let plots = plots(samples, words).into_iter();
             std::iter::once(Block::Text(Tone::Soft, head))
                 .chain(plots.map(|plot| Block::Plot(Box::new(plot))))
                 .collect()

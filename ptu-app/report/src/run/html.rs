@@ -2,16 +2,14 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
-use super::Sheet;
+use super::Printed;
 use super::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone};
-use super::content::blocks;
 use crate::page_text;
 use crate::words::Words;
 
 /// The page.
-pub fn html(sheet: &Sheet, words: &Words) -> String {
-    let blocks = blocks(sheet, words);
-    let run = &sheet.run.run;
+pub fn html(sheet: &impl Printed, words: &Words) -> String {
+    let paper = sheet.paper(words);
     let page = markup! {
         (DOCTYPE)
         html lang=(words.language.code()) {
@@ -19,12 +17,13 @@ pub fn html(sheet: &Sheet, words: &Words) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (words.report.sheet) " " (run.unit_serial) " " (run.id.short()) }
+                title { (paper.name) " " (paper.unit) " " (paper.short) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                @for block in &blocks { (drawn(block)) }
-                footer { "ptu " (run.app_version) ", " (run.id) }
+                @if let Some(across) = &paper.across { div.across aria-hidden="true" { (across) } }
+                @for block in &paper.blocks { (drawn(block)) }
+                footer { (paper.program) ", " (paper.number) }
             }
         }
     };
@@ -42,11 +41,14 @@ fn drawn(block: &Block) -> Markup {
             p class=(format!("verdict {}", class(*tone))) { strong { (verdict) } span { (beside) } }
         },
         Block::Facts(facts) => markup! {
-            dl { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } }
+            dl { @for (name, value) in facts {
+                div { dt { (name) } @if value.is_empty() { dd { span.line {} } } @else { dd { (value) } } }
+            } }
         },
         Block::Text(tone, text) => markup! { p class=(class(*tone)) { (text) } },
         Block::Table(of) => table(of),
         Block::Plot(plot) => markup! { figure { (plot.svg()) } },
+        Block::NewPage => markup! { div.new-page {} },
         Block::Signatures(who, date) => markup! {
             div.signatures {
                 @for name in who { div { span.line {} p { (name) } } div { span.line {} p { (date) } } }

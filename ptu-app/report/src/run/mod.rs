@@ -1,16 +1,20 @@
-//! The test sheet of a run: one gathering from the store, one sequence of blocks, one layout on pages. What
-//! the HTML page, the PDF and the window say is therefore the same, and the window shows the PDF's pages.
+//! The test sheet of a run, and the repair sheet of a case: one gathering from the store, one sequence of blocks, one
+//! layout on pages. What the HTML page, the PDF and the window say is therefore the same, and the window shows the
+//! PDF's pages.
 //!
-//! [`Sheet::gather`] → blocks → [`html()`], or [`page::pages`] → [`pdf()`] and the window
+//! [`Sheet::gather`], [`CaseSheet::gather`] → [`Paper`] → [`html()`], or [`page::pages`] → [`pdf()`] and the window
 
 mod block;
+mod case;
 mod content;
 mod diagnosis;
 mod gather;
 mod html;
 pub mod page;
+mod paper;
 mod pdf;
 mod plots;
+mod settled;
 mod sources;
 mod steps;
 
@@ -21,7 +25,9 @@ use std::collections::BTreeMap;
 
 use fault_db::{Id, RunDetail, TraceData};
 
+pub use case::{CaseSheet, Repair, Standing, case_json};
 pub use html::html;
+pub use paper::{Paper, Printed};
 pub use pdf::pdf;
 pub use sources::in_words as source_in_words;
 

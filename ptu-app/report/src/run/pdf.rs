@@ -10,9 +10,9 @@ use krilla::surface::Surface;
 use krilla::text::Font;
 use protocol::display_text;
 
-use super::Sheet;
 use super::page::font::FontMetrics;
 use super::page::{self, DASH, HEIGHT, Ink, Item, Text, WIDTH};
+use super::{Paper, Printed};
 use crate::fonts::PRETENDARD;
 use crate::words::Words;
 use ptu_bench::clock;
@@ -27,14 +27,15 @@ const QUARTER: f32 = 0.5523;
 ///
 /// # Errors
 /// The shipped font does not serve, or the document cannot be made of it.
-pub fn pdf(sheet: &Sheet, words: &Words) -> Result<Vec<u8>, Failure> {
-    let pages = page::pages(sheet, words)?;
+pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
+    let paper = sheet.paper(words);
+    let pages = page::pages_of(&paper, words)?;
     let letters = FontMetrics::new()?;
     let failed = |what: &str| Failure::bench(format!("cannot make the PDF: {what}"));
     let font = Font::new(PRETENDARD.into(), 0).ok_or_else(|| failed("the shipped font"))?;
     let size = || PageSettings::from_wh(WIDTH, HEIGHT).ok_or_else(|| failed("the page size"));
     let mut document = Document::new();
-    document.set_metadata(metadata(sheet, words));
+    document.set_metadata(metadata(&paper, words));
     for items in &pages {
         let mut page = document.start_page_with(size()?);
         let mut surface = page.surface();
@@ -49,22 +50,21 @@ pub fn pdf(sheet: &Sheet, words: &Words) -> Result<Vec<u8>, Failure> {
         .map_err(|error| failed(&format!("{error:?}")))
 }
 
-/// The run's own times and number, so that the document is the same each time it is made.
-fn metadata(sheet: &Sheet, words: &Words) -> Metadata {
-    let run = &sheet.run.run;
-    let (year, of_year) = clock::utc_fields(run.finished_at_us.unwrap_or(run.started_at_us));
+/// Times and number of what is told, so that the document is the same each time it is made.
+fn metadata(paper: &Paper, words: &Words) -> Metadata {
+    let (year, of_year) = clock::utc_fields(paper.at_us);
     let [month, day, hour, minute, second] = of_year;
     let at = DateTime::new(year).month(month).day(day).hour(hour);
     Metadata::new()
         .title(format!(
             "{} {} {}",
-            words.report.sheet,
-            display_text::line(&run.unit_serial),
-            run.id.short()
+            paper.name,
+            display_text::line(&paper.unit),
+            paper.short
         ))
         .language(words.language.code().to_owned())
-        .creator(format!("ptu {}", run.app_version))
-        .document_id(run.id.to_string())
+        .creator(paper.program.clone())
+        .document_id(paper.number.clone())
         .creation_date(at.minute(minute).second(second).utc_offset_hour(0))
 }
 

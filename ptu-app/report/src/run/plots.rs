@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use fault_db::{Channel, ChannelKind, TraceData};
+use protocol::signal::Signal;
 
 use crate::plot::{Note, Place, Plot, Series, Style};
-use crate::words::Report;
+use crate::words::{Language, Words};
 
 /// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
 const SPEEDS: [(&str, usize, Style); 4] = [
@@ -16,6 +17,9 @@ const SPEEDS: [(&str, usize, Style); 4] = [
 ];
 /// Switched signals drawn below each other, at most.
 const LANES: usize = 8;
+/// How far from the trigger a close-up reaches, and its lanes at most.
+const CLOSE_US: i64 = 2_000_000;
+const CLOSE_LANES: usize = 5;
 /// Height of a lane, and of all that is around them, in units of the drawing.
 const LANE: f64 = 26.0;
 const AROUND: f64 = 96.0;
@@ -28,6 +32,25 @@ const BESIDE: f64 = 120.0;
 
 /// The trace with the channels that are drawn, and those only.
 pub fn drawn_channels(trace: TraceData) -> TraceData {
+    with_lanes(trace, LANES)
+}
+
+/// What changed close to the trigger, or else the speeds there.
+pub fn close_up(trace: &TraceData, words: &Words) -> Option<Plot> {
+    let trigger = trace.trigger_row.unwrap_or(0) as usize;
+    let reach = usize::try_from(CLOSE_US / trace.period_us.max(1)).unwrap_or(usize::MAX);
+    let from = trigger.saturating_sub(reach);
+    let to = trigger.saturating_add(reach + 1).min(trace.rows());
+    let cut = |column: &Vec<f64>| column.get(from..to).map(<[f64]>::to_vec);
+    let near = TraceData {
+        columns: trace.columns.iter().map(cut).collect::<Option<_>>()?,
+        trigger_row: u32::try_from(trigger - from).ok(),
+        ..trace.clone()
+    };
+    plots(&with_lanes(near, CLOSE_LANES), words).pop()
+}
+
+fn with_lanes(trace: TraceData, most: usize) -> TraceData {
     let trigger = trace.trigger_row.unwrap_or(0) as usize;
     let pairs = || trace.channels.iter().zip(&trace.columns);
     let mut switched: Vec<(usize, &str)> = pairs()
@@ -40,7 +63,7 @@ pub fn drawn_channels(trace: TraceData) -> TraceData {
     let kept: Vec<String> = SPEEDS
         .iter()
         .map(|speed| speed.0)
-        .chain(switched.iter().take(LANES).map(|lane| lane.1))
+        .chain(switched.iter().take(most).map(|lane| lane.1))
         .map(str::to_owned)
         .collect();
     let (channels, columns) = trace
@@ -66,7 +89,8 @@ fn nearest_change(column: &[f64], trigger: usize) -> Option<usize> {
 }
 
 /// The trace over time from its trigger.
-pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
+pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
+    let report = &words.report;
     let rows = trace.rows();
     if rows < 2 {
         return Vec::new();
@@ -75,12 +99,12 @@ pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
     let time = |row: usize| (row as f64 - trigger) * trace.period_us as f64 / 1e6;
     let plot = |title: &str, y_label: &str| Plot {
         title: title.to_owned(),
-        x_label: words.from_trigger.into(),
+        x_label: report.from_trigger.into(),
         y_label: y_label.to_owned(),
         x_range: Some((time(0), time(rows - 1))),
         places: vec![Place {
             x: 0.0,
-            name: words.trigger.into(),
+            name: report.trigger.into(),
         }],
         beside: Some(BESIDE),
         ..Plot::default()
@@ -92,7 +116,7 @@ pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
             y_reach: Some((0.0, 1.0)),
             height: Some(230.0),
             series,
-            ..plot(words.speeds, "km/h")
+            ..plot(report.speeds, "km/h")
         });
     }
     let lanes: Vec<_> = trace
@@ -105,10 +129,10 @@ pub fn plots(trace: &TraceData, words: &Report) -> Vec<Plot> {
         let mut drawing = Plot {
             y_reach: Some((0.0, lanes.len() as f64)),
             height: Some(AROUND + LANE * lanes.len() as f64),
-            ..plot(words.changes, "")
+            ..plot(report.changes, "")
         };
         for (place, (channel, column)) in lanes.iter().rev().enumerate() {
-            lane(&mut drawing, place, channel, column, &time);
+            lane(&mut drawing, (place, channel, column), &time, words);
         }
         all.push(drawing);
     }
@@ -138,10 +162,9 @@ fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64) -> Vec<Series> {
 /// words where there is room.
 fn lane(
     drawing: &mut Plot,
-    place: usize,
-    channel: &Channel,
-    column: &[f64],
+    (place, channel, column): (usize, &Channel, &[f64]),
     time: &impl Fn(usize) -> f64,
+    words: &Words,
 ) {
     let base = place as f64 + 0.12;
     let no_labels = BTreeMap::new();
@@ -171,7 +194,7 @@ fn lane(
             drawing.notes.push(Note {
                 at: (from, base + SWING * WORDS),
                 until: to,
-                text: label.clone(),
+                text: state(channel, value, label, words).to_owned(),
             });
         }
     }
@@ -184,6 +207,21 @@ fn lane(
         style: Style::Line,
         points,
     });
+}
+
+/// A state in the language of the sheet; one that this program calls otherwise is as it was recorded.
+fn state<'a>(channel: &Channel, value: f64, label: &'a str, words: &Words) -> &'a str {
+    let called = |language: Language| {
+        let states = language
+            .words()
+            .bench
+            .states(Signal::from_name(&channel.name)?);
+        states.get(value as usize).copied()
+    };
+    match called(Language::English) {
+        Some(english) if english == label => called(words.language).unwrap_or(label),
+        _ => label,
+    }
 }
 
 /// First and last row and value of each stretch over which a column stays the same.
@@ -212,7 +250,6 @@ fn steps(column: &[f64]) -> Vec<(usize, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::Language;
 
     fn trace() -> TraceData {
         let channel = |name: &str, kind| Channel {
@@ -250,7 +287,7 @@ mod tests {
         let trace = drawn_channels(trace());
         let names: Vec<_> = trace.channels.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names, ["speed", "eb", "mode"]);
-        let plots = plots(&trace, &Language::English.words().report);
+        let plots = plots(&trace, Language::English.words());
         assert_eq!(plots.len(), 2);
         assert_eq!(plots[0].x_range, Some((-0.1, 0.05)));
         let names: Vec<_> = plots[1].names.iter().map(|n| n.1.as_str()).collect();
@@ -263,6 +300,6 @@ mod tests {
     fn an_empty_trace_gives_no_plot() {
         let mut trace = trace();
         trace.columns.iter_mut().for_each(Vec::clear);
-        assert!(plots(&drawn_channels(trace), &Language::Korean.words().report).is_empty());
+        assert!(plots(&drawn_channels(trace), Language::Korean.words()).is_empty());
     }
 }

@@ -17,13 +17,13 @@ const HOSTILE: &str = "<script>alert(\"1\")</script>&'\u{1b}[31m\u{9b}2J\u{202e}
 const LIMIT_SOURCE: &str = "configuration overspeed.eb_delay_ms; default: two scans";
 
 /// A store and the folder it is in.
-struct Stored {
-    store: Store,
+pub(super) struct Stored {
+    pub(super) store: Store,
     _folder: tempfile::TempDir,
 }
 
 /// A store with one run of `steps` steps, every third failed with a fault and a trace.
-fn stored(steps: u32, ended: bool) -> (Stored, Id) {
+pub(super) fn stored(steps: u32, ended: bool) -> (Stored, Id) {
     let mut next = 0u16;
     let ids = IdSource::new(move || {
         next = next.wrapping_add(1);
@@ -180,7 +180,7 @@ fn laid_out(sheet: &Sheet, words: &Words) -> Vec<page::Page> {
 }
 
 /// The texts of a page, each line ended.
-fn words_of(page: &[Item]) -> String {
+pub(super) fn words_of(page: &[Item]) -> String {
     let text = |item: &Item| match item {
         Item::Text(text) => Some(text.lines.clone()),
         _ => None,

@@ -50,7 +50,12 @@ impl RunArguments {
 pub(super) fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
     if !proofs.is_empty() {
         let said = proof_text(proofs, Language::English.words());
-        print_out(&format!("{said}\n"))?;
+        let proved = proofs.iter().find(|proof| proof.says.is_proven());
+        let sheet = proved.map_or_else(String::new, |proof| {
+            let fault = proof.fault.short();
+            format!("`ptu report {fault} --out case.pdf` writes the sheet of the repair\n")
+        });
+        print_out(&format!("{said}\n{sheet}"))?;
     }
     Ok(())
 }

@@ -11,6 +11,9 @@ const LINE: f32 = 11.2;
 /// Names of facts take so much.
 const NAMES: f32 = 130.0;
 
+/// Length of a line to write on.
+const BLANK: f32 = 170.0;
+
 /// All blocks, in order.
 pub fn pieces(blocks: &[Block], letters: &FontMetrics) -> Vec<Piece> {
     blocks.iter().flat_map(|one| block(one, letters)).collect()
@@ -49,6 +52,10 @@ fn block(block: &Block, letters: &FontMetrics) -> Vec<Piece> {
             all
         }
         Block::Plot(of) => vec![plot::piece(of)],
+        Block::NewPage => vec![Piece {
+            on_new_page: true,
+            ..Piece::default()
+        }],
         Block::Signatures(who, date) => vec![signatures(who, date)],
     }
 }
@@ -139,11 +146,12 @@ fn fact(name: &str, value: &str, letters: &FontMetrics) -> Piece {
         let base = |number| LINE * (number as f32 + 0.78);
         Item::lines(x, SIZE, ink, (0..).map(base).zip(lines).collect())
     };
+    let said = match value {
+        "" => Item::rule(MARGIN + NAMES, LINE * 0.9, BLANK, Ink::Black),
+        _ => column(values, MARGIN + NAMES, Ink::Black),
+    };
     Piece {
-        items: vec![
-            column(names, MARGIN, Ink::Soft),
-            column(values, MARGIN + NAMES, Ink::Black),
-        ],
+        items: vec![column(names, MARGIN, Ink::Soft), said],
         height: lines as f32 * LINE + 1.0,
         ..Piece::default()
     }

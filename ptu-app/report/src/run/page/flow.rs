@@ -16,7 +16,8 @@ pub fn pages(pieces: &[Piece]) -> Vec<Vec<Item>> {
         } else if !piece.under_repeated {
             heading = None;
         }
-        if used > 0.0 && used + needed(&pieces[place..]) > ROOM {
+        let is_full = used + needed(&pieces[place..]) > ROOM;
+        if used > 0.0 && (is_full || piece.on_new_page) {
             pages.push(Vec::new());
             used = 0.0;
             if let Some(again) = heading.filter(|_| piece.under_repeated) {

@@ -163,6 +163,8 @@ pub struct Piece {
     pub repeated: bool,
     /// Belongs to the last piece that is repeated.
     pub under_repeated: bool,
+    /// Begins a page.
+    pub on_new_page: bool,
     /// Its words go on from those of the piece before, and are one text with them where both are on one page.
     pub goes_on: bool,
 }

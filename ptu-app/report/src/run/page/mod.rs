@@ -12,7 +12,8 @@ use font::FontMetrics;
 pub use item::{DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use item::{INSIDE, MARGIN};
 
-use super::{Sheet, content};
+use super::block::Block;
+use super::{Paper, Printed};
 use crate::words::{Words, fill};
 use ptu_bench::failure::Failure;
 
@@ -24,33 +25,53 @@ const SIZE: f32 = 7.4;
 /// What is on a page, in the order in which it is drawn.
 pub type Page = Vec<Item>;
 
+/// Largest letters of what stands across a page, and the share of its width that they take.
+const ACROSS: (f32, f32) = (110.0, 0.96);
+
 /// All pages with header and footer.
 ///
 /// # Errors
 /// The shipped font does not serve.
-pub fn pages(sheet: &Sheet, words: &Words) -> Result<Vec<Page>, Failure> {
+pub fn pages(sheet: &impl Printed, words: &Words) -> Result<Vec<Page>, Failure> {
+    pages_of(&sheet.paper(words), words)
+}
+
+/// The same of what was made for printing.
+pub(super) fn pages_of(paper: &Paper, words: &Words) -> Result<Vec<Page>, Failure> {
     let letters = FontMetrics::new()?;
-    let mut pages = flow::pages(&blocks::pieces(&content::blocks(sheet, words), &letters));
-    let run = &sheet.run.run;
+    let mut pages = flow::pages(&blocks::pieces(&paper.blocks, &letters));
     let of = pages.len();
     let right = |text: &str, y| Item::text(MARGIN + INSIDE, y, SIZE, Ink::Soft, text).ending();
     for (number, page) in (1..).zip(&mut pages) {
-        let unit = format!("{}   {}", words.report.sheet, run.unit_serial);
+        if let Some(text) = &paper.across {
+            page.splice(0..0, across(text, &letters));
+        }
+        let unit = format!("{}   {}", paper.name, paper.unit);
         let numbered = fill(words.report.page, &[("n", &number), ("of", &of)]);
         // A serial number from a file may be of any length.
         let unit = letters.lines(&unit, SIZE, INSIDE * 0.7).swap_remove(0);
         page.push(Item::text(MARGIN, HEADER, SIZE, Ink::Soft, unit.trim_end()));
-        page.push(right(&format!("ptu {}", run.app_version), HEADER));
+        page.push(right(&paper.program, HEADER));
         page.push(Item::rule(MARGIN, HEADER + 5.0, INSIDE, Ink::Grid));
         page.push(Item::rule(MARGIN, FOOTER - 11.0, INSIDE, Ink::Grid));
-        page.push(Item::text(
-            MARGIN,
-            FOOTER,
-            SIZE,
-            Ink::Soft,
-            &run.id.to_string(),
-        ));
+        page.push(Item::text(MARGIN, FOOTER, SIZE, Ink::Soft, &paper.number));
         page.push(right(&numbered, FOOTER));
     }
     Ok(pages)
+}
+
+/// How many pages blocks take; none where the shipped font does not serve.
+pub(super) fn count(blocks: &[Block]) -> usize {
+    FontMetrics::new().map_or(0, |letters| {
+        flow::pages(&blocks::pieces(blocks, &letters)).len()
+    })
+}
+
+/// Large pale words behind the rest, twice, so that no part of a copy lacks them.
+fn across(text: &str, letters: &FontMetrics) -> Vec<Item> {
+    let (largest, share) = ACROSS;
+    let size = (share * INSIDE / letters.width(text, 1.0)).min(largest);
+    let left = (WIDTH - letters.width(text, size)) / 2.0;
+    let place = |share: f32| Item::text(left, share * HEIGHT, size, Ink::Grid, text);
+    vec![place(0.36), place(0.74)]
 }

@@ -1,0 +1,205 @@
+//! What stands behind the first page of a repair sheet: what failed, the faults of the case, what was done, and on
+//! request all that both runs say.
+
+use fault_db::{FaultEvent, FaultSummary, StepRecord};
+
+use super::CaseSheet;
+use super::first_page::{clipped, comparison};
+use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use crate::run::content::body;
+use crate::run::plots::plots;
+use crate::run::sources::Sources;
+use crate::run::{Sheet, page, steps};
+use crate::words::{Words, fill};
+use ptu_bench::clock::local;
+
+/// Pages of what failed, at most.
+const PAGES: usize = 2;
+/// Failed steps in full, further rows of the comparison, faults, and events at most.
+const MOST_STEPS: usize = 6;
+const MOST_COMPARED: usize = 24;
+const MOST_FAULTS: usize = 8;
+const MOST_EVENTS: usize = 10;
+
+impl CaseSheet {
+    /// All of it.
+    pub(super) fn blocks(&self, words: &Words) -> Vec<Block> {
+        let (mut blocks, rows) = self.first_page(words);
+        blocks.push(Block::NewPage);
+        let make = |steps| self.what_failed(rows, steps, words);
+        let mut fewer = (0..=MOST_STEPS).rev().map(make);
+        let fits = fewer.find(|blocks| page::count(blocks) <= PAGES);
+        blocks.extend(fits.unwrap_or_else(|| make(0)));
+        if self.with_annex {
+            let report = &words.report;
+            let after = self.after.as_ref().map(|sheet| (sheet, report.after));
+            for (sheet, when) in [(&self.before, report.before)].into_iter().chain(after) {
+                blocks.extend(annex(sheet, when, words));
+            }
+        }
+        blocks
+    }
+
+    fn what_failed(&self, rows: usize, most: usize, words: &Words) -> Vec<Block> {
+        let report = &words.report;
+        let failed: Vec<StepRecord> = self.failed_steps().into_iter().cloned().collect();
+        let shown = failed.get(..most).unwrap_or(&failed);
+        let sources = Sources::of(shown);
+        let mut blocks = vec![Block::Heading(report.failures.into())];
+        let compared = self.compared();
+        let further = compared.get(rows..).unwrap_or_default();
+        if !further.is_empty() {
+            let listed = further.get(..MOST_COMPARED).unwrap_or(further);
+            blocks.push(Block::Table(comparison(listed, words)));
+        }
+        for of in shown.chunk_by(|a, b| a.procedure == b.procedure) {
+            blocks.push(Block::Subheading(of[0].procedure.clone(), String::new()));
+            blocks.push(Block::Table(steps::table(of, &sources, words)));
+        }
+        if failed.is_empty() {
+            blocks.push(Block::Text(Tone::Plain, self.symptom(words)));
+        }
+        if let Some(n) = failed.len().checked_sub(most).filter(|n| *n > 0) {
+            let more = fill(
+                report.more_steps,
+                &[("n", &n), ("run", &self.before.run.run.id)],
+            );
+            blocks.push(Block::Text(Tone::Plain, more));
+        }
+        blocks.extend(self.traced(words));
+        blocks.extend(self.concluded(words));
+        blocks.extend(self.faults(words));
+        blocks.extend(self.done(words));
+        blocks.extend(sources.blocks(words));
+        blocks
+    }
+
+    /// The speeds around the first failure; what changed is on the first page.
+    fn traced(&self, words: &Words) -> Option<Block> {
+        let trace = self.trace_in(&self.before)?;
+        let drawn = plots(trace.samples.as_ref().ok()?, words);
+        Some(Block::Plot(Box::new(drawn.into_iter().next()?)))
+    }
+
+    /// What the diagnosis of the run before concluded.
+    fn concluded(&self, words: &Words) -> Vec<Block> {
+        let report = &words.report;
+        let Ok(answer) = &self.before.diagnosis else {
+            return Vec::new();
+        };
+        let said = words.sentence(&answer.diagnosis.conclusion);
+        vec![
+            Block::Heading(report.diagnosis.into()),
+            Block::Facts(vec![(report.conclusion.into(), said.into_owned())]),
+        ]
+    }
+
+    /// The faults of the case.
+    fn faults(&self, words: &Words) -> Vec<Block> {
+        let (common, report) = (&words.common, &words.report);
+        let all = || std::iter::once(&self.fault.fault).chain(&self.fault.case);
+        let row = |fault: &FaultSummary| {
+            let cells = [
+                fault.id.short(),
+                format!("{} {}", fault.code, fault.code_name),
+                self.before.part(&fault.lru, words),
+                report.severity(&fault.severity).to_owned(),
+                fault.occurrences.to_string(),
+                local(fault.last_at_us),
+                common.fault_state(fault.state).to_owned(),
+            ];
+            Row::words(RowKind::Head, cells)
+        };
+        let columns = [
+            (common.fault, 0.11),
+            (common.code, 0.21),
+            (common.part, 0.24),
+            (common.severity, 0.1),
+            (report.seen, 0.07),
+            (words.faults.last_seen, 0.18),
+            (common.state, 0.09),
+        ];
+        let mut blocks = vec![
+            Block::Heading(report.faults_of_case.into()),
+            table(&columns, all().take(MOST_FAULTS).map(row).collect()),
+        ];
+        if let Some(n) = all().count().checked_sub(MOST_FAULTS).filter(|n| *n > 0) {
+            let more = fill(report.more_faults, &[("n", &n)]);
+            blocks.push(Block::Text(Tone::Plain, more));
+        }
+        blocks
+    }
+
+    /// What was done, the last of it.
+    fn done(&self, words: &Words) -> Vec<Block> {
+        let (common, report) = (&words.common, &words.report);
+        let seen_again = |event: &&FaultEvent| event.kind != "recurred";
+        let all: Vec<_> = self.fault.events.iter().filter(seen_again).collect();
+        let last = all.get(all.len().saturating_sub(MOST_EVENTS)..);
+        let rows = last.unwrap_or_default().iter();
+        let columns = [
+            (common.time, 0.18),
+            (report.what, 0.16),
+            (report.by_whom, 0.14),
+            (common.note, 0.52),
+        ];
+        vec![
+            Block::Heading(sentence(words.faults.what_was_done)),
+            table(&columns, rows.map(|event| told(event, words)).collect()),
+        ]
+    }
+}
+
+fn table(columns: &[(&str, f32)], rows: Vec<Row>) -> Block {
+    let columns = columns.iter();
+    Block::Table(Table {
+        columns: columns
+            .map(|(name, share)| Column::new(name, *share, Align::Left))
+            .collect(),
+        rows,
+    })
+}
+
+/// An event as a row.
+fn told(event: &FaultEvent, words: &Words) -> Row {
+    let (common, report) = (&words.common, &words.report);
+    let what = match (event.passed_run(), &event.repair, &event.cause, event.state) {
+        (Some(_), ..) if event.is_proof() => report.event_proved,
+        (Some(_), ..) => report.event_passed,
+        (_, Some(_), ..) => report.event_repair,
+        (_, _, Some(_), _) => words.faults.cause,
+        (_, _, _, Some(state)) => common.fault_state(state),
+        _ => common.note,
+    };
+    let note = match (event.passed_run(), &event.repair, &event.cause) {
+        (Some(run), ..) => run.to_string(),
+        (_, Some(repair), _) => {
+            let serial = |serial: &Option<String>| serial.clone().unwrap_or("–".into());
+            let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
+            format!("{} {old} → {new} {}", repair.part, repair.note)
+        }
+        (_, _, Some(cause)) => {
+            let share = cause.probability.map(|p| format!(" {:.1} %", 100.0 * p));
+            format!("{}{} {}", cause.part, share.unwrap_or_default(), cause.note)
+        }
+        _ => words.content(&event.note).into_owned(),
+    };
+    let cells = [
+        local(event.at_us),
+        sentence(what),
+        clipped(&event.who, 40),
+        clipped(&note, 300),
+    ];
+    Row::words(RowKind::Head, cells)
+}
+
+/// All that a run's own sheet says, behind a heading.
+fn annex(sheet: &Sheet, when: &str, words: &Words) -> Vec<Block> {
+    let head = fill(
+        words.report.annex,
+        &[("when", &when), ("run", &sheet.run.run.id)],
+    );
+    let mut blocks = vec![Block::NewPage, Block::Title(head, String::new())];
+    blocks.extend(body(sheet, words));
+    blocks
+}

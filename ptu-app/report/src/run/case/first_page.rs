@@ -1,0 +1,354 @@
+//! The first page of a repair sheet, which alone proves the repair: what, who, before and after, signatures.
+
+use fault_db::{MeasurementRecord, StepRecord, Verdict};
+
+use super::compare::{Compared, is_same};
+use super::{CaseSheet, Standing};
+use crate::limits::short;
+use crate::run::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone, sentence};
+use crate::run::content::signatures;
+use crate::run::plots::close_up;
+use crate::run::steps::verdict;
+use crate::run::{Sheet, SheetTrace, page};
+use crate::words::{Words, fill};
+use ptu_bench::clock::local;
+use ptu_bench::stored::outside_of;
+
+/// Rows of the comparison at most.
+const MOST_ROWS: usize = 8;
+/// Letters of a text at most: the rest is on the next page.
+const MOST_LETTERS: usize = 180;
+
+impl CaseSheet {
+    /// The first page, and as many rows of the comparison as it has room for.
+    pub(super) fn first_page(&self, words: &Words) -> (Vec<Block>, usize) {
+        let make = |rows| (self.with_rows(rows, words), rows);
+        let mut fewer = (1..=MOST_ROWS).rev().map(make);
+        let fits = fewer.find(|(blocks, _)| page::count(blocks) <= 1);
+        fits.unwrap_or_else(|| make(0))
+    }
+
+    fn with_rows(&self, rows: usize, words: &Words) -> Vec<Block> {
+        let report = &words.report;
+        let (tone, said, beside) = self.verdict(words);
+        let mut blocks = vec![
+            Block::Title(
+                report.case_sheet.into(),
+                fill(report.document, &[("number", &self.number())]),
+            ),
+            Block::Verdict(tone, said, beside),
+            Block::Facts(self.facts(words)),
+            Block::Heading(report.before_and_after.into()),
+        ];
+        let compared = self.compared();
+        match compared.len() {
+            0 => blocks.push(Block::Text(Tone::Plain, report.no_step_saw_it.into())),
+            _ => blocks.push(Block::Table(comparison(
+                compared.get(..rows).unwrap_or(&compared),
+                words,
+            ))),
+        }
+        if let Some(n) = compared.len().checked_sub(rows).filter(|n| *n > 0) {
+            let more = fill(report.more_compared, &[("n", &n)]);
+            blocks.push(Block::Text(Tone::Plain, more));
+        }
+        blocks.extend(self.plot(&self.before, report.before, words));
+        if let Some(after) = &self.after {
+            blocks.extend(self.plot(after, report.after, words));
+        }
+        blocks.push(signatures(words));
+        blocks
+    }
+
+    /// The verdict, and what it stands on.
+    pub(super) fn verdict(&self, words: &Words) -> (Tone, String, String) {
+        let report = &words.report;
+        let after = self.after.as_ref().map(|sheet| &sheet.run.run);
+        let runs = after.map_or_else(String::new, |run| {
+            let at = local(run.finished_at_us.unwrap_or(run.started_at_us));
+            let (run, n) = (run.id.short(), self.passed.len());
+            fill(
+                report.passed_since,
+                &[("run", &run), ("at", &at), ("n", &n)],
+            )
+        });
+        let (tone, said, beside) = match &self.standing {
+            Standing::Proved => (Tone::Good, report.proved, runs),
+            Standing::Vouched(who, at_us, _) => {
+                let who = clipped(who, 40);
+                let at = local(*at_us);
+                let by = fill(report.vouched_by, &[("who", &who), ("at", &at)]);
+                (Tone::Plain, report.vouched, by)
+            }
+            Standing::Claimed if after.is_none() => {
+                (Tone::Bad, report.claimed, report.no_run_since.to_owned())
+            }
+            Standing::Claimed => (Tone::Bad, report.claimed, runs),
+            Standing::CameBack => {
+                let at = local(self.fault.fault.last_at_us);
+                let seen = fill(report.seen_again, &[("at", &at)]);
+                (Tone::Bad, report.came_back, seen)
+            }
+            Standing::NotRepaired => (Tone::Bad, report.not_repaired, String::new()),
+        };
+        (tone, said.to_owned(), beside)
+    }
+
+    fn facts(&self, words: &Words) -> Vec<(String, String)> {
+        let (common, report) = (&words.common, &words.report);
+        let run = &self.last().run.run;
+        let both = |of: fn(&Sheet) -> String| {
+            let (before, after) = (of(&self.before), self.after.as_ref().map(of));
+            match after {
+                Some(after) if after != before => fill(
+                    report.before_then_after,
+                    &[("before", &or_dash(&before)), ("after", &or_dash(&after))],
+                ),
+                _ => before,
+            }
+        };
+        let record = self.repair.as_ref().map(|repair| &repair.record);
+        let serial = |serial: Option<&Option<String>>| {
+            clipped(serial.and_then(Option::as_deref).unwrap_or(""), 60)
+        };
+        let done = self.repair.as_ref().map(|repair| {
+            let mut said = local(repair.at_us);
+            for more in [&repair.who, &repair.record.note] {
+                if !more.trim().is_empty() {
+                    said += &format!(", {}", clipped(more, 100));
+                }
+            }
+            said
+        });
+        let mut facts = vec![
+            (report.depot, clipped(&self.depot, 80)),
+            (common.unit, unit(run)),
+            (common.train_no, both(|sheet| named(&sheet.run.run.train))),
+            (report.tester, both(|sheet| named(&sheet.run.run.operator))),
+            (report.symptom, self.symptom(words)),
+            (common.part, self.last().part(self.part(), words)),
+            (
+                words.faults.serial_old,
+                serial(record.map(|r| &r.serial_old)),
+            ),
+            (
+                words.faults.serial_new,
+                serial(record.map(|r| &r.serial_new)),
+            ),
+            (report.repair_made, done.unwrap_or_default()),
+            (report.run_before, told(&self.before, words)),
+            (
+                report.run_after,
+                self.after
+                    .as_ref()
+                    .map_or("–".into(), |sheet| told(sheet, words)),
+            ),
+            (
+                report.program,
+                both(|sheet| format!("ptu {}", sheet.run.run.app_version)),
+            ),
+        ];
+        let practice = self.practice(words);
+        facts.extend((!practice.is_empty()).then_some((report.simulated, practice)));
+        facts
+            .into_iter()
+            .map(|(name, value)| (sentence(name), value))
+            .collect()
+    }
+
+    /// What failed first, in words.
+    pub(super) fn symptom(&self, words: &Words) -> String {
+        let failed = self.failed_steps();
+        let said = match failed.first() {
+            Some(step) => {
+                let message = words.content(&step.message);
+                format!("{}, {}: {message}", step.procedure, name_of(step, words))
+            }
+            None => {
+                let seen = self.fault.occurrences.first();
+                seen.map_or_else(String::new, |seen| {
+                    words.content(&seen.message).into_owned()
+                })
+            }
+        };
+        match said.trim() {
+            "" => self.fault.fault.code_name.clone(),
+            said => clipped(said, MOST_LETTERS),
+        }
+    }
+
+    /// What of it was no unit in service: which run was on a simulated unit, or had injected faults.
+    fn practice(&self, words: &Words) -> String {
+        let report = &words.report;
+        let told = |sheet: &Sheet, when: &str| {
+            let run = &sheet.run.run;
+            let what = match run.injected.as_deref() {
+                Some(faults) => format!("{} {}", report.injected, clipped(faults, 80)),
+                None => report.simulated_unit.to_owned(),
+            };
+            run.is_practice().then(|| format!("{when}: {what}"))
+        };
+        let before = told(&self.before, report.before);
+        let after = self.after.as_ref().and_then(|s| told(s, report.after));
+        let all: Vec<_> = before.into_iter().chain(after).collect();
+        all.join("; ")
+    }
+
+    /// The trace of a run that shows the first of the steps that failed.
+    pub(super) fn trace_in<'a>(&self, sheet: &'a Sheet) -> Option<&'a SheetTrace> {
+        self.failed_steps().into_iter().find_map(|step| {
+            let all = sheet.run.steps.iter();
+            let same: Vec<_> = all
+                .filter(|other| is_same(other, step))
+                .map(|other| other.index)
+                .collect();
+            let mut traces = sheet.traces.iter();
+            traces.find(|trace| trace.steps.iter().any(|step| same.contains(step)))
+        })
+    }
+
+    /// A close-up of the first failure of the case, where a run has a trace of it.
+    fn plot(&self, sheet: &Sheet, when: &str, words: &Words) -> Option<Block> {
+        let trace = self.trace_in(sheet)?;
+        let mut plot = close_up(trace.samples.as_ref().ok()?, words)?;
+        let id = trace.id.short();
+        plot.title = fill(
+            words.report.close_up,
+            &[
+                ("when", &sentence(when)),
+                ("what", &plot.title),
+                ("id", &id),
+            ],
+        );
+        Some(Block::Plot(Box::new(plot)))
+    }
+}
+
+/// The comparison as a table.
+pub(super) fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
+    let (common, report) = (&words.common, &words.report);
+    Table {
+        columns: vec![
+            Column::new(report.step_or_measurement, 0.31, Align::Left),
+            Column::new(report.allowed, 0.15, Align::Left),
+            Column::new(report.before, 0.1, Align::Right),
+            Column::new("", 0.125, Align::Left),
+            Column::new(report.after, 0.1, Align::Right),
+            Column::new("", 0.125, Align::Left),
+            Column::new(common.verdict, 0.09, Align::Left),
+        ],
+        rows: compared.iter().map(|one| row(one, words)).collect(),
+    }
+}
+
+fn row(one: &Compared<'_>, words: &Words) -> Row {
+    let plain = |text| Cell::Text(Tone::Plain, text);
+    let name = name_of(one.step, words);
+    let name = match one.before {
+        Some(before) => format!("{name}\n{}", words.bench.measurement(&before.name)),
+        None => name,
+    };
+    let allowed = one.before.map_or_else(String::new, |before| {
+        let then = limits(before, words);
+        match one.after.map(|after| limits(after, words)) {
+            Some(now) if now != then => fill(
+                words.report.before_then_after,
+                &[("before", &then), ("after", &now)],
+            ),
+            _ => then,
+        }
+    });
+    let [value_before, bar_before] = match one.before {
+        Some(before) => shown(before, words),
+        None => [verdict(one.step.verdict, words), Cell::Gauge(None)],
+    };
+    let [value_after, bar_after] = match (one.after, one.step_after) {
+        (Some(after), _) => shown(after, words),
+        (None, Some(step)) if one.before.is_none() => {
+            [verdict(step.verdict, words), Cell::Gauge(None)]
+        }
+        _ => [plain("–".into()), Cell::Gauge(None)],
+    };
+    let last = match one.verdict_after() {
+        Some(after) => verdict(after, words),
+        None => Cell::Text(Tone::Soft, words.report.not_tested_again.into()),
+    };
+    let cells = [
+        plain(name),
+        plain(allowed),
+        value_before,
+        bar_before,
+        value_after,
+        bar_after,
+        last,
+    ];
+    Row {
+        kind: RowKind::Head,
+        cells: cells.map(|cell| (cell, 1)).into(),
+    }
+}
+
+/// A value with its unit, and its bar.
+fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
+    let good = measured.verdict == Verdict::Passed;
+    let text = match measured.value {
+        Some(value) => format!("{} {}", short(value), measured.unit),
+        None => words.report.no_value.to_owned(),
+    };
+    let tone = if good { Tone::Good } else { Tone::Bad };
+    let gauge = Gauge::of(measured.value, measured.low, measured.high, good);
+    [Cell::Text(tone, text), Cell::Gauge(gauge)]
+}
+
+/// What is allowed, in words.
+fn limits(measured: &MeasurementRecord, words: &Words) -> String {
+    let report = &words.report;
+    let unit = &measured.unit;
+    match (measured.low.map(short), measured.high.map(short)) {
+        (Some(low), Some(high)) => fill(
+            report.from_to,
+            &[("low", &low), ("high", &high), ("unit", unit)],
+        ),
+        (Some(low), None) => fill(report.at_least, &[("low", &low), ("unit", unit)]),
+        (None, Some(high)) => fill(report.at_most, &[("high", &high), ("unit", unit)]),
+        (None, None) => String::new(),
+    }
+}
+
+fn name_of(step: &StepRecord, words: &Words) -> String {
+    match outside_of(step) {
+        Some(place) => words.common.outside(place).to_owned(),
+        None => words.content(&step.name).into_owned(),
+    }
+}
+
+/// The unit by serial number, kind and configuration.
+fn unit(run: &fault_db::RunSummary) -> String {
+    let about = [&run.unit_kind, &run.unit_config_name].map(|text| text.trim());
+    let about: Vec<_> = about.into_iter().filter(|text| !text.is_empty()).collect();
+    format!("{} ({})", clipped(&run.unit_serial, 60), about.join(", "))
+}
+
+/// A run by its number, time and verdict.
+fn told(sheet: &Sheet, words: &Words) -> String {
+    let run = &sheet.run.run;
+    let (_, said) = super::verdict(run, words);
+    format!("{}, {}, {said}", run.id, local(run.started_at_us))
+}
+
+fn named(name: &str) -> String {
+    clipped(name, 60)
+}
+
+fn or_dash(text: &str) -> &str {
+    if text.is_empty() { "–" } else { text }
+}
+
+/// At most so many letters.
+pub(super) fn clipped(text: &str, most: usize) -> String {
+    let text = text.trim();
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", text[..end].trim_end()),
+        None => text.to_owned(),
+    }
+}

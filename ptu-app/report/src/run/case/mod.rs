@@ -1,0 +1,127 @@
+//! The repair sheet of a case: what failed, what was replaced, and what a run afterwards says of it.
+//!
+//! A case is a fault and those that come from the same part. Terms: the run *before* saw the fault last before its
+//! repair; the run *after* is the one that proves the repair, or else the last that passed since.
+
+mod compare;
+mod content;
+mod first_page;
+mod gather;
+mod json;
+
+#[cfg(test)]
+mod tests;
+
+use fault_db::{FaultDetail, Id, RepairRecord};
+
+pub use json::case_json;
+
+use super::content::verdict;
+use super::paper::across;
+use super::{Paper, Printed, Sheet};
+use crate::words::Words;
+
+/// All a repair sheet says, in no language yet.
+pub struct CaseSheet {
+    /// The fault that names the part, or else the one that was asked for.
+    pub fault: FaultDetail,
+    /// Where the unit is kept; empty: a line to write on.
+    pub depot: String,
+    /// With all that the two runs say.
+    pub with_annex: bool,
+    /// The run that saw it.
+    pub before: Sheet,
+    /// Steps of that run that saw a fault of the case, by their place.
+    pub steps: Vec<u32>,
+    /// The last repair.
+    pub repair: Option<Repair>,
+    /// Runs that passed since the repair, oldest first.
+    pub passed: Vec<Id>,
+    /// The last of them.
+    pub after: Option<Sheet>,
+    /// What is said of the repair.
+    pub standing: Standing,
+}
+
+/// A repair as it was recorded.
+pub struct Repair {
+    /// What was done.
+    pub record: RepairRecord,
+    /// By whom.
+    pub who: String,
+    /// When, µs UTC.
+    pub at_us: i64,
+}
+
+/// What is said of a repair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// Runs have proved it.
+    Proved,
+    /// A person says it holds: who, when and why.
+    Vouched(String, i64, String),
+    /// It was recorded, and no run proves it yet.
+    Claimed,
+    /// The fault was seen again after it.
+    CameBack,
+    /// There is none.
+    NotRepaired,
+}
+
+impl CaseSheet {
+    /// The number of the document: of the fault and of the runs, so that it stays while these stay.
+    pub fn number(&self) -> String {
+        let runs = [Some(&self.before), self.after.as_ref()];
+        let runs = runs.into_iter().flatten().map(|sheet| sheet.run.run.id);
+        let ids = std::iter::once(self.fault.fault.id).chain(runs);
+        ids.map(|id| id.short()).collect::<Vec<_>>().join("-")
+    }
+
+    /// The run that tells how the unit is now.
+    pub fn last(&self) -> &Sheet {
+        self.after.as_ref().unwrap_or(&self.before)
+    }
+
+    /// The part that was replaced, or else the one that the case comes from.
+    fn part(&self) -> &str {
+        match &self.repair {
+            Some(repair) => &repair.record.part,
+            None => self.fault.fault.cause(),
+        }
+    }
+
+    fn is_practice(&self) -> bool {
+        let runs = [Some(&self.before), self.after.as_ref()];
+        let mut runs = runs.into_iter().flatten();
+        runs.any(|sheet| sheet.run.run.is_practice())
+    }
+}
+
+impl Standing {
+    /// Its word in JSON.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Vouched(..) => "vouched",
+            Self::Claimed => "claimed",
+            Self::CameBack => "came_back",
+            Self::NotRepaired => "not_repaired",
+        }
+    }
+}
+
+impl Printed for CaseSheet {
+    fn paper(&self, words: &Words) -> Paper {
+        let run = &self.last().run.run;
+        Paper {
+            name: words.report.case_sheet,
+            unit: run.unit_serial.clone(),
+            short: self.number(),
+            number: self.number(),
+            program: format!("ptu {}", run.app_version),
+            at_us: run.finished_at_us.unwrap_or(run.started_at_us),
+            across: self.is_practice().then(|| across(words)),
+            blocks: self.blocks(words),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! What is printed, of a run or of a case: blocks, and what stands around them on every page. The HTML page, the PDF
+//! and the window are made from it.
+
+use super::Sheet;
+use super::block::Block;
+use super::content;
+use crate::words::Words;
+
+/// What is printed, in one language.
+pub struct Paper {
+    /// What it is, as its head and its margin say.
+    pub(super) name: &'static str,
+    /// Serial number of the unit.
+    pub(super) unit: String,
+    /// What tells it from others of its kind, for the title of a window or a file.
+    pub(super) short: String,
+    /// Its number, below each page.
+    pub(super) number: String,
+    /// Version of the program that tested.
+    pub(super) program: String,
+    /// When what it says was complete, µs UTC.
+    pub(super) at_us: i64,
+    /// Stands across each page: it proves nothing of a unit in service.
+    pub(super) across: Option<String>,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// What can be printed.
+pub trait Printed {
+    /// It, in one language.
+    fn paper(&self, words: &Words) -> Paper;
+}
+
+/// What stands across the pages of practice.
+pub(super) fn across(words: &Words) -> String {
+    words.report.simulated.to_uppercase()
+}
+
+impl Printed for Sheet {
+    fn paper(&self, words: &Words) -> Paper {
+        let (run, report) = (&self.run.run, &words.report);
+        Paper {
+            name: report.sheet,
+            unit: run.unit_serial.clone(),
+            short: run.id.short(),
+            number: run.id.to_string(),
+            program: format!("ptu {}", run.app_version),
+            at_us: run.finished_at_us.unwrap_or(run.started_at_us),
+            across: run.is_practice().then(|| across(words)),
+            blocks: content::blocks(self, words),
+        }
+    }
+}

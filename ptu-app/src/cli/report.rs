@@ -1,0 +1,103 @@
+//! `ptu report`: the sheet of a run, or of a case, written after it.
+
+use clap::Args;
+use fault_db::{Id, Store, StoreError};
+
+use super::reports::OutOption;
+use super::{Database, ScriptsOption, print_out};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::process_id;
+use ptu_report::run::CaseSheet;
+use ptu_report::write_case;
+
+/// Write the sheet of a run, or the repair sheet of a case, to files
+///
+/// A run's sheet is the one of `ptu run --report` and of the window. A fault's id names its case: what failed, what
+/// was replaced, the failing values before and after with their limits, and what runs prove of the repair.
+///
+/// Examples:
+///   ptu report latest --out sheet.pdf --out results.junit.xml
+///   ptu report 5f8b --out case.pdf --lang ko                    the case of fault 5f8b
+///   ptu report latest --case --out case.html --annex            of the fault seen last, with both runs in full
+///
+/// Exit codes: 0 written, 2 no such run or fault, or a file name that does not serve, 3 database.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct ReportArguments {
+    /// The run or the fault: an id, its beginning or end (at least 4 digits); `latest` is the last run
+    #[arg(value_name = "RUN|CASE")]
+    id: String,
+    #[command(flatten)]
+    out: OutOption,
+    /// The id is a fault's; `latest` is the fault seen last
+    #[arg(long)]
+    case: bool,
+    /// With all that both runs say, behind the sheet of a case
+    #[arg(long)]
+    annex: bool,
+    /// Where the unit is kept, on the sheet of a case; without it, a line to write on
+    #[arg(long, value_name = "TEXT", env = "PTU_DEPOT", default_value = "")]
+    depot: String,
+    #[command(flatten)]
+    database: Database,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+/// What an id stands for.
+enum Told {
+    Run(Id),
+    Case(Id),
+}
+
+impl ReportArguments {
+    /// Writes.
+    pub fn run(self) -> Result<Exit, Failure> {
+        self.out.check()?;
+        let store = self.database.open_read_only()?;
+        let told = self.told(&store)?;
+        let directory = self.scripts.find_if_there()?;
+        match told {
+            Told::Run(_) if self.annex => {
+                return Err(Failure::usage(
+                    "--annex is of a case; the sheet of a run has all of it already",
+                ));
+            }
+            Told::Run(id) => {
+                let run = store.run(id, &process_id::is_alive)?;
+                self.out.write(&store, directory.as_ref(), &run)?;
+            }
+            Told::Case(id) => {
+                let (depot, annex) = (&self.depot, self.annex);
+                let case = CaseSheet::gather(&store, directory.as_ref(), id, depot, annex)?;
+                write_case(&self.out.out, &case, self.out.lang)?;
+            }
+        }
+        print_out(&self.out.written())
+    }
+
+    /// A run, or else a fault; what fits both is refused.
+    fn told(&self, store: &Store) -> Result<Told, Failure> {
+        let id = &self.id;
+        if self.case {
+            return Ok(Told::Case(store.resolve_fault(id)?));
+        }
+        let run = store.resolve_run(id);
+        if id == "latest" {
+            return Ok(Told::Run(run?));
+        }
+        match (run, store.resolve_fault(id)) {
+            (Ok(run), Err(StoreError::NotFound { .. })) => Ok(Told::Run(run)),
+            (Err(StoreError::NotFound { .. }), Ok(fault)) => Ok(Told::Case(fault)),
+            (Ok(_), _) | (_, Ok(_)) => Err(Failure::usage(format!(
+                "{id:?} fits a run and a fault; give more digits, or --case for the fault"
+            ))),
+            (Err(StoreError::NotFound { .. }), Err(StoreError::NotFound { .. })) => {
+                Err(Failure::usage(format!(
+                    "no run and no fault {id:?}; `ptu runs list` and `ptu faults list` show what there is"
+                )))
+            }
+            (Err(StoreError::NotFound { .. }), Err(error)) | (Err(error), _) => Err(error.into()),
+        }
+    }
+}

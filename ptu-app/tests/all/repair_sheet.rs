@@ -1,0 +1,228 @@
+//! `ptu report`: from a fault over its repair to the sheet that proves it.
+
+use fault_db::Store;
+use ptu_report::run::CaseSheet;
+use ptu_report::run::page::{Item, pages};
+use ptu_report::words::Language;
+use serde_json::Value;
+
+use crate::common::{Place, list, number, record_bad_unit, relay_fault, text};
+
+/// A unit whose relay was slow and was replaced, and the id of the fault.
+fn repaired() -> (Place, String) {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = text(&relay_fault(&place)["id"]).to_owned();
+    let repair = [
+        "faults", "repair", &fault, "--part", "eb_relay", "--who", "Kim",
+    ];
+    let parts = [
+        "--old",
+        "SN-41",
+        "--new",
+        "SN-77",
+        "--note",
+        "contacts burnt",
+    ];
+    place.ptu(&[&repair[..], &parts].concat()).exits(0);
+    (place, fault)
+}
+
+/// The same, with the run that proves the repair.
+fn proved() -> (Place, String) {
+    let (place, fault) = repaired();
+    let run = [
+        "run",
+        "atp/overspeed",
+        "--serial-no",
+        "BAD-1",
+        "--operator",
+        "Lee",
+    ];
+    let said = place.ptu(&run).exits(0).out;
+    assert!(said.contains("the repair is verified"), "{said}");
+    (place, fault)
+}
+
+/// The texts of an HTML page as they are read, one after the other.
+fn read(page: &str) -> String {
+    let body = page.split_once("</style>").map_or(page, |(_, body)| body);
+    let texts = body.split('<').filter_map(|part| part.split_once('>'));
+    texts
+        .map(|(_, text)| text.trim())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn pages_of_pdf(place: &Place, name: &str) -> usize {
+    let bytes = std::fs::read(place.path(name)).expect("a document");
+    assert!(bytes.starts_with(b"%PDF-"));
+    String::from_utf8_lossy(&bytes)
+        .matches("/Type/Page/")
+        .count()
+}
+
+/// Goal: the sheet of a case proves the repair to who has nothing but it. Method: a slow relay is found, replaced and
+/// proved through the command line; the Korean sheet is read as text, the first page of the layout by itself.
+#[test]
+fn the_sheet_of_a_proved_case_has_part_values_runs_and_verdict_on_its_first_page() {
+    let (place, fault) = proved();
+    let files = ["case.html", "case.pdf", "case.json"].map(|name| place.text_path(name));
+    let [html, pdf, json] = files.each_ref().map(String::as_str);
+    let report = ["report", &fault, "--lang", "ko", "--depot", "군자차량기지"];
+    let out = ["--out", html, "--out", pdf, "--out", json];
+    place.ptu(&[&report[..], &out].concat()).exits(0);
+    let said = read(&place.read("case.html"));
+    let runs = place.run_ids();
+    let words = [
+        "수리 성적서",
+        "모의 시험",
+        "군자차량기지",
+        "BAD-1",
+        "eb_relay",
+        "SN-41",
+        "SN-77",
+        "contacts burnt",
+        "640 ms",
+        "472 ms 이하",
+        "수리 입증",
+        "Kim (수리 전), Lee (수리 후)",
+        "eb_relay.slow",
+        "합격",
+        "승인자",
+        &runs[0],
+        &runs[1],
+    ];
+    for word in words {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let count = pages_of_pdf(&place, "case.pdf");
+    assert!((1..=3).contains(&count), "{count} pages");
+
+    let store = Store::open_read_only(&place.path("history.db")).expect("the database");
+    let id = store.resolve_fault(&fault).expect("the fault");
+    let sheet = CaseSheet::gather(&store, None, id, "군자차량기지", false).expect("a sheet");
+    let laid_out = pages(&sheet, Language::Korean.words()).expect("pages");
+    assert_eq!(laid_out.len(), count);
+    let first: String = laid_out[0].iter().map(words_of).collect();
+    for word in words.iter().filter(|word| **word != "Approver") {
+        assert!(first.contains(word), "not on page 1: {word}");
+    }
+
+    let case = place.read_json("case.json");
+    assert_eq!(text(&case["repair_is"]), "proved");
+    let slow = list(&case["compared"]).iter().find(|one| {
+        text(&one["step"]) == "code 25: alarm, FSB, EB"
+            && text(&one["measurement"]) == "eb_reaction"
+    });
+    let slow = slow.expect("the slow reaction");
+    assert_eq!(number(&slow["before"]["value"]), 640.0);
+    let allowed = number(&slow["after"]["high"]);
+    assert!(number(&slow["after"]["value"]) <= allowed, "{slow}");
+    assert_eq!(text(&slow["verdict_after"]), "passed");
+}
+
+fn words_of(item: &Item) -> String {
+    match item {
+        Item::Text(text) => text
+            .lines
+            .iter()
+            .map(|(_, line)| line.clone() + " ")
+            .collect(),
+        _ => String::new(),
+    }
+}
+
+/// Another fault of the same case is on the same sheet, with the same number.
+#[test]
+fn each_fault_of_a_case_has_the_same_sheet() {
+    let (place, fault) = proved();
+    let faults = place.json(&["faults", "list", "--cause", "eb_relay", "--json"]);
+    let others = list(&faults).iter().map(|fault| text(&fault["id"]));
+    let other = others
+        .filter(|id| *id != fault)
+        .next()
+        .expect("a consequence");
+    let [one, two] = [(&*fault, "a.html"), (other, "b.html")].map(|(id, name)| {
+        let file = place.text_path(name);
+        place.ptu(&["report", id, "--out", &file]).exits(0);
+        place.read(name)
+    });
+    assert!(one == two, "the sheets differ");
+}
+
+#[test]
+fn a_repair_without_a_run_is_not_proved_on_its_sheet() {
+    let (place, fault) = repaired();
+    let files = ["case.html", "case.json"].map(|name| place.text_path(name));
+    let [html, json] = files.each_ref().map(String::as_str);
+    place
+        .ptu(&["report", &fault, "--out", html, "--out", json])
+        .exits(0);
+    let said = read(&place.read("case.html"));
+    for word in [
+        "Repair not proved",
+        "no run passed since",
+        "SN-77",
+        "not tested",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    assert!(!said.contains("Repair proved"), "{said}");
+    let case = place.read_json("case.json");
+    assert_eq!(text(&case["repair_is"]), "claimed");
+    assert_eq!(case["run_after"], Value::Null);
+}
+
+/// Goal: the run that proves a repair says so on its own sheet, and `ptu report` writes what `ptu runs show` does.
+#[test]
+fn the_sheet_of_the_proof_run_names_what_it_settles() {
+    let (place, fault) = proved();
+    let files = ["a.html", "a.json", "b.html"].map(|name| place.text_path(name));
+    let [html, json, shown] = files.each_ref().map(String::as_str);
+    place
+        .ptu(&["report", "latest", "--out", html, "--out", json])
+        .exits(0);
+    place
+        .ptu(&["runs", "show", "latest", "--report", shown])
+        .exits(0);
+    assert_eq!(place.read("a.html"), place.read("b.html"));
+    let said = read(&place.read("a.html"));
+    for word in ["Repairs this run proves", "SN-41", "SN-77", "SIMULATED"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let report = place.read_json("a.json");
+    let settled: Vec<_> = list(&report["settles"])
+        .iter()
+        .map(|f| text(&f["id"]))
+        .collect();
+    assert!(settled.contains(&&*fault), "{report}");
+    assert_eq!(text(&report["settles"][0]["repair"]["serial_new"]), "SN-77");
+}
+
+#[test]
+fn what_is_no_run_and_no_fault_is_told_with_where_to_look() {
+    let place = Place::new();
+    place.recorded_run();
+    for (arguments, said) in [
+        (
+            &["ffffffff"][..],
+            &["no run and no fault", "ptu runs list", "ptu faults list"][..],
+        ),
+        (&["latest", "--case"], &["no fault \"latest\""]),
+        (&["latest", "--annex"], &["--annex is of a case"]),
+        (&["x"], &["no run id"]),
+    ] {
+        let all = [&["report"], arguments, &["--out", "x.html"]].concat();
+        place.ptu(&all).exits(2).explains(said);
+        assert!(!place.path("x.html").exists(), "something was written");
+    }
+    place
+        .ptu(&["report", "latest"])
+        .exits(2)
+        .explains(&["--out"]);
+    place
+        .ptu(&["report", "latest", "--out", "x.docx"])
+        .exits(2)
+        .explains(&["a report ends in"]);
+}
