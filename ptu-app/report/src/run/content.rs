@@ -219,11 +219,7 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.trace, 0.1),
     ];
     let rows = sheet.run.faults.iter().map(|fault| {
-        let meaning = u16::try_from(fault.code).ok().and_then(Event::from_code);
-        let text = meaning.map_or("", |event| match words.language {
-            Language::English => event.definition().text,
-            Language::Korean => event.definition().text_ko,
-        });
+        let text = meaning(fault.code, words);
         let apart = if text.is_empty() { "" } else { ": " };
         let state: FaultState = fault.state;
         let cells = [
@@ -244,6 +240,15 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
         rows: rows.collect(),
     }));
     blocks
+}
+
+/// What a fault's code means; empty for a code of another program.
+pub fn meaning(code: i64, words: &Words) -> &'static str {
+    let event = u16::try_from(code).ok().and_then(Event::from_code);
+    event.map_or("", |event| match words.language {
+        Language::English => event.definition().text,
+        Language::Korean => event.definition().text_ko,
+    })
 }
 
 /// What was said about the run.

@@ -133,6 +133,7 @@ wordings! {
         case_sheet: "Repair sheet", "수리 성적서";
         document: "Document {number}", "문서 번호 {number}";
         simulated: "Simulated", "모의 시험";
+        with_injected: "faults injected: {faults}", "주입한 고장: {faults}";
         simulated_unit: "simulated unit", "모의 장치";
         depot: "Depot", "차량기지";
         symptom: "Symptom", "증상";

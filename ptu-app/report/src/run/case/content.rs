@@ -6,11 +6,11 @@ use fault_db::{FaultEvent, FaultSummary, StepRecord};
 use super::CaseSheet;
 use super::first_page::{clipped, comparison};
 use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
-use crate::run::content::body;
+use crate::run::content::{body, meaning};
 use crate::run::plots::plots;
 use crate::run::sources::Sources;
 use crate::run::{Sheet, page, steps};
-use crate::words::{Words, fill};
+use crate::words::{Language, Words, fill};
 use ptu_bench::clock::local;
 
 /// Pages of what failed, at most.
@@ -78,7 +78,11 @@ impl CaseSheet {
     fn traced(&self, words: &Words) -> Option<Block> {
         let trace = self.trace_in(&self.before)?;
         let drawn = plots(trace.samples.as_ref().ok()?, words);
-        Some(Block::Plot(Box::new(drawn.into_iter().next()?)))
+        let speeds = drawn.into_iter().next()?;
+        let mut points = speeds.series.iter().flat_map(|series| &series.points);
+        // A train that stood still has nothing to show there.
+        let moves = points.any(|(_, speed)| *speed > 0.0);
+        moves.then(|| Block::Plot(Box::new(speeds)))
     }
 
     /// What the diagnosis of the run before concluded.
@@ -145,8 +149,56 @@ impl CaseSheet {
         ];
         vec![
             Block::Heading(sentence(words.faults.what_was_done)),
-            table(&columns, rows.map(|event| told(event, words)).collect()),
+            table(
+                &columns,
+                rows.map(|event| self.told(event, words)).collect(),
+            ),
         ]
+    }
+
+    /// An event as a row.
+    fn told(&self, event: &FaultEvent, words: &Words) -> Row {
+        let (common, report) = (&words.common, &words.report);
+        let what = match (event.passed_run(), &event.repair, &event.cause, event.state) {
+            (Some(_), ..) if event.is_proof() => report.event_proved,
+            (Some(_), ..) => report.event_passed,
+            (_, Some(_), ..) => report.event_repair,
+            (_, _, Some(_), _) => words.faults.cause,
+            (_, _, _, Some(state)) => common.fault_state(state),
+            _ => common.note,
+        };
+        let note = match (event.passed_run(), &event.repair, &event.cause) {
+            (Some(run), ..) => run.to_string(),
+            (_, Some(repair), _) => {
+                let serial = |serial: &Option<String>| serial.clone().unwrap_or("–".into());
+                let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
+                format!("{} {old} → {new} {}", repair.part, repair.note)
+            }
+            (_, _, Some(cause)) => {
+                let share = cause.probability.map(|p| format!(" {:.1} %", 100.0 * p));
+                format!("{}{} {}", cause.part, share.unwrap_or_default(), cause.note)
+            }
+            _ => self.message(&event.note, words),
+        };
+        let cells = [
+            local(event.at_us),
+            sentence(what),
+            clipped(&event.who, 40),
+            clipped(&note, 300),
+        ];
+        Row::words(RowKind::Head, cells)
+    }
+
+    /// A message that came with the fault. What a unit says of its own events is told in English only: elsewhere its
+    /// code says it.
+    pub(super) fn message(&self, text: &str, words: &Words) -> String {
+        let said = words.content(text);
+        match meaning(self.fault.fault.code, words) {
+            means if !means.is_empty() && words.language != Language::English && said == text => {
+                means.to_owned()
+            }
+            _ => said.into_owned(),
+        }
     }
 }
 
@@ -160,44 +212,11 @@ fn table(columns: &[(&str, f32)], rows: Vec<Row>) -> Block {
     })
 }
 
-/// An event as a row.
-fn told(event: &FaultEvent, words: &Words) -> Row {
-    let (common, report) = (&words.common, &words.report);
-    let what = match (event.passed_run(), &event.repair, &event.cause, event.state) {
-        (Some(_), ..) if event.is_proof() => report.event_proved,
-        (Some(_), ..) => report.event_passed,
-        (_, Some(_), ..) => report.event_repair,
-        (_, _, Some(_), _) => words.faults.cause,
-        (_, _, _, Some(state)) => common.fault_state(state),
-        _ => common.note,
-    };
-    let note = match (event.passed_run(), &event.repair, &event.cause) {
-        (Some(run), ..) => run.to_string(),
-        (_, Some(repair), _) => {
-            let serial = |serial: &Option<String>| serial.clone().unwrap_or("–".into());
-            let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
-            format!("{} {old} → {new} {}", repair.part, repair.note)
-        }
-        (_, _, Some(cause)) => {
-            let share = cause.probability.map(|p| format!(" {:.1} %", 100.0 * p));
-            format!("{}{} {}", cause.part, share.unwrap_or_default(), cause.note)
-        }
-        _ => words.content(&event.note).into_owned(),
-    };
-    let cells = [
-        local(event.at_us),
-        sentence(what),
-        clipped(&event.who, 40),
-        clipped(&note, 300),
-    ];
-    Row::words(RowKind::Head, cells)
-}
-
 /// All that a run's own sheet says, behind a heading.
 fn annex(sheet: &Sheet, when: &str, words: &Words) -> Vec<Block> {
     let head = fill(
         words.report.annex,
-        &[("when", &when), ("run", &sheet.run.run.id)],
+        &[("when", &when), ("run", &sheet.run.run.id.short())],
     );
     let mut blocks = vec![Block::NewPage, Block::Title(head, String::new())];
     blocks.extend(body(sheet, words));

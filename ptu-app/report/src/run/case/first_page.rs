@@ -1,6 +1,6 @@
 //! The first page of a repair sheet, which alone proves the repair: what, who, before and after, signatures.
 
-use fault_db::{MeasurementRecord, StepRecord, Verdict};
+use fault_db::{MeasurementRecord, StepRecord, Verdict, is_practice};
 
 use super::compare::{Compared, is_same};
 use super::{CaseSheet, Standing};
@@ -148,6 +148,9 @@ impl CaseSheet {
                 both(|sheet| format!("ptu {}", sheet.run.run.app_version)),
             ),
         ];
+        if let Standing::Vouched(.., why) = &self.standing {
+            facts.push((common.note, clipped(why, MOST_LETTERS)));
+        }
         let practice = self.practice(words);
         facts.extend((!practice.is_empty()).then_some((report.simulated, practice)));
         facts
@@ -166,9 +169,7 @@ impl CaseSheet {
             }
             None => {
                 let seen = self.fault.occurrences.first();
-                seen.map_or_else(String::new, |seen| {
-                    words.content(&seen.message).into_owned()
-                })
+                seen.map_or_else(String::new, |seen| self.message(&seen.message, words))
             }
         };
         match said.trim() {
@@ -182,11 +183,13 @@ impl CaseSheet {
         let report = &words.report;
         let told = |sheet: &Sheet, when: &str| {
             let run = &sheet.run.run;
-            let what = match run.injected.as_deref() {
-                Some(faults) => format!("{} {}", report.injected, clipped(faults, 80)),
-                None => report.simulated_unit.to_owned(),
-            };
-            run.is_practice().then(|| format!("{when}: {what}"))
+            let simulated =
+                is_practice(&run.source, None).then(|| report.simulated_unit.to_owned());
+            let faults = run.injected.as_deref();
+            let injected = faults
+                .map(|faults| fill(report.with_injected, &[("faults", &clipped(faults, 80))]));
+            let what: Vec<_> = simulated.into_iter().chain(injected).collect();
+            (!what.is_empty()).then(|| format!("{when}: {}", what.join(", ")))
         };
         let before = told(&self.before, report.before);
         let after = self.after.as_ref().and_then(|s| told(s, report.after));
@@ -227,6 +230,8 @@ impl CaseSheet {
 /// The comparison as a table.
 pub(super) fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
     let (common, report) = (&words.common, &words.report);
+    let mut pairs = compared.windows(2);
+    let is_of_several = pairs.any(|two| two[0].step.procedure != two[1].step.procedure);
     Table {
         columns: vec![
             Column::new(report.step_or_measurement, 0.31, Align::Left),
@@ -237,13 +242,21 @@ pub(super) fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
             Column::new("", 0.125, Align::Left),
             Column::new(common.verdict, 0.09, Align::Left),
         ],
-        rows: compared.iter().map(|one| row(one, words)).collect(),
+        rows: compared
+            .iter()
+            .map(|one| row(one, is_of_several, words))
+            .collect(),
     }
 }
 
-fn row(one: &Compared<'_>, words: &Words) -> Row {
+/// A row; with its procedure where they are of several.
+fn row(one: &Compared<'_>, is_of_several: bool, words: &Words) -> Row {
     let plain = |text| Cell::Text(Tone::Plain, text);
     let name = name_of(one.step, words);
+    let name = match is_of_several {
+        true => format!("{}: {name}", one.step.procedure),
+        false => name,
+    };
     let name = match one.before {
         Some(before) => format!("{name}\n{}", words.bench.measurement(&before.name)),
         None => name,
