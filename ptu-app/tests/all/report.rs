@@ -163,7 +163,7 @@ fn every_step_symptom_and_reason_of_a_limit_has_korean() {
 }
 
 /// Three plain words in a row, but for the signs of a condition: `lamps without failure`.
-fn is_english(text: &str) -> bool {
+pub fn is_english(text: &str) -> bool {
     let is_plain = |word: &str| {
         let word = word
             .trim_end_matches([',', '.', ':', ';', ')'])
