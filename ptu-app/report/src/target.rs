@@ -98,41 +98,61 @@ pub fn write(
     Ok(())
 }
 
-/// Writes reports of a case. Tables are those of the run that tells how the unit is now.
+/// Writes reports of a case.
 ///
 /// # Errors
 /// A file cannot be written.
 pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> Result<(), Failure> {
-    let words = language.words();
-    let run = &case.last().run;
     for target in targets {
-        let content = match target.format {
-            Format::Html => run::html(case, words).into_bytes(),
-            Format::Pdf => run::pdf(case, words)?,
-            Format::Json => json_text(&run::case_json(case))?.into_bytes(),
-            Format::Csv | Format::Junit => content(target, run, None, language)?,
-        };
-        data::write(&target.path, &content)?;
+        data::write(&target.path, &case_content(target, case, language)?)?;
     }
     Ok(())
 }
 
-/// Writes one to a file begun for it, under a name beside it where that is taken; which it was.
+/// A report of a case. Tables are those of the run that tells how the unit is now.
 ///
 /// # Errors
-/// As [`write()`].
-pub fn write_beside(
+/// It cannot be made.
+pub fn case_content(
     target: &Target,
-    mut file: NewFile,
+    case: &CaseSheet,
+    language: Language,
+) -> Result<Vec<u8>, Failure> {
+    let words = language.words();
+    match target.format {
+        Format::Html => Ok(run::html(case, words).into_bytes()),
+        Format::Pdf => run::pdf(case, words),
+        Format::Json => Ok(json_text(&run::case_json(case))?.into_bytes()),
+        Format::Csv | Format::Junit => content(target, &case.last().run, None, language),
+    }
+}
+
+/// A report of a run.
+///
+/// # Errors
+/// The database cannot be read, or it cannot be made.
+pub fn run_content(
+    target: &Target,
     store: &Store,
     directory: &ScriptsDirectory,
     run: &RunDetail,
     language: Language,
-) -> Result<PathBuf, Failure> {
+) -> Result<Vec<u8>, Failure> {
     let gather = || Sheet::gather(store, Some(directory), run.run.id);
     let sheet = target.is_sheet().then(gather).transpose()?;
-    let content = content(target, run, sheet.as_ref(), language)?;
-    let written = file.write_all(&content);
+    content(target, run, sheet.as_ref(), language)
+}
+
+/// Writes a report to a file begun for it, under a name beside it where that is taken; which it was.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_beside(
+    target: &Target,
+    mut file: NewFile,
+    content: &[u8],
+) -> Result<PathBuf, Failure> {
+    let written = file.write_all(content);
     written.map_err(|error| cannot_write(&target.path, &error))?;
     file.finish_beside()
 }

@@ -40,6 +40,10 @@ fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
 fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     let words: &Words = language.words();
     let case = &words.case;
+    let relay = match language {
+        Language::English => "EB relay",
+        Language::Korean => "비상제동 계전기",
+    };
     let mut counted = window(language, size, "eb_relay.slow");
     counted.click(words.frame.connect);
     counted.window.wait_for("SIM-0001");
@@ -55,7 +59,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.window.write(case.serial_new, "R-4711");
     counted.click(case.save);
     counted.window.wait_for(case.fitted);
-    let repaired = fill(case.recorded, &[("part", &"eb_relay")]);
+    let repaired = fill(case.recorded, &[("part", &relay)]);
     counted.window.wait_for(&repaired);
     counted.click(case.fitted);
     counted.click(case.prove);
@@ -63,6 +67,8 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.click(case.sign);
     let signed = fill(case.signed_by, &[("who", &"Kim")]);
     counted.window.wait_for(&signed);
+    counted.click(words.report.write_pdf);
+    counted.window.wait_for(words.report.open_file);
     assert!(counted.clicks <= CLICKS, "{} clicks", counted.clicks);
 
     let window = counted.window;

@@ -38,8 +38,8 @@ impl Pages {
     pub fn show(&mut self, page: Page, ui: &mut Ui, context: &mut PageContext<'_>) {
         match page {
             Page::Case => {
-                if let Some(run) = self.case.show(ui, self.procedures.has_orders(), context) {
-                    self.report.show_of_case(run, ui, context);
+                if let Some(of) = self.case.show(ui, self.procedures.has_orders(), context) {
+                    self.report.show_one(of, ui, context);
                 }
             }
             Page::Bench => self.bench.show(ui, context),

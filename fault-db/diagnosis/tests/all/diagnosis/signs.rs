@@ -50,9 +50,8 @@ fn what_the_tester_measures_names_the_part() {
         let counted = vec![shown(&["c.s1"], &[&clock]); 5];
         dictionary.add(&mode("clock.fast", 1.0), "nominal".into(), &counted);
         let found = diagnosed(&dictionary, &shown(&["a.s2", "b.s1"], &[&clock, &lost]));
-        let named = |part: &diagnosis::PartProbability| {
-            part.lru == "clock" && part.probability > 0.9
-        };
+        let named =
+            |part: &diagnosis::PartProbability| part.lru == "clock" && part.probability > 0.9;
         let said = &found.conclusion.english;
         assert_eq!(found.lrus.iter().any(named), decides, "{fault}: {said}");
     }

@@ -4,6 +4,7 @@ use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
 
 use super::TEXT;
+use super::symptom::SymptomTiles;
 use crate::gui::request::CachedResponse;
 use crate::gui::{DataPaths, PageContext, Palette};
 use ptu_bench::clock;
@@ -58,7 +59,7 @@ impl KnownUnit {
         last.and_then(|(_, repair)| repair.serial_new.clone())
     }
 
-    pub fn show(&self, ui: &mut Ui, words: &Words) {
+    pub fn show(&self, ui: &mut Ui, words: &Words, names: &SymptomTiles) {
         let Some(history) = self.history.get().value() else {
             ui.label(words.common.loading);
             return;
@@ -69,14 +70,15 @@ impl KnownUnit {
             return;
         }
         let open = history.open.iter().map(|fault| {
-            let (at, name) = (clock::local(fault.last_at_us), &fault.code_name);
-            format!("{at}  {}: {name}", fault.cause())
+            let at = clock::local(fault.last_at_us);
+            let said = names.fault(fault.cause(), &fault.message, words);
+            format!("{at}  {said}")
         });
         lines(ui, words.case.open_faults, open);
         let repairs = history.repairs.iter().map(|(at_us, repair)| {
             let serials = [&repair.serial_old, &repair.serial_new];
             let serials = serials.map(|serial| serial.as_deref().unwrap_or("–"));
-            let (at, part) = (clock::local(*at_us), &repair.part);
+            let (at, part) = (clock::local(*at_us), names.part(&repair.part, words));
             format!(
                 "{at}  {part}: {} → {}  {}",
                 serials[0], serials[1], repair.note

@@ -15,6 +15,7 @@ use eframe::egui::{Button, Response, RichText, ScrollArea, Ui, vec2};
 use fault_db::Id;
 
 use super::procedures::Concluded;
+use super::report::SheetOf;
 use crate::gui::parts::{ActionPlace, name_edit};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
@@ -60,7 +61,7 @@ impl CasePage {
         self.known.poll();
         self.tiles.poll(context);
         self.proof.poll(context);
-        if self.repair.poll(context) {
+        if self.repair.poll(&self.tiles, context) {
             self.known.forget();
             self.stage = Stage::Prove;
         }
@@ -127,19 +128,22 @@ impl CasePage {
         self.stage = next;
     }
 
-    /// Draws it; the run whose sheet is to be drawn below.
+    /// Draws it; the sheet that is to be drawn below.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         has_orders: bool,
         context: &mut PageContext<'_>,
-    ) -> Option<Id> {
+    ) -> Option<SheetOf> {
         self.way(ui, context);
         ui.separator();
         if self.stage == Stage::Sheet {
             let run = self.seen?;
             self.proof.sign(ui, run, context);
-            return Some(run);
+            return Some(match self.repair.fault() {
+                Some(fault) => SheetOf::Case { fault, run },
+                None => SheetOf::Run(run),
+            });
         }
         ScrollArea::vertical()
             .auto_shrink(false)

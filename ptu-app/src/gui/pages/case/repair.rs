@@ -5,6 +5,7 @@ use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
+use super::symptom::SymptomTiles;
 use super::{CasePage, TEXT, large};
 use crate::gui::parts::{ActionPlace, name_edit, named_combo, note_edit};
 use crate::gui::request::Request;
@@ -26,7 +27,9 @@ pub struct Repair {
     serial_old: String,
     serial_new: String,
     note: String,
-    saving: Request<()>,
+    /// Answers with a fault of the case.
+    saving: Request<Option<Id>>,
+    fault: Option<Id>,
 }
 
 impl Repair {
@@ -46,7 +49,7 @@ impl Repair {
     }
 
     /// True once it has been stored.
-    pub fn poll(&mut self, context: &mut PageContext<'_>) -> bool {
+    pub fn poll(&mut self, names: &SymptomTiles, context: &mut PageContext<'_>) -> bool {
         if !self.saving.poll() {
             return false;
         }
@@ -56,12 +59,20 @@ impl Repair {
                 context.messages.trouble(words.not_recorded, why);
                 false
             }
-            _ => {
-                let said = fill(words.recorded, &[("part", &self.part)]);
+            Request::Ready(fault) => {
+                self.fault = fault;
+                let part = names.part(&self.part, context.words);
+                let said = fill(words.recorded, &[("part", &part)]);
                 context.messages.note(said);
                 true
             }
+            Request::Idle | Request::Pending(_) => false,
         }
+    }
+
+    /// A fault that was repaired: its case is this one.
+    pub fn fault(&self) -> Option<Id> {
+        self.fault
     }
 
     /// A part was put in, or it is said what else was done.
@@ -83,18 +94,19 @@ impl Repair {
 impl CasePage {
     pub(super) fn repair(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
-        let known = &self.known;
+        let (known, names) = (&self.known, &self.tiles);
         let form = &mut self.repair;
         Grid::new("repair").num_columns(2).show(ui, |ui| {
             ui.label(RichText::new(words.part).size(TEXT));
             let before = form.part.clone();
-            let combo = ComboBox::from_id_salt("repaired part").selected_text(&form.part);
+            let name = |part: &str| names.part(part, context.words).to_owned();
+            let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
             let combo = combo.width(FIELD).show_ui(ui, |ui| {
                 for part in &form.parts {
-                    ui.selectable_value(&mut form.part, part.clone(), part);
+                    ui.selectable_value(&mut form.part, part.clone(), name(part));
                 }
             });
-            named_combo(&combo.response, words.part, &form.part);
+            named_combo(&combo.response, words.part, &name(&form.part));
             if form.part != before {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
@@ -130,8 +142,13 @@ impl CasePage {
     }
 }
 
-/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases.
-fn store(paths: &DataPaths, run: Id, repair: &RepairRecord, who: &str) -> Result<(), Failure> {
+/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases; the first of them.
+fn store(
+    paths: &DataPaths,
+    run: Id,
+    repair: &RepairRecord,
+    who: &str,
+) -> Result<Option<Id>, Failure> {
     let store = paths.open()?;
     let mut faults: Vec<Id> = store
         .run_occurrences(run)?
@@ -140,12 +157,14 @@ fn store(paths: &DataPaths, run: Id, repair: &RepairRecord, who: &str) -> Result
         .collect();
     faults.sort_unstable();
     faults.dedup();
+    let mut first = None;
     for fault in faults {
         // The one before may have been of the same case.
         let state = store.fault(fault)?.fault.state;
         if state.next(FaultAction::Repair).is_ok() {
             store.repair_case(fault, repair, who, now_us())?;
+            first.get_or_insert(fault);
         }
     }
-    Ok(())
+    Ok(first)
 }

@@ -1,9 +1,8 @@
 //! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
 use eframe::egui::{Button, ComboBox, Label, RichText, TextEdit, Ui};
-use fault_db::Id;
 
-use super::{ReportPage, Shown, file};
+use super::{ReportPage, SheetOf, Shown, file};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::{name_edit, named_combo, open_file};
 use crate::gui::request::Request;
@@ -20,25 +19,31 @@ impl ReportPage {
         let words = context.words;
         let language = self.language(context);
         let Some(shown) = &self.shown else { return };
-        let run = shown.run;
+        let of = shown.of;
         ui.horizontal_wrapped(|ui| {
             ways_on(ui, words, shown, context.go_to);
             if let Some(other) = languages(ui, words, language) {
                 self.language = Some(other);
             }
         });
-        ui.horizontal(|ui| self.files(ui, context, run, language));
+        ui.horizontal(|ui| self.files(ui, context, of, language));
         self.open_written(ui, context);
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(words.common.operator);
             ui.add(name_edit(&mut context.settings.operator, NAME))
                 .labelled_by(label.id);
             let who = &context.settings.operator;
-            self.note.show(ui, words, context.queries, who, run);
+            self.note.show(ui, words, context.queries, who, of.run());
         });
     }
 
-    fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, run: Id, language: Language) {
+    fn files(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        of: SheetOf,
+        language: Language,
+    ) {
         let words = &context.words.report;
         let label = ui.label(words.file);
         let wide = (ui.available_width() - BUTTONS).max(BUTTONS);
@@ -51,7 +56,7 @@ impl ReportPage {
         ] {
             let button = ui.add_enabled(self.writing.is_idle(), Button::new(name));
             if button.on_hover_text(words.write_hint).clicked() {
-                self.write(context, run, language, ending);
+                self.write(context, of, language, ending);
             }
         }
         if !self.writing.is_idle() {
@@ -75,13 +80,19 @@ impl ReportPage {
         });
     }
 
-    fn write(&mut self, context: &mut PageContext<'_>, run: Id, language: Language, ending: &str) {
+    fn write(
+        &mut self,
+        context: &mut PageContext<'_>,
+        of: SheetOf,
+        language: Language,
+        ending: &str,
+    ) {
         let words = &context.words.report;
         let Some(path) = file::with_ending(&self.file, ending) else {
             context.messages.trouble(words.not_written, words.name_file);
             return;
         };
-        let write = move |paths: &DataPaths| file::write(paths, run, &path, language);
+        let write = move |paths: &DataPaths| file::write(paths, of, &path, language);
         self.writing = Request::Pending(context.queries.run(write));
     }
 }
@@ -91,7 +102,7 @@ fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destinatio
     let words = &words.report;
     let diagnosis = ui.add_enabled(shown.faulty, Button::new(words.to_diagnosis));
     if diagnosis.clicked() {
-        go_to.push(Destination::Diagnosis(shown.run));
+        go_to.push(Destination::Diagnosis(shown.of.run()));
     }
     match &shown.traces[..] {
         [] => {}

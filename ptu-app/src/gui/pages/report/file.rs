@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use fault_db::Id;
 
+use super::SheetOf;
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::NewFile;
 use ptu_bench::process_id;
+use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
 use ptu_report::{self, Target};
 
@@ -34,21 +36,30 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
     named.then(|| std::path::absolute(&path).unwrap_or(path))
 }
 
-/// Writes the report of a run to the file wanted, or beside it if that is there already; which it was.
+/// Writes the report of a run or a case to the file wanted, or beside it if that is there already; which it was.
 ///
 /// # Errors
 /// The file cannot be written, or the database not be read.
 pub fn write(
     paths: &DataPaths,
-    run: Id,
+    of: SheetOf,
     wanted: &Path,
     language: Language,
 ) -> Result<PathBuf, Failure> {
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
     let file = NewFile::begin(wanted)?;
-    let store = paths.read()?;
-    let detail = store.run(run, &process_id::is_alive)?;
-    ptu_report::write_beside(&target, file, &store, &paths.scripts, &detail, language)
+    let (store, scripts) = (paths.read()?, &paths.scripts);
+    let content = match of {
+        SheetOf::Run(run) => {
+            let run = store.run(run, &process_id::is_alive)?;
+            ptu_report::run_content(&target, &store, scripts, &run, language)?
+        }
+        SheetOf::Case { fault, .. } => {
+            let case = CaseSheet::gather(&store, Some(scripts), fault, "", false)?;
+            ptu_report::case_content(&target, &case, language)?
+        }
+    };
+    ptu_report::write_beside(&target, file, &content)
 }
 
 #[cfg(test)]

@@ -12,11 +12,10 @@ use fault_db::{Id, RunOccurrence};
 use crate::gui::parts::{FirstHalf, RunList, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
-use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
-use ptu_report::run::Sheet;
 use ptu_report::run::page::{Page, pages};
-use ptu_report::words::{Language, fill};
+use ptu_report::run::{CaseSheet, Sheet};
+use ptu_report::words::{Language, Words, fill};
 
 const RUNS: FirstHalf = FirstHalf {
     name: "reported runs",
@@ -30,7 +29,7 @@ pub struct ReportPage {
     /// The sheet asked for, and the one shown until that is there.
     asked: Request<Shown>,
     shown: Option<Shown>,
-    asked_for: Option<(Id, Language)>,
+    asked_for: Option<(SheetOf, Language)>,
     /// Version of the data it was asked for.
     version: (usize, u64),
     /// When the page was last shown, in passes of the window.
@@ -44,8 +43,28 @@ pub struct ReportPage {
     note: RunNoteForm,
 }
 
+/// What a sheet is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SheetOf {
+    Run(Id),
+    /// A fault's case, after this run.
+    Case {
+        fault: Id,
+        run: Id,
+    },
+}
+
+impl SheetOf {
+    /// The run it ends with.
+    fn run(self) -> Id {
+        match self {
+            Self::Run(run) | Self::Case { run, .. } => run,
+        }
+    }
+}
+
 struct Shown {
-    run: Id,
+    of: SheetOf,
     pages: Vec<Page>,
     /// Its traces with the faults each shows.
     traces: Vec<(Id, String)>,
@@ -56,7 +75,7 @@ struct Shown {
 impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
-        self.keep_up(ui, context, run);
+        self.keep_up(ui, context, run.map(SheetOf::Run));
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
             self.sheet(ui, context);
@@ -65,52 +84,63 @@ impl ReportPage {
 
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.runs.choose(run, context);
-        self.ask(run, context);
+        self.ask(SheetOf::Run(run), context);
     }
 
-    /// The sheet of a case's last run, without the list of runs.
-    pub fn show_of_case(&mut self, run: Id, ui: &mut Ui, context: &mut PageContext<'_>) {
-        self.keep_up(ui, context, Some(run));
+    /// This sheet, without the list of runs.
+    pub fn show_one(&mut self, of: SheetOf, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_up(ui, context, Some(of));
         self.sheet(ui, context);
     }
 
     /// Asks when another run is to be shown, and again when something may have been added to this one:
     /// the data have changed, or the page was away.
-    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, run: Option<Id>) {
+    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, of: Option<SheetOf>) {
         let pass = ui.ctx().cumulative_pass_nr();
         let away = pass > self.pass + 1;
         let pending = matches!(self.asked, Request::Pending(_));
         let again = (away || context.data_version() != self.version) && !pending;
         self.pass = pass;
-        let Some(run) = run else {
+        let Some(of) = of else {
             (self.asked, self.shown, self.asked_for) = (Request::Idle, None, None);
             return;
         };
-        if again || self.asked_for != Some((run, self.language(context))) {
-            self.ask(run, context);
+        if again || self.asked_for != Some((of, self.language(context))) {
+            self.ask(of, context);
         }
     }
 
-    fn ask(&mut self, run: Id, context: &PageContext<'_>) {
-        if self.run() != Some(run) {
+    fn ask(&mut self, of: SheetOf, context: &PageContext<'_>) {
+        let run = of.run();
+        if self.asked_for.is_none_or(|(asked, _)| asked != of) {
             self.shown = None;
             self.file = file::named_after(run, &self.file);
             self.written = None;
         }
         let language = self.language(context);
-        self.asked_for = Some((run, language));
+        self.asked_for = Some((of, language));
         self.version = context.data_version();
         self.asked = Request::Pending(context.queries.run(move |paths| {
             let store = paths.read()?;
-            let sheet = Sheet::gather(&store, Some(&paths.scripts), run)?;
+            let scripts = Some(&paths.scripts);
+            let words = language.words();
+            let sheet = Sheet::gather(&store, scripts, run)?;
+            let pages = match of {
+                SheetOf::Run(_) => pages(&sheet, words)?,
+                SheetOf::Case { fault, .. } => pages(
+                    &CaseSheet::gather(&store, scripts, fault, "", false)?,
+                    words,
+                )?,
+            };
             let seen = store.run_occurrences(run)?;
-            Shown::of(&sheet, &seen, &PartNames::of(&paths.scripts), language)
+            let parts = PartNames::of(&paths.scripts);
+            Ok(Shown::new(of, pages, &sheet, (&seen, &parts), words))
         }));
     }
 
-    /// The run that is shown or will be.
+    /// The run that is shown or will be, alone or as the end of a case.
     fn run(&self) -> Option<Id> {
-        self.asked_for.map(|(run, _)| run)
+        self.asked_for.map(|(of, _)| of.run())
     }
 
     /// The sheet's language.
@@ -142,8 +172,9 @@ impl ReportPage {
         }
         if let Some(noted) = self.note.poll(context.words, context.messages)
             && self.run() == Some(noted)
+            && let Some((of, _)) = self.asked_for
         {
-            self.ask(noted, context);
+            self.ask(of, context);
         }
     }
 
@@ -165,30 +196,31 @@ impl ReportPage {
         self.bar(ui, context);
         ui.separator();
         if let Some(shown) = &self.shown {
-            sheet_view::show(ui, shown.run, &shown.pages);
+            sheet_view::show(ui, shown.of.run(), &shown.pages);
         }
     }
 }
 
 impl Shown {
-    fn of(
+    fn new(
+        of: SheetOf,
+        pages: Vec<Page>,
         sheet: &Sheet,
-        seen: &[RunOccurrence],
-        parts: &PartNames,
-        language: Language,
-    ) -> Result<Self, Failure> {
+        (seen, parts): (&[RunOccurrence], &PartNames),
+        words: &Words,
+    ) -> Self {
         let run = &sheet.run.run;
         let traces = sheet.traces.iter();
         let shows = |trace: Id| {
             let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
-            let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, language.words()));
+            let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, words));
             said.collect::<Vec<_>>().join("; ")
         };
-        Ok(Self {
-            run: run.id,
-            pages: pages(sheet, language.words())?,
+        Self {
+            of,
+            pages,
             traces: traces.map(|trace| (trace.id, shows(trace.id))).collect(),
             faulty: run.steps_not_passed > 0 || run.faults > 0,
-        })
+        }
     }
 }
