@@ -3,6 +3,7 @@
 use crate::common::Place;
 use crate::common::window::{Window, latest, settings};
 use crate::common::{list, scripts, text};
+use crate::layout::complaints;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::{Language, Words, fill};
 
@@ -13,12 +14,21 @@ const CLICKS: usize = 10;
 struct Counted {
     window: Window,
     clicks: usize,
+    /// What could not be read or clicked on the way.
+    wrong: Vec<String>,
 }
 
 impl Counted {
     fn click(&mut self, label: &str) {
         self.window.click_last(label);
         self.clicks += 1;
+    }
+
+    /// Looks at the page as a person would who reads it.
+    fn look(&mut self, stage: &str) {
+        let found = complaints(&mut self.window).into_iter();
+        self.wrong
+            .extend(found.map(|said| format!("{stage}: {said}")));
     }
 }
 
@@ -32,7 +42,11 @@ fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
     settings.unit.faults = faults.split(',').map(str::to_owned).collect();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.harness().set_size(size.into());
-    Counted { window, clicks: 0 }
+    Counted {
+        window,
+        clicks: 0,
+        wrong: Vec::new(),
+    }
 }
 
 /// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was
@@ -45,31 +59,43 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
         Language::Korean => "비상제동 계전기",
     };
     let mut counted = window(language, size, "eb_relay.slow");
+    counted.look("start");
     counted.click(words.frame.connect);
     counted.window.wait_for("SIM-0001");
+    counted.window.wait_for(case.unknown);
+    counted.look("symptom");
     counted.click(&words.content("brakes late or not at all"));
     counted.click(case.find_part);
     counted.window.wait_for(case.record_repair);
     counted.window.wait_for_part("eb_relay");
+    counted.look("result");
     let found = latest(&counted.window);
     assert_eq!(found["run"]["symptom"], "brakes_late");
     counted.click(case.record_repair);
     counted.window.wait_for(case.serial_new);
+    counted.look("repair");
     counted.window.write(case.serial_old, "R-0815");
     counted.window.write(case.serial_new, "R-4711");
     counted.click(case.save);
     counted.window.wait_for(case.fitted);
     let repaired = fill(case.recorded, &[("part", &relay)]);
     counted.window.wait_for(&repaired);
+    counted.look("proof");
     counted.click(case.fitted);
     counted.click(case.prove);
     counted.window.wait_for(case.sign);
+    counted.window.wait_for(words.report.write_pdf);
+    counted.look("sheet");
     counted.click(case.sign);
     let signed = fill(case.signed_by, &[("who", &"Kim")]);
     counted.window.wait_for(&signed);
+    let file = counted.window.place.text_path("sheet.pdf");
+    counted.window.write_over(words.report.file, &file);
     counted.click(words.report.write_pdf);
     counted.window.wait_for(words.report.open_file);
     assert!(counted.clicks <= CLICKS, "{} clicks", counted.clicks);
+    let wrong = &counted.wrong;
+    assert!(wrong.is_empty(), "{size:?} {language:?} {wrong:#?}");
 
     let window = counted.window;
     let proof = latest(&window);

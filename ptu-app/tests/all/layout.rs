@@ -90,7 +90,7 @@ fn armed(window: &mut Window, words: &Words) {
 }
 
 /// What of the last frame cannot be read or clicked.
-fn complaints(window: &mut Window) -> Vec<String> {
+pub fn complaints(window: &mut Window) -> Vec<String> {
     window.step();
     let harness = window.harness();
     let known: BTreeMap<u64, (Role, String)> = harness

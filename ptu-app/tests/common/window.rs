@@ -136,7 +136,8 @@ impl Window {
 
     /// Clicks the last of several of this name that is in view.
     pub fn click_last(&mut self, label: &str) {
-        let seen = self.harness.ctx.content_rect().shrink(MESSAGES);
+        let mut seen = self.harness.ctx.content_rect();
+        seen.max.y -= MESSAGES;
         let last = |places: &[Rect]| {
             let mut places = places.iter().rev();
             places.find(|place| seen.contains_rect(**place)).copied()

@@ -149,6 +149,7 @@ impl CasePage {
             .auto_shrink(false)
             .show(ui, |ui| match self.stage {
                 Stage::Start => self.start(ui, context),
+                Stage::Unit if !context.units.chosen().is_connected() => self.start(ui, context),
                 Stage::Unit => self.unit(ui, context),
                 Stage::Find => self.running(ui, has_orders, Stage::Unit, context),
                 Stage::Result => self.result(ui, context),
@@ -218,7 +219,9 @@ fn is_proven(proof: &RepairProof) -> bool {
 /// A button that is found and hit at arm's length.
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
     let button = Button::new(RichText::new(text).size(TEXT).strong());
-    ui.add_enabled(enabled, button.min_size(vec2(180.0, TARGET)))
+    let button = button.min_size(vec2(180.0, TARGET));
+    // A row has its text in the middle of a button.
+    ui.horizontal(|ui| ui.add_enabled(enabled, button)).inner
 }
 
 /// Procedures of a run that did not pass.
