@@ -1,5 +1,6 @@
 //! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
 
+use protocol::event::Event;
 use protocol::injection::Lru;
 
 use crate::words::{Language, Words, fill};
@@ -75,16 +76,40 @@ pub fn what_failed(message: &str, words: &Words) -> String {
 
 /// A measurement's name without what only scripts write.
 fn measurement(name: &str, words: &Words) -> String {
-    let known = words.bench.measurement(name);
+    let known = words.measurement(name);
     if known != name {
-        return known;
+        return known.into_owned();
     }
+    spoken(name)
+}
+
+/// An identifier as words.
+fn spoken(name: &str) -> String {
     let word = |word: &str| match CAPITALS.contains(&word) {
         true => word.to_uppercase(),
         false => word.to_owned(),
     };
     let said: Vec<String> = name.split('_').map(word).collect();
     said.join(" ")
+}
+
+/// What a fault's code means: the event's text, or the stored name as words for a fault that a tester found.
+pub fn event(code: i64, name: &str, words: &Words) -> String {
+    let known = u16::try_from(code).ok().and_then(Event::from_code);
+    let text = known.map(|event| match words.language {
+        Language::English => event.definition().text,
+        Language::Korean => event.definition().text_ko,
+    });
+    let by_name = || words.content(&spoken(name)).into_owned();
+    text.map_or_else(by_name, str::to_owned)
+}
+
+/// A fault's code with its name and what it means, where that says more than the name.
+pub fn code(code: i64, name: &str, words: &Words) -> String {
+    match event(code, name, words) {
+        meaning if meaning == spoken(name) => format!("{code} {name}"),
+        meaning => format!("{code} {name}: {meaning}"),
+    }
 }
 
 #[cfg(test)]
@@ -103,6 +128,8 @@ mod tests {
         assert_eq!(said(proof), expected);
         let event = "brake line at 3.0 km/h, limit 25.0 km/h";
         assert_eq!(said(event), event);
+        let korean = what_failed(relay, Language::Korean.words());
+        assert_eq!(korean, "속도 코드 25: EB 반응 시간 640 ms, 허용 472");
         let place = place(relay).expect("a step");
         assert_eq!(
             (place.0, place.1),
@@ -112,5 +139,15 @@ mod tests {
             PartNames::default().fault("eb_relay", "", words),
             "eb_relay"
         );
+    }
+
+    #[test]
+    fn a_code_is_said_by_what_it_means() {
+        let [english, korean] = Language::ALL.map(Language::words);
+        assert_eq!(event(9000, "check_failed", english), "check failed");
+        assert_eq!(event(9000, "check_failed", korean), "점검 불합격");
+        assert_eq!(code(9000, "check_failed", english), "9000 check_failed");
+        let dead = "221 tacho1_dead: 속도센서 1 무신호";
+        assert_eq!(code(221, "tacho1_dead", korean), dead);
     }
 }

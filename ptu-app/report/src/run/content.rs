@@ -2,7 +2,6 @@
 //! with what and by whom.
 
 use fault_db::{FaultState, RunState, RunSummary, StepRecord, Verdict};
-use protocol::event::Event;
 
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
 use super::diagnosis::diagnosis;
@@ -12,7 +11,8 @@ use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::coverage_text;
-use crate::words::{Language, Words, fill};
+use crate::naming;
+use crate::words::{Words, fill};
 use ptu_bench::clock::{local, local_zoned};
 use ptu_bench::coverage::Coverage;
 use ptu_bench::stored::{outside_of, standing};
@@ -219,11 +219,9 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.trace, 0.1),
     ];
     let rows = sheet.run.faults.iter().map(|fault| {
-        let text = meaning(fault.code, words);
-        let apart = if text.is_empty() { "" } else { ": " };
         let state: FaultState = fault.state;
         let cells = [
-            format!("{} {}{apart}{text}", fault.code, fault.code_name),
+            naming::code(fault.code, &fault.code_name, words),
             sheet.part(&fault.lru, words),
             report.severity(&fault.severity).to_owned(),
             fault.occurrences.to_string(),

@@ -78,7 +78,9 @@ pub fn in_words(sources: &str, words: &Words) -> String {
             .rsplit_once('/')
             .filter(|_| kind == SourceKind::Measurement)
         {
-            Some((step, measurement)) => format!("{}/{measurement}", words.content(step)),
+            Some((step, name)) => {
+                format!("{}/{}", words.content(step), words.measurement(name))
+            }
             None => words.content(key).into_owned(),
         };
         fill(said, &[("key", &named)])

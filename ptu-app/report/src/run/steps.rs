@@ -103,7 +103,7 @@ fn measured(
     Row {
         kind: RowKind::Detail,
         cells: vec![
-            soft(words.bench.measurement(name)),
+            soft(words.measurement(name).into_owned()),
             (Cell::Text(tone, value_text), 1),
             soft(unit.clone()),
             limit(low),

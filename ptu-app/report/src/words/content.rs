@@ -1,4 +1,5 @@
-//! What scripts, catalogues and the runner say, in Korean: names of steps, fault modes, signals, reasons of limits, messages.
+//! What scripts, catalogues and the runner say, in Korean: names of steps, measurements, fault modes, signals, reasons of limits,
+//! messages.
 //!
 //! They are made and stored in English; `scripts/korean.toml` has the Korean beside the scripts it belongs to. A text is
 //! looked up with its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry. A message is a
@@ -9,7 +10,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use protocol::event::Event;
 use serde::Deserialize;
+
+use super::condition;
 
 /// The texts that are built in, as their file has them.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
@@ -28,10 +32,17 @@ pub(super) fn korean(text: &str) -> Cow<'_, str> {
         .map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
+/// What a measurement is called in Korean, by the name that its script gives it; `None` where there is none.
+pub(super) fn measurement(name: &str) -> Option<String> {
+    CONTENT.measurement(name)
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
     steps: BTreeMap<String, String>,
+    /// Apart from the others: `released` is a state, too.
+    measurements: BTreeMap<String, String>,
     modes: BTreeMap<String, String>,
     signals: BTreeMap<String, String>,
     reasons: BTreeMap<String, String>,
@@ -42,6 +53,7 @@ struct File {
 
 struct Content {
     texts: BTreeMap<String, String>,
+    measurements: BTreeMap<String, String>,
     patterns: Vec<Pattern>,
 }
 
@@ -65,6 +77,7 @@ impl Content {
         ];
         Ok(Self {
             texts: parts.into_iter().flatten().collect(),
+            measurements: file.measurements,
             patterns: (file.messages.into_iter())
                 .map(|[english, korean]| Pattern::new(&english, korean))
                 .collect(),
@@ -89,7 +102,10 @@ impl Content {
             let Some(found) = pattern.places_in(text, known) else {
                 continue;
             };
-            if found.iter().any(|part| known(part)) {
+            let mut in_places = pattern.places.iter().zip(&found);
+            if in_places
+                .any(|(place, part)| known(part) || self.measurement_in(place, part).is_some())
+            {
                 fits = Some((pattern, found));
                 break;
             }
@@ -98,9 +114,47 @@ impl Content {
         let (pattern, found) = fits?;
         let mut said = pattern.korean.clone();
         for (place, part) in pattern.places.iter().zip(found) {
-            said = said.replace(&format!("{{{place}}}"), &or_same(part));
+            let named = self.measurement_in(place, part);
+            let named = named.or_else(|| in_place(place, part));
+            let part = named.unwrap_or_else(|| or_same(part));
+            said = said.replace(&format!("{{{place}}}"), &part);
         }
         Some(said)
+    }
+
+    /// A number at the end of a name is that of a pair, an input or a speed.
+    fn measurement(&self, name: &str) -> Option<String> {
+        if let Some(korean) = self.measurements.get(name) {
+            return Some(korean.clone());
+        }
+        let (key, numbers) = match name.rsplit_once('_') {
+            Some((what, number)) if number_length(number) == number.len() => {
+                (format!("{what}_#"), vec![number])
+            }
+            _ => without_numbers(name),
+        };
+        let korean = self.measurements.get(&key)?;
+        Some(with_numbers(korean, &numbers))
+    }
+
+    fn measurement_in(&self, place: &str, part: &str) -> Option<String> {
+        (place == "measurement").then(|| self.measurement(part))?
+    }
+}
+
+/// What stands in a place that says what kind of thing it is.
+fn in_place(place: &str, part: &str) -> Option<String> {
+    match place {
+        "condition" | "seen" => condition::korean(part),
+        "expectation" => condition::expectation(part),
+        "signal" => condition::signal(part),
+        "event" => {
+            let (name, rest) = part.split_at(part.find(' ').unwrap_or(part.len()));
+            let event = Event::from_name(name)?.definition();
+            let alone = rest.is_empty() || rest.starts_with(" (") && rest.ends_with(')');
+            alone.then(|| format!("{}({name}){rest}", event.text_ko))
+        }
+        _ => None,
     }
 }
 

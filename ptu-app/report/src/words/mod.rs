@@ -6,6 +6,7 @@
 mod bench;
 mod case;
 mod common;
+mod condition;
 mod content;
 mod diagnosis;
 mod faults;
@@ -139,6 +140,16 @@ impl Words {
             Language::English => Cow::Borrowed(text),
             Language::Korean => content::korean(text),
         }
+    }
+
+    /// Name of a measurement, which scripts give, but for those of the unit's self-test.
+    pub fn measurement<'a>(&self, name: &'a str) -> Cow<'a, str> {
+        let korean = || match self.language {
+            Language::English => None,
+            Language::Korean => content::measurement(name),
+        };
+        let said = self.bench.self_test_item(name).or_else(korean);
+        said.map_or(Cow::Borrowed(name), Cow::Owned)
     }
 }
 

@@ -23,10 +23,10 @@ pub fn value_text(measurement: &Measurement) -> String {
 }
 
 /// The bar: the band between the limits, a mark at the value.
-pub fn limit_bar(ui: &mut Ui, measurement: &Measurement) -> Response {
+pub fn limit_bar(ui: &mut Ui, name: &str, measurement: &Measurement) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(SIZE[0], SIZE[1]), Sense::hover());
-    let label = format!("{} {}", measurement.name, value_text(measurement));
+    let label = format!("{name} {}", value_text(measurement));
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &label));
     let Some((value, low, high)) = places(measurement.value, measurement.low, measurement.high)
     else {

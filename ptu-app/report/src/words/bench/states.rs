@@ -145,18 +145,13 @@ impl Bench {
         }
     }
 
-    /// Name of a measurement, which scripts give, but for those of the unit's self-test.
-    pub fn measurement(&self, name: &str) -> String {
-        let item = name.strip_prefix("self_test.").and_then(|item| {
-            let known = SelfTest::SPEC.entries.iter();
-            let mut known = known.filter(|entry| entry.1.eq_ignore_ascii_case(item));
-            let bit = known.next()?.0;
-            self.bits(Signal::SelfTest).get(usize::from(bit)).copied()
-        });
-        item.map_or_else(
-            || name.to_owned(),
-            |item| format!("{}: {item}", self.self_test),
-        )
+    /// Name of a measurement of the unit's self-test; `None` for any other.
+    pub fn self_test_item(&self, measurement: &str) -> Option<String> {
+        let item = measurement.strip_prefix("self_test.")?;
+        let mut known = SelfTest::SPEC.entries.iter();
+        let bit = known.find(|entry| entry.1.eq_ignore_ascii_case(item))?.0;
+        let item = *self.bits(Signal::SelfTest).get(usize::from(bit))?;
+        Some(format!("{}: {item}", self.self_test))
     }
 
     /// Names of a signal's bits, bit 0 first; empty for a signal whose bits have no names here.

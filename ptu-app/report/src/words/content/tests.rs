@@ -25,7 +25,11 @@ fn a_message_is_told_with_what_it_holds() {
     let say = |text: &str| korean(text).into_owned();
     assert_eq!(
         say("eb_reaction = 500, allowed at most 250 ms"),
-        "eb_reaction = 500 (허용 250 ms 이하)"
+        "EB 반응 시간 = 500 (허용 250 ms 이하)"
+    );
+    assert_eq!(
+        say("air_t_3 = 2, allowed 0 to 1 N"),
+        "MT 쌍 3 부수차 공기제동 요구값 = 2 (허용 0 ~ 1 N)"
     );
     assert_eq!(
         say("not run, setup: nothing; not run, the bench"),
@@ -38,6 +42,33 @@ fn a_message_is_told_with_what_it_holds() {
     assert_eq!(
         say("a step of the depot's own"),
         "a step of the depot's own"
+    );
+}
+
+#[test]
+fn a_condition_is_told_by_the_names_of_its_signals_and_their_states() {
+    let say = |text: &str| korean(text).into_owned();
+    assert_eq!(
+        say("eb = applied did not come within 5 s"),
+        "5 s 이내에 성립하지 않음: 비상제동(EB) = 체결"
+    );
+    assert_eq!(
+        say("(fsb = applied or (limit ≤ 25 km/h and hcr = off)) came true"),
+        "성립해서는 안 되는 조건이 성립함: (상용전제동(FSB) 요구 = 체결 또는 \
+         (적용 중인 제한 속도 ≤ 25 km/h 그리고 현 운전실의 전두계전기(HCR) = 꺼짐))"
+    );
+    assert_eq!(
+        say("released: no value, eb = released did not come about in time"),
+        "완해 시간: 값 없음, 시간 안에 성립하지 않음: 비상제동(EB) = 완해"
+    );
+    assert_eq!(say("no data for eb"), "비상제동(EB) 데이터 없음");
+    assert_eq!(
+        say("the unit logged marker_missing (301), which no step provoked"),
+        "장치 고장 기록: 마커 누락(marker_missing) (301) (어느 단계에서도 유발하지 않음)"
+    );
+    assert_eq!(
+        say("(eb or nothing) came true"),
+        "성립해서는 안 되는 조건이 성립함: (eb or nothing)"
     );
 }
 

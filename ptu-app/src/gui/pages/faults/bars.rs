@@ -7,6 +7,7 @@ use super::charts::{CountsOverTime, DAY_US, by_name, over_time};
 use crate::gui::Palette;
 use crate::gui::parts::lane::cut_text;
 use ptu_bench::clock;
+use ptu_report::naming;
 use ptu_report::words::{Words, fill};
 
 const HEIGHT: f32 = 86.0;
@@ -21,9 +22,11 @@ pub fn charts(ui: &mut Ui, words: &Words, counts: &[&DailyCount]) {
     let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
     ui.horizontal(|ui| {
         in_time(ui, words, &chart, width);
-        let units = by_name(counts, |count| &count.unit_serial);
+        let units = by_name(counts, |count| count.unit_serial.as_str());
         named(ui, words, words.faults.by_unit, &units, width);
-        let codes = by_name(counts, |count| &count.code_name);
+        let codes = by_name(counts, |count| {
+            naming::event(count.code, &count.code_name, words)
+        });
         named(ui, words, words.faults.by_code, &codes, width);
     });
 }
@@ -72,7 +75,7 @@ fn named(
     ui: &mut Ui,
     words: &Words,
     title: &str,
-    (names, others): &(Vec<(&str, u64)>, u64),
+    (names, others): &(Vec<(impl AsRef<str>, u64)>, u64),
     width: f32,
 ) {
     let sum = names.iter().map(|(_, count)| count).sum::<u64>() + others;
@@ -88,7 +91,8 @@ fn named(
         .unwrap_or(1)
         .max(1) as f32;
     let rest = (*others > 0).then_some((words.faults.others, *others));
-    let rows = names.iter().copied().chain(rest);
+    let names = names.iter().map(|(name, count)| (name.as_ref(), *count));
+    let rows = names.chain(rest);
     let height = rect.height() / 7.0;
     let painter = ui.painter().with_clip_rect(rect);
     for (place, (name, count)) in (0..).zip(rows) {

@@ -43,16 +43,16 @@ pub fn over_time(counts: &[&DailyCount]) -> Option<CountsOverTime> {
 }
 
 /// The names seen most often with their counts, and how many times all others were.
-pub fn by_name<'a>(
+pub fn by_name<'a, N: Ord>(
     counts: &[&'a DailyCount],
-    name: impl Fn(&'a DailyCount) -> &'a str,
-) -> (Vec<(&'a str, u64)>, u64) {
+    name: impl Fn(&'a DailyCount) -> N,
+) -> (Vec<(N, u64)>, u64) {
     let mut sums = BTreeMap::new();
     for count in counts {
         *sums.entry(name(count)).or_insert(0) += count.count;
     }
     let mut sums: Vec<_> = sums.into_iter().collect();
-    sums.sort_by_key(|(name, count)| (std::cmp::Reverse(*count), *name));
+    sums.sort_by(|(a, of_a), (b, of_b)| of_b.cmp(of_a).then_with(|| a.cmp(b)));
     let others = sums.iter().skip(MOST_NAMES).map(|(_, count)| count).sum();
     sums.truncate(MOST_NAMES);
     (sums, others)
@@ -94,7 +94,7 @@ mod tests {
             .map(|(unit, n)| seen(0, unit, n))
             .collect();
         let counts: Vec<_> = counts.iter().collect();
-        let (names, others) = by_name(&counts, |count| &count.unit_serial);
+        let (names, others) = by_name(&counts, |count| count.unit_serial.as_str());
         assert_eq!(names[0], ("U8", 9));
         assert_eq!(others, 1 + 2 + 3);
     }

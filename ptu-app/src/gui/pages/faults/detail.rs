@@ -9,7 +9,7 @@ use crate::gui::{Destination, Palette};
 use ptu_bench::clock;
 use ptu_report::diagnosis::cause_text;
 use ptu_report::limits::short;
-use ptu_report::naming::PartNames;
+use ptu_report::naming::{self, PartNames};
 use ptu_report::words::{Words, fill};
 
 /// Occurrences shown at most; the command line shows all.
@@ -39,14 +39,17 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames)
             ],
         );
         let part = part(words, detail, parts);
-        let code = format!("{} {}", fault.code, fault.code_name);
+        let code = naming::code(fault.code, &fault.code_name, words);
         let id = fault.id.to_string();
         for (what, value) in [
             (words.common.unit, fault.unit_serial.as_str()),
             (words.common.part, &part),
             (words.common.code, &code),
             (words.common.number, &id),
-            (words.common.severity, &fault.severity),
+            (
+                words.common.severity,
+                words.report.severity(&fault.severity),
+            ),
             (words.faults.seen, &seen),
         ] {
             ui.horizontal_wrapped(|ui| {

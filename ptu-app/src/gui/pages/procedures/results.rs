@@ -189,7 +189,7 @@ fn details(
         .get(result.index)
         .and_then(|step| step.note.as_ref())
     {
-        ui.label(format!("{}: {note}", words.common.note));
+        ui.label(format!("{}: {}", words.common.note, words.content(note)));
     }
     if result.measurements.is_empty() {
         ui.label(RichText::new(words.procedures.no_measurements).color(Palette::of(ui).quiet));
@@ -205,8 +205,9 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     }
     Grid::new("measurements").num_columns(3).show(ui, |ui| {
         for measurement in measured {
-            ui.label(words.bench.measurement(&measurement.name));
-            let bar = limit_bar(ui, measurement);
+            let name = words.measurement(&measurement.name);
+            ui.label(&*name);
+            let bar = limit_bar(ui, &name, measurement);
             if let Some(source) = &measurement.limit_source {
                 bar.on_hover_text(source_in_words(source, words));
             }
