@@ -1,6 +1,7 @@
 //! What a diagnosis comes to in one sentence, in both languages: the one that every place shows.
 
 use protocol::LruId;
+use protocol::injection::Lru;
 use serde::Serialize;
 
 use super::next_check::NextCheck;
@@ -55,17 +56,18 @@ impl Sentence {
     }
 
     /// One part is found.
-    pub(crate) fn found(part: &LruId, probability: f64) -> Self {
-        let part = named(part, probability);
-        Self::new(format!("replace {part}"), format!("교체 대상: {part}"))
+    pub(crate) fn found(part: &LruId, probability: f64, names: &[Lru]) -> Self {
+        let [part, part_ko] = named(part, Some(probability), names);
+        Self::new(format!("replace {part}"), format!("교체 대상: {part_ko}"))
     }
 
     /// Two parts are found.
-    pub(crate) fn two_found([one, other]: [&LruId; 2], probability: f64) -> Self {
+    pub(crate) fn two_found(parts: [&LruId; 2], probability: f64, names: &[Lru]) -> Self {
         let both = percent(probability);
+        let [[one, one_ko], [other, other_ko]] = parts.map(|part| named(part, None, names));
         Self::new(
-            format!("two faults: replace {one} and {other} ({both})"),
-            format!("복합 고장, 교체 대상: {one}, {other} ({both})"),
+            format!("two faults ({both}): replace {one} and {other}"),
+            format!("복합 고장 ({both}), 교체 대상: {one_ko}, {other_ko}"),
         )
     }
 
@@ -102,34 +104,38 @@ impl Sentence {
     }
 
     /// Something is wrong, and these parts are the likely ones, the likeliest first.
-    pub(crate) fn cannot_tell(likely: &[&PartProbability], next: Option<&NextCheck>) -> Self {
-        let named: Vec<_> = likely
-            .iter()
-            .take(MOST_NAMED)
-            .map(|part| named(&part.lru, part.probability))
+    pub(crate) fn cannot_tell(
+        likely: &[&PartProbability],
+        next: Option<&NextCheck>,
+        names: &[Lru],
+    ) -> Self {
+        let shown = likely.iter().take(MOST_NAMED);
+        let shown: Vec<_> = shown
+            .map(|part| named(&part.lru, Some(part.probability), names))
             .collect();
-        let more = likely.len() - named.len();
+        let more = likely.len() - shown.len();
         let [more, more_ko] = match more {
             0 => [String::new(), String::new()],
             n => [format!(" or one of {n} more"), format!(" 외 {n}개")],
         };
-        match &named[..] {
+        let all = |language: usize, or: &str| {
+            let named: Vec<_> = shown.iter().map(|part| &*part[language]).collect();
+            named.join(or)
+        };
+        match &shown[..] {
             // As many parts as nobody could choose from.
             [] if next.is_some() => Self::new(
                 "not enough was run to tell which part",
                 "시험 범위가 부족하여 판별할 수 없습니다",
             ),
             [] => Self::new("cannot tell which part", "부품을 판별할 수 없습니다"),
-            [one] => Self::new(
+            [[one, one_ko]] => Self::new(
                 format!("not certain yet: {one}"),
-                format!("아직 확실하지 않습니다: {one}"),
+                format!("아직 확실하지 않습니다: {one_ko}"),
             ),
-            several => Self::new(
-                format!("cannot tell yet which: {}{more}", several.join(" or ")),
-                format!(
-                    "아직 판별할 수 없습니다: {}{more_ko}",
-                    several.join(" 또는 ")
-                ),
+            _ => Self::new(
+                format!("cannot tell yet which: {}{more}", all(0, " or ")),
+                format!("아직 판별할 수 없습니다: {}{more_ko}", all(1, " 또는 ")),
             ),
         }
         .then(next)
@@ -153,8 +159,32 @@ impl Sentence {
     }
 }
 
-fn named(part: &LruId, probability: f64) -> String {
-    format!("{part} ({})", percent(probability))
+/// A part by its name in both languages, with the identifier that commands take and its probability; by the identifier alone
+/// where the catalogue has no name.
+fn named(part: &LruId, probability: Option<f64>, names: &[Lru]) -> [String; 2] {
+    let sure = probability.map(percent);
+    let Some(known) = names.iter().find(|known| known.id == *part) else {
+        let id = sure.map_or_else(|| part.to_string(), |sure| format!("{part} ({sure})"));
+        return [id.clone(), id];
+    };
+    let apart = sure.map_or_else(String::new, |sure| format!(", {sure}"));
+    let with_id = |name: &str| format!("{name} ({part}{apart})");
+    [with_id(&in_sentence(&known.name)), with_id(&known.name_ko)]
+}
+
+/// An English name within a sentence: "the EB relay", "speed sensor 1".
+fn in_sentence(name: &str) -> String {
+    let mut letters = name.chars();
+    let (first, second) = (letters.next(), letters.next());
+    let begins = match (first, second) {
+        (Some(first), Some(second)) if second.is_lowercase() => first.to_lowercase().to_string(),
+        (first, _) => first.map_or_else(String::new, String::from),
+    };
+    let rest = &name[first.map_or(0, char::len_utf8)..];
+    match name.ends_with(|last: char| last.is_ascii_digit()) {
+        true => format!("{begins}{rest}"),
+        false => format!("the {begins}{rest}"),
+    }
 }
 
 fn percent(probability: f64) -> String {
@@ -176,7 +206,7 @@ mod tests {
     #[test]
     fn no_more_parts_are_named_than_a_person_can_choose_from() {
         let parts: Vec<_> = ["a", "b", "c", "d", "e"].map(|name| part(name, 0.2)).into();
-        let said = Sentence::cannot_tell(&parts.iter().collect::<Vec<_>>(), None);
+        let said = Sentence::cannot_tell(&parts.iter().collect::<Vec<_>>(), None, &[]);
         assert!(
             said.english.contains("c (20.0 %) or one of 2 more;"),
             "{}",
@@ -188,5 +218,32 @@ mod tests {
             said.korean
         );
         assert!(!said.english.contains("d (") && !said.korean.contains("d ("));
+    }
+
+    /// People know a part by its name, commands by its identifier.
+    #[test]
+    fn a_part_is_called_by_its_name_with_its_identifier() {
+        let known = |id: &str, name: &str, name_ko: &str| Lru {
+            id: id.parse().expect("a part"),
+            name: name.into(),
+            name_ko: name_ko.into(),
+        };
+        let names = [
+            known("eb_relay", "EB relay", "비상제동 계전기"),
+            known("speed_sensor_1", "Speed sensor 1", "속도센서 1"),
+            known("master_controller", "Master controller", "주간제어기"),
+        ];
+        let id = |id: &str| id.parse::<LruId>().expect("a part");
+        let one = Sentence::found(&id("eb_relay"), 0.996, &names);
+        assert_eq!(one.english, "replace the EB relay (eb_relay, 99.6 %)");
+        assert_eq!(one.korean, "교체 대상: 비상제동 계전기 (eb_relay, 99.6 %)");
+        let both = [&id("speed_sensor_1"), &id("master_controller")];
+        let two = Sentence::two_found(both, 0.96, &names);
+        let said = "two faults (96.0 %): replace speed sensor 1 (speed_sensor_1) and the master controller (master_controller)";
+        assert_eq!(two.english, said);
+        let said = "복합 고장 (96.0 %), 교체 대상: 속도센서 1 (speed_sensor_1), 주간제어기 (master_controller)";
+        assert_eq!(two.korean, said);
+        let unnamed = Sentence::found(&id("relay"), 0.996, &names);
+        assert_eq!(unnamed.english, "replace relay (99.6 %)");
     }
 }

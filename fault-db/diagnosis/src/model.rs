@@ -8,6 +8,7 @@ mod again;
 
 use std::collections::BTreeMap;
 
+use protocol::injection::Lru;
 use protocol::{LruId, Verdict};
 
 use super::cell::{Cell, StepOutcome};
@@ -72,6 +73,8 @@ pub struct Model<'a> {
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
+    /// What people call the parts; conclusions use the identifier of a part that is not among them.
+    pub names: &'a [Lru],
     /// The parts.
     parts: Vec<&'a LruId>,
     /// Effects of each part.
@@ -145,12 +148,18 @@ impl<'a> Model<'a> {
             suspects: Suspects::new(dictionary, &parts),
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
+            names: &[],
             parts,
             false_alarms: false_alarms(dictionary),
             ln_priors: priors.into_iter().map(f64::ln).collect(),
             scales: scales(dictionary),
             empty: Cell::default(),
         }
+    }
+
+    /// With what people call the parts.
+    pub fn with_names(self, names: &'a [Lru]) -> Self {
+        Self { names, ..self }
     }
 
     /// Part that has failed under a hypothesis; none of a healthy unit and of an unknown fault.

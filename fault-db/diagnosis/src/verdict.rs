@@ -243,10 +243,14 @@ impl Weights {
         let settings = model.settings;
         match self.failed(settings.found_at)[..] {
             [] => {}
-            [(one, probability)] => return (Finding::Found, Sentence::found(one, probability)),
+            [(one, probability)] => {
+                let said = Sentence::found(one, probability, model.names);
+                return (Finding::Found, said);
+            }
             [(one, _), (other, _), ..] => {
                 let both = self.both_failed(one, other);
-                return (Finding::TwoFound, Sentence::two_found([one, other], both));
+                let said = Sentence::two_found([one, other], both, model.names);
+                return (Finding::TwoFound, said);
             }
         }
         if self.no_fault >= settings.healthy_at {
@@ -263,6 +267,7 @@ impl Weights {
         let named_at = settings.conclusion.named_at;
         let parts = self.lrus.iter();
         let likely: Vec<_> = parts.filter(|part| part.probability >= named_at).collect();
-        (Finding::CannotTell, Sentence::cannot_tell(&likely, next))
+        let said = Sentence::cannot_tell(&likely, next, model.names);
+        (Finding::CannotTell, said)
     }
 }

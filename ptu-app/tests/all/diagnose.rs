@@ -102,7 +102,11 @@ fn an_adaptive_run_finds_the_part_in_fewer_steps() {
     let said = said.exits(1);
     let steps = |report: &Value| list(&report["steps"]).len();
     assert!(steps(&report) * 4 < steps(&whole), "{}", said.all());
-    assert!(said.out.contains("replace tra"), "{}", said.all());
+    assert!(
+        said.out.contains("replace the TRA (tra, "),
+        "{}",
+        said.all()
+    );
     assert_eq!(diagnosis(&place)["candidates"][0]["lru"], "tra");
 }
 

@@ -44,7 +44,7 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.wait_for("SIM-0001");
     window.click("Run");
     window.wait_for_part("Run over: failed");
-    window.wait_for_part("replace eb_relay");
+    window.wait_for_part("replace the EB relay (eb_relay, ");
     // A step that failed is a click from the trace that shows it.
     window.click("Trace");
     window.until("the traces page", |window| {
@@ -113,7 +113,7 @@ fn the_least_of_steps_finds_the_part_too() {
     window.click("Connect");
     window.wait_for("SIM-0001");
     window.click("Find the part");
-    window.wait_for_part("replace tra");
+    window.wait_for_part("replace the TRA (tra, ");
     assert!(latest(&window)["run"]["step_count"].as_u64() < Some(200));
 }
 

@@ -131,7 +131,9 @@ pub fn diagnose(
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, id).ok()) {
         history.add_symptom(&symptom, &settings);
     }
-    let model = Model::new(&dictionary, &settings, &history.factors);
+    // Without a catalogue that can be read, parts go by their identifiers.
+    let names = directory.faults().map(|all| all.lrus).unwrap_or_default();
+    let model = Model::new(&dictionary, &settings, &history.factors).with_names(&names);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
     let causes = assessed.causes();

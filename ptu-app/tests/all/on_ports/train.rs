@@ -268,7 +268,11 @@ fn a_search_on_a_train_takes_the_dictionary_of_a_laptop() {
     place.ptu(&campaign).exits(0);
     let train = Unit::aboard(&["--inject", "tra.dead"]);
     let said = Running::start(&place, &train, &["--adaptive"]).finish();
-    assert!(said.out.contains("replace tra"), "{}", said.all());
+    assert!(
+        said.out.contains("replace the TRA (tra, "),
+        "{}",
+        said.all()
+    );
     said.exits(1);
 }
 

@@ -69,8 +69,8 @@ fn the_whole_way(language: Language) {
     window.click("ptu/self_test");
     window.click(words.procedures.run);
     window.wait_for_part(match language {
-        Language::English => "replace eb_relay",
-        Language::Korean => "교체 대상: eb_relay",
+        Language::English => "replace the EB relay (eb_relay, ",
+        Language::Korean => "교체 대상: 비상제동 계전기 (eb_relay, ",
     });
     let run = window.place.json(&["runs", "show", "latest", "--json"]);
     for step in run["steps"].as_array().expect("steps") {
