@@ -26,6 +26,7 @@ mod target;
 pub mod ticks;
 pub mod trace_io;
 pub mod trace_view;
+mod without_korean;
 pub mod words;
 
 pub use coverage::coverage_text;
@@ -33,3 +34,4 @@ pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summa
 pub use proof::proof_text;
 use target::page_text;
 pub use target::{Target, case_content, run_content, write, write_beside, write_case};
+pub use without_korean::without_korean;

@@ -130,6 +130,9 @@ mod tests {
         assert_eq!(said(event), event);
         let korean = what_failed(relay, Language::Korean.words());
         assert_eq!(korean, "속도 코드 25: EB 반응 시간 640 ms, 허용 472");
+        let korean = Language::Korean.words().content(relay);
+        let whole = "atp/overspeed, 속도 코드 25: 경보, FSB, EB 작동: EB 반응 시간 = 640 (허용 472 ms 이하)";
+        assert_eq!(korean, whole);
         let place = place(relay).expect("a step");
         assert_eq!(
             (place.0, place.1),

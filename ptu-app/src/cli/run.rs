@@ -1,5 +1,6 @@
 //! `ptu run`: check procedures.
 
+mod check;
 mod conclusion;
 mod resume;
 
@@ -109,7 +110,7 @@ pub struct RunArguments {
     /// Embedded units to test side by side
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: u32,
-    /// Report all errors of all scripts, and limits that name no source, and drive nothing
+    /// Report all errors of all scripts, limits that name no source and texts without Korean, and drive nothing
     #[arg(long, conflicts_with = "list")]
     check: bool,
     /// Show what would be run and drive nothing
@@ -182,20 +183,7 @@ impl RunArguments {
             resume::tell_changes(earlier, &procedures, &setup);
         }
         if self.check {
-            let steps: usize = procedures
-                .iter()
-                .map(|procedure| procedure.steps.len())
-                .sum();
-            let found: Vec<_> = procedures.iter().flat_map(|p| p.without_source()).collect();
-            found.iter().for_each(|finding| stdio::note(finding));
-            let found = match found.len() {
-                0 => "each limit names its source".to_owned(),
-                n => format!("{n} limits name no source"),
-            };
-            return print_out(&format!(
-                "{} procedures, {steps} steps, no errors; {found}",
-                procedures.len()
-            ));
+            return check::show(&procedures);
         }
         let procedures = self.asked_for(procedures);
         let asks = procedures.iter().any(|procedure| procedure.asks());

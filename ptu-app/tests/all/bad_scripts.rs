@@ -149,7 +149,7 @@ fn check_reports_the_errors_of_all_scripts() {
 }
 
 #[test]
-fn check_names_each_limit_without_a_source_and_is_no_error() {
+fn check_names_each_limit_without_a_source_and_each_text_without_korean_and_is_no_error() {
     let place = Place::new();
     let limit = |source: &str| {
         format!("{HEAD}step(\"a\", measure = value(\"v\", speed, high = kmh(1{source})))\n")
@@ -161,6 +161,9 @@ fn check_names_each_limit_without_a_source_and_is_no_error() {
         "{}",
         said.all()
     );
+    // A depot's own reason, which the program has no Korean for.
+    assert!(said.out.contains("1 text has no Korean"), "{}", said.all());
+    assert!(said.err.contains("\"it stands\""), "{}", said.all());
     place.write("without.star", &limit(""));
     let said = place.ptu(&["run", "--check", "without.star"]).exits(0);
     assert!(
