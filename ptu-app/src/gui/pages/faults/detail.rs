@@ -86,7 +86,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
     let is_finding =
         |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
     for event in detail.events.iter().filter(|event| !is_finding(event)) {
-        show_event(ui, words, event);
+        show_event(ui, words, event, detail);
     }
     ui.separator();
     ui.label(RichText::new(words.faults.occurrences).strong());
@@ -119,7 +119,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
     }
 }
 
-fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
+fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent, detail: &FaultDetail) {
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
         match event.state {
@@ -136,7 +136,12 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent) {
             ui.label(RichText::new(&event.who).strong());
         }
     });
-    let mut said = event.note.clone();
+    // What a person wrote stays as it is.
+    let mut seen = detail.occurrences.iter();
+    let mut said = match seen.any(|seen| seen.message == event.note) {
+        true => words.content(&event.note).into_owned(),
+        false => event.note.clone(),
+    };
     if let Some(repair) = &event.repair {
         let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
         let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
