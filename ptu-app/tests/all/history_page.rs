@@ -69,6 +69,52 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     }
 }
 
+/// Goal: who reads Korean reads no identifier of a measurement and the part's name. Method: a run that fails by its relay,
+/// led by the window; then every page that tells of it.
+#[test]
+fn korean_pages_name_measurements_parts_and_severities_in_korean() {
+    let mut settings = Settings {
+        page: Page::Procedures,
+        language: Language::Korean,
+        ..Settings::default()
+    };
+    settings.unit.faults = vec!["eb_relay.slow".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    let words = Language::Korean.words();
+    window.click(words.procedures.none);
+    window.click("atp/overspeed");
+    window.click(words.frame.connect);
+    window.wait_for("SIM-0001");
+    window.click(words.procedures.run);
+    window.wait_for_part("교체 대상: 비상제동 계전기 (eb_relay, ");
+    window.wait_for_part("EB 반응 시간");
+    let report = window.place.json(&["runs", "show", "latest", "--json"]);
+    let steps = report["steps"].as_array().expect("steps").iter();
+    let measured = steps.flat_map(|step| step["measurements"].as_array().expect("a list"));
+    let mut names: Vec<_> = measured.filter_map(|of| of["name"].as_str()).collect();
+    names.dedup();
+    assert!(names.contains(&"eb_reaction"), "{names:?}");
+    for (page, shows) in [
+        (Page::Procedures, "EB 반응 시간"),
+        (Page::Faults, "EB 반응 시간"),
+        (Page::Diagnosis, "교체 대상: 비상제동 계전기 (eb_relay, "),
+    ] {
+        window.key(page.key());
+        window.wait_for_part(shows);
+        if page == Page::Faults {
+            window.click_part("비상제동 계전기 · ");
+            window.wait_for(words.report.major);
+            window.wait_for("9000 check_failed: 점검 불합격");
+        }
+        for text in window.shown() {
+            let is_in =
+                |name: &&&str| text.contains(**name) || text.contains(&name.replace('_', " "));
+            let english = names.iter().find(is_in);
+            assert!(english.is_none(), "{page:?}: {english:?} in {text}");
+        }
+    }
+}
+
 /// Goal: what is written about one fault is never stored on another. Method: a note and a serial number
 /// typed for the one, then the other is chosen, acknowledged and repaired.
 #[test]
@@ -130,7 +176,7 @@ fn the_window_says_what_the_command_line_says() {
         (
             &["--inject", "eb_relay.slow", "atp/overspeed"],
             1,
-            "replace eb_relay",
+            "replace the EB relay (eb_relay, ",
         ),
         (
             &["--inject", "atp_receiver.dead", "atp/limit_speed"],
