@@ -240,15 +240,6 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// What a fault's code means; empty for a code of another program.
-pub fn meaning(code: i64, words: &Words) -> &'static str {
-    let event = u16::try_from(code).ok().and_then(Event::from_code);
-    event.map_or("", |event| match words.language {
-        Language::English => event.definition().text,
-        Language::Korean => event.definition().text_ko,
-    })
-}
-
 /// What was said about the run.
 fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;

@@ -5,8 +5,9 @@ use fault_db::{FaultEvent, FaultSummary, StepRecord};
 
 use super::CaseSheet;
 use super::first_page::{clipped, comparison};
+use crate::naming;
 use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
-use crate::run::content::{body, meaning};
+use crate::run::content::body;
 use crate::run::plots::plots;
 use crate::run::sources::Sources;
 use crate::run::{Sheet, page, steps};
@@ -193,11 +194,10 @@ impl CaseSheet {
     /// code says it.
     pub(super) fn message(&self, text: &str, words: &Words) -> String {
         let said = words.content(text);
-        match meaning(self.fault.fault.code, words) {
-            means if !means.is_empty() && words.language != Language::English && said == text => {
-                means.to_owned()
-            }
-            _ => said.into_owned(),
+        let is_english = words.language != Language::English && said == text;
+        match is_english {
+            true => naming::event(self.fault.fault.code, &self.fault.fault.code_name, words),
+            false => said.into_owned(),
         }
     }
 }

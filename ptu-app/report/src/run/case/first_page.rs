@@ -258,7 +258,7 @@ fn row(one: &Compared<'_>, is_of_several: bool, words: &Words) -> Row {
         false => name,
     };
     let name = match one.before {
-        Some(before) => format!("{name}\n{}", words.bench.measurement(&before.name)),
+        Some(before) => format!("{name}\n{}", words.measurement(&before.name)),
         None => name,
     };
     let allowed = one.before.map_or_else(String::new, |before| {
