@@ -128,7 +128,9 @@ fn what_another_program_records_is_shown_and_a_lost_database_is_said() {
     assert!(!there.exists(), "made again in silence");
     std::fs::rename(&away, &there).expect("put back");
     window.until("the faults", |window| window.shows_part(" faults"));
-    assert!(!window.shows_part("The database is gone"));
+    window.until("what is over to go", |window| {
+        !window.shows_part("The database is gone")
+    });
 }
 
 #[test]

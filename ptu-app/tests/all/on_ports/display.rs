@@ -20,7 +20,7 @@ const PAGES: [&str; 6] = [
 ];
 
 /// Where the button that begins a run is on the page of procedures.
-const RUN: [&str; 2] = ["333", "89"];
+const RUN: [&str; 2] = ["418", "95"];
 
 /// It is clicked again after this time.
 const AGAIN: Duration = Duration::from_secs(3);

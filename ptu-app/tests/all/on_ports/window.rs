@@ -94,7 +94,7 @@ fn the_whole_way(language: Language) {
     let pulled = |window: &Window| {
         let shown = window.shown();
         let mut shown = shown.into_iter();
-        shown.find(|text| text.ends_with(&format!("  {}", words.traces.no_fault)))
+        shown.find(|text| text.ends_with(words.traces.no_fault))
     };
     window.until("the pulled run", |window| pulled(window).is_some());
     let trace = pulled(&window).expect("just seen");

@@ -220,6 +220,9 @@ fn is_proven(proof: &RepairProof) -> bool {
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
     let button = Button::new(RichText::new(text).size(TEXT).strong());
     let button = button.min_size(vec2(180.0, TARGET));
+    if ui.layout().is_horizontal() {
+        return ui.add_enabled(enabled, button);
+    }
     // A row has its text in the middle of a button.
     ui.horizontal(|ui| ui.add_enabled(enabled, button)).inner
 }
