@@ -20,7 +20,7 @@ use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
 use protocol::{CYCLE, Speed};
 use ptu_app::gui::DataPaths;
-use ptu_app::gui::{App, Options, Settings};
+use ptu_app::gui::{App, Options, Page, Settings};
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::link::{Pace, keep_time};
@@ -106,7 +106,10 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
             folder.path().join("history.db"),
             ScriptsDirectory::find(Some(&scripts)).expect("scripts"),
         ),
-        settings: Settings::default(),
+        settings: Settings {
+            page: Page::Bench,
+            ..Settings::default()
+        },
         settings_file: None,
         connect: true,
         interrupted: ptu_bench::stop::Stop::default(),

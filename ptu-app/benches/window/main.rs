@@ -99,7 +99,11 @@ impl Window {
     fn live() -> Self {
         let folder = TempDir::new().expect("folder");
         let database = folder.path().join("history.db");
-        let mut window = Self::with(folder, database, Settings::default(), USUAL);
+        let settings = Settings {
+            page: Page::Bench,
+            ..Settings::default()
+        };
+        let mut window = Self::with(folder, database, settings, USUAL);
         window.frame(&[Key::F9]);
         window.frames_until(|window| {
             window.frame(&[]);

@@ -155,4 +155,11 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
             .iter()
             .all(|fault| fault["state"] != "verified")
     );
+    // The next repair is to be fitted before it can be proved.
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.window.write(case.note, "fitted another");
+    counted.click(case.save);
+    counted.window.wait_for(case.prove);
+    assert!(!counted.window.enabled(case.prove));
 }

@@ -120,8 +120,9 @@ impl CasePage {
         let next = self.stage.after_run(outcome.exit, proven);
         if next == Stage::Result {
             self.found = Some(Found::of(outcome, run, said));
-        }
-        if self.stage == Stage::Prove {
+            // Another repair is to be fitted and proved.
+            self.proof = Proof::default();
+        } else {
             self.proof.ran(said, outcome.verdict);
         }
         self.known.forget();

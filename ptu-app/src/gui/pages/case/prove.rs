@@ -90,8 +90,11 @@ impl CasePage {
         if let Some(said) = self.proof.said.as_ref().filter(|said| !said.is_empty()) {
             ui.label(RichText::new(said).size(TEXT).strong());
         } else if let Some(verdict) = self.proof.verdict {
-            let verdict = context.words.common.verdict(verdict);
-            let said = fill(words.not_finished, &[("verdict", &verdict)]);
+            let name = context.words.common.verdict(verdict);
+            let said = match verdict {
+                Verdict::Passed => words.no_fault.to_owned(),
+                _ => fill(words.not_finished, &[("verdict", &name)]),
+            };
             ui.label(RichText::new(said).size(TEXT));
         }
         let quiet = Palette::of(ui).quiet;
@@ -118,6 +121,11 @@ impl CasePage {
                 procedures: found.procedures.clone(),
                 part: self.repair.part.clone(),
             });
+        }
+        // Its sheet says that the repair is not proved.
+        let passed = self.proof.verdict == Some(Verdict::Passed);
+        if passed && place.clicked(&large(ui, words.to_sheet, true)) {
+            self.stage = Stage::Sheet;
         }
     }
 }
