@@ -1,7 +1,7 @@
 //! What is wrong with a unit as who brings it says (`scripts/symptoms.toml`): a weak sign of the parts that it may come from.
 
 use protocol::LruId;
-use protocol::injection::FaultCatalogue;
+use protocol::injection::Lru;
 use serde::Deserialize;
 
 use crate::data::{ScriptsDirectory, read};
@@ -28,17 +28,17 @@ struct Written {
     symptoms: Vec<Symptom>,
 }
 
-/// The symptoms of a scripts directory, in the order of its file.
+/// The symptoms of a scripts directory, in the order of its file; `parts` are those of its catalogue.
 ///
 /// # Errors
-/// The file cannot be read, or is wrong: a name given twice, a part that the catalogue does not know.
-pub fn load(directory: &ScriptsDirectory) -> Result<Vec<Symptom>, Failure> {
+/// The file cannot be read, or is wrong: a name given twice, a part that is not among `parts`.
+pub fn load(directory: &ScriptsDirectory, parts: &[Lru]) -> Result<Vec<Symptom>, Failure> {
     let file = directory.path().join(FILE);
-    of_toml(&read(&file)?, &directory.faults()?)
+    of_toml(&read(&file)?, parts)
         .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
 }
 
-fn of_toml(text: &str, catalogue: &FaultCatalogue) -> Result<Vec<Symptom>, String> {
+fn of_toml(text: &str, parts: &[Lru]) -> Result<Vec<Symptom>, String> {
     let written: Written = toml::from_str(text).map_err(|error| error.to_string())?;
     for (place, symptom) in written.symptoms.iter().enumerate() {
         let id = &symptom.id;
@@ -48,7 +48,7 @@ fn of_toml(text: &str, catalogue: &FaultCatalogue) -> Result<Vec<Symptom>, Strin
         {
             return Err(format!("there are two symptoms \"{id}\""));
         }
-        let known = |part: &&LruId| catalogue.lrus.iter().any(|lru| lru.id == **part);
+        let known = |part: &&LruId| parts.iter().any(|lru| lru.id == **part);
         if let Some(part) = symptom.parts.iter().find(|part| !known(part)) {
             return Err(format!("symptom \"{id}\": no part \"{part}\""));
         }
@@ -60,8 +60,8 @@ fn of_toml(text: &str, catalogue: &FaultCatalogue) -> Result<Vec<Symptom>, Strin
 ///
 /// # Errors
 /// There is none, or the file cannot be read.
-pub fn find(directory: &ScriptsDirectory, id: &str) -> Result<Symptom, Failure> {
-    let mut symptoms = load(directory)?;
+pub fn find(directory: &ScriptsDirectory, parts: &[Lru], id: &str) -> Result<Symptom, Failure> {
+    let mut symptoms = load(directory, parts)?;
     let found = symptoms.iter().position(|symptom| symptom.id == id);
     let found = found.ok_or_else(|| {
         let known = symptoms.iter().map(|symptom| symptom.id.as_str());
@@ -80,17 +80,19 @@ mod tests {
 
     #[test]
     fn the_file_names_parts_of_the_catalogue() {
-        let symptoms = load(&test_support::scripts()).expect("symptoms");
+        let scripts = test_support::scripts();
+        let parts = scripts.faults().expect("a catalogue").lrus;
+        let symptoms = load(&scripts, &parts).expect("symptoms");
         assert!(symptoms.iter().any(|symptom| symptom.id == "brakes_late"));
     }
 
     #[test]
     fn an_unknown_part_and_a_name_given_twice_are_told() {
-        let catalogue = test_support::scripts().faults().expect("a catalogue");
+        let parts = test_support::scripts().faults().expect("a catalogue").lrus;
         let one = |id: &str, part: &str| {
             format!("[[symptoms]]\nid = \"{id}\"\nname = \"-\"\nparts = [\"{part}\"]\n")
         };
-        let wrong = |text: String| of_toml(&text, &catalogue).expect_err("wrong");
+        let wrong = |text: String| of_toml(&text, &parts).expect_err("wrong");
         let said = wrong(one("a", "eb_rely"));
         assert_eq!(said, "symptom \"a\": no part \"eb_rely\"");
         let said = wrong(one("a", "eb_relay") + &one("a", "tra"));

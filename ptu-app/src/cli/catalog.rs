@@ -102,7 +102,8 @@ impl CatalogArguments {
 
     fn symptoms(&self) -> Result<Vec<Value>, Failure> {
         let entry = |symptom: symptoms::Symptom| json!({ "id": symptom.id, "name": symptom.name, "parts": symptom.parts });
-        let symptoms = symptoms::load(&self.scripts.find()?)?;
+        let directory = self.scripts.find()?;
+        let symptoms = symptoms::load(&directory, &directory.faults()?.lrus)?;
         Ok(symptoms.into_iter().map(entry).collect())
     }
 

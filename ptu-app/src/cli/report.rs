@@ -3,12 +3,12 @@
 use clap::Args;
 use fault_db::{Id, Store, StoreError};
 
-use super::reports::OutOption;
 use super::{Database, ScriptsOption, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_report::run::CaseSheet;
-use ptu_report::write_case;
+use ptu_report::words::Language;
+use ptu_report::{Target, write_case};
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///
@@ -27,8 +27,12 @@ pub struct ReportArguments {
     /// The run or the fault: an id, its beginning or end (at least 4 digits); `latest` is the last run
     #[arg(value_name = "RUN|CASE")]
     id: String,
-    #[command(flatten)]
-    out: OutOption,
+    /// The file: a sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
+    #[arg(long, value_name = "FILE", required = true)]
+    out: Vec<Target>,
+    /// Language of sheets: en or ko
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
     /// The id is a fault's; `latest` is the fault seen last
     #[arg(long)]
     case: bool,
@@ -53,7 +57,7 @@ enum Told {
 impl ReportArguments {
     /// Writes.
     pub fn run(self) -> Result<Exit, Failure> {
-        self.out.check()?;
+        self.out.iter().try_for_each(Target::check)?;
         let store = self.database.open_read_only()?;
         let told = self.told(&store)?;
         let directory = self.scripts.find_if_there()?;
@@ -65,15 +69,19 @@ impl ReportArguments {
             }
             Told::Run(id) => {
                 let run = store.run(id, &process_id::is_alive)?;
-                self.out.write(&store, directory.as_ref(), &run)?;
+                ptu_report::write(&self.out, &store, directory.as_ref(), &run, self.lang)?;
             }
             Told::Case(id) => {
                 let (depot, annex) = (&self.depot, self.annex);
                 let case = CaseSheet::gather(&store, directory.as_ref(), id, depot, annex)?;
-                write_case(&self.out.out, &case, self.out.lang)?;
+                write_case(&self.out, &case, self.lang)?;
             }
         }
-        print_out(&self.out.written())
+        let files = self.out.iter();
+        let files: Vec<_> = files
+            .map(|file| file.path().display().to_string())
+            .collect();
+        print_out(&format!("written: {}", files.join(", ")))
     }
 
     /// A run, or else a fault; what fits both is refused.

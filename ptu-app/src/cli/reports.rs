@@ -1,4 +1,4 @@
-//! `--report`, `--out` and `--lang`: writes the report of a run to files.
+//! `--report` and `--lang`: writes the report of a run to files.
 
 use clap::Args;
 use fault_db::{RunDetail, Store};
@@ -17,43 +17,6 @@ pub struct ReportOption {
     /// Language of test sheets: en or ko
     #[arg(long, value_name = "LANGUAGE", default_value = "en")]
     lang: Language,
-}
-
-/// Which reports to write, where nothing else is asked for.
-#[derive(Debug, Args)]
-pub struct OutOption {
-    /// The file: a sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
-    #[arg(long, value_name = "FILE", required = true)]
-    pub out: Vec<Target>,
-    /// Language of sheets: en or ko
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    pub lang: Language,
-}
-
-impl OutOption {
-    /// Finds out before anything is read whether all can be written.
-    pub fn check(&self) -> Result<(), Failure> {
-        self.out.iter().try_for_each(Target::check)
-    }
-
-    /// Writes the reports of a run.
-    pub fn write(
-        &self,
-        store: &Store,
-        directory: Option<&ScriptsDirectory>,
-        run: &RunDetail,
-    ) -> Result<(), Failure> {
-        ptu_report::write(&self.out, store, directory, run, self.lang)
-    }
-
-    /// Which files were written.
-    pub fn written(&self) -> String {
-        let files = self.out.iter();
-        let files: Vec<_> = files
-            .map(|file| file.path().display().to_string())
-            .collect();
-        format!("written: {}", files.join(", "))
-    }
 }
 
 impl ReportOption {

@@ -311,7 +311,7 @@ impl RunArguments {
         self.reports.check()?;
         let symptom = self.symptom.as_deref();
         let symptom = symptom
-            .map(|id| symptoms::find(directory, id))
+            .map(|id| symptoms::find(directory, &directory.faults()?.lrus, id))
             .transpose()?;
         let store = self.database.open_file()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {

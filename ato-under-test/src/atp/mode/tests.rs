@@ -135,10 +135,8 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
     assert_eq!(after(pressed).0, Mode::AutomaticRun);
 }
 
-/// Goal: neither a power-up nor mode off in a run lets a driverless train drive off by the departure that is still given.
-/// Method: that departure is the first thing heard, is heard again after silence, then withheld and given again.
-#[test]
-fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
+/// A departure given to a driverless train, and the same train with it withheld.
+fn departure() -> (ModeInputs, ModeInputs) {
     let given = ModeInputs {
         switch: ModeSwitch::Driverless,
         ..GOOD
@@ -148,6 +146,14 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
         heard: Some(false),
         ..given
     };
+    (given, withheld)
+}
+
+/// Goal: neither a power-up nor mode off in a run lets a driverless train drive off by the departure that is still given.
+/// Method: that departure is the first thing heard, is heard again after silence, then withheld and given again.
+#[test]
+fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
+    let (given, withheld) = departure();
     let silent = ModeInputs {
         departure: false,
         heard: None,
@@ -190,15 +196,7 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
 /// and while a failure of ATO is not acknowledged; then the brake is released, the failure acknowledged.
 #[test]
 fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
-    let given = ModeInputs {
-        switch: ModeSwitch::Driverless,
-        ..GOOD
-    };
-    let withheld = ModeInputs {
-        departure: false,
-        heard: Some(false),
-        ..given
-    };
+    let (given, withheld) = departure();
     let acknowledged = ModeInputs {
         acknowledge: true,
         ..given

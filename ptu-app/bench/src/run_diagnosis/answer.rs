@@ -126,13 +126,13 @@ pub fn diagnose(
         practice: run.run.is_practice(),
     };
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
-    // A symptom that this directory's file no longer has says nothing.
-    let said = run.run.symptom.as_deref();
-    if let Some(symptom) = said.and_then(|id| symptoms::find(directory, id).ok()) {
-        history.add_symptom(&symptom, &settings);
-    }
     // Without a catalogue that can be read, parts go by their identifiers.
     let names = directory.faults().map(|all| all.lrus).unwrap_or_default();
+    // A symptom that this directory's file no longer has says nothing.
+    let said = run.run.symptom.as_deref();
+    if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
+        history.add_symptom(&symptom, &settings);
+    }
     let model = Model::new(&dictionary, &settings, &history.factors).with_names(&names);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();

@@ -9,7 +9,6 @@ use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::process_id;
-use ptu_bench::run::unit_text;
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 
@@ -126,8 +125,7 @@ impl RunList {
 
     /// What a person chose no longer holds when a run has ended or another unit is connected.
     fn follow(&mut self, context: &PageContext<'_>) {
-        let identity = context.units.chosen().identity();
-        let connected = identity.map(|identity| unit_text::serial(&identity));
+        let connected = context.units.chosen().serial();
         let followed = Followed {
             unit: connected.or_else(|| self.followed.unit.clone()),
             runs_ended: context.units.runs_ended(),

@@ -3,7 +3,6 @@
 use eframe::egui::Ui;
 
 use crate::gui::PageContext;
-use ptu_bench::run::unit_text;
 use ptu_report::words::fill;
 
 /// The unit connected last, and whether only what belongs to it is shown.
@@ -17,8 +16,7 @@ impl UnitFilter {
     /// Follows the connected unit, and offers all of them; true when it takes others than before.
     pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
         let before = self.taken().map(str::to_owned);
-        let identity = context.units.chosen().identity();
-        let connected = identity.map(|identity| unit_text::serial(&identity));
+        let connected = context.units.chosen().serial();
         if connected.is_some() && connected != self.unit {
             self.unit = connected;
             self.all = false;

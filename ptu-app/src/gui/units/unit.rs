@@ -12,7 +12,7 @@ use crate::gui::query_worker::QueryWorker;
 use crate::gui::request::Request;
 use ptu_bench::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
 use ptu_bench::failure::Failure;
-use ptu_bench::run::{BenchChoice, BenchSetup, SessionEvent};
+use ptu_bench::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 use ptu_report::coverage_text;
 use ptu_report::words::{Words, fill};
 
@@ -78,12 +78,15 @@ impl Unit {
         self.bench.live().identity
     }
 
+    /// Its serial number, once it has told it.
+    pub fn serial(&self) -> Option<String> {
+        self.identity().as_ref().map(unit_text::serial)
+    }
+
     /// What it is called: its serial number, or where it is.
     pub fn name(&self) -> String {
-        match self.identity() {
-            Some(identity) => ptu_bench::run::unit_text::serial(&identity),
-            None => self.choice.endpoint.clone(),
-        }
+        self.serial()
+            .unwrap_or_else(|| self.choice.endpoint.clone())
     }
 
     pub fn connect(&mut self, queries: &QueryWorker) {

@@ -4,11 +4,11 @@ use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
 
 use super::TEXT;
-use super::symptom::SymptomTiles;
 use crate::gui::request::CachedResponse;
 use crate::gui::{DataPaths, PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
+use ptu_report::naming::PartNames;
 use ptu_report::words::Words;
 
 /// As many faults are read for their repairs, the latest first.
@@ -28,16 +28,12 @@ struct History {
     open: Vec<FaultSummary>,
     /// When and what, the latest first.
     repairs: Vec<(i64, RepairRecord)>,
+    parts: PartNames,
 }
 
 impl KnownUnit {
     pub fn poll(&mut self) {
         self.history.poll();
-    }
-
-    /// It is read again when it is shown next.
-    pub fn forget(&mut self) {
-        self.of = None;
     }
 
     /// Reads the history of this unit unless it is known.
@@ -59,7 +55,13 @@ impl KnownUnit {
         last.and_then(|(_, repair)| repair.serial_new.clone())
     }
 
-    pub fn show(&self, ui: &mut Ui, words: &Words, names: &SymptomTiles) {
+    /// What people call a part.
+    pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
+        let history = self.history.get().value();
+        history.map_or(id, |known| known.parts.name(id, words.language))
+    }
+
+    pub fn show(&self, ui: &mut Ui, words: &Words) {
         let Some(history) = self.history.get().value() else {
             ui.label(words.common.loading);
             return;
@@ -71,14 +73,17 @@ impl KnownUnit {
         }
         let open = history.open.iter().map(|fault| {
             let at = clock::local(fault.last_at_us);
-            let said = names.fault(fault.cause(), &fault.message, words);
+            let said = history.parts.fault(fault.cause(), &fault.message, words);
             format!("{at}  {said}")
         });
         lines(ui, words.case.open_faults, open);
         let repairs = history.repairs.iter().map(|(at_us, repair)| {
             let serials = [&repair.serial_old, &repair.serial_new];
             let serials = serials.map(|serial| serial.as_deref().unwrap_or("–"));
-            let (at, part) = (clock::local(*at_us), names.part(&repair.part, words));
+            let (at, part) = (
+                clock::local(*at_us),
+                history.parts.name(&repair.part, words.language),
+            );
             format!(
                 "{at}  {part}: {} → {}  {}",
                 serials[0], serials[1], repair.note
@@ -99,8 +104,12 @@ fn lines(ui: &mut Ui, title: &str, lines: impl ExactSizeIterator<Item = String>)
 }
 
 fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
+    let mut history = History {
+        parts: PartNames::of(&paths.scripts),
+        ..History::default()
+    };
     if !paths.database.exists() {
-        return Ok(History::default());
+        return Ok(history);
     }
     let store = paths.read()?;
     let filter = FaultFilter {
@@ -108,7 +117,6 @@ fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
         limit: Some(MOST),
         ..FaultFilter::default()
     };
-    let mut history = History::default();
     for fault in store.faults(&filter)? {
         let events = store.fault(fault.id)?.events.into_iter();
         let repairs = events.filter_map(|event| Some((event.at_us, event.repair?)));

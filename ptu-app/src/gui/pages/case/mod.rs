@@ -8,9 +8,6 @@ mod running;
 mod stage;
 mod symptom;
 
-use std::collections::BTreeSet;
-
-use btu_rig::procedure::Verdict;
 use eframe::egui::{Button, Response, RichText, ScrollArea, Ui, vec2};
 use fault_db::Id;
 
@@ -18,11 +15,11 @@ use super::procedures::Concluded;
 use super::report::SheetOf;
 use crate::gui::parts::{ActionPlace, name_edit};
 use crate::gui::request::Request;
+use crate::gui::units::Unit;
 use crate::gui::{PageContext, Palette};
 use known::KnownUnit;
 use prove::Proof;
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::run_diagnosis::RepairProof;
+use ptu_bench::bench_worker::{Phase, Progress};
 use ptu_report::words::fill;
 use repair::Repair;
 use result::Found;
@@ -61,8 +58,7 @@ impl CasePage {
         self.known.poll();
         self.tiles.poll(context);
         self.proof.poll(context);
-        if self.repair.poll(&self.tiles, context) {
-            self.known.forget();
+        if self.repair.poll(&self.known, context) {
             self.stage = Stage::Prove;
         }
         if matches!(self.stage, Stage::Find | Stage::Prove) {
@@ -73,13 +69,11 @@ impl CasePage {
     /// The case is about the connected unit; another unit is another case.
     fn follow_unit(&mut self, context: &PageContext<'_>) {
         let unit = context.units.chosen();
-        if !unit.is_connected() || unit.identity().is_none() {
+        let Some(serial) = unit.serial().filter(|_| unit.is_connected()) else {
             return;
-        }
-        let serial = unit.name();
+        };
         if self.unit.as_ref() != Some(&serial) {
-            let last = unit.run.as_ref().and_then(|run| run.id());
-            self.begin(last);
+            self.begin(unit);
             self.unit = Some(serial);
             self.stage = Stage::Unit;
         } else if self.stage == Stage::Start {
@@ -87,10 +81,10 @@ impl CasePage {
         }
     }
 
-    /// A case about nothing yet; the run `last` belongs to no case.
-    fn begin(&mut self, last: Option<Id>) {
+    /// A case about nothing yet; the last run of the unit belongs to no case.
+    fn begin(&mut self, unit: &Unit) {
         *self = Self {
-            seen: last,
+            seen: unit.run.as_ref().and_then(Progress::id),
             ..Self::default()
         };
     }
@@ -115,8 +109,8 @@ impl CasePage {
             Some((_, said)) => said.value(),
         };
         self.seen = Some(outcome.id);
-        let proven =
-            said.is_some_and(|said| !said.proofs.is_empty() && said.proofs.iter().all(is_proven));
+        let proofs = said.map(|said| said.proofs.as_slice()).unwrap_or_default();
+        let proven = !proofs.is_empty() && proofs.iter().all(|proof| proof.says.is_proven());
         let next = self.stage.after_run(outcome.exit, proven);
         if next == Stage::Result {
             self.found = Some(Found::of(outcome, run, said));
@@ -125,7 +119,6 @@ impl CasePage {
         } else {
             self.proof.ran(said, outcome.verdict);
         }
-        self.known.forget();
         self.stage = next;
     }
 
@@ -181,7 +174,7 @@ impl CasePage {
                 Button::new(context.words.case.new_case),
             );
             if place.clicked(&new) {
-                self.begin(unit.run.as_ref().and_then(|run| run.id()));
+                self.begin(unit);
             }
         });
     }
@@ -213,10 +206,6 @@ impl CasePage {
     }
 }
 
-fn is_proven(proof: &RepairProof) -> bool {
-    proof.says.is_proven()
-}
-
 /// A button that is found and hit at arm's length.
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
     let button = Button::new(RichText::new(text).size(TEXT).strong());
@@ -226,14 +215,4 @@ fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
     }
     // A row has its text in the middle of a button.
     ui.horizontal(|ui| ui.add_enabled(enabled, button)).inner
-}
-
-/// Procedures of a run that did not pass.
-fn not_passed(run: &ptu_bench::bench_worker::Progress) -> BTreeSet<String> {
-    let bad = |verdict: Verdict| !matches!(verdict, Verdict::Passed | Verdict::Skipped);
-    let procedures = run.procedures.iter();
-    let failed = procedures.filter(|procedure| {
-        procedure.verdict.is_some_and(bad) || procedure.results.iter().any(|step| bad(step.verdict))
-    });
-    failed.map(|failed| failed.procedure.id.clone()).collect()
 }

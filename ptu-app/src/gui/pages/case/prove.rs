@@ -16,16 +16,14 @@ use ptu_report::words::fill;
 /// How far the proof is.
 #[derive(Default)]
 pub struct Proof {
-    /// The part was fitted; the unit is connected again as soon as it was let go.
+    /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
     /// What the last run says of the repair.
     said: Option<String>,
     verdict: Option<Verdict>,
-    signing: Request<()>,
-    signed_by: Option<(Id, String)>,
-    /// Who is signing.
-    signs: Option<(Id, String)>,
+    /// Answers with the run that was signed, and by whom.
+    signing: Request<(Id, String)>,
 }
 
 impl Proof {
@@ -35,13 +33,11 @@ impl Proof {
             self.reconnects = false;
             unit.connect(context.queries);
         }
-        if self.signing.poll() {
-            match std::mem::take(&mut self.signing) {
-                Request::Failed(why) => {
-                    context.messages.trouble(context.words.case.not_signed, why);
-                }
-                _ => self.signed_by = self.signs.take(),
-            }
+        if self.signing.poll()
+            && let Request::Failed(why) = &self.signing
+        {
+            let said = context.words.case.not_signed;
+            context.messages.trouble(said, why.clone());
         }
     }
 
@@ -58,21 +54,20 @@ impl Proof {
             ui.label(RichText::new(said).size(TEXT).strong());
         }
         ui.horizontal_wrapped(|ui| {
-            if let Some((_, who)) = self.signed_by.as_ref().filter(|(of, _)| *of == run) {
+            if let Some((_, who)) = self.signing.value().filter(|(of, _)| *of == run) {
                 let said = fill(words.signed_by, &[("who", who)]);
                 ui.label(RichText::new(said).size(TEXT).color(Palette::of(ui).good));
                 return;
             }
             let who = context.settings.operator.trim().to_owned();
-            let may = !who.is_empty() && self.signing.is_idle();
+            let may = !who.is_empty() && !matches!(self.signing, Request::Pending(_));
             let place = ActionPlace::new(ui, "case sign", run);
             let sign = large(ui, words.sign, may).on_disabled_hover_text(words.name_first);
             if place.clicked(&sign) {
-                self.signs = Some((run, who.clone()));
                 let text = words.signed;
                 self.signing = Request::Pending(context.queries.run(move |paths| {
                     paths.open()?.add_run_note(run, &who, text, now_us())?;
-                    Ok(())
+                    Ok((run, who))
                 }));
             }
         });

@@ -5,9 +5,8 @@ use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
-use super::symptom::SymptomTiles;
 use super::{CasePage, TEXT, large};
-use crate::gui::parts::{ActionPlace, name_edit, named_combo, note_edit};
+use crate::gui::parts::{ActionPlace, field, name_edit, named_combo, note_edit, typed};
 use crate::gui::request::Request;
 use crate::gui::{DataPaths, PageContext};
 use ptu_bench::clock::now_us;
@@ -49,7 +48,7 @@ impl Repair {
     }
 
     /// True once it has been stored.
-    pub fn poll(&mut self, names: &SymptomTiles, context: &mut PageContext<'_>) -> bool {
+    pub fn poll(&mut self, known: &KnownUnit, context: &mut PageContext<'_>) -> bool {
         if !self.saving.poll() {
             return false;
         }
@@ -61,7 +60,7 @@ impl Repair {
             }
             Request::Ready(fault) => {
                 self.fault = fault;
-                let part = names.part(&self.part, context.words);
+                let part = known.part_name(&self.part, context.words);
                 let said = fill(words.recorded, &[("part", &part)]);
                 context.messages.note(said);
                 true
@@ -81,11 +80,10 @@ impl Repair {
     }
 
     fn record(&self) -> RepairRecord {
-        let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         RepairRecord {
             part: self.part.trim().to_owned(),
-            serial_old: some(&self.serial_old),
-            serial_new: some(&self.serial_new),
+            serial_old: typed(&self.serial_old),
+            serial_new: typed(&self.serial_new),
             note: self.note.trim().to_owned(),
         }
     }
@@ -94,12 +92,12 @@ impl Repair {
 impl CasePage {
     pub(super) fn repair(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
-        let (known, names) = (&self.known, &self.tiles);
+        let known = &self.known;
         let form = &mut self.repair;
         Grid::new("repair").num_columns(2).show(ui, |ui| {
             ui.label(RichText::new(words.part).size(TEXT));
             let before = form.part.clone();
-            let name = |part: &str| names.part(part, context.words).to_owned();
+            let name = |part: &str| known.part_name(part, context.words).to_owned();
             let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
             let combo = combo.width(FIELD).show_ui(ui, |ui| {
                 for part in &form.parts {
@@ -111,18 +109,11 @@ impl CasePage {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
             ui.end_row();
-            for (name, text) in [
-                (words.serial_old, &mut form.serial_old),
-                (words.serial_new, &mut form.serial_new),
-            ] {
-                let label = ui.label(RichText::new(name).size(TEXT));
-                ui.add(name_edit(text, FIELD)).labelled_by(label.id);
-                ui.end_row();
-            }
-            let label = ui.label(RichText::new(words.note).size(TEXT));
-            ui.add(note_edit(&mut form.note, FIELD))
-                .labelled_by(label.id);
-            ui.end_row();
+            let title = |name: &str| RichText::new(name).size(TEXT);
+            let (old, new) = (&mut form.serial_old, &mut form.serial_new);
+            field(ui, title(words.serial_old), name_edit(old, FIELD));
+            field(ui, title(words.serial_new), name_edit(new, FIELD));
+            field(ui, title(words.note), note_edit(&mut form.note, FIELD));
         });
         self.name(ui, context);
         let form = &mut self.repair;

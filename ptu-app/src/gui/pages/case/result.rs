@@ -1,12 +1,13 @@
 //! What a run found: the part, the values that show it, three reasons, and what to do next.
 
+use std::collections::BTreeSet;
+
 use btu_rig::procedure::{Measurement, Verdict};
 use diagnosis::Finding;
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
-use std::collections::BTreeSet;
 
-use super::{CasePage, HEADLINE, Stage, TEXT, large, not_passed};
+use super::{CasePage, HEADLINE, Stage, TEXT, large};
 use crate::gui::pages::procedures::{Concluded, measurements};
 use crate::gui::parts::ActionPlace;
 use crate::gui::{Destination, PageContext, Palette};
@@ -67,6 +68,16 @@ impl Found {
             parts,
         }
     }
+}
+
+/// Procedures of a run that did not pass.
+fn not_passed(run: &Progress) -> BTreeSet<String> {
+    let bad = |verdict: Verdict| !matches!(verdict, Verdict::Passed | Verdict::Skipped);
+    let procedures = run.procedures.iter();
+    let failed = procedures.filter(|procedure| {
+        procedure.verdict.is_some_and(bad) || procedure.results.iter().any(|step| bad(step.verdict))
+    });
+    failed.map(|failed| failed.procedure.id.clone()).collect()
 }
 
 /// Values of the first step that failed by one.

@@ -7,54 +7,38 @@ use crate::gui::parts::ActionPlace;
 use crate::gui::request::Request;
 use crate::gui::{Destination, PageContext};
 use ptu_bench::symptoms::{self, Symptom};
-use ptu_report::naming::PartNames;
-use ptu_report::words::Words;
 
 /// Width of a tile, points.
 const WIDE: f32 = 260.0;
 
-/// The symptoms of the scripts directory, and the one chosen; what parts are called.
+/// The symptoms of the scripts directory, and the one chosen.
 #[derive(Default)]
 pub struct SymptomTiles {
-    loaded: Request<(Vec<Symptom>, PartNames)>,
+    symptoms: Request<Vec<Symptom>>,
     /// `Some(None)` = it is not known.
     chosen: Option<Option<Symptom>>,
 }
 
 impl SymptomTiles {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.loaded.poll()
-            && let Request::Failed(why) = &self.loaded
+        if self.symptoms.poll()
+            && let Request::Failed(why) = &self.symptoms
         {
             let said = context.words.procedures.not_loaded;
             context.messages.trouble(said, why.clone());
         }
     }
 
-    /// What people call a part.
-    pub fn part<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
-        let names = self.loaded.value().map(|(_, names)| names);
-        names.map_or(id, |names| names.name(id, words.language))
-    }
-
-    /// A fault of this part in one line.
-    pub fn fault(&self, part: &str, message: &str, words: &Words) -> String {
-        let names = self.loaded.value().map(|(_, names)| names);
-        let said = names.map(|names| names.fault(part, message, words));
-        said.unwrap_or_else(|| part.to_owned())
-    }
-
     fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
-        if self.loaded.is_idle() {
+        if self.symptoms.is_idle() {
             let asked = context.queries.run(|paths| {
                 let scripts = &paths.scripts;
-                Ok((symptoms::load(scripts)?, PartNames::of(scripts)))
+                symptoms::load(scripts, &scripts.faults()?.lrus)
             });
-            self.loaded = Request::Pending(asked);
+            self.symptoms = Request::Pending(asked);
         }
         let words = context.words;
-        let loaded = self.loaded.value();
-        let known = loaded.into_iter().flat_map(|(symptoms, _)| symptoms);
+        let known = self.symptoms.value().into_iter().flatten();
         let tiles = known.map(|symptom| (words.content(&symptom.name), Some(symptom.clone())));
         let unknown = (words.case.unknown.into(), None);
         let mut clicked = None;
@@ -78,7 +62,7 @@ impl CasePage {
         let (serial, may) = (unit.name(), unit.may_run());
         ui.label(RichText::new(&serial).size(super::HEADLINE).strong());
         self.known.keep(&serial, context);
-        self.known.show(ui, context.words, &self.tiles);
+        self.known.show(ui, context.words);
         ui.add_space(8.0);
         ui.label(RichText::new(words.what_is_wrong).size(TEXT).strong());
         self.tiles.show(ui, context);

@@ -1,9 +1,9 @@
 //! Changes to a fault: state, repairs and notes.
 
-use eframe::egui::{Button, Grid, RichText, TextEdit, Ui};
+use eframe::egui::{Button, Grid, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
-use crate::gui::parts::{ActionPlace, name_edit, note_edit};
+use crate::gui::parts::{ActionPlace, field, name_edit, note_edit, typed};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock::now_us;
@@ -157,11 +157,10 @@ impl Change {
         who: &str,
     ) {
         self.what = name(state, context.words);
-        let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
         let repair = RepairRecord {
             part: fault.cause().to_owned(),
-            serial_old: some(&self.form.serial_old),
-            serial_new: some(&self.form.serial_new),
+            serial_old: typed(&self.form.serial_old),
+            serial_new: typed(&self.form.serial_new),
             note: self.form.note.clone(),
         };
         let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
@@ -175,13 +174,6 @@ impl Change {
             Ok(id)
         }));
     }
-}
-
-/// A field with its name before it, as one row of the form.
-fn field(ui: &mut Ui, name: &str, edit: TextEdit<'_>) {
-    let label = ui.label(name);
-    ui.add(edit).labelled_by(label.id);
-    ui.end_row();
 }
 
 fn name(state: FaultState, words: &Words) -> &'static str {

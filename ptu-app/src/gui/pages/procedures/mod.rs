@@ -23,7 +23,6 @@ pub use present::present;
 use ptu_bench::run::{BenchChoice, Suite};
 use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_report::proof_text;
-
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;

@@ -45,9 +45,7 @@ impl ProceduresPage {
             let said = fill(words.other_unit, &[("unit", &unit)]);
             context.messages.trouble(said, "");
         } else {
-            let wanted = Wanted::Step { procedure, step };
-            self.wanted = Some((wanted, chosen.id));
-            self.keep_loaded(context);
+            self.want(Wanted::Step { procedure, step }, context);
         }
     }
 
@@ -71,7 +69,7 @@ impl ProceduresPage {
         self.keep_loaded(context);
     }
 
-    /// Runs the step another page asked for, once the suite is there; what is chosen here stays chosen.
+    /// Runs what another page asked for, once the suite is there; what is chosen here stays chosen.
     pub(super) fn run_wanted(&mut self, context: &mut PageContext<'_>) {
         let Some(suite) = self.suite.value() else {
             return;

@@ -111,10 +111,9 @@ impl ReportPage {
     }
 
     fn ask(&mut self, of: SheetOf, context: &PageContext<'_>) {
-        let run = of.run();
         if self.asked_for.is_none_or(|(asked, _)| asked != of) {
             self.shown = None;
-            self.file = file::named_after(run, &self.file);
+            self.file = file::named_after(of.run(), &self.file);
             self.written = None;
         }
         let language = self.language(context);
@@ -124,17 +123,21 @@ impl ReportPage {
             let store = paths.read()?;
             let scripts = Some(&paths.scripts);
             let words = language.words();
-            let sheet = Sheet::gather(&store, scripts, run)?;
-            let pages = match of {
-                SheetOf::Run(_) => pages(&sheet, words)?,
-                SheetOf::Case { fault, .. } => pages(
-                    &CaseSheet::gather(&store, scripts, fault, "", false)?,
-                    words,
-                )?,
+            let shown = |pages, sheet: &Sheet| {
+                let seen = store.run_occurrences(sheet.run.run.id)?;
+                let parts = PartNames::of(&paths.scripts);
+                Ok(Shown::new(of, pages, sheet, (&seen, &parts), words))
             };
-            let seen = store.run_occurrences(run)?;
-            let parts = PartNames::of(&paths.scripts);
-            Ok(Shown::new(of, pages, &sheet, (&seen, &parts), words))
+            match of {
+                SheetOf::Run(run) => {
+                    let sheet = Sheet::gather(&store, scripts, run)?;
+                    shown(pages(&sheet, words)?, &sheet)
+                }
+                SheetOf::Case { fault, .. } => {
+                    let case = CaseSheet::gather(&store, scripts, fault, "", false)?;
+                    shown(pages(&case, words)?, case.last())
+                }
+            }
         }));
     }
 
