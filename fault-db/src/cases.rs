@@ -5,7 +5,7 @@
 
 use crate::backend::{Row, SqlResult, values};
 use crate::error::StoreError;
-use crate::event_graph::recompute_fault;
+use crate::event_graph::{recompute_fault, standing};
 use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
@@ -77,9 +77,12 @@ impl Store {
         at_us: i64,
     ) -> Result<Vec<Id>, StoreError> {
         const DOING: &str = "attributing faults";
-        const STAYS: &str =
+        const STAYS: &str = concat!(
             "SELECT 1 FROM fault f WHERE f.seq = ?1 AND (f.state = 'closed' OR f.cause = ?2
-            OR EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.kind = 'cause'))";
+            OR EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.kind = 'cause'",
+            standing!("e"),
+            "))"
+        );
         cause.check()?;
         let part = part_name(&cause.part);
         self.change(DOING, |_| {

@@ -6,6 +6,10 @@
 //! the most work stands until a later event names all heads as parents. `opened` and `recurred` are
 //! observations, not decisions: `recurred` yields to an acknowledgement, `opened` to every other event.
 //!
+//! An event that a `withdrawn` one follows, and this one, are in the graph as if they were not: what was a head before
+//! the one is a head again. What followed the event, made
+//! without knowing of the withdrawal, is in conflict with what was decided before it.
+//!
 //! What a fault comes from changes no state: a person's latest `cause` decides it, or else the latest `diagnosed` of a
 //! run, by Lamport number and id. The faults of a unit that are not closed and have one cause are one *case*.
 //!
@@ -178,14 +182,29 @@ const SUBTRACT_FROM_TALLY: &str = "
         bare = bare + excluded.bare";
 
 /// Recomputes when the fault was opened before each of its repairs, from the events of both faults.
-const UPDATE_REPAIRS: &str = "
-    UPDATE repair SET
+const UPDATE_REPAIRS: &str = concat!(
+    "UPDATE repair SET
         line = (SELECT line FROM fault WHERE seq = ?1),
         opened_at_us = min(repair.at_us, coalesce(
             (SELECT max(e.at_us) FROM fault_event e WHERE e.fault = ?1
-                AND e.kind IN ('opened', 'recurred', 'reopened') AND e.at_us <= repair.at_us),
+                AND e.kind IN ('opened', 'recurred', 'reopened') AND e.at_us <= repair.at_us",
+    standing!("e"),
+    "),
             (SELECT first_at_us FROM fault WHERE seq = ?1)))
-    WHERE fault = ?1 AND unit = (SELECT unit FROM fault WHERE seq = ?1)";
+    WHERE fault = ?1 AND unit = (SELECT unit FROM fault WHERE seq = ?1)"
+);
+
+/// What a person has withdrawn counts for nothing: a condition on the event of this alias, to follow others.
+macro_rules! standing {
+    ($event:literal) => {
+        concat!(
+            " AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = ",
+            $event,
+            ".id)"
+        )
+    };
+}
+pub(crate) use standing;
 
 /// The heads of a fault's event graph, as `e`: the text after `FROM`.
 macro_rules! heads {
@@ -193,9 +212,13 @@ macro_rules! heads {
         concat!(
             "fault_event e WHERE e.fault = ",
             $fault,
-            " AND e.state IS NOT NULL AND NOT EXISTS (SELECT 1 FROM fault_event later
+            " AND e.state IS NOT NULL",
+            $crate::event_graph::standing!("e"),
+            " AND NOT EXISTS (SELECT 1 FROM fault_event later
                 WHERE later.fault = e.fault AND later.state IS NOT NULL
-                    AND instr(later.follows, e.id) > 0)"
+                    AND instr(later.follows, e.id) > 0",
+            $crate::event_graph::standing!("later"),
+            ")"
         )
     };
 }
@@ -221,7 +244,9 @@ pub(crate) const RECOMPUTE_FAULT: &str = concat!(
         line = coalesce((SELECT o.line FROM fault_occurrence o WHERE o.fault = fault.seq
             ORDER BY o.at_us, o.id LIMIT 1), line),
         repairs = (SELECT count(*) FROM fault_event e
-            WHERE e.fault = fault.seq AND e.kind = 'repair'),
+            WHERE e.fault = fault.seq AND e.kind = 'repair'",
+    standing!("e"),
+    "),
         state = coalesce((SELECT e.state FROM ",
     heads!("fault.seq"),
     " ORDER BY ",
@@ -241,6 +266,7 @@ pub(crate) const RECOMPUTE_FAULT: &str = concat!(
     heads!("fault.seq"),
     " AND e.kind <> 'opened'), 0),
         cause = (SELECT nullif(part_of(e.body), '') FROM fault_event e
-            WHERE e.fault = fault.seq AND e.kind IN ('cause', 'diagnosed')
-            ORDER BY e.kind, e.turn DESC, e.id DESC LIMIT 1)"
+            WHERE e.fault = fault.seq AND e.kind IN ('cause', 'diagnosed')",
+    standing!("e"),
+    " ORDER BY e.kind, e.turn DESC, e.id DESC LIMIT 1)"
 );

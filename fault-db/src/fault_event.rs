@@ -20,7 +20,8 @@ pub(crate) struct NewEvent<'a> {
 
 /// What the author of an event knew of its fault. The columns are named `follows`, `turn` and `seen`.
 pub(crate) struct EventContext {
-    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state.
+    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state. Of a withdrawal the
+    /// event that it takes back.
     pub parents: Vec<u8>,
     /// Lamport number: one more than the greatest of the events known.
     pub lamport: i64,
@@ -56,6 +57,18 @@ pub(crate) fn insert_event(backend: &Backend, fault: i64, event: &NewEvent<'_>) 
         backend.execute(agreed, &values![fault])?;
     }
     let context = context(backend, fault, event)?;
+    insert_event_with_context(backend, fault, event, &context)
+}
+
+/// Adds an event that takes back another one.
+pub(crate) fn insert_withdrawal(
+    backend: &Backend,
+    fault: i64,
+    event: &NewEvent<'_>,
+    withdrawn: Id,
+) -> SqlResult<()> {
+    let mut context = context(backend, fault, event)?;
+    context.parents = withdrawn.as_bytes().to_vec();
     insert_event_with_context(backend, fault, event, &context)
 }
 

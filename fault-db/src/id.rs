@@ -123,6 +123,11 @@ impl fmt::Debug for IdSource {
     }
 }
 
+/// Ids in words.
+pub(crate) fn list(ids: &[Id]) -> String {
+    ids.iter().map(Id::to_string).collect::<Vec<_>>().join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use rusqlite::{Connection, params};
 
 use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::event_graph::standing;
 use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_state::{FaultAction, FaultState};
 use crate::id::Id;
@@ -246,9 +247,13 @@ fn acted_since(
     at_us: i64,
 ) -> SqlResult<bool> {
     let acted = backend.first(
-        "SELECT 1 FROM fault_event
-         WHERE fault = ?1 AND state IS NOT NULL AND at_us > ?2 AND kind NOT IN ('opened', 'recurred')
-            AND seq > ?3 LIMIT 1",
+        concat!(
+            "SELECT 1 FROM fault_event e
+             WHERE e.fault = ?1 AND e.state IS NOT NULL AND e.at_us > ?2 AND e.kind NOT IN ('opened', 'recurred')
+                AND e.seq > ?3",
+            standing!("e"),
+            " LIMIT 1"
+        ),
         &values![fault, at_us, if place.of_log { 0 } else { place.known_events }],
         |_| Ok(()),
     )?;

@@ -59,6 +59,7 @@ mod transaction;
 mod units;
 mod verify;
 mod views;
+mod withdrawal;
 
 pub use atomic_file::AtomicFile;
 pub use cases::ChangedFault;
@@ -96,3 +97,4 @@ pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
 pub use verify::{RepairToProve, SettledFault};
 pub use views::VIEWS_PAGE;
+pub use withdrawal::{Correction, ToWithdraw, WithdrawalError, Withdrawn};

@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::backend::values;
 use crate::cases::{CASE_FAULT, REST_OF_CASE, case_fault};
 use crate::error::StoreError;
+use crate::event_graph::standing;
 use crate::fault_event::{NewEvent, insert_event};
 use crate::fault_log::Change;
 use crate::fault_state::{FaultAction, FaultState};
@@ -31,10 +32,12 @@ const IN_RUN: &str = "in run ";
 const MOST_RUNS: i64 = 8;
 
 /// Repaired faults of a unit whose last step passed in a run.
-const SHOWN_GONE: &str = "
-    SELECT f.seq, f.id FROM fault f
+const SHOWN_GONE: &str = concat!(
+    "SELECT f.seq, f.id FROM fault f
     WHERE f.unit = ?1 AND f.state = 'repaired'
-        AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = f.seq AND e.state = 'repaired') <= ?3
+        AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = f.seq AND e.state = 'repaired'",
+    standing!("e"),
+    ") <= ?3
         AND EXISTS (
             SELECT 1 FROM step seen JOIN step again
                 ON again.procedure = seen.procedure AND again.name = seen.name
@@ -42,13 +45,17 @@ const SHOWN_GONE: &str = "
                 AND (seen.run, seen.step_index) = (
                     SELECT o.run, o.step_index FROM fault_occurrence o
                     WHERE o.fault = f.seq ORDER BY o.at_us DESC, o.seq DESC LIMIT 1))
-    ORDER BY f.seq";
+    ORDER BY f.seq"
+);
 
 /// The repaired consequences in the case of fault `?1`, which names the cause itself.
-const WITH_IT: &str = "
-    AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
-    AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = c.seq AND e.state = 'repaired') <= ?2
-    ORDER BY c.seq";
+const WITH_IT: &str = concat!(
+    " AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
+    AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = c.seq AND e.state = 'repaired'",
+    standing!("e"),
+    ") <= ?2
+    ORDER BY c.seq"
+);
 
 /// Of those, the ones that a run has noted as passed, if no other fault naming the cause is left that is not
 /// verified.
@@ -60,13 +67,18 @@ const PROVEN_WITH_IT: &str = "
     ORDER BY c.seq";
 
 /// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
-const THERE: &str = "
-    SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
+const THERE: &str = concat!(
+    "SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
     WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2
         AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o WHERE o.fault = f.seq AND o.at_us >
-            coalesce((SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.state = 'verified'), -1))
-        AND r.started_at_us <= (SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair')
-    ORDER BY r.started_at_us DESC, r.seq DESC LIMIT ?3";
+            coalesce((SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.state = 'verified'",
+    standing!("x"),
+    "), -1))
+        AND r.started_at_us <= (SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair'",
+    standing!("x"),
+    ")
+    ORDER BY r.started_at_us DESC, r.seq DESC LIMIT ?3"
+);
 
 /// A repair that a run may have proved.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -143,11 +155,14 @@ impl Store {
         let mut repairs: BTreeMap<i64, RepairToProve> = BTreeMap::new();
         let passed = self.select(
             DOING,
-            "SELECT f.seq, f.id, f.code_name, e.body FROM run r JOIN fault f ON f.unit = r.unit
-             JOIN fault_event e ON e.fault = f.seq AND e.kind = 'passed'
-             WHERE r.id = ?1 AND f.state = 'repaired' AND e.seq > (SELECT max(x.seq) FROM fault_event x
-                WHERE x.fault = f.seq AND x.state = 'repaired')
-             ORDER BY f.seq, e.seq",
+            concat!(
+                "SELECT f.seq, f.id, f.code_name, e.body FROM run r JOIN fault f ON f.unit = r.unit
+                 JOIN fault_event e ON e.fault = f.seq AND e.kind = 'passed'
+                 WHERE r.id = ?1 AND f.state = 'repaired' AND e.seq > (SELECT max(x.seq) FROM fault_event x
+                    WHERE x.fault = f.seq AND x.state = 'repaired'",
+                standing!("x"),
+                ") ORDER BY f.seq, e.seq"
+            ),
             &values![run],
             |row| {
                 let (fault, code_name) = (row.get::<Id>(1)?, row.get::<String>(2)?);
@@ -266,13 +281,15 @@ impl FaultEvent {
 }
 
 /// The faults that run `?1` of the unit has proved to be repaired; `?2` is how its events begin.
-pub(crate) const SETTLED: &str = "
-    SELECT f.id, f.code, f.code_name, f.lru,
-        (SELECT x.body FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND x.at_us <= e.at_us
-         ORDER BY x.at_us DESC, x.seq DESC LIMIT 1)
+pub(crate) const SETTLED: &str = concat!(
+    "SELECT f.id, f.code, f.code_name, f.lru,
+        (SELECT x.body FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND x.at_us <= e.at_us",
+    standing!("x"),
+    " ORDER BY x.at_us DESC, x.seq DESC LIMIT 1)
     FROM run r JOIN fault f ON f.unit = r.unit
     JOIN fault_event e ON e.fault = f.seq AND e.kind = 'confirmed' AND e.body LIKE ?2
-    WHERE r.id = ?1 ORDER BY f.seq";
+    WHERE r.id = ?1 ORDER BY f.seq"
+);
 
 /// What the events that a run has made begin with, as a pattern.
 pub(crate) fn made_by(run: Id) -> String {

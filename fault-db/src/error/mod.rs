@@ -8,8 +8,9 @@ mod sqlite;
 use std::path::PathBuf;
 
 use crate::fault_state::TransitionError;
-use crate::id::Id;
+use crate::id::{Id, list};
 use crate::trace::TraceError;
+use crate::withdrawal::WithdrawalError;
 pub(crate) use query_limit::MOST_RESULT_BYTES;
 pub use query_limit::QueryLimit;
 pub(crate) use server::NO_TLS;
@@ -201,6 +202,9 @@ pub enum StoreError {
         /// From where to where.
         source: TransitionError,
     },
+    /// What was written about the fault stays.
+    #[error("fault {0}: {1}")]
+    Withdrawal(Id, #[source] WithdrawalError),
     /// Steps of a run must have rising indexes.
     #[error("step {index} recorded after step {last}: step indexes must rise")]
     StepOrder {
@@ -393,8 +397,4 @@ impl StoreError {
             asked: id.to_string(),
         }
     }
-}
-
-fn list(ids: &[Id]) -> String {
-    ids.iter().map(Id::to_string).collect::<Vec<_>>().join(", ")
 }

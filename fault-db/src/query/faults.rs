@@ -11,6 +11,7 @@ use crate::fault_state::FaultState;
 use crate::id::Id;
 use crate::record::{CAUSE, CauseRecord, DIAGNOSED, FreezeSample, REPAIR, RepairRecord};
 use crate::store::Store;
+use crate::withdrawal::Correction;
 
 /// A fault in a list: one row per unit, code and part until it is closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,8 +60,10 @@ pub struct FaultDetail {
     pub case: Vec<FaultSummary>,
     /// Its occurrences, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
     pub occurrences: Vec<Occurrence>,
-    /// Its events, oldest first.
+    /// Its events that stand, oldest first.
     pub events: Vec<FaultEvent>,
+    /// Its events that were withdrawn, oldest first; they count for nothing.
+    pub withdrawn: Vec<FaultEvent>,
 }
 
 impl FaultDetail {
@@ -109,6 +112,9 @@ pub struct FaultEvent {
     pub repair: Option<RepairRecord>,
     /// The part it comes from, if it says that.
     pub cause: Option<CauseRecord>,
+    /// Who has withdrawn it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correction: Option<Correction>,
 }
 
 const SELECT_FAULT: &str = "
@@ -146,12 +152,14 @@ impl Store {
         let case = self.select(DOING, &case, &values![seq], summary)?;
         let failed = |error| self.failed(DOING, error);
         let occurrences = self.occurrences(seq).map_err(failed)?;
-        let events = self.events(seq).map_err(failed)?;
+        let events = self.events(seq).map_err(failed)?.into_iter();
+        let (withdrawn, events) = events.partition(|event| event.correction.is_some());
         Ok(FaultDetail {
             fault,
             case,
             occurrences,
             events,
+            withdrawn,
         })
     }
 
@@ -177,10 +185,12 @@ impl Store {
         )
     }
 
+    /// Of an event that several stores have withdrawn, the correction made first.
     fn events(&self, fault: i64) -> SqlResult<Vec<FaultEvent>> {
-        self.backend().select(
-            "SELECT id, kind, at_us, who, body, state FROM fault_event
-             WHERE fault = ?1 ORDER BY at_us, seq",
+        let mut events = self.backend().select(
+            "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, w.at_us, w.who, w.body
+             FROM fault_event e LEFT JOIN fault_event w ON w.kind = 'withdrawn' AND w.follows = e.id
+             WHERE e.fault = ?1 AND e.kind <> 'withdrawn' ORDER BY e.at_us, e.seq, w.turn, w.id",
             &values![fault],
             |row| {
                 let kind: String = row.get(1)?;
@@ -198,10 +208,20 @@ impl Store {
                     state: row.get(5)?,
                     repair: if is_repair { Some(json(row, 4)?) } else { None },
                     cause: if is_cause { Some(json(row, 4)?) } else { None },
+                    correction: match row.get::<Option<i64>>(6)? {
+                        Some(at_us) => Some(Correction {
+                            at_us,
+                            who: row.get(7)?,
+                            note: row.get(8)?,
+                        }),
+                        None => None,
+                    },
                     kind,
                 })
             },
-        )
+        )?;
+        events.dedup_by_key(|event| event.id);
+        Ok(events)
     }
 }
 

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::faults::json;
 use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
+use crate::event_graph::standing;
 use crate::id::Id;
 use crate::record::REPAIR;
 use crate::record::{RepairRecord, part_name};
@@ -134,10 +135,13 @@ impl Store {
         (since_us, before_us): (i64, i64),
     ) -> SqlResult<Vec<Repaired>> {
         self.backend().select(
-            "SELECT f.code, f.lru, e.at_us, e.body
-             FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
-             WHERE u.serial = ?1 AND e.kind = ?2 AND e.at_us >= ?3 AND e.at_us < ?4
-             ORDER BY e.at_us, e.seq",
+            concat!(
+                "SELECT f.code, f.lru, e.at_us, e.body
+                 FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
+                 WHERE u.serial = ?1 AND e.kind = ?2 AND e.at_us >= ?3 AND e.at_us < ?4",
+                standing!("e"),
+                " ORDER BY e.at_us, e.seq"
+            ),
             &values![unit, REPAIR, since_us, before_us],
             |row| {
                 Ok(Repaired {

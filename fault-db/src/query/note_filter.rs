@@ -2,6 +2,7 @@
 
 use super::filter::Conditions;
 use crate::backend::Backend;
+use crate::event_graph::standing;
 use crate::full_text::Search;
 
 /// Selects the faults with these words in an event's text.
@@ -11,12 +12,16 @@ pub(super) fn faults_with_note(backend: &Backend, search: &Search, all: &mut Con
             let place = all.place(search.for_file());
             format!(
                 "SELECT e.fault FROM event_words w JOIN fault_event e ON e.seq = w.rowid
-                 WHERE event_words MATCH {place}"
+                 WHERE event_words MATCH {place}{}",
+                standing!("e")
             )
         }
         Backend::Server(_) => {
             let place = all.place(search.for_server());
-            format!("SELECT e.fault FROM fault_event e WHERE e.words @@ CAST({place} AS tsquery)")
+            format!(
+                "SELECT e.fault FROM fault_event e WHERE e.words @@ CAST({place} AS tsquery){}",
+                standing!("e")
+            )
         }
     }
 }
@@ -26,7 +31,8 @@ pub(super) fn has_note(fault: &str, typed: String, all: &mut Conditions) -> Stri
     let place = all.place(typed);
     format!(
         "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = {fault}
-            AND e.kind NOT IN ('opened', 'recurred') AND says(e.body, {place}))"
+            AND e.kind NOT IN ('opened', 'recurred') AND says(e.body, {place}){})",
+        standing!("e")
     )
 }
 

@@ -4,6 +4,7 @@
 use super::checksum::checksum;
 use crate::backend::Value;
 use crate::domain::check_body;
+use crate::withdrawal::check_parents;
 
 pub(super) struct Table {
     pub of: TableId,
@@ -293,7 +294,9 @@ pub(super) static TABLES: [Table; COUNT] = [
         ],
         is_refused_alone: true,
         check: |row| match (&row[2], &row[5]) {
-            (Value::Text(kind), Value::Text(body)) => check_body(kind, body),
+            (Value::Text(kind), Value::Text(body)) => {
+                check_body(kind, body).and_then(|()| check_parents(kind, &row[6], &row[8]))
+            }
             _ => Ok(()),
         },
         server_more: &[
@@ -379,7 +382,10 @@ mod tests {
     #[test]
     fn the_checks_look_at_the_columns_they_mean() {
         let names = |of: TableId| -> Vec<_> { of.table().columns.iter().map(|c| c.name).collect() };
-        assert_eq!([2, 5].map(|n| names(TableId::Event)[n]), ["kind", "body"]);
+        assert_eq!(
+            [2, 5, 6, 8].map(|n| names(TableId::Event)[n]),
+            ["kind", "body", "state", "follows"]
+        );
         assert_eq!(
             [10, 11].map(|n| names(TableId::Trace)[n]),
             ["sha256", "data"]

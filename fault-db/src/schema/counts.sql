@@ -3,10 +3,12 @@ DELETE FROM repair;
 INSERT INTO repair(event, fault, unit, code, lru, line, part, at_us, opened_at_us, back_at_us)
   SELECT e.seq, f.seq, f.unit, f.code, f.lru, f.line, part_of(e.body), e.at_us,
     min(e.at_us, coalesce((SELECT max(b.at_us) FROM fault_event b WHERE b.fault = f.seq
-      AND b.kind IN ('opened', 'recurred', 'reopened') AND b.at_us <= e.at_us), f.first_at_us)),
+      AND b.kind IN ('opened', 'recurred', 'reopened') AND b.at_us <= e.at_us
+      AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = b.id)), f.first_at_us)),
     (SELECT min(o.at_us) FROM fault_occurrence o WHERE o.unit = f.unit AND o.code = f.code
       AND o.lru = f.lru AND o.at_us > e.at_us)
-  FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.kind = 'repair';
+  FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.kind = 'repair'
+    AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id);
 
 DELETE FROM tally;
 WITH counted(unit, code, lru, line, at_us, seen, opened, closed, bare, repairs, repair_us, back) AS (

@@ -39,3 +39,32 @@ CREATE VIEW measurements AS
     r.started_at_us
   FROM measurement m JOIN step s ON s.run = m.run AND s.step_index = m.step_index
   JOIN run r ON r.seq = m.run JOIN unit u ON u.seq = r.unit;
+
+-- What a person has withdrawn, as in a file.
+CREATE INDEX fault_event_withdrawn ON fault_event(follows) WHERE kind = 'withdrawn';
+CREATE TRIGGER in_domain_of_withdrawal BEFORE INSERT ON fault_event FOR EACH ROW
+  WHEN (NEW.kind = 'withdrawn' AND NOT (is_id(NEW.follows) AND NEW.state IS NULL))
+  EXECUTE FUNCTION refuse_row();
+
+CREATE OR REPLACE VIEW repair AS
+  SELECT e.seq AS event, f.seq AS fault, f.unit, f.code, f.lru, f.line, e.part, e.at_us,
+    least(e.at_us, coalesce((SELECT max(b.at_us) FROM fault_event b WHERE b.fault = f.seq
+      AND b.kind IN ('opened', 'recurred', 'reopened') AND b.at_us <= e.at_us
+      AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = b.id)),
+      f.first_at_us)) AS opened_at_us,
+    (SELECT min(o.at_us) FROM fault_occurrence o WHERE o.unit = f.unit AND o.code = f.code
+      AND o.lru = f.lru AND o.at_us > e.at_us) AS back_at_us
+  FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.kind = 'repair'
+    AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id);
+
+DROP VIEW events;
+CREATE VIEW events AS
+  SELECT id_text(e.id) AS id, id_text(f.id) AS fault_id, e.kind, e.who,
+    CASE WHEN e.kind = 'repair' THEN CAST(e.body AS json) ->> 'note'
+      WHEN e.kind IN ('cause', 'diagnosed')
+        THEN trim((CAST(e.body AS json) ->> 'part') || ' ' || (CAST(e.body AS json) ->> 'note'))
+      ELSE e.body END AS text,
+    e.state,
+    CAST(EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id) AS integer) AS withdrawn,
+    e.turn, time_text(e.at_us) AS happened_at, e.at_us
+  FROM fault_event e JOIN fault f ON f.seq = e.fault;

@@ -23,3 +23,4 @@ mod stimuli;
 mod trace_codec;
 mod trace_reading;
 mod verifying;
+mod withdrawing;

@@ -1,6 +1,6 @@
 //! Faults that several laptops saw: what each of them and the server make of all that was done about them.
 
-use fault_db::{CauseRecord, FaultFilter, FaultState, RepairRecord, Store};
+use fault_db::{CauseRecord, FaultFilter, FaultState, RepairRecord, Store, ToWithdraw};
 
 use crate::laptop::{Laptop, connect, day, only_fault, open_faults, read_only};
 use crate::private::shared;
@@ -58,6 +58,71 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
     for laptop in [&one, &two] {
         assert!(laptop.sync(&address).events_received >= 1);
         assert_eq!(only_fault(&laptop.open()).fault.state, FaultState::Verified);
+        laptop.is_whole();
+    }
+}
+
+/// Goal: what is withdrawn on one laptop or at the desk is withdrawn everywhere. Method: a repair goes from a laptop over the
+/// server to another one, then its withdrawal; then the same with a state set at the desk.
+#[test]
+fn a_withdrawal_reaches_server_and_laptops() {
+    let address = shared().database();
+    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
+    one.run("U-1", day(0), &[101], false);
+    two.run("U-1", day(1), &[101], false);
+    let repair = RepairRecord {
+        part: "EB_relay".to_owned(),
+        serial_old: None,
+        serial_new: Some("SN-2".to_owned()),
+        note: String::new(),
+    };
+    one.sync(&address);
+    two.sync(&address);
+    one.sync(&address);
+    let asked = |store: &Store| {
+        let sql = "SELECT unit, state, repairs, cause, closed_at FROM faults";
+        let repairs = "SELECT part, serial_new, opened_at FROM repairs";
+        [sql, repairs].map(|sql| store.query_read_only(sql, 9).expect("asked").rows)
+    };
+    let stores = || {
+        [
+            one.open(),
+            two.open(),
+            read_only(&address).expect("a server"),
+        ]
+    };
+    let before = asked(&one.open());
+    let write = |store: &Store| {
+        let fault = only_fault(store).fault.id;
+        let done = store.record_repair(fault, &repair, "lee", day(2));
+        assert_eq!(done.expect("a repair"), FaultState::Repaired);
+    };
+    let undo = |store: &Store| {
+        let fault = only_fault(store).fault.id;
+        let done = store.withdraw(fault, ToWithdraw::default(), "park", "wrong unit", day(3));
+        assert_eq!(done.expect("withdrawn").kind, "repair");
+    };
+    let to_all = || [&one, &two, &one].map(|laptop| drop(laptop.sync(&address)));
+    write(&one.open());
+    to_all();
+    for store in stores() {
+        assert_ne!(asked(&store), before);
+    }
+    undo(&two.open());
+    to_all();
+    for store in stores() {
+        assert_eq!(asked(&store), before);
+        assert_eq!(only_fault(&store).withdrawn.len(), 1);
+    }
+    let desk = connect(&address).expect("a server");
+    write(&desk);
+    undo(&desk);
+    to_all();
+    for store in stores() {
+        assert_eq!(asked(&store), before);
+        assert_eq!(only_fault(&store).withdrawn.len(), 2);
+    }
+    for laptop in [&one, &two] {
         laptop.is_whole();
     }
 }

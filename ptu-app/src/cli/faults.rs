@@ -9,6 +9,7 @@ mod stats;
 mod trend;
 mod trend_plot;
 mod trend_text;
+mod undo;
 
 use clap::{Args, Subcommand};
 
@@ -41,6 +42,7 @@ enum Verb {
     Repair(change::RepairArguments),
     Cause(change::CauseArguments),
     Note(change::NoteArguments),
+    Undo(undo::UndoArguments),
     Import(import::ImportArguments),
 }
 
@@ -66,6 +68,7 @@ impl FaultsArguments {
             Verb::Repair(arguments) => arguments.record(&store),
             Verb::Cause(arguments) => arguments.attribute(&store),
             Verb::Note(arguments) => arguments.note(&store),
+            Verb::Undo(arguments) => arguments.undo(&store),
             Verb::Import(arguments) => arguments.import(store),
         }
     }

@@ -1,5 +1,6 @@
 //! Messages to the user of the window: trouble and information, with the time of each.
 
+use fault_db::Id;
 use ptu_bench::clock;
 
 /// The latest messages, oldest first.
@@ -8,6 +9,16 @@ pub struct Messages {
     all: Vec<Message>,
     /// Index of the latest trouble, until the user acknowledges it.
     unread: Option<usize>,
+    /// What was taken back last.
+    taken_back: Option<Written>,
+}
+
+/// A person's step that was written about a fault, and with it about its case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Written {
+    pub fault: Id,
+    /// When, µs since 1970.
+    pub at_us: i64,
 }
 
 /// What a message is about while it is shown: it goes when that is over.
@@ -35,8 +46,14 @@ pub struct Message {
     about: Option<About>,
     /// What it is about is over: it is only listed.
     pub over: bool,
+    /// It tells of this, which can be undone for a while.
+    written: Option<Written>,
+    /// When it was shown first, in the window's time, s.
+    shown_at_s: Option<f64>,
 }
 
+/// What was written can be undone so long, s.
+pub const UNDO_S: f64 = 10.0;
 /// Messages kept; older ones are dropped.
 const KEPT: usize = 100;
 
@@ -63,6 +80,46 @@ impl Messages {
     /// As [`note`](Self::note), until what it is about is over.
     pub fn note_about(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
         self.push(text.into(), String::new(), false, about.into());
+    }
+
+    /// Tells what was written, which can be undone for [`UNDO_S`].
+    pub fn note_written(&mut self, text: impl Into<String>, written: Written) {
+        self.note(text);
+        if let Some(message) = self.all.last_mut() {
+            message.written = Some(written);
+        }
+    }
+
+    /// The place of the latest message whose step can be undone now, the step, and how long it still can, s.
+    pub fn undoable(&mut self, now_s: f64) -> Option<(usize, Written, f64)> {
+        let place = self
+            .all
+            .iter()
+            .rposition(|message| message.written.is_some())?;
+        let message = &mut self.all[place];
+        let left_s = message.shown_at_s.get_or_insert(now_s).to_owned() + UNDO_S - now_s;
+        let written = message.written.filter(|_| left_s > 0.0)?;
+        Some((place, written, left_s))
+    }
+
+    /// The step is being undone: it is not offered again.
+    pub fn take_offer(&mut self, written: Written) {
+        for message in &mut self.all {
+            if message.written == Some(written) {
+                message.written = None;
+            }
+        }
+    }
+
+    /// The step was taken back.
+    pub fn tell_taken_back(&mut self, text: impl Into<String>, written: Written) {
+        self.note(text);
+        self.taken_back = Some(written);
+    }
+
+    /// Whether this was what was taken back last.
+    pub fn was_taken_back(&self, written: Written) -> bool {
+        self.taken_back == Some(written)
     }
 
     /// What was said about this no longer holds.
@@ -107,6 +164,8 @@ impl Messages {
             at_us: clock::now_us(),
             about,
             over: false,
+            written: None,
+            shown_at_s: None,
         });
     }
 }

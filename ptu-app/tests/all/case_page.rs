@@ -145,6 +145,13 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     counted.window.wait_for(case.serial_new);
     counted.window.write(case.note, "cleaned its contacts");
     counted.click(case.save);
+    // Undone, the form is there again as it was written, and nothing is repaired.
+    let undo = Language::English.words().frame.undo;
+    counted.window.click(undo);
+    counted.window.wait_for(case.save);
+    let repaired = ["faults", "list", "--state", "repaired", "--json"];
+    assert_eq!(list(&counted.window.place.json(&repaired)).len(), 0);
+    counted.click(case.save);
     counted.click(case.fitted);
     counted.click(case.prove);
     counted.window.wait_for(case.record_repair);

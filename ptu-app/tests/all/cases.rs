@@ -205,3 +205,62 @@ fn cases_of_two_laptops_are_one_after_an_import_in_either_order() {
         place.ptu(&["db", "check"]).exits(0);
     }
 }
+
+/// Goal: what was written by mistake is taken back with the case, once, and stays told. Method: a repair of a case, undone;
+/// then all that is asked is as before, and there is nothing left to undo.
+#[test]
+fn what_a_person_wrote_is_undone_for_the_whole_case() {
+    let place = two_cases();
+    let cpu = id_of(&place, "atp_cpu");
+    let questions = [
+        &["faults", "list", "--json"][..],
+        &["faults", "stats", "--json"],
+        &["faults", "list", "--state", "repaired", "--json"],
+        &["db", "query", "SELECT * FROM repairs", "--json"],
+    ];
+    let asked = |place: &Place| {
+        let mut answers = questions.map(|question| place.json(question));
+        let rows = answers[1].as_array_mut().into_iter().flatten();
+        rows.for_each(|row| drop(row.as_object_mut().map(|row| row.remove("mtbf_days"))));
+        answers
+    };
+    let before = asked(&place);
+    let repair = [
+        "faults", "repair", &cpu, "--part", "eb_relay", "--new", "SN-77", "--who", "Kim",
+    ];
+    place.ptu(&repair).exits(0);
+    assert_ne!(asked(&place), before);
+    let undone = place.ptu(&[
+        "faults",
+        "undo",
+        &cpu,
+        "--who",
+        "Lee",
+        "--note",
+        "other unit",
+    ]);
+    let said = undone.exits(0).out;
+    assert!(
+        said.starts_with("withdrawn: repair of ") && said.contains("by Kim"),
+        "{said}"
+    );
+    assert!(
+        said.contains("is open") && said.contains("of the same case"),
+        "{said}"
+    );
+    assert_eq!(asked(&place), before);
+    let shown = place.ptu(&["faults", "show", &cpu]).exits(0).out;
+    assert!(
+        shown.contains("[withdrawn ") && shown.contains("Lee other unit]"),
+        "{shown}"
+    );
+    let told = place.json(&["faults", "show", &cpu, "--json"]);
+    assert_eq!(list(&told["withdrawn"]).len(), 1);
+    let nothing = place.ptu(&["faults", "undo", &cpu]);
+    assert!(
+        nothing.code != Some(0) && nothing.err.contains("nobody has written"),
+        "{}",
+        nothing.err
+    );
+    place.ptu(&["db", "check"]).exits(0);
+}

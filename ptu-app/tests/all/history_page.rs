@@ -69,6 +69,51 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     }
 }
 
+/// Goal: what was written by mistake is undone at once. Method: a fault is acknowledged and undone, noted on and left so
+/// until the offer ends.
+#[test]
+fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
+    for language in Language::ALL {
+        let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
+        let mut window = on(place, Page::Faults, language);
+        let words = language.words();
+        let relay = match language {
+            Language::English => "EB relay · ",
+            Language::Korean => "비상제동 계전기 · ",
+        };
+        window.wait_for_part(relay);
+        let of_relay = ["faults", "list", "--lru", "eb_relay", "--json"];
+        let id = window.place.json(&of_relay)[0]["id"].clone();
+        let show = ["faults", "show", id.as_str().expect("an id"), "--json"];
+        let before = window.place.json(&show);
+        window.click_part(relay);
+        window.write(words.common.note, "wrong unit");
+        window.click(words.faults.acknowledge);
+        window.wait_for(words.common.acknowledged);
+        // The second click of two finds nothing to undo.
+        window.double_click(words.frame.undo);
+        let undone = words.frame.undone.replace("{what} ", "");
+        window.wait_for_part(&undone);
+        window.wait_for_part(words.frame.undo_reason);
+        assert!(!window.shows(words.frame.undo));
+        let mut after = window.place.json(&show);
+        let withdrawn = after["withdrawn"].take();
+        let listed = withdrawn.as_array().expect("a list");
+        assert_eq!(listed.len(), 1);
+        assert_eq!(listed[0]["kind"], "acknowledged");
+        assert_eq!(listed[0]["withdrawn"]["who"], "Kim");
+        after["withdrawn"] = before["withdrawn"].clone();
+        assert_eq!(after, before);
+
+        window.write(words.common.note, "seen");
+        window.click(words.faults.add_note);
+        window.wait_for(words.frame.undo);
+        window.pass(11.0);
+        window.step();
+        assert!(!window.shows(words.frame.undo), "it is over");
+    }
+}
+
 /// Goal: who reads Korean reads no identifier of a measurement and the part's name. Method: a run that fails by its relay,
 /// led by the window; then every page that tells of it.
 #[test]

@@ -169,7 +169,7 @@ impl Window {
     }
 
     /// A frame in which the window's clock moves by so much, s.
-    fn pass(&mut self, by_s: f64) {
+    pub fn pass(&mut self, by_s: f64) {
         let now_s = self.harness.ctx.input(|input| input.time);
         self.harness.input_mut().time = Some(now_s + by_s);
         self.harness.step();

@@ -181,7 +181,7 @@ fn is_now(fault: &str, state: FaultState) -> String {
 }
 
 /// The fault that was named, and what was settled with it.
-fn changed((named, rest): &(ChangedFault, Vec<ChangedFault>)) -> String {
+pub fn changed((named, rest): &(ChangedFault, Vec<ChangedFault>)) -> String {
     let mut text = is_now(&named.id.short(), named.state);
     for fault in rest {
         let (id, name) = (fault.id.short(), &fault.code_name);

@@ -1,6 +1,6 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{FaultDetail, FaultSummary, FreezeSample, Store};
+use fault_db::{FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
@@ -36,17 +36,20 @@ fn detail_json(detail: &FaultDetail) -> Value {
             })
         })
         .collect();
-    value["events"] = detail
-        .events
-        .iter()
-        .map(|event| {
-            json!({
-                "kind": event.kind, "at": rfc3339(event.at_us), "who": event.who,
-                "note": event.note, "state": event.state.map(|state| state.as_str()),
-                "repair": event.repair, "cause": event.cause,
-            })
-        })
-        .collect();
+    value["events"] = detail.events.iter().map(event_json).collect();
+    value["withdrawn"] = detail.withdrawn.iter().map(event_json).collect();
+    value
+}
+
+fn event_json(event: &FaultEvent) -> Value {
+    let mut value = json!({
+        "kind": event.kind, "at": rfc3339(event.at_us), "who": event.who,
+        "note": event.note, "state": event.state.map(|state| state.as_str()),
+        "repair": event.repair, "cause": event.cause,
+    });
+    if let Some(by) = &event.correction {
+        value["withdrawn"] = json!({ "at": rfc3339(by.at_us), "who": by.who, "note": by.note });
+    }
     value
 }
 
@@ -94,7 +97,9 @@ fn detail(detail: &FaultDetail) -> String {
         text.push_str(&format!("\nfreeze frame\n{}\n", freeze_frame(&last.freeze)));
     }
     let mut table = Table::new(&["AT", "EVENT", "WHO", "NOTE"]);
-    for event in &detail.events {
+    let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
+    events.sort_by_key(|event| event.at_us);
+    for event in events {
         let repair = event.repair.as_ref().map_or_else(String::new, |repair| {
             format!(
                 "{} {} → {} {}",
@@ -105,7 +110,11 @@ fn detail(detail: &FaultDetail) -> String {
             )
         });
         let cause = event.cause.as_ref().map_or_else(String::new, cause_text);
-        let note = format!("{}{repair}{cause}", event.note);
+        let correction = event.correction.as_ref().map_or_else(String::new, |by| {
+            let at = local(by.at_us);
+            format!(" [withdrawn {at} {} {}]", line(&by.who), line(&by.note))
+        });
+        let note = format!("{}{repair}{cause}{correction}", event.note);
         table.row([
             local(event.at_us),
             event.kind.clone(),

@@ -1,12 +1,64 @@
-//! Shows the latest trouble until it is acknowledged, the latest message, and all messages on demand.
+//! Shows the latest trouble until it is acknowledged, the latest message, and all messages on demand. A message that tells
+//! what was written has a button that takes it back.
+
+use std::time::Duration;
 
 use eframe::egui::{RichText, ScrollArea, TextWrapMode, Ui};
+use fault_db::ToWithdraw;
 
-use crate::gui::messages::Message;
+use crate::gui::messages::{Message, Written};
+use crate::gui::parts::ActionPlace;
+use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
+use ptu_report::words::fill;
 
-pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
+/// A step that is being taken back.
+#[derive(Default)]
+pub struct Undo {
+    under_way: Request<Written>,
+    /// The step as its message told it.
+    what: String,
+}
+
+impl Undo {
+    /// Tells when it is done.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if !self.under_way.poll() {
+            return;
+        }
+        let frame = &context.words.frame;
+        match std::mem::take(&mut self.under_way) {
+            Request::Failed(why) => context.messages.trouble(frame.not_undone, why),
+            Request::Ready(written) => {
+                let said = fill(frame.undone, &[("what", &self.what)]);
+                context.messages.tell_taken_back(said, written);
+            }
+            Request::Idle | Request::Pending(_) => {}
+        }
+    }
+
+    fn begin(&mut self, written: Written, what: String, context: &mut PageContext<'_>) {
+        context.messages.take_offer(written);
+        self.what = what;
+        let (who, why) = (
+            context.settings.operator.trim().to_owned(),
+            context.words.frame.undo_reason,
+        );
+        self.under_way = Request::Pending(context.queries.run(move |paths| {
+            let what = ToWithdraw {
+                written_at_us: Some(written.at_us),
+                only: false,
+            };
+            let store = paths.open()?;
+            store.withdraw(written.fault, what, &who, why, clock::now_us())?;
+            Ok(written)
+        }));
+    }
+}
+
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
+    let undoable = context.messages.undoable(ui.input(|input| input.time));
     let all = context.messages.all();
     let Some(last) = all.last() else {
         let quiet = Palette::of(ui).quiet;
@@ -15,6 +67,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
     };
     let mut clear = false;
     let mut noted = false;
+    let mut taken_back = None;
     ui.horizontal(|ui| {
         let button = format!("{} ({})", context.words.frame.messages, all.len());
         ui.menu_button(button, |ui| {
@@ -31,15 +84,31 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
         });
         // There is one line; what is cut is told when it is pointed at, and in the menu.
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        if let Some(trouble) = context.messages.unread_trouble() {
-            noted = ui.button(context.words.frame.dismiss).clicked();
+        let trouble = context.messages.unread_trouble();
+        noted = trouble.is_some() && ui.button(context.words.frame.dismiss).clicked();
+        let told = undoable.and_then(|(place, written, left_s)| {
+            let told = all.get(place)?;
+            let place = ActionPlace::new(ui, "undo", written.at_us);
+            let button = ui
+                .button(context.words.frame.undo)
+                .on_hover_text(&told.text);
+            taken_back = place.clicked(&button).then(|| (written, told.text.clone()));
+            ui.ctx()
+                .request_repaint_after(Duration::from_secs_f64(left_s));
+            Some(told)
+        });
+        if let Some(trouble) = trouble {
             said(ui, trouble);
         }
         // Trouble is shown until it was taken note of, and not again as the latest message.
-        if !last.bad && !last.over {
-            said(ui, last);
+        let told = told.unwrap_or(last);
+        if !told.bad && !told.over {
+            said(ui, told);
         }
     });
+    if let Some((written, what)) = taken_back {
+        undo.begin(written, what, context);
+    }
     if noted {
         context.messages.acknowledge();
     }

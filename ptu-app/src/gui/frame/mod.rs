@@ -19,6 +19,7 @@ use setup::Setup;
 pub struct Frame {
     setup: Setup,
     about: About,
+    undo: messages::Undo,
 }
 
 impl Frame {
@@ -37,7 +38,8 @@ impl Frame {
 
     /// The latest message, and all of them.
     pub fn messages(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        messages::bar(ui, context);
+        self.undo.poll(context);
+        messages::bar(ui, context, &mut self.undo);
     }
 
     /// Over everything while the window is being closed; true once the person has taken note that

@@ -61,6 +61,9 @@ impl CasePage {
         if self.repair.poll(&self.known, context) {
             self.stage = Stage::Prove;
         }
+        if self.repair.is_undone(context) && self.stage == Stage::Prove {
+            self.stage = Stage::Repair;
+        }
         if matches!(self.stage, Stage::Find | Stage::Prove) {
             self.take_run(concluded, context);
         }

@@ -1,11 +1,14 @@
 //! What was done: part, serial numbers, note.
 
+use std::collections::BTreeSet;
+
 use eframe::egui::{ComboBox, Grid, RichText, Ui};
 use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
 use super::{CasePage, TEXT, large};
+use crate::gui::messages::Written;
 use crate::gui::parts::{ActionPlace, field, name_edit, named_combo, note_edit, typed};
 use crate::gui::request::Request;
 use crate::gui::{DataPaths, PageContext};
@@ -26,9 +29,9 @@ pub struct Repair {
     serial_old: String,
     serial_new: String,
     note: String,
-    /// Answers with a fault of the case.
-    saving: Request<Option<Id>>,
-    fault: Option<Id>,
+    /// Answers with a fault of the case, and when the repair was written.
+    saving: Request<Option<Written>>,
+    written: Option<Written>,
 }
 
 impl Repair {
@@ -58,11 +61,14 @@ impl Repair {
                 context.messages.trouble(words.not_recorded, why);
                 false
             }
-            Request::Ready(fault) => {
-                self.fault = fault;
+            Request::Ready(written) => {
+                self.written = written;
                 let part = known.part_name(&self.part, context.words);
                 let said = fill(words.recorded, &[("part", &part)]);
-                context.messages.note(said);
+                match written {
+                    Some(written) => context.messages.note_written(said, written),
+                    None => context.messages.note(said),
+                }
                 true
             }
             Request::Idle | Request::Pending(_) => false,
@@ -71,7 +77,13 @@ impl Repair {
 
     /// A fault that was repaired: its case is this one.
     pub fn fault(&self) -> Option<Id> {
-        self.fault
+        self.written.map(|written| written.fault)
+    }
+
+    /// True once if the repair was taken back.
+    pub fn is_undone(&mut self, context: &PageContext<'_>) -> bool {
+        let is_undone = |written: &mut Written| context.messages.was_taken_back(*written);
+        self.written.take_if(is_undone).is_some()
     }
 
     /// A part was put in, or it is said what else was done.
@@ -133,14 +145,15 @@ impl CasePage {
     }
 }
 
-/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases; the first of them.
+/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases, at one time, by which
+/// it is undone; the first of them.
 fn store(
     paths: &DataPaths,
     run: Id,
     repair: &RepairRecord,
     who: &str,
-) -> Result<Option<Id>, Failure> {
-    let store = paths.open()?;
+) -> Result<Option<Written>, Failure> {
+    let (store, at_us) = (paths.open()?, now_us());
     let mut faults: Vec<Id> = store
         .run_occurrences(run)?
         .iter()
@@ -149,12 +162,14 @@ fn store(
     faults.sort_unstable();
     faults.dedup();
     let mut first = None;
+    let mut done = BTreeSet::new();
     for fault in faults {
-        // The one before may have been of the same case.
+        // One before may have been of the same case; a second repair of it would be another one.
         let state = store.fault(fault)?.fault.state;
-        if state.next(FaultAction::Repair).is_ok() {
-            store.repair_case(fault, repair, who, now_us())?;
-            first.get_or_insert(fault);
+        if !done.contains(&fault) && state.next(FaultAction::Repair).is_ok() {
+            let (named, rest) = store.repair_case(fault, repair, who, at_us)?;
+            done.extend(rest.iter().chain([&named]).map(|changed| changed.id));
+            first.get_or_insert(Written { fault, at_us });
         }
     }
     Ok(first)

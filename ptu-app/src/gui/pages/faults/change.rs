@@ -3,6 +3,7 @@
 use eframe::egui::{Button, Grid, RichText, Ui};
 use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
 
+use crate::gui::messages::Written;
 use crate::gui::parts::{ActionPlace, field, name_edit, note_edit, typed};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
@@ -27,8 +28,8 @@ const WIDEST: f32 = 420.0;
 #[derive(Default)]
 pub struct Change {
     form: Form,
-    /// Answers with the fault that was changed.
-    under_way: Request<Id>,
+    /// Answers with the fault that was changed, and when.
+    under_way: Request<Written>,
     /// What is being recorded, as its button says it.
     what: &'static str,
 }
@@ -82,11 +83,11 @@ impl Change {
             }
             Request::Ready(changed) => {
                 let said = fill(context.words.faults.recorded, &[("what", &self.what)]);
-                context.messages.note(said);
-                if self.form.of == Some(changed) {
-                    self.form = Form::about(changed);
+                context.messages.note_written(said, changed);
+                if self.form.of == Some(changed.fault) {
+                    self.form = Form::about(changed.fault);
                 }
-                Some(changed)
+                Some(changed.fault)
             }
             Request::Idle | Request::Pending(_) => None,
         }
@@ -138,8 +139,9 @@ impl Change {
                     self.what = words.faults.add_note;
                     let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
                     self.under_way = Request::Pending(context.queries.run(move |paths| {
-                        paths.open()?.add_note(id, &who, &note, now_us())?;
-                        Ok(id)
+                        let at_us = now_us();
+                        paths.open()?.add_note(id, &who, &note, at_us)?;
+                        Ok(Written { fault: id, at_us })
                     }));
                 }
             });
@@ -165,13 +167,13 @@ impl Change {
         };
         let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
         self.under_way = Request::Pending(context.queries.run(move |paths| {
-            let store = paths.open()?;
+            let (store, at_us) = (paths.open()?, now_us());
             if state == FaultState::Repaired {
-                store.repair_case(id, &repair, &who, now_us())?;
+                store.repair_case(id, &repair, &who, at_us)?;
             } else {
-                store.set_case_state(id, state, &who, &note, now_us())?;
+                store.set_case_state(id, state, &who, &note, at_us)?;
             }
-            Ok(id)
+            Ok(Written { fault: id, at_us })
         }));
     }
 }

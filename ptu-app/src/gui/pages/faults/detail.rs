@@ -85,8 +85,17 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
     // What a run found was not done by anybody, and stands above.
     let is_finding =
         |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
-    for event in detail.events.iter().filter(|event| !is_finding(event)) {
+    let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
+    events.sort_by_key(|event| event.at_us);
+    for event in events.into_iter().filter(|event| !is_finding(event)) {
         show_event(ui, words, event, detail);
+        if let Some(correction) = &event.correction {
+            let (at, who) = (clock::local(correction.at_us), correction.who.as_str());
+            let said = fill(words.faults.withdrawn, &[("at", &at), ("who", &who)]);
+            let said = format!("{said} {}", correction.note);
+            let said = RichText::new(said).color(Palette::of(ui).warn);
+            ui.indent((event.id, "withdrawn"), |ui| ui.label(said));
+        }
     }
     ui.separator();
     ui.label(RichText::new(words.faults.occurrences).strong());

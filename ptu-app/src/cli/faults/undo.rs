@@ -1,0 +1,53 @@
+//! `ptu faults undo`: takes back what a person wrote last about a fault.
+
+use clap::Args;
+use fault_db::{Store, ToWithdraw};
+
+use super::change::changed;
+use crate::cli::print_out;
+use protocol::display_text::line;
+use ptu_bench::clock::{local, now_us};
+use ptu_bench::failure::{Exit, Failure};
+
+/// Take back what a person wrote last about a fault, and the same at the others of its case
+///
+/// The history keeps it and the correction; state, cause, repairs and counts are as if it had never been written. What a
+/// run found is not taken back, nor what a run or another person has built on: say by a state or a note what is so.
+#[derive(Debug, Args)]
+pub struct UndoArguments {
+    /// The fault
+    id: String,
+    /// Who takes it back
+    #[arg(long, default_value = "")]
+    who: String,
+    /// Why
+    #[arg(long, default_value = "")]
+    note: String,
+    /// Of this fault alone, not of the others of its case
+    #[arg(long)]
+    only: bool,
+}
+
+impl UndoArguments {
+    pub fn undo(&self, store: &Store) -> Result<Exit, Failure> {
+        let id = store.resolve_fault(&self.id)?;
+        let what = ToWithdraw {
+            only: self.only,
+            ..ToWithdraw::default()
+        };
+        let withdrawn = store.withdraw(id, what, self.who.trim(), self.note.trim(), now_us())?;
+        let by = match &*withdrawn.who {
+            "" => String::new(),
+            who => format!(" by {}", line(who)),
+        };
+        let (kind, at) = (&withdrawn.kind, local(withdrawn.at_us));
+        let mut faults = withdrawn.faults.into_iter();
+        let said = faults
+            .next()
+            .map(|named| changed(&(named, faults.collect())));
+        print_out(&format!(
+            "withdrawn: {kind} of {at}{by}\n{}",
+            said.unwrap_or_default()
+        ))
+    }
+}
