@@ -8,6 +8,7 @@
 
 pub mod cli;
 mod console;
+mod fault_months;
 #[cfg(feature = "window")]
 pub mod gui;
 mod operator;

@@ -24,11 +24,13 @@ pub enum Page {
     Diagnosis,
     /// The test sheet of a run.
     Report,
+    /// Which causes, how often, and whether repairs hold.
+    Statistics,
 }
 
 impl Page {
     /// All, in the order they are shown.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Case,
         Self::Bench,
         Self::Procedures,
@@ -36,6 +38,7 @@ impl Page {
         Self::Faults,
         Self::Diagnosis,
         Self::Report,
+        Self::Statistics,
     ];
 
     /// Its name on the command line.
@@ -48,6 +51,7 @@ impl Page {
             Self::Faults => "faults",
             Self::Diagnosis => "diagnosis",
             Self::Report => "report",
+            Self::Statistics => "statistics",
         }
     }
 
@@ -61,6 +65,7 @@ impl Page {
             Self::Faults => words.faults.title,
             Self::Diagnosis => words.diagnosis.title,
             Self::Report => words.report.title,
+            Self::Statistics => words.statistics.title,
         }
     }
 
@@ -74,6 +79,7 @@ impl Page {
             Self::Faults => Key::F4,
             Self::Diagnosis => Key::F5,
             Self::Report => Key::F6,
+            Self::Statistics => Key::F8,
         }
     }
 }

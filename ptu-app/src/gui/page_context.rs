@@ -1,11 +1,13 @@
 //! What a page reads and changes while it is drawn, and how it leads to another page.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use fault_db::Id;
 
 use super::data_watch::DataWatch;
 use super::messages::Messages;
+use super::parts::UnitFilter;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
@@ -35,6 +37,21 @@ impl PageContext<'_> {
     }
 }
 
+/// The faults that a bar of the statistics stands for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FaultsOf {
+    /// Part that they come from.
+    pub cause: Option<String>,
+    /// When they were first seen, µs since 1970.
+    pub first_seen_us: Option<Range<i64>>,
+    /// The name of this span.
+    pub month: String,
+    /// Days to look back.
+    pub days: Option<i64>,
+    /// Of which unit.
+    pub units: UnitFilter,
+}
+
 /// A page to open, and what it is to show.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
@@ -42,6 +59,8 @@ pub enum Destination {
     /// The test sheet of a run.
     Report(Id),
     Diagnosis(Id),
+    /// The faults that a bar of the statistics stands for.
+    Faults(FaultsOf),
     /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.
     FindPart(Option<Symptom>),
     /// Runs these procedures, and those that this part can fail, on the chosen unit; stays with the case.

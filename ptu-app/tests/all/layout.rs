@@ -57,6 +57,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         (Page::Traces, words.traces.events),
         (Page::Diagnosis, words.diagnosis.reasons),
         (Page::Report, words.report.write_pdf),
+        (Page::Statistics, words.statistics.mtbf_is),
     ] {
         window.key(page.key());
         window.wait_for(said);

@@ -35,6 +35,7 @@ mod resume;
 mod saved_questions;
 mod scatter;
 mod server;
+mod statistics_page;
 mod suite;
 mod symptoms;
 mod trace_files;

@@ -22,6 +22,8 @@ wordings! {
         cause: "cause", "원인";
         with_cause: "{part}; cause {cause}", "{part}; 원인 {cause}";
         case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";
+        first_seen_in: "first seen in {month}", "{month} 최초 발생";
+        show_all: "Show all again", "모두 다시 표시";
         choose: "Choose a fault in the list", "목록에서 고장을 고르십시오";
         not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
         times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";

@@ -15,6 +15,7 @@ mod frame;
 mod memory;
 mod procedures;
 mod report;
+mod statistics;
 mod traces;
 
 pub use bench::Bench;
@@ -27,6 +28,7 @@ pub use frame::Frame;
 pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
+pub use statistics::Statistics;
 pub use traces::Traces;
 
 use std::borrow::Cow;
@@ -124,6 +126,8 @@ pub struct Words {
     pub traces: Traces,
     /// Fault history.
     pub faults: Faults,
+    /// Statistics of the fault history.
+    pub statistics: Statistics,
     /// What a unit has stored.
     pub memory: Memory,
     /// Parts to replace.
@@ -162,6 +166,7 @@ static ENGLISH: Words = Words {
     procedures: Procedures::ENGLISH,
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
+    statistics: Statistics::ENGLISH,
     memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
     report: Report::ENGLISH,
@@ -176,6 +181,7 @@ static KOREAN: Words = Words {
     procedures: Procedures::KOREAN,
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
+    statistics: Statistics::KOREAN,
     memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
     report: Report::KOREAN,
@@ -194,6 +200,7 @@ mod tests {
             Procedures::all(),
             Traces::all(),
             Faults::all(),
+            Statistics::all(),
             Memory::all(),
             Diagnosis::all(),
             Report::all(),

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
+use crate::fault_months::by_month;
 use crate::sparkline::sparkline;
 use ptu_bench::clock::{self, local_minute, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
@@ -110,7 +111,10 @@ impl StatsArguments {
             back_within_days: self.back_within,
         };
         let (stats, together) = match (self.by, self.output.is_table()) {
-            (GroupBy::Month, _) => (by_month(store, &query)?, None),
+            (GroupBy::Month, _) => {
+                let months = by_month(store, &query)?.into_iter();
+                (months.map(|month| month.stat).collect(), None)
+            }
             (_, false) => (store.stats(&query)?, None),
             (_, true) => {
                 let (stats, together) = store.stats_and_total(&query)?;
@@ -261,40 +265,6 @@ impl StatsArguments {
             self.back_within
         )
     }
-}
-
-/// Each local month of the span for itself, the oldest first. None if there is nothing to count in any of
-/// them.
-fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<FaultStat>, Failure> {
-    let Some((first_us, last_us)) = store.history_span()? else {
-        return Ok(Vec::new());
-    };
-    // Before the history there is nothing, and after now only what a computer with a fast clock recorded:
-    // a span that reaches farther has no months there, and no count is another for it.
-    let end_us = query.now_us.max(last_us.saturating_add(1));
-    let since_us = query
-        .filter
-        .since_us
-        .map_or(first_us, |since| since.max(first_us));
-    let until_us = query
-        .filter
-        .until_us
-        .map_or(end_us, |until| until.min(end_us));
-    let months = clock::months(since_us, until_us);
-    let spans: Vec<_> = months
-        .iter()
-        .map(|(_, since, until)| *since..*until)
-        .collect();
-    let counted = store.stats_of_spans(query, &spans)?;
-    if counted.iter().all(Vec::is_empty) {
-        return Ok(Vec::new());
-    }
-    // A quiet month has a row, too.
-    let stats = months.into_iter().zip(counted).map(|((key, ..), counted)| {
-        let stat = counted.into_iter().next().unwrap_or_default();
-        FaultStat { key, ..stat }
-    });
-    Ok(stats.collect())
 }
 
 fn entry(stat: &FaultStat, (counted, of): (u64, u64)) -> Value {

@@ -6,6 +6,7 @@ mod diagnosis;
 mod faults;
 mod procedures;
 mod report;
+mod statistics;
 mod traces;
 
 use eframe::egui::Ui;
@@ -24,6 +25,7 @@ pub struct Pages {
     faults: faults::FaultsPage,
     diagnosis: diagnosis::DiagnosisPage,
     report: report::ReportPage,
+    statistics: statistics::StatisticsPage,
 }
 
 impl Pages {
@@ -48,6 +50,7 @@ impl Pages {
             Page::Faults => self.faults.show(ui, context),
             Page::Diagnosis => self.diagnosis.show(ui, context),
             Page::Report => self.report.show(ui, context),
+            Page::Statistics => self.statistics.show(ui, context),
         }
     }
 
@@ -65,6 +68,10 @@ impl Pages {
             Destination::Diagnosis(run) => {
                 self.diagnosis.open(run, context);
                 Page::Diagnosis
+            }
+            Destination::Faults(of) => {
+                self.faults.show_of(of);
+                Page::Faults
             }
             Destination::FindPart(symptom) => {
                 self.procedures.find_part(symptom, context);

@@ -1,5 +1,6 @@
 //! Widgets that several pages use.
 
+pub mod bars;
 mod chip;
 mod deliberate;
 mod edit;
@@ -7,6 +8,7 @@ mod file;
 pub mod lane;
 mod limit_bar;
 mod link;
+pub mod look_back;
 mod memory;
 mod named;
 mod open_file;

@@ -6,7 +6,7 @@ use crate::gui::PageContext;
 use ptu_report::words::fill;
 
 /// The unit connected last, and whether only what belongs to it is shown.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitFilter {
     unit: Option<String>,
     all: bool,
@@ -33,7 +33,7 @@ impl UnitFilter {
     }
 
     /// The unit that is taken; none = all.
-    fn taken(&self) -> Option<&str> {
+    pub fn taken(&self) -> Option<&str> {
         self.unit.as_deref().filter(|_| !self.all)
     }
 

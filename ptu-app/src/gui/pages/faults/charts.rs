@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use fault_db::DailyCount;
 
-/// Microseconds of a day.
-pub const DAY_US: i64 = 86_400_000_000;
+use crate::gui::parts::look_back::DAY_US;
+
 /// As many bars as a chart over time has at most.
 const MOST_BARS: i64 = 60;
 /// As many bars as a chart by name has.

@@ -2,10 +2,7 @@
 
 use fault_db::{DailyCount, FaultState, FaultSummary};
 
-use super::charts::DAY_US;
-
-/// Spans to look back, days; none = all there is.
-pub const SPANS: [Option<i64>; 5] = [Some(7), Some(30), Some(90), Some(365), None];
+use crate::gui::page_context::FaultsOf;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
@@ -16,14 +13,11 @@ pub struct Filter {
     pub days: Option<i64>,
     /// Something its code, name, part, unit or severity contains.
     pub text: String,
+    /// What a bar of the statistics stands for, until it is cleared.
+    pub of_bar: FaultsOf,
 }
 
 impl Filter {
-    /// The first time of interest.
-    pub fn since_us(&self, now_us: i64) -> i64 {
-        self.days.map_or(0, |days| now_us - days * DAY_US)
-    }
-
     /// Whether a fault is shown.
     pub fn takes(&self, fault: &FaultSummary) -> bool {
         let text = self.text.trim().to_lowercase();
@@ -33,6 +27,9 @@ impl Filter {
             .is_none_or(|unit| *unit == fault.unit_serial)
             && self.lru.as_ref().is_none_or(|lru| *lru == fault.lru)
             && self.state.is_none_or(|state| state == fault.state)
+            && (self.of_bar.cause.as_deref()).is_none_or(|cause| cause == fault.cause())
+            && (self.of_bar.first_seen_us.as_ref())
+                .is_none_or(|span| span.contains(&fault.first_at_us))
             && (has(&fault.code_name)
                 || has(&fault.code.to_string())
                 || has(&fault.lru)

@@ -3,9 +3,10 @@
 use eframe::egui::{ComboBox, RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::{FaultState, FaultSummary, Id};
 
-use super::filter::{Filter, SPANS, names};
+use super::filter::{Filter, names};
 use crate::gui::Palette;
-use crate::gui::parts::{UnitFilter, chip, named_combo};
+use crate::gui::page_context::FaultsOf;
+use crate::gui::parts::{UnitFilter, chip, look_back, named_combo};
 use ptu_bench::clock;
 use ptu_report::naming::{DOT, PartNames};
 use ptu_report::words::{Words, fill};
@@ -18,7 +19,7 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultS
         let parts = names(faults_of().map(|fault| fault.lru.as_str()));
         choose(ui, words, words.common.part, &parts, &mut filter.lru);
         state(ui, words, &mut filter.state);
-        span(ui, words, &mut filter.days);
+        look_back::look_back(ui, words, &mut filter.days);
         let label = ui.label(words.faults.find);
         ui.add(TextEdit::singleline(&mut filter.text).desired_width(100.0))
             .labelled_by(label.id);
@@ -56,22 +57,21 @@ fn state(ui: &mut Ui, words: &Words, chosen: &mut Option<FaultState>) {
     named_combo(&response.response, words.common.state, shown);
 }
 
-fn span(ui: &mut Ui, words: &Words, chosen: &mut Option<i64>) {
-    let name = |days: Option<i64>| match days {
-        Some(days) => fill(words.faults.days, &[("n", &days)]),
-        None => words.faults.always.to_owned(),
-    };
-    let shown = name(*chosen);
-    ui.label(words.faults.since);
-    let combo = ComboBox::from_id_salt("span")
-        .selected_text(&shown)
-        .width(70.0);
-    let response = combo.show_ui(ui, |ui| {
-        for days in SPANS {
-            ui.selectable_value(chosen, days, name(days));
-        }
+/// What a bar of the statistics stands for, with a button that clears it.
+pub fn of_bar(ui: &mut Ui, words: &Words, filter: &mut Filter, parts: &PartNames) {
+    let of = &filter.of_bar;
+    let cause = of.cause.as_deref().map(|cause| {
+        let cause = parts.name(cause, words.language);
+        format!("{} {cause}", words.faults.cause)
     });
-    named_combo(&response.response, words.faults.since, &shown);
+    let month = of.first_seen_us.as_ref();
+    let month = month.map(|_| fill(words.faults.first_seen_in, &[("month", &of.month)]));
+    if let Some(said) = cause.or(month) {
+        let button = ui.button(format!("{said}  ×"));
+        if button.on_hover_text(words.faults.show_all).clicked() {
+            filter.of_bar = FaultsOf::default();
+        }
+    }
 }
 
 /// The faults; the one that was clicked.

@@ -10,6 +10,8 @@ mod list;
 use eframe::egui::{CentralPanel, CollapsingHeader, RichText, ScrollArea, Ui};
 use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
+use crate::gui::page_context::FaultsOf;
+use crate::gui::parts::look_back::since_us;
 use crate::gui::parts::{FirstHalf, MemoryReader, UnitFilter};
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
@@ -72,6 +74,16 @@ impl FaultsPage {
         self.detail.request_other(detail_of(id, context));
     }
 
+    /// Shows the faults that a bar of the statistics stands for.
+    pub fn show_of(&mut self, of: FaultsOf) {
+        self.units = of.units.clone();
+        self.filter = Filter {
+            days: of.days,
+            of_bar: of,
+            ..Filter::default()
+        };
+    }
+
     /// Asks again when the data or the span are others.
     fn keep_up(&mut self, context: &mut PageContext<'_>) {
         let wanted = (self.filter.days, context.data_version());
@@ -81,7 +93,7 @@ impl FaultsPage {
             {
                 self.reread(context);
             }
-            let since_us = self.filter.since_us(clock::now_us());
+            let since_us = since_us(self.filter.days, clock::now_us()).unwrap_or_default();
             let utc_offset_us = clock::utc_offset_us();
             self.history.request(context.queries.run(move |paths| {
                 let store = paths.read()?;
@@ -127,7 +139,10 @@ impl FaultsPage {
         match self.history.get() {
             Request::Ready(history) => {
                 list::filters(ui, words, &mut self.filter, &history.faults);
-                self.units.show(ui, context);
+                ui.horizontal_wrapped(|ui| {
+                    self.units.show(ui, context);
+                    list::of_bar(ui, words, &mut self.filter, &history.parts);
+                });
                 let counts = (history.daily.iter())
                     .filter(|count| self.filter.counts(count))
                     .filter(|count| self.units.takes(&count.unit_serial));

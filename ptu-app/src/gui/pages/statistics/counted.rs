@@ -1,0 +1,68 @@
+//! What the history says, as the query thread counts it.
+
+use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery};
+
+use crate::fault_months::{Month, by_month};
+use crate::gui::DataPaths;
+use crate::gui::parts::look_back::since_us;
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_report::naming::PartNames;
+
+/// A repair after which the fault is seen again within so many days did not hold.
+pub const BACK_WITHIN_DAYS: u32 = 30;
+
+/// Of what is asked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Serial number; none = all units.
+    pub unit: Option<String>,
+    /// Days to look back; none = all there is.
+    pub days: Option<i64>,
+}
+
+/// What was counted.
+pub struct Counted {
+    pub asked: Asked,
+    /// Cases by cause, the most frequent first.
+    pub causes: Vec<FaultStat>,
+    /// Of all causes together.
+    pub all: FaultStat,
+    /// Faults by month, the oldest first.
+    pub months: Vec<Month>,
+    pub parts: PartNames,
+}
+
+impl Counted {
+    /// The answers of `ptu faults stats` and of `ptu faults stats --by month`.
+    pub fn read(paths: &DataPaths, asked: Asked) -> Result<Self, Failure> {
+        let parts = PartNames::of(&paths.scripts);
+        let mut counted = Self {
+            asked,
+            causes: Vec::new(),
+            all: FaultStat::default(),
+            months: Vec::new(),
+            parts,
+        };
+        if !paths.database.exists() {
+            return Ok(counted);
+        }
+        let store = paths.read()?;
+        let now_us = clock::now_us();
+        let mut query = StatQuery {
+            by: StatKey::Cause,
+            filter: FaultFilter {
+                unit: counted.asked.unit.clone(),
+                since_us: since_us(counted.asked.days, now_us),
+                ..FaultFilter::default()
+            },
+            now_us,
+            back_within_days: BACK_WITHIN_DAYS,
+        };
+        (counted.causes, counted.all) = store.stats_and_total(&query)?;
+        counted.causes.retain(|cause| cause.faults > 0);
+        query.by = StatKey::All;
+        counted.months = by_month(&store, &query)?;
+        Ok(counted)
+    }
+}

@@ -1,0 +1,160 @@
+//! Statistics of the fault history: which causes, how often, how long repairs take and whether they hold. Each bar leads to
+//! its faults.
+
+mod counted;
+mod figures;
+
+use eframe::egui::{RichText, ScrollArea, Ui};
+
+use crate::gui::page_context::{Destination, FaultsOf};
+use crate::gui::parts::bars::{Bar, Chart};
+use crate::gui::parts::{UnitFilter, look_back};
+use crate::gui::request::{CachedResponse, Request};
+use crate::gui::{PageContext, Palette};
+use counted::{Asked, Counted};
+use ptu_report::words::{Words, fill};
+
+/// As many causes have a bar of their own.
+const MOST_CAUSES: usize = 10;
+/// As many months are shown, the last ones.
+const MOST_MONTHS: usize = 24;
+
+#[derive(Default)]
+pub struct StatisticsPage {
+    units: UnitFilter,
+    /// Days to look back; none = all there is.
+    days: Option<i64>,
+    counted: CachedResponse<Counted>,
+    /// What was asked last, and of which data.
+    asked: Option<(Asked, (usize, u64))>,
+}
+
+impl StatisticsPage {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        ui.horizontal_wrapped(|ui| {
+            look_back::look_back(ui, words, &mut self.days);
+            self.units.show(ui, context);
+        });
+        self.keep_up(context);
+        match self.counted.get() {
+            Request::Ready(counted) => {
+                let mut to = None;
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    to = content(ui, words, counted, &self.units);
+                });
+                context.go_to.extend(to.map(Destination::Faults));
+            }
+            Request::Failed(why) => {
+                let said = RichText::new(words.statistics.not_read).color(Palette::of(ui).bad);
+                ui.label(said.strong());
+                ui.label(why);
+                if ui.button(words.common.refresh).clicked() {
+                    self.asked = None;
+                }
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+            }
+        }
+    }
+
+    /// Asks again when the data, the span or the unit are others.
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let asked = Asked {
+            unit: self.units.taken().map(str::to_owned),
+            days: self.days,
+        };
+        let wanted = (asked, context.data_version());
+        if self.asked.as_ref() != Some(&wanted) {
+            let asked = wanted.0.clone();
+            let pending = context
+                .queries
+                .run(move |paths| Counted::read(paths, asked));
+            // Counts of another unit are not shown as this one's meanwhile.
+            match self.asked.replace(wanted.clone()) {
+                Some((before, _)) if before == wanted.0 => self.counted.request(pending),
+                _ => self.counted.request_other(pending),
+            }
+        }
+        self.counted.poll();
+    }
+}
+
+/// Figures and charts; the faults of the bar that was clicked.
+fn content(ui: &mut Ui, words: &Words, counted: &Counted, units: &UnitFilter) -> Option<FaultsOf> {
+    let of = match &counted.asked.unit {
+        Some(unit) => fill(words.statistics.of_unit, &[("unit", unit)]),
+        None => words.statistics.all_units.to_owned(),
+    };
+    ui.label(RichText::new(of).strong().size(19.0));
+    if counted.causes.is_empty() {
+        ui.label(words.statistics.nothing);
+        return None;
+    }
+    figures::figures(ui, words, &counted.all);
+    ui.separator();
+    let chart = |title| Chart {
+        title,
+        width: ui.available_width(),
+        leads: true,
+    };
+    let (by_cause, by_month) = (
+        chart(words.statistics.by_cause),
+        chart(words.statistics.by_month),
+    );
+    let cause = by_cause.by_name(ui, &cause_bars(words, counted));
+    ui.separator();
+    let months = counted.months.len().saturating_sub(MOST_MONTHS);
+    let months = &counted.months[months..];
+    let bars = months
+        .iter()
+        .map(|month| Bar::new(&month.name, u64::from(month.stat.faults)));
+    let month = by_month.in_time(ui, &bars.collect::<Vec<_>>());
+    let cause = cause
+        .and_then(|place| counted.causes.iter().take(MOST_CAUSES).nth(place))
+        .map(|cause| FaultsOf {
+            cause: Some(cause.key.clone()),
+            days: counted.asked.days,
+            units: units.clone(),
+            ..FaultsOf::default()
+        });
+    let month = month
+        .and_then(|place| months.get(place))
+        .map(|month| FaultsOf {
+            first_seen_us: Some(month.span_us.clone()),
+            month: month.name.clone(),
+            units: units.clone(),
+            ..FaultsOf::default()
+        });
+    cause.or(month)
+}
+
+/// The causes with most cases, and all others together.
+fn cause_bars(words: &Words, counted: &Counted) -> Vec<Bar> {
+    let all = u64::from(counted.all.faults).max(1);
+    let percent = |part: u64| format!("{:.0}", 100.0 * part as f64 / all as f64);
+    let mut sum = 0;
+    let mut bar = |name: &str, count: u64| {
+        sum += count;
+        let (share, sum) = (percent(count), percent(sum));
+        let more = fill(words.statistics.of_all, &[("share", &share), ("sum", &sum)]);
+        Bar {
+            more,
+            ..Bar::new(name, count)
+        }
+    };
+    let shown = counted.causes.iter().take(MOST_CAUSES);
+    let mut bars: Vec<Bar> = shown
+        .map(|stat| {
+            let name = counted.parts.name(&stat.key, words.language);
+            bar(name, u64::from(stat.faults))
+        })
+        .collect();
+    let others = counted.causes.iter().skip(MOST_CAUSES);
+    let others: u64 = others.map(|stat| u64::from(stat.faults)).sum();
+    if others > 0 {
+        bars.push(bar(words.statistics.others, others));
+    }
+    bars
+}

@@ -1,0 +1,104 @@
+//! The statistics in the window: the figures of the command line, and bars that lead to their faults.
+
+use crate::common::window::{Window, settings};
+use crate::common::{Place, list, scripts, text};
+use ptu_app::gui::{Page, Settings};
+use ptu_report::words::{Language, Words, fill};
+use serde_json::Value;
+
+/// Two units with a slow relay, one of which was repaired, and one with a dead antenna.
+fn depot() -> Place {
+    let place = Place::new();
+    for (unit, procedure, mode) in [
+        ("A-1", "atp/overspeed", "eb_relay.slow"),
+        ("A-2", "atp/overspeed", "eb_relay.slow"),
+        ("A-1", "twc/exchange", "twc_antenna.dead"),
+    ] {
+        let run = ["run", procedure, "--serial-no", unit, "--inject", mode];
+        place.ptu(&run).exits(1);
+    }
+    let of_relay = [
+        "faults", "list", "--cause", "eb_relay", "--unit", "A-1", "--json",
+    ];
+    let fault = text(&list(&place.json(&of_relay))[0]["id"]).to_owned();
+    let repair = [
+        "faults", "repair", &fault, "--part", "eb_relay", "--new", "SN-1", "--who", "Kim",
+    ];
+    place.ptu(&repair).exits(0);
+    place
+}
+
+fn window(place: Place, language: Language) -> Window {
+    let settings = Settings {
+        language,
+        ..settings(Page::Statistics)
+    };
+    Window::with(place, scripts(), settings)
+}
+
+/// What the bar of a cause says.
+fn bar(words: &Words, name: &str, (count, share, sum): (u64, u64, u64)) -> String {
+    let more = fill(words.statistics.of_all, &[("share", &share), ("sum", &sum)]);
+    format!("{name}: {count} · {more}")
+}
+
+#[test]
+fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
+    for language in Language::ALL {
+        let place = depot();
+        let stats = place.json(&["faults", "stats", "--json"]);
+        // Of each cause its cases, their share and that of all so far, in the order of the list.
+        let cases = |row: &Value| row["faults"].as_u64().expect("a number");
+        let all: u64 = list(&stats).iter().map(cases).sum();
+        let percent = |part: u64| (100.0 * part as f64 / all as f64).round() as u64;
+        let told = |part: &str| {
+            let place = list(&stats).iter().position(|row| row["key"] == part);
+            let rows = &list(&stats)[..=place.expect("counted")];
+            let here = rows.last().map_or(0, cases);
+            (here, percent(here), percent(rows.iter().map(cases).sum()))
+        };
+        assert_eq!(told("eb_relay").0, 2, "{stats}");
+        let (relay, antenna) = match language {
+            Language::English => ("EB relay", "TWC antenna"),
+            Language::Korean => ("비상제동 계전기", "TWC 안테나"),
+        };
+        let words = language.words();
+        let mut window = window(place, language);
+        let of_relay = format!("{relay}: 2 · ");
+        window.wait_for_part(&of_relay);
+        for (part, name) in [("eb_relay", relay), ("twc_antenna", antenna)] {
+            let bar = bar(words, name, told(part));
+            assert!(window.shows(&bar), "{bar}: {:#?}", window.shown());
+        }
+        window.wait_for(words.statistics.mtbf_is);
+        window.click_part(&of_relay);
+        window.until("faults", |window| window.app().page() == Page::Faults);
+        let chip = format!("{} {relay}  ×", words.faults.cause);
+        window.wait_for(&chip);
+        assert!(window.shows_part(&format!("{relay} · ")));
+        assert!(!window.shows_part(&format!("{antenna} · ")));
+        window.click(&chip);
+        window.wait_for_part(&format!("{antenna} · "));
+
+        window.key(Page::Statistics.key());
+        let month = window
+            .place
+            .json(&["faults", "stats", "--by", "month", "--json"]);
+        let month = list(&month).last().expect("this month").clone();
+        let of_month = format!("{}: {}", text(&month["key"]), month["faults"]);
+        window.click(&of_month);
+        let name = text(&month["key"]);
+        let chip = format!(
+            "{}  ×",
+            fill(words.faults.first_seen_in, &[("month", &name)])
+        );
+        window.wait_for(&chip);
+        assert!(window.shows_part(&format!("{antenna} · ")));
+    }
+}
+
+#[test]
+fn an_empty_history_says_so() {
+    let mut window = window(Place::new(), Language::English);
+    window.wait_for(Language::English.words().statistics.nothing);
+}
