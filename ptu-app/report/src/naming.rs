@@ -84,7 +84,7 @@ fn measurement(name: &str, words: &Words) -> String {
 }
 
 /// An identifier as words.
-fn spoken(name: &str) -> String {
+pub(crate) fn spoken(name: &str) -> String {
     let word = |word: &str| match CAPITALS.contains(&word) {
         true => word.to_uppercase(),
         false => word.to_owned(),

@@ -38,6 +38,8 @@ pub struct Settings {
     pub operator: String,
     /// When the name was written, µs since 1970; 0 = not known.
     pub operator_at_us: i64,
+    /// Where units are brought to; it stands on the sheet of a case.
+    pub depot: String,
     /// The unit connected last.
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
@@ -56,6 +58,7 @@ impl Default for Settings {
             page: Page::default(),
             operator: String::new(),
             operator_at_us: 0,
+            depot: String::new(),
             unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
@@ -110,6 +113,7 @@ mod tests {
             language: Language::Korean,
             zoom: 1.25,
             operator: "김".into(),
+            depot: "군자차량기지".into(),
             operator_at_us: clock::now_us(),
             ..Settings::default()
         };

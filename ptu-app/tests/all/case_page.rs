@@ -7,6 +7,12 @@ use crate::layout::complaints;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::{Language, Words, fill};
 
+/// Where the unit of these cases is brought to.
+const DEPOT: &str = "Sinnae 2";
+
+/// What is said of it.
+const SYMPTOM: &str = "brakes late or not at all";
+
 /// Clicks that a case may take.
 const CLICKS: usize = 10;
 
@@ -37,6 +43,7 @@ fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
     let mut settings = Settings {
         language,
         operator: "Kim".into(),
+        depot: DEPOT.into(),
         ..settings(Page::Case)
     };
     settings.unit.faults = faults.split(',').map(str::to_owned).collect();
@@ -64,7 +71,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.window.wait_for("SIM-0001");
     counted.window.wait_for(case.unknown);
     counted.look("symptom");
-    counted.click(&words.content("brakes late or not at all"));
+    counted.click(&words.content(SYMPTOM));
     counted.click(case.find_part);
     counted.window.wait_for(case.record_repair);
     counted.window.wait_for_part("eb_relay");
@@ -86,6 +93,12 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.window.wait_for(case.sign);
     counted.window.wait_for(words.report.write_pdf);
     counted.look("sheet");
+    // What was said when the unit was brought, beside the check that found the part; a small screen shows less at once.
+    if language == Language::English {
+        for said in [DEPOT, "Brakes late or not at all", "Found by"] {
+            counted.window.wait_for(said);
+        }
+    }
     counted.click(case.sign);
     let signed = fill(case.signed_by, &[("who", &"Kim")]);
     counted.window.wait_for(&signed);

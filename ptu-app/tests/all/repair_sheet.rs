@@ -49,10 +49,8 @@ fn proved() -> (Place, String) {
 fn read(page: &str) -> String {
     let body = page.split_once("</style>").map_or(page, |(_, body)| body);
     let texts = body.split('<').filter_map(|part| part.split_once('>'));
-    texts
-        .map(|(_, text)| text.trim())
-        .collect::<Vec<_>>()
-        .join(" ")
+    let words = texts.flat_map(|(_, text)| text.split_whitespace());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 fn pages_of_pdf(place: &Place, name: &str) -> usize {
@@ -134,6 +132,40 @@ fn words_of(item: &Item) -> String {
     }
 }
 
+/// Goal: the sheet says what who brought the unit said, also when the run that failed last was asked for nothing. Method: a
+/// run with a symptom and one without see the same fault.
+#[test]
+fn the_sheet_of_a_case_has_what_was_said_when_the_unit_was_brought() {
+    let place = Place::new();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    let symptom = ["--symptom", "brakes_late"];
+    place.ptu(&[&run[..], &symptom].concat()).exits(1);
+    place.ptu(&run).exits(1);
+    for (language, said, found) in [
+        (
+            "en",
+            "Symptom Brakes late or not at all",
+            "Found by atp/overspeed, code 25",
+        ),
+        (
+            "ko",
+            "증상 제동이 늦거나 걸리지 않음",
+            "검출 단계 atp/overspeed, 속도 코드 25",
+        ),
+    ] {
+        let files = ["html", "json"].map(|end| place.text_path(&format!("{language}.{end}")));
+        let report = ["report", "latest", "--case", "--lang", language];
+        let out = ["--out", &files[0], "--out", &files[1]];
+        place.ptu(&[&report[..], &out].concat()).exits(0);
+        let page = read(&place.read(&format!("{language}.html")));
+        for word in [said, found] {
+            assert!(page.contains(word), "{word}: {page}");
+        }
+        let case = place.read_json(&format!("{language}.json"));
+        assert_eq!(text(&case["symptom"]), "brakes_late");
+    }
+}
+
 /// Another fault of the same case is on the same sheet, with the same number.
 #[test]
 fn each_fault_of_a_case_has_the_same_sheet() {
@@ -163,6 +195,8 @@ fn a_repair_without_a_run_is_not_proved_on_its_sheet() {
         "no run passed since",
         "SN-77",
         "not tested",
+        "Symptom not stated",
+        "Found by atp/overspeed, code 25: alarm, FSB, EB: eb_reaction = 640",
     ] {
         assert!(said.contains(word), "{word}: {said}");
     }

@@ -135,8 +135,9 @@ wordings! {
         simulated: "Simulated", "모의 시험";
         with_injected: "faults injected: {faults}", "주입한 고장: {faults}";
         simulated_unit: "simulated unit", "모의 장치";
-        depot: "Depot", "차량기지";
+        depot: "depot", "차량기지";
         symptom: "Symptom", "증상";
+        found_by: "Found by", "검출 단계";
         repair_made: "Repaired", "수리";
         run_before: "Run before the repair", "수리 전 시험";
         run_after: "Run after the repair", "수리 후 시험";

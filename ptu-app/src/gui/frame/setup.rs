@@ -6,7 +6,7 @@ use eframe::egui::{
     ScrollArea, TextEdit, Ui, WidgetInfo, Window,
 };
 
-use crate::gui::parts::{name_edit, named_combo};
+use crate::gui::parts::{field, name_edit, named_combo};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
@@ -92,6 +92,7 @@ impl Setup {
         let words = context.words;
         let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
         let choice = &mut context.units.chosen_mut().choice;
+        let depot = &mut context.settings.depot;
         let screen = ui.ctx().content_rect();
         let high = (screen.bottom() - below.y - AROUND).max(LOWEST);
         Window::new(words.frame.setup)
@@ -103,7 +104,7 @@ impl Setup {
             .show(ui.ctx(), |ui| {
                 if screen.width() >= BESIDE && choice.is_simulated() {
                     ui.horizontal_top(|ui| {
-                        ui.vertical(|ui| self.surroundings(ui, words, choice));
+                        ui.vertical(|ui| self.surroundings(ui, words, choice, depot));
                         ui.separator();
                         ui.vertical(|ui| self.injected(ui, words, choice, Some(high)));
                     });
@@ -111,7 +112,7 @@ impl Setup {
                 }
                 let area = ScrollArea::vertical().max_height(high);
                 area.min_scrolled_height(high).show(ui, |ui| {
-                    self.surroundings(ui, words, choice);
+                    self.surroundings(ui, words, choice, depot);
                     if choice.is_simulated() {
                         ui.separator();
                         self.injected(ui, words, choice, None);
@@ -164,7 +165,13 @@ impl Setup {
             .labelled_by(label.id);
     }
 
-    fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
+    fn surroundings(
+        &mut self,
+        ui: &mut Ui,
+        words: &Words,
+        choice: &mut BenchChoice,
+        depot: &mut String,
+    ) {
         let frame = &words.frame;
         ui.set_min_width(430.0);
         let none = Vec::new();
@@ -191,14 +198,11 @@ impl Setup {
                 &mut choice.train,
                 of(|names| &names.trains),
             );
-            let label = ui.label(frame.serial);
-            ui.add(name_edit(&mut choice.serial, 140.0))
-                .labelled_by(label.id);
-            ui.end_row();
-            let label = ui.label(words.common.train_no);
-            ui.add(name_edit(&mut choice.train_no, 140.0))
-                .labelled_by(label.id);
-            ui.end_row();
+            field(ui, frame.serial, name_edit(&mut choice.serial, 140.0));
+            let train_no = name_edit(&mut choice.train_no, 140.0);
+            field(ui, words.common.train_no, train_no);
+            // It stays with the window, whatever unit is chosen.
+            field(ui, words.report.depot, name_edit(depot, 140.0));
             if choice.is_simulated() {
                 let label = ui.label(frame.seed);
                 ui.horizontal(|ui| {

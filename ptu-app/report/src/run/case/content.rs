@@ -58,7 +58,7 @@ impl CaseSheet {
             blocks.push(Block::Table(steps::table(of, &sources, words)));
         }
         if failed.is_empty() {
-            blocks.push(Block::Text(Tone::Plain, self.symptom(words)));
+            blocks.push(Block::Text(Tone::Plain, self.found_by(words)));
         }
         if let Some(n) = failed.len().checked_sub(most).filter(|n| *n > 0) {
             let more = fill(

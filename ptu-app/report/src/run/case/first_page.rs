@@ -125,7 +125,8 @@ impl CaseSheet {
             (common.unit, unit(run)),
             (common.train_no, both(|sheet| named(&sheet.run.run.train))),
             (report.tester, both(|sheet| named(&sheet.run.run.operator))),
-            (report.symptom, self.symptom(words)),
+            (report.symptom, self.symptom_said(words)),
+            (report.found_by, self.found_by(words)),
             (common.part, self.last().part(self.part(), words)),
             (
                 words.faults.serial_old,
@@ -159,8 +160,17 @@ impl CaseSheet {
             .collect()
     }
 
-    /// What failed first, in words.
-    pub(super) fn symptom(&self, words: &Words) -> String {
+    /// What was wrong with the unit, as who brought it said.
+    fn symptom_said(&self, words: &Words) -> String {
+        let said = self.symptom.as_ref();
+        said.map_or_else(
+            || words.report.nobody.to_owned(),
+            |symptom| sentence(&words.content(&symptom.name)),
+        )
+    }
+
+    /// The check that failed first, in words.
+    pub(super) fn found_by(&self, words: &Words) -> String {
         let failed = self.failed_steps();
         let said = match failed.first() {
             Some(step) => {

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use fault_db::{FaultDetail, FaultEvent, FaultState, FaultSummary, Id, Store};
+use fault_db::{FaultDetail, FaultEvent, FaultState, FaultSummary, Id, Store, StoreError};
 
 use super::{CaseSheet, Repair, Standing};
+use crate::naming::spoken;
 use crate::run::Sheet;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
+use ptu_bench::process_id;
+use ptu_bench::symptoms::{self, Symptom};
 
 impl CaseSheet {
     /// Reads all the sheet of a fault's case says.
@@ -66,8 +69,10 @@ impl CaseSheet {
         let seen = seen.iter().filter(|seen| of_case.contains(&seen.fault));
         let steps: BTreeSet<u32> = seen.filter_map(|seen| seen.step_index).collect();
         let after = passed.last();
+        let before = Sheet::gather(store, directory, before)?;
         Ok(Self {
-            before: Sheet::gather(store, directory, before)?,
+            symptom: symptom(store, directory, &before, &fault)?,
+            before,
             after: after
                 .map(|run| Sheet::gather(store, directory, *run))
                 .transpose()?,
@@ -95,6 +100,45 @@ fn leading(store: &Store, asked: FaultDetail) -> Result<FaultDetail, Failure> {
         Some(other) => Ok(store.fault(other.id)?),
         None => Ok(asked),
     }
+}
+
+/// What was said when the unit was brought: with the run before, or with an earlier one that saw the fault since it was
+/// last settled. One that the scripts directory no longer has goes by its identifier.
+fn symptom(
+    store: &Store,
+    directory: Option<&ScriptsDirectory>,
+    before: &Sheet,
+    fault: &FaultDetail,
+) -> Result<Option<Symptom>, StoreError> {
+    let last = &before.run.run;
+    let settles = |event: &&FaultEvent| {
+        let settled = [FaultState::Verified, FaultState::Closed];
+        event.state.is_some_and(|state| settled.contains(&state))
+            && event.at_us < last.started_at_us
+    };
+    let since = fault.events.iter().rev().find(settles);
+    let since = since.map_or(i64::MIN, |event| event.at_us);
+    let mut runs = vec![last.id];
+    for seen in &fault.occurrences {
+        if (since..last.started_at_us).contains(&seen.at_us) && !runs.contains(&seen.run_id) {
+            runs.push(seen.run_id);
+        }
+    }
+    for run in runs {
+        let Some(id) = store.run(run, &process_id::is_alive)?.run.symptom else {
+            continue;
+        };
+        let known = directory.and_then(|scripts| {
+            let parts = scripts.faults().ok()?.lrus;
+            symptoms::find(scripts, &parts, &id).ok()
+        });
+        return Ok(Some(known.unwrap_or_else(|| Symptom {
+            name: spoken(&id),
+            id,
+            parts: Vec::new(),
+        })));
+    }
+    Ok(None)
 }
 
 fn repair(event: &FaultEvent) -> Option<Repair> {

@@ -28,7 +28,8 @@ pub fn case_json(case: &CaseSheet) -> Value {
         "depot": case.depot,
         "unit_serial": fault.unit_serial,
         "part": case.part(),
-        "symptom": case.symptom(words),
+        "symptom": case.symptom.as_ref().map(|symptom| &symptom.id),
+        "found_by": case.found_by(words),
         "repair": case.repair.as_ref().map(|repair| json!({
             "part": repair.record.part,
             "serial_old": repair.record.serial_old,

@@ -20,6 +20,7 @@ use super::content::verdict;
 use super::paper::across;
 use super::{Paper, Printed, Sheet};
 use crate::words::Words;
+use ptu_bench::symptoms::Symptom;
 
 /// All a repair sheet says, in no language yet.
 pub struct CaseSheet {
@@ -33,6 +34,8 @@ pub struct CaseSheet {
     pub before: Sheet,
     /// Steps of that run that saw a fault of the case, by their place.
     pub steps: Vec<u32>,
+    /// What was wrong with the unit, as who brought it said; the run before says it, or an earlier one of the case.
+    pub symptom: Option<Symptom>,
     /// The last repair.
     pub repair: Option<Repair>,
     /// Runs that passed since the repair, oldest first.

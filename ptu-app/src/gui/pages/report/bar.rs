@@ -2,7 +2,7 @@
 
 use eframe::egui::{Button, ComboBox, Label, RichText, TextEdit, Ui};
 
-use super::{ReportPage, SheetOf, Shown, file};
+use super::{ReportPage, Shown, file};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::{name_edit, named_combo, open_file};
 use crate::gui::request::Request;
@@ -26,7 +26,7 @@ impl ReportPage {
                 self.language = Some(other);
             }
         });
-        ui.horizontal(|ui| self.files(ui, context, of, language));
+        ui.horizontal(|ui| self.files(ui, context));
         self.open_written(ui, context);
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(words.common.operator);
@@ -37,13 +37,7 @@ impl ReportPage {
         });
     }
 
-    fn files(
-        &mut self,
-        ui: &mut Ui,
-        context: &mut PageContext<'_>,
-        of: SheetOf,
-        language: Language,
-    ) {
+    fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.report;
         let label = ui.label(words.file);
         let wide = (ui.available_width() - BUTTONS).max(BUTTONS);
@@ -56,7 +50,7 @@ impl ReportPage {
         ] {
             let button = ui.add_enabled(self.writing.is_idle(), Button::new(name));
             if button.on_hover_text(words.write_hint).clicked() {
-                self.write(context, of, language, ending);
+                self.write(context, ending);
             }
         }
         if !self.writing.is_idle() {
@@ -80,19 +74,16 @@ impl ReportPage {
         });
     }
 
-    fn write(
-        &mut self,
-        context: &mut PageContext<'_>,
-        of: SheetOf,
-        language: Language,
-        ending: &str,
-    ) {
+    fn write(&mut self, context: &mut PageContext<'_>, ending: &str) {
         let words = &context.words.report;
+        let Some(asked) = self.asked_for.clone() else {
+            return;
+        };
         let Some(path) = file::with_ending(&self.file, ending) else {
             context.messages.trouble(words.not_written, words.name_file);
             return;
         };
-        let write = move |paths: &DataPaths| file::write(paths, of, &path, language);
+        let write = move |paths: &DataPaths| file::write(paths, &asked, &path);
         self.writing = Request::Pending(context.queries.run(write));
     }
 }

@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 
 use fault_db::Id;
 
-use super::SheetOf;
+use super::{Asked, SheetOf};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::NewFile;
 use ptu_bench::process_id;
 use ptu_report::run::CaseSheet;
-use ptu_report::words::Language;
 use ptu_report::{self, Target};
 
 /// Endings a typed name may have; the one of the format asked for takes its place.
@@ -40,22 +39,18 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
 ///
 /// # Errors
 /// The file cannot be written, or the database not be read.
-pub fn write(
-    paths: &DataPaths,
-    of: SheetOf,
-    wanted: &Path,
-    language: Language,
-) -> Result<PathBuf, Failure> {
+pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<PathBuf, Failure> {
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
     let file = NewFile::begin(wanted)?;
     let (store, scripts) = (paths.read()?, &paths.scripts);
-    let content = match of {
+    let language = asked.language;
+    let content = match asked.of {
         SheetOf::Run(run) => {
             let run = store.run(run, &process_id::is_alive)?;
             ptu_report::run_content(&target, &store, scripts, &run, language)?
         }
         SheetOf::Case { fault, .. } => {
-            let case = CaseSheet::gather(&store, Some(scripts), fault, "", false)?;
+            let case = CaseSheet::gather(&store, Some(scripts), fault, &asked.depot, false)?;
             ptu_report::case_content(&target, &case, language)?
         }
     };

@@ -29,7 +29,7 @@ pub struct ReportPage {
     /// The sheet asked for, and the one shown until that is there.
     asked: Request<Shown>,
     shown: Option<Shown>,
-    asked_for: Option<(SheetOf, Language)>,
+    asked_for: Option<Asked>,
     /// Version of the data it was asked for.
     version: (usize, u64),
     /// When the page was last shown, in passes of the window.
@@ -41,6 +41,14 @@ pub struct ReportPage {
     /// The file written last of the run that is shown.
     written: Option<PathBuf>,
     note: RunNoteForm,
+}
+
+/// What a sheet says besides what is stored.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Asked {
+    of: SheetOf,
+    language: Language,
+    depot: String,
 }
 
 /// What a sheet is of.
@@ -105,24 +113,24 @@ impl ReportPage {
             (self.asked, self.shown, self.asked_for) = (Request::Idle, None, None);
             return;
         };
-        if again || self.asked_for != Some((of, self.language(context))) {
+        if again || self.asked_for.as_ref() != Some(&self.wanted(of, context)) {
             self.ask(of, context);
         }
     }
 
     fn ask(&mut self, of: SheetOf, context: &PageContext<'_>) {
-        if self.asked_for.is_none_or(|(asked, _)| asked != of) {
+        if self.asked_for.as_ref().is_none_or(|asked| asked.of != of) {
             self.shown = None;
             self.file = file::named_after(of.run(), &self.file);
             self.written = None;
         }
-        let language = self.language(context);
-        self.asked_for = Some((of, language));
+        let wanted = self.wanted(of, context);
+        self.asked_for = Some(wanted.clone());
         self.version = context.data_version();
         self.asked = Request::Pending(context.queries.run(move |paths| {
             let store = paths.read()?;
             let scripts = Some(&paths.scripts);
-            let words = language.words();
+            let words = wanted.language.words();
             let shown = |pages, sheet: &Sheet| {
                 let seen = store.run_occurrences(sheet.run.run.id)?;
                 let parts = PartNames::of(&paths.scripts);
@@ -134,7 +142,7 @@ impl ReportPage {
                     shown(pages(&sheet, words)?, &sheet)
                 }
                 SheetOf::Case { fault, .. } => {
-                    let case = CaseSheet::gather(&store, scripts, fault, "", false)?;
+                    let case = CaseSheet::gather(&store, scripts, fault, &wanted.depot, false)?;
                     shown(pages(&case, words)?, case.last())
                 }
             }
@@ -143,7 +151,15 @@ impl ReportPage {
 
     /// The run that is shown or will be, alone or as the end of a case.
     fn run(&self) -> Option<Id> {
-        self.asked_for.map(|(of, _)| of.run())
+        self.asked_for.as_ref().map(|asked| asked.of.run())
+    }
+
+    fn wanted(&self, of: SheetOf, context: &PageContext<'_>) -> Asked {
+        Asked {
+            of,
+            language: self.language(context),
+            depot: context.settings.depot.clone(),
+        }
     }
 
     /// The sheet's language.
@@ -175,9 +191,9 @@ impl ReportPage {
         }
         if let Some(noted) = self.note.poll(context.words, context.messages)
             && self.run() == Some(noted)
-            && let Some((of, _)) = self.asked_for
+            && let Some(asked) = &self.asked_for
         {
-            self.ask(of, context);
+            self.ask(asked.of, context);
         }
     }
 
