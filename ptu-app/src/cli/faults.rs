@@ -13,8 +13,10 @@ mod undo;
 
 use clap::{Args, Subcommand};
 
-use super::Database;
+use super::{Database, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
+use ptu_report::naming::PartNames;
+use ptu_report::words::Language;
 
 /// Query and keep the fault history
 #[derive(Debug, Args)]
@@ -35,6 +37,11 @@ enum Verb {
         /// Print JSON
         #[arg(long)]
         json: bool,
+        /// Language of the freeze frame and of messages: en or ko
+        #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+        lang: Language,
+        #[command(flatten)]
+        scripts: ScriptsOption,
     },
     Stats(Box<stats::StatsArguments>),
     Trend(trend::TrendArguments),
@@ -61,7 +68,21 @@ impl FaultsArguments {
         };
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
-            Verb::Show { id, json } => show::show(&store, &id, json),
+            Verb::Show {
+                id,
+                json,
+                lang,
+                scripts,
+            } => {
+                let names = scripts.find_if_there()?;
+                let names = names.map(|scripts| PartNames::of(&scripts));
+                show::show(
+                    &store,
+                    &id,
+                    json,
+                    (lang.words(), &names.unwrap_or_default()),
+                )
+            }
             Verb::Stats(arguments) => arguments.stats(&store),
             Verb::Trend(arguments) => arguments.trend(&store),
             Verb::State(arguments) => arguments.change(&store),

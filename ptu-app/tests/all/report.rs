@@ -143,6 +143,36 @@ fn a_korean_sheet_names_measurements_and_the_part_in_korean() {
     }
 }
 
+/// Goal: a Korean reader finds signals, states and parts by the names people use. Method: no identifier of a signal that could
+/// be no other word is left in a fault with its freeze frame.
+#[test]
+fn a_korean_freeze_frame_names_signals_states_and_parts() {
+    let place = Place::new();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    place.ptu(&run).exits(1);
+    place.ptu(&["diagnose", "latest"]).exits(0);
+    let english = place.ptu(&["faults", "show", "latest"]).exits(0).out;
+    let show = ["faults", "show", "latest", "--lang", "ko"];
+    let said = place.ptu(&show).exits(0).out;
+    let signals = place.json(&["catalog", "signals", "--json"]);
+    let names = list(&signals).iter().map(|signal| text(&signal["name"]));
+    let names: Vec<_> = names.filter(|name| name.contains('_')).collect();
+    assert!(names.iter().all(|name| english.contains(name)), "{english}");
+    let left: Vec<_> = names.iter().filter(|name| said.contains(**name)).collect();
+    assert!(left.is_empty(), "{left:?}: {said}");
+    for word in [
+        "비상제동 계전기",
+        "프리즈 프레임",
+        "전두계전기(HCR)",
+        "체결",
+        "켜짐",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let sentences: Vec<_> = said.lines().filter(|line| is_english(line)).collect();
+    assert!(sentences.is_empty(), "{sentences:#?}");
+}
+
 /// Goal: who adds a step, a measurement, a reason for a limit or a symptom adds its Korean.
 #[test]
 fn every_step_measurement_symptom_and_reason_of_a_limit_has_korean() {

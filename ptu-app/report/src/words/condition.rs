@@ -33,6 +33,11 @@ pub(super) fn signal(name: &str) -> Option<String> {
     Some(said[..end].to_owned())
 }
 
+/// A state of a signal, or its bits.
+pub(super) fn state(name: &str, label: &str) -> Option<String> {
+    Some(value(Signal::from_name(name)?, label))
+}
+
 fn of_group(inside: &str) -> Option<String> {
     [(" and ", " 그리고 "), (" or ", " 또는 ")]
         .iter()

@@ -146,6 +146,24 @@ impl Words {
         }
     }
 
+    /// What a recorded signal is called in few words; in English by its name, as scripts and tables have it.
+    pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
+        let said = match self.language {
+            Language::English => None,
+            Language::Korean => condition::signal(name),
+        };
+        said.map_or(Cow::Borrowed(name), Cow::Owned)
+    }
+
+    /// A state of a signal, as it is stored.
+    pub fn state<'a>(&self, signal: &str, label: &'a str) -> Cow<'a, str> {
+        let said = match self.language {
+            Language::English => None,
+            Language::Korean => condition::state(signal, label),
+        };
+        said.map_or(Cow::Borrowed(label), Cow::Owned)
+    }
+
     /// Name of a measurement, which scripts give, but for those of the unit's self-test.
     pub fn measurement<'a>(&self, name: &'a str) -> Cow<'a, str> {
         let korean = || match self.language {

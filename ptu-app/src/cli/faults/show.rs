@@ -1,6 +1,8 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
+use fault_db::{
+    CauseRecord, FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store,
+};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
@@ -10,14 +12,22 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
 use ptu_report::diagnosis::cause_text;
 use ptu_report::fault_json;
+use ptu_report::naming::PartNames;
+use ptu_report::words::{Language, Words, fill};
 
-/// Shows the fault an id stands for.
-pub fn show(store: &Store, id: &str, json: bool) -> Result<Exit, Failure> {
+/// Shows the fault an id stands for. Parts and signals go by their names where another language than English is wanted,
+/// and else by what they are called in commands and scripts.
+pub fn show(
+    store: &Store,
+    id: &str,
+    json: bool,
+    named: (&Words, &PartNames),
+) -> Result<Exit, Failure> {
     let fault = store.fault(store.resolve_fault(id)?)?;
     if json {
         print_json(&detail_json(&fault))
     } else {
-        print_out(&detail(&fault))
+        print_out(&detail(&fault, named))
     }
 }
 
@@ -53,97 +63,145 @@ fn event_json(event: &FaultEvent) -> Value {
     value
 }
 
-fn detail(detail: &FaultDetail) -> String {
+fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String {
+    let (common, faults) = (&words.common, &words.faults);
+    let part = |id: &str| match words.language {
+        Language::English => line(id).into_owned(),
+        Language::Korean => line(parts.name(id, words.language)).into_owned(),
+    };
+    let table = |headings: &[&str]| {
+        let headings: Vec<_> = headings.iter().map(|name| name.to_uppercase()).collect();
+        Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>())
+    };
     let fault = &detail.fault;
     let mut text = format!(
-        "fault {}  {} {}  {}\nunit {}  part {}  cause {}  {}  seen {}\n",
+        "{} {}  {} {}  {}\n{} {}  {} {}  {} {}  {}  {} {}\n",
+        common.fault,
         fault.id,
         fault.code,
         line(&fault.code_name),
-        line(&fault.severity),
+        line(words.report.severity(&fault.severity)),
+        common.unit,
         line(&fault.unit_serial),
-        line(&fault.lru),
-        line(fault.cause()),
-        fault.state.as_str(),
-        times(fault),
+        common.part,
+        part(&fault.lru),
+        faults.cause,
+        part(fault.cause()),
+        common.fault_state(fault.state),
+        faults.seen,
+        times(fault, words),
     );
     for other in &detail.case {
         text.push_str(&format!(
-            "  same case: {}  {} {}  part {}  {}\n",
+            "  {}: {}  {} {}  {} {}  {}\n",
+            faults.same_case,
             other.id.short(),
             other.code,
             line(&other.code_name),
-            line(&other.lru),
-            other.state.as_str(),
+            common.part,
+            part(&other.lru),
+            common.fault_state(other.state),
         ));
     }
-    let mut table = Table::new(&["SEEN AT", "RUN", "TRACE", "WHAT"]);
+    let mut seen_in = table(&[
+        faults.seen_at,
+        common.run,
+        words.report.trace,
+        words.report.what,
+    ]);
     for seen in &detail.occurrences {
-        table.row([
+        seen_in.row([
             local(seen.at_us),
             seen.run_id.short(),
             seen.trace_id.map_or_else(String::new, |id| id.short()),
-            seen.message.clone(),
+            words.content(&seen.message).into_owned(),
         ]);
     }
     let earlier =
         fault.occurrences as usize - detail.occurrences.len().min(fault.occurrences as usize);
     let more = match earlier {
         0 => String::new(),
-        n => format!("… and {n} earlier\n"),
+        n => format!("{}\n", fill(faults.and_earlier, &[("n", &n)])),
     };
-    text.push_str(&format!("\n{}\n{more}", table.render()));
+    text.push_str(&format!("\n{}\n{more}", seen_in.render()));
     if let Some(last) = detail.occurrences.first() {
-        text.push_str(&format!("\nfreeze frame\n{}\n", freeze_frame(&last.freeze)));
+        text.push_str(&format!(
+            "\n{}\n{}\n",
+            faults.freeze,
+            freeze_frame(&last.freeze, words)
+        ));
     }
-    let mut table = Table::new(&["AT", "EVENT", "WHO", "NOTE"]);
+    let mut done = table(&[faults.at, faults.event, faults.who, common.note]);
     let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
     events.sort_by_key(|event| event.at_us);
     for event in events {
         let repair = event.repair.as_ref().map_or_else(String::new, |repair| {
             format!(
                 "{} {} → {} {}",
-                repair.part,
+                part(&repair.part),
                 repair.serial_old.as_deref().unwrap_or("?"),
                 repair.serial_new.as_deref().unwrap_or("?"),
                 repair.note
             )
         });
-        let cause = event.cause.as_ref().map_or_else(String::new, cause_text);
+        let cause = event.cause.as_ref().map_or_else(String::new, |cause| {
+            cause_text(&CauseRecord {
+                part: part(&cause.part),
+                ..cause.clone()
+            })
+        });
+        // What a person wrote stays as it is.
+        let is_message = detail
+            .occurrences
+            .iter()
+            .any(|seen| seen.message == event.note);
+        let said = match is_message {
+            true => words.content(&event.note),
+            false => event.note.as_str().into(),
+        };
         let correction = event.correction.as_ref().map_or_else(String::new, |by| {
             let at = local(by.at_us);
-            format!(" [withdrawn {at} {} {}]", line(&by.who), line(&by.note))
+            let withdrawn = fill(faults.withdrawn, &[("at", &at), ("who", &line(&by.who))]);
+            format!(" [{withdrawn} {}]", line(&by.note))
         });
-        let note = format!("{}{repair}{cause}{correction}", event.note);
-        table.row([
+        let note = format!("{said}{repair}{cause}{correction}");
+        done.row([
             local(event.at_us),
-            event.kind.clone(),
+            faults.event_kind(&event.kind).to_owned(),
             event.who.clone(),
             note,
         ]);
     }
-    text.push_str(&format!("\n{}", table.render()));
+    text.push_str(&format!("\n{}", done.render()));
     text
 }
 
 /// How often and when it was seen.
-fn times(fault: &FaultSummary) -> String {
+fn times(fault: &FaultSummary, words: &Words) -> String {
     let last = local(fault.last_at_us);
     match fault.occurrences {
-        1 => format!("once, {last}"),
-        n => format!("{n} times, {} .. {last}", local(fault.first_at_us)),
+        1 => fill(words.faults.once, &[("last", &last)]),
+        n => fill(
+            words.faults.n_times,
+            &[
+                ("n", &n),
+                ("first", &local(fault.first_at_us)),
+                ("last", &last),
+            ],
+        ),
     }
 }
 
-fn freeze_frame(samples: &[FreezeSample]) -> String {
-    let mut table = Table::new(&["SIGNAL", "VALUE"]);
+fn freeze_frame(samples: &[FreezeSample], words: &Words) -> String {
+    let headings = [words.traces.signal, words.common.value].map(str::to_uppercase);
+    let mut table = Table::new(&headings.each_ref().map(String::as_str));
     for sample in samples {
         let value = match (&sample.label, sample.value) {
-            (Some(label), _) => label.clone(),
+            (Some(label), _) => words.state(&sample.name, label).into_owned(),
             (None, Some(value)) => format!("{value:.2} {}", sample.unit),
-            (None, None) => "not known".into(),
+            (None, None) => words.faults.not_known.into(),
         };
-        table.row([sample.name.clone(), value]);
+        table.row([words.signal(&sample.name).into_owned(), value]);
     }
     table.render()
 }

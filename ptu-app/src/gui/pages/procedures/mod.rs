@@ -22,6 +22,7 @@ use prepare::{Prepared, RunSettings, ShownSuite};
 pub use present::present;
 use ptu_bench::run::{BenchChoice, Suite};
 use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
+use ptu_report::naming::PartNames;
 use ptu_report::proof_text;
 use results::ResultsView;
 pub use results::measurements;
@@ -40,6 +41,8 @@ pub struct ProceduresPage {
     loaded_for: Option<BenchChoice>,
     /// Nothing = everything but what is on request.
     selection: Option<Selection>,
+    /// What people call the parts.
+    parts: Request<PartNames>,
     find: String,
     repeat: u32,
     stop_on_fail: bool,
@@ -80,6 +83,7 @@ impl Default for ProceduresPage {
             suite: Request::Idle,
             loaded_for: None,
             selection: None,
+            parts: Request::Idle,
             find: String::new(),
             repeat: 1,
             stop_on_fail: false,
@@ -137,6 +141,10 @@ impl ProceduresPage {
     }
 
     fn load(&mut self, context: &PageContext<'_>) {
+        let parts = context
+            .queries
+            .run(|paths| Ok(PartNames::of(&paths.scripts)));
+        self.parts = Request::Pending(parts);
         let choice = context.units.chosen().choice.clone();
         self.loaded_for = Some(choice.clone());
         self.suite = Request::Pending(
@@ -160,6 +168,7 @@ impl ProceduresPage {
             let said = context.words.procedures.not_loaded;
             context.messages.trouble(said, why.clone());
         }
+        self.parts.poll();
         self.run_wanted(context);
         self.note.poll(context.words, context.messages);
         self.poll_orders(context);
@@ -327,7 +336,9 @@ impl ProceduresPage {
         let traced = self.traced.value().filter(|_| self.concluded == run.id());
         let traced = traced.map(Vec::as_slice).unwrap_or_default();
         let ways = (traced, &mut *context.go_to);
-        results::results(ui, words, run, &mut self.shown, texts, ways);
+        let unnamed = PartNames::default();
+        let named = (words, self.parts.value().unwrap_or(&unnamed));
+        results::results(ui, named, run, &mut self.shown, texts, ways);
         if let Some(yes) = answer {
             context.units.chosen_mut().answer(yes);
         }

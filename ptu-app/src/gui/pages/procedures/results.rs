@@ -8,12 +8,12 @@ use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, Ui, UiBuilder};
 use protocol::lru;
 
-use crate::gui::parts::{self, RunNoteForm, limit_bar, link, value_text, verdict_chip};
+use crate::gui::parts::{RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use ptu_bench::bench_worker::{Progress, outside_place};
 use ptu_bench::run::CHECK_FAILED;
-use ptu_report::naming::place;
+use ptu_report::naming::{PartNames, code, place};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 
@@ -56,7 +56,7 @@ pub fn after_run(
 /// Steps that did not pass, or all, and faults.
 pub fn results(
     ui: &mut Ui,
-    words: &Words,
+    (words, parts): (&Words, &PartNames),
     run: &Progress,
     shown: &mut ResultsView,
     texts: Option<&BTreeMap<String, String>>,
@@ -81,12 +81,12 @@ pub fn results(
         .filter(|(.., result)| all || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped))
         .collect();
     if let Some(result) = chosen(run, shown) {
-        details(ui, words, run, result, texts);
+        details(ui, (words, parts), run, result, texts);
         ui.separator();
     }
-    faults(ui, words, run);
+    faults(ui, (words, parts), run);
     let height = ui.spacing().interact_size.y;
-    parts::rows(ui, height, found.len(), |ui, range| {
+    rows(ui, height, found.len(), |ui, range| {
         for (p, r, result) in found.get(range).into_iter().flatten() {
             let on = shown.chosen == Some((*p, *r));
             let trace = trace_of(run, *p, result, traced);
@@ -163,7 +163,7 @@ fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a Step
 
 fn details(
     ui: &mut Ui,
-    words: &Words,
+    (words, parts): (&Words, &PartNames),
     run: &Progress,
     (procedure, result): (usize, &StepResult),
     texts: Option<&BTreeMap<String, String>>,
@@ -181,7 +181,7 @@ fn details(
         return;
     }
     if result.verdict == Verdict::Failed {
-        let part = lru::shown(result.suspect.as_ref());
+        let part = parts.name(lru::shown(result.suspect.as_ref()), words.language);
         ui.label(fill(words.procedures.suspect, &[("part", &part)]));
     }
     if let Some(note) = procedure
@@ -255,7 +255,7 @@ pub fn source(
 }
 
 /// What unit and train reported by themselves; failed checks stand among the steps.
-fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
+fn faults(ui: &mut Ui, (words, parts): (&Words, &PartNames), run: &Progress) {
     let reported = || run.faults.iter().filter(|fault| fault.code != CHECK_FAILED);
     if reported().next().is_none() {
         return;
@@ -264,8 +264,9 @@ fn faults(ui: &mut Ui, words: &Words, run: &Progress) {
     for fault in reported() {
         let bad = Palette::of(ui).bad;
         ui.horizontal_wrapped(|ui| {
-            ui.colored_label(bad, format!("{} {}", fault.code, fault.name));
-            let part = lru::stored(fault.lru.as_ref());
+            let code = code(i64::from(fault.code), &fault.name, words);
+            ui.colored_label(bad, code);
+            let part = parts.name(lru::shown(fault.lru.as_ref()), words.language);
             ui.label(fill(words.procedures.suspect, &[("part", &part)]));
             ui.label(&*words.content(&fault.message));
         });
