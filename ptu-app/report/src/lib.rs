@@ -33,5 +33,8 @@ pub use coverage::coverage_text;
 pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
 pub use proof::proof_text;
 use target::page_text;
-pub use target::{Target, case_content, run_content, write, write_beside, write_case};
+pub use target::{
+    Target, case_content, comparison_content, run_content, write, write_beside, write_case,
+    write_comparison,
+};
 pub use without_korean::without_korean;

@@ -9,7 +9,7 @@ use maud::Markup;
 use protocol::display_text;
 
 use crate::json::{json_text, run_json};
-use crate::run::{self, CaseSheet, Sheet};
+use crate::run::{self, CaseSheet, RunComparison, Sheet};
 use crate::words::Language;
 use crate::{csv, junit};
 use ptu_bench::data::{self, ScriptsDirectory};
@@ -125,6 +125,39 @@ pub fn case_content(
         Format::Json => Ok(json_text(&run::case_json(case))?.into_bytes()),
         Format::Csv | Format::Junit => content(target, &case.last().run, None, language),
     }
+}
+
+/// A report of two runs. Tables are those of the second one.
+///
+/// # Errors
+/// It cannot be made.
+pub fn comparison_content(
+    target: &Target,
+    of: &RunComparison,
+    language: Language,
+) -> Result<Vec<u8>, Failure> {
+    let words = language.words();
+    match target.format {
+        Format::Html => Ok(run::html(of, words).into_bytes()),
+        Format::Pdf => run::pdf(of, words),
+        Format::Json => Ok(json_text(&run::comparison_json(of))?.into_bytes()),
+        Format::Csv | Format::Junit => content(target, &of.b, None, language),
+    }
+}
+
+/// Writes reports of two runs.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_comparison(
+    targets: &[Target],
+    of: &RunComparison,
+    language: Language,
+) -> Result<(), Failure> {
+    for target in targets {
+        data::write(&target.path, &comparison_content(target, of, language)?)?;
+    }
+    Ok(())
 }
 
 /// A report of a run.

@@ -12,7 +12,9 @@ use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_bench::table::Table;
-use ptu_report::{run_json, run_summary_json};
+use ptu_report::run::{RunComparison, comparison_json, comparison_text};
+use ptu_report::words::Language;
+use ptu_report::{Target, run_json, run_summary_json, write_comparison};
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]
@@ -55,6 +57,32 @@ enum Verb {
         #[command(flatten)]
         scripts: ScriptsOption,
     },
+    /// Compare two runs of a unit, before and after a repair: verdicts, values, and what changed
+    ///
+    /// Runs of different units, scripts, configurations or lines are compared, too, and that is said.
+    ///
+    /// Exit codes: 0 compared, 1 a step that passed in the first run does not in the second, 2 no such run, 3 database.
+    #[command(verbatim_doc_comment)]
+    Compare {
+        /// The run before: an id, its beginning or end (at least 4 digits)
+        #[arg(value_name = "A")]
+        before: String,
+        /// The run after: the same, or `latest`
+        #[arg(value_name = "B")]
+        after: String,
+        /// Also the steps that passed in both
+        #[arg(long)]
+        all: bool,
+        /// Print JSON, with every step
+        #[arg(long)]
+        json: bool,
+        /// Language: en or ko
+        #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+        lang: Language,
+        /// Write the comparison as .html, .pdf or .json; repeatable
+        #[arg(long, value_name = "FILE")]
+        report: Vec<Target>,
+    },
     /// Add a note to a run; it stands on the run's test sheet
     Note {
         /// The run: an id, its beginning or end (at least 4 digits), or `latest`
@@ -68,7 +96,7 @@ enum Verb {
 }
 
 impl RunsArguments {
-    /// Lists, shows or notes.
+    /// Lists, shows, compares or notes.
     pub fn run(self) -> Result<Exit, Failure> {
         let store = if matches!(self.verb, Verb::Note { .. }) {
             self.database.open()?
@@ -107,6 +135,27 @@ impl RunsArguments {
                     return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
                 }
                 print_out(&table(&runs))
+            }
+            Verb::Compare {
+                before,
+                after,
+                all,
+                json,
+                lang,
+                report,
+            } => {
+                report.iter().try_for_each(Target::check)?;
+                let (a, b) = (store.resolve_run(&before)?, store.resolve_run(&after)?);
+                let of = RunComparison::gather(&store, a, b, all)?;
+                write_comparison(&report, &of, lang)?;
+                match json {
+                    true => print_json(&comparison_json(&of))?,
+                    false => print_out(&comparison_text(&of, lang.words()))?,
+                };
+                Ok(match of.tally().passed_before {
+                    0 => Exit::Passed,
+                    _ => Exit::Failed,
+                })
             }
             Verb::Show {
                 id,

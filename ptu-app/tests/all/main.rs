@@ -13,6 +13,7 @@ mod by_the_clock;
 mod care;
 mod case_page;
 mod cases;
+mod compare_runs;
 mod diagnose;
 mod diagnose_matrix;
 mod documents;

@@ -6,6 +6,7 @@
 
 mod block;
 mod case;
+mod compare;
 mod content;
 mod diagnosis;
 mod gather;
@@ -26,6 +27,7 @@ use std::collections::BTreeMap;
 use fault_db::{Id, RunDetail, TraceData};
 
 pub use case::{CaseSheet, Repair, Standing, case_json};
+pub use compare::{RunComparison, comparison_json, comparison_text};
 pub use html::html;
 pub use paper::{Paper, Printed};
 pub use pdf::pdf;

@@ -53,6 +53,23 @@ impl RunList {
         self.shown = Some(run);
     }
 
+    /// The other runs of the unit that this one is of, the latest first.
+    pub fn of_same_unit(&self, run: Id) -> impl Iterator<Item = &RunSummary> {
+        let all = self.runs.items().iter();
+        let unit = all.clone().find(|other| other.id == run);
+        let unit = unit.map(|run| run.unit_serial.as_str());
+        all.filter(move |other| Some(other.unit_serial.as_str()) == unit && other.id != run)
+    }
+
+    /// Two runs of the list in the order in which they were made.
+    pub fn in_time(&self, runs: [Id; 2]) -> [Id; 2] {
+        let place = |run: Id| self.runs.items().iter().position(|other| other.id == run);
+        match place(runs[0]) < place(runs[1]) {
+            true => [runs[1], runs[0]],
+            false => runs,
+        }
+    }
+
     /// Says whose run is shown, if it is not the connected unit's.
     pub fn tell_other_unit(&self, ui: &mut Ui, words: &Words) {
         let Some(connected) = &self.followed.unit else {

@@ -1,31 +1,10 @@
 //! What failed before the repair, beside the same after it.
 
-use fault_db::{MeasurementRecord, StepRecord, Verdict};
+use fault_db::StepRecord;
 
 use super::CaseSheet;
+use crate::run::compare::{Compared, is_same, pair, same_step};
 use crate::run::steps::passed;
-
-/// A check that failed before, and what became of it.
-pub struct Compared<'a> {
-    /// The step that failed.
-    pub step: &'a StepRecord,
-    /// What it measured beyond its limits; none if something else failed.
-    pub before: Option<&'a MeasurementRecord>,
-    /// The same step of the run after.
-    pub step_after: Option<&'a StepRecord>,
-    /// The same measurement there.
-    pub after: Option<&'a MeasurementRecord>,
-}
-
-impl Compared<'_> {
-    /// The verdict after, if it was tested again.
-    pub fn verdict_after(&self) -> Option<Verdict> {
-        match (self.before, self.after) {
-            (Some(_), after) => after.map(|after| after.verdict),
-            (None, _) => self.step_after.map(|step| step.verdict),
-        }
-    }
-}
 
 impl CaseSheet {
     /// The steps before that failed with a fault of the case, each once.
@@ -45,37 +24,18 @@ impl CaseSheet {
     pub(super) fn compared(&self) -> Vec<Compared<'_>> {
         let mut all = Vec::new();
         for step in self.failed_steps() {
-            let step_after = self.step_after(step);
-            let failed = step.measurements.iter().filter(|m| !passed(m.verdict));
-            let failed: Vec<_> = failed.map(Some).collect();
-            let failed = if failed.is_empty() {
-                vec![None]
-            } else {
-                failed
-            };
-            all.extend(failed.into_iter().map(|before| Compared {
-                step,
-                before,
-                step_after,
-                after: before.zip(step_after).and_then(|(before, step)| {
-                    step.measurements.iter().find(|m| m.name == before.name)
-                }),
-            }));
+            let after = self.after.as_ref();
+            let pair = pair(
+                Some(step),
+                after.and_then(|sheet| same_step(step, &sheet.run)),
+            );
+            let is_beyond = |one: &Compared<'_>| one.before.is_some_and(|m| !passed(m.verdict));
+            let mut beyond = pair.measurements.into_iter().filter(is_beyond).peekable();
+            if beyond.peek().is_none() {
+                all.push(pair.step);
+            }
+            all.extend(beyond);
         }
         all
     }
-
-    /// The same step after; of several the one that speaks most against the repair.
-    fn step_after(&self, step: &StepRecord) -> Option<&StepRecord> {
-        let all = self.after.iter().flat_map(|sheet| &sheet.run.steps);
-        let same = || all.clone().filter(|other| is_same(other, step));
-        same()
-            .find(|other| other.verdict != Verdict::Passed)
-            .or_else(|| same().next())
-    }
-}
-
-/// The same step, in whichever run.
-pub fn is_same(one: &StepRecord, other: &StepRecord) -> bool {
-    one.procedure == other.procedure && one.name == other.name
 }

@@ -4,9 +4,10 @@
 use fault_db::{FaultEvent, FaultSummary, StepRecord};
 
 use super::CaseSheet;
-use super::first_page::{clipped, comparison};
+use super::first_page::clipped;
 use crate::naming;
 use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use crate::run::compare::comparison;
 use crate::run::content::body;
 use crate::run::plots::plots;
 use crate::run::sources::Sources;
@@ -173,11 +174,13 @@ impl CaseSheet {
             (_, Some(repair), _) => {
                 let serial = |serial: &Option<String>| serial.clone().unwrap_or("–".into());
                 let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
-                format!("{} {old} → {new} {}", repair.part, repair.note)
+                let part = self.before.part(&repair.part, words);
+                format!("{part} {old} → {new} {}", repair.note)
             }
             (_, _, Some(cause)) => {
                 let share = cause.probability.map(|p| format!(" {:.1} %", 100.0 * p));
-                format!("{}{} {}", cause.part, share.unwrap_or_default(), cause.note)
+                let part = self.before.part(&cause.part, words);
+                format!("{part}{} {}", share.unwrap_or_default(), cause.note)
             }
             _ => self.message(&event.note, words),
         };

@@ -1,18 +1,15 @@
 //! The first page of a repair sheet, which alone proves the repair: what, who, before and after, signatures.
 
-use fault_db::{MeasurementRecord, StepRecord, Verdict, is_practice};
+use fault_db::is_practice;
 
-use super::compare::{Compared, is_same};
 use super::{CaseSheet, Standing};
-use crate::limits::short;
-use crate::run::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone, sentence};
+use crate::run::block::{Block, Tone, sentence};
+use crate::run::compare::{comparison, is_same, name_of};
 use crate::run::content::signatures;
 use crate::run::plots::close_up;
-use crate::run::steps::verdict;
 use crate::run::{Sheet, SheetTrace, page};
 use crate::words::{Words, fill};
 use ptu_bench::clock::local;
-use ptu_bench::stored::outside_of;
 
 /// Rows of the comparison at most.
 const MOST_ROWS: usize = 8;
@@ -234,114 +231,6 @@ impl CaseSheet {
             ],
         );
         Some(Block::Plot(Box::new(plot)))
-    }
-}
-
-/// The comparison as a table.
-pub(super) fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
-    let (common, report) = (&words.common, &words.report);
-    let mut pairs = compared.windows(2);
-    let is_of_several = pairs.any(|two| two[0].step.procedure != two[1].step.procedure);
-    Table {
-        columns: vec![
-            Column::new(report.step_or_measurement, 0.31, Align::Left),
-            Column::new(report.allowed, 0.15, Align::Left),
-            Column::new(report.before, 0.1, Align::Right),
-            Column::new("", 0.125, Align::Left),
-            Column::new(report.after, 0.1, Align::Right),
-            Column::new("", 0.125, Align::Left),
-            Column::new(common.verdict, 0.09, Align::Left),
-        ],
-        rows: compared
-            .iter()
-            .map(|one| row(one, is_of_several, words))
-            .collect(),
-    }
-}
-
-/// A row; with its procedure where they are of several.
-fn row(one: &Compared<'_>, is_of_several: bool, words: &Words) -> Row {
-    let plain = |text| Cell::Text(Tone::Plain, text);
-    let name = name_of(one.step, words);
-    let name = match is_of_several {
-        true => format!("{}: {name}", one.step.procedure),
-        false => name,
-    };
-    let name = match one.before {
-        Some(before) => format!("{name}\n{}", words.measurement(&before.name)),
-        None => name,
-    };
-    let allowed = one.before.map_or_else(String::new, |before| {
-        let then = limits(before, words);
-        match one.after.map(|after| limits(after, words)) {
-            Some(now) if now != then => fill(
-                words.report.before_then_after,
-                &[("before", &then), ("after", &now)],
-            ),
-            _ => then,
-        }
-    });
-    let [value_before, bar_before] = match one.before {
-        Some(before) => shown(before, words),
-        None => [verdict(one.step.verdict, words), Cell::Gauge(None)],
-    };
-    let [value_after, bar_after] = match (one.after, one.step_after) {
-        (Some(after), _) => shown(after, words),
-        (None, Some(step)) if one.before.is_none() => {
-            [verdict(step.verdict, words), Cell::Gauge(None)]
-        }
-        _ => [plain("–".into()), Cell::Gauge(None)],
-    };
-    let last = match one.verdict_after() {
-        Some(after) => verdict(after, words),
-        None => Cell::Text(Tone::Soft, words.report.not_tested_again.into()),
-    };
-    let cells = [
-        plain(name),
-        plain(allowed),
-        value_before,
-        bar_before,
-        value_after,
-        bar_after,
-        last,
-    ];
-    Row {
-        kind: RowKind::Head,
-        cells: cells.map(|cell| (cell, 1)).into(),
-    }
-}
-
-/// A value with its unit, and its bar.
-fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
-    let good = measured.verdict == Verdict::Passed;
-    let text = match measured.value {
-        Some(value) => format!("{} {}", short(value), measured.unit),
-        None => words.report.no_value.to_owned(),
-    };
-    let tone = if good { Tone::Good } else { Tone::Bad };
-    let gauge = Gauge::of(measured.value, measured.low, measured.high, good);
-    [Cell::Text(tone, text), Cell::Gauge(gauge)]
-}
-
-/// What is allowed, in words.
-fn limits(measured: &MeasurementRecord, words: &Words) -> String {
-    let report = &words.report;
-    let unit = &measured.unit;
-    match (measured.low.map(short), measured.high.map(short)) {
-        (Some(low), Some(high)) => fill(
-            report.from_to,
-            &[("low", &low), ("high", &high), ("unit", unit)],
-        ),
-        (Some(low), None) => fill(report.at_least, &[("low", &low), ("unit", unit)]),
-        (None, Some(high)) => fill(report.at_most, &[("high", &high), ("unit", unit)]),
-        (None, None) => String::new(),
-    }
-}
-
-fn name_of(step: &StepRecord, words: &Words) -> String {
-    match outside_of(step) {
-        Some(place) => words.common.outside(place).to_owned(),
-        None => words.content(&step.name).into_owned(),
     }
 }
 

@@ -42,9 +42,9 @@ pub fn case_json(case: &CaseSheet) -> Value {
         "run_after": case.after.as_ref().map(run),
         "passed_runs": case.passed.iter().map(|run| run.to_string()).collect::<Vec<_>>(),
         "compared": case.compared().iter().map(|one| json!({
-            "procedure": one.step.procedure,
-            "step": one.step.name,
-            "message": one.step.message,
+            "procedure": one.step().map(|step| &step.procedure),
+            "step": one.step().map(|step| &step.name),
+            "message": one.step().map(|step| &step.message),
             "measurement": one.before.map(|before| &before.name),
             "unit": one.before.map(|before| &before.unit),
             "before": one.before.map(value_json),

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Button, ComboBox, Label, RichText, TextEdit, Ui};
 
-use super::{ReportPage, Shown, file};
+use super::{ReportPage, SheetOf, Shown, file};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::{name_edit, named_combo, open_file};
 use crate::gui::request::Request;
@@ -24,6 +24,9 @@ impl ReportPage {
             ways_on(ui, words, shown, context.go_to);
             if let Some(other) = languages(ui, words, language) {
                 self.language = Some(other);
+            }
+            if !matches!(of, SheetOf::Case { .. }) {
+                self.with.show(ui, words, of, &self.runs);
             }
         });
         ui.horizontal(|ui| self.files(ui, context));

@@ -2,25 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use fault_db::Id;
-
 use super::{Asked, SheetOf};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::usual_folder;
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::NewFile;
 use ptu_bench::process_id;
-use ptu_report::run::CaseSheet;
+use ptu_report::run::{CaseSheet, RunComparison};
 use ptu_report::{self, Target};
 
 /// Endings a typed name may have; the one of the format asked for takes its place.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
 
-/// A name for the sheet of this run, in the folder of the file named before.
-pub fn named_after(run: Id, before: &str) -> String {
+/// A name for this sheet, in the folder of the file named before.
+pub fn named_after(of: SheetOf, before: &str) -> String {
     let folder = Path::new(before.trim()).parent();
     let folder = folder.map_or_else(usual_folder, Path::to_path_buf);
-    let name = format!("sheet-{}.pdf", run.short());
+    let name = match of {
+        SheetOf::Compared { before, after, .. } => {
+            format!("compared-{}-{}.pdf", before.short(), after.short())
+        }
+        SheetOf::Run(run) | SheetOf::Case { run, .. } => format!("sheet-{}.pdf", run.short()),
+    };
     folder.join(name).to_string_lossy().into_owned()
 }
 
@@ -53,6 +56,10 @@ pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<P
             let case = CaseSheet::gather(&store, Some(scripts), fault, &asked.depot, false)?;
             ptu_report::case_content(&target, &case, language)?
         }
+        SheetOf::Compared { before, after, all } => {
+            let compared = RunComparison::gather(&store, before, after, all)?;
+            ptu_report::comparison_content(&target, &compared, language)?
+        }
     };
     ptu_report::write_beside(&target, file, &content)
 }
@@ -76,11 +83,12 @@ mod tests {
 
     #[test]
     fn the_sheet_of_the_next_run_is_saved_in_the_folder_of_the_last() {
-        let run: Id = "0198c0de-0000-7000-8000-00000000cafe"
+        let run: fault_db::Id = "0198c0de-0000-7000-8000-00000000cafe"
             .parse()
             .expect("an id");
         let beside = format!("/reports/sheet-{}.pdf", run.short());
-        assert_eq!(named_after(run, "/reports/mine.html"), beside);
-        assert!(named_after(run, "").ends_with(&format!("sheet-{}.pdf", run.short())));
+        let of = SheetOf::Run(run);
+        assert_eq!(named_after(of, "/reports/mine.html"), beside);
+        assert!(named_after(of, "").ends_with(&format!("sheet-{}.pdf", run.short())));
     }
 }

@@ -1,20 +1,22 @@
 //! The test sheet of a run: shown as it will be printed, and written to a file.
 
 mod bar;
+mod compare;
 mod file;
 mod sheet_view;
 
 use std::path::PathBuf;
 
 use eframe::egui::{CentralPanel, RichText, Ui};
-use fault_db::{Id, RunOccurrence};
+use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
 
 use crate::gui::parts::{FirstHalf, RunList, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
+use compare::ComparedWith;
 use ptu_report::naming::PartNames;
 use ptu_report::run::page::{Page, pages};
-use ptu_report::run::{CaseSheet, Sheet};
+use ptu_report::run::{CaseSheet, RunComparison, Sheet, SheetTrace};
 use ptu_report::words::{Language, Words, fill};
 
 const RUNS: FirstHalf = FirstHalf {
@@ -41,6 +43,7 @@ pub struct ReportPage {
     /// The file written last of the run that is shown.
     written: Option<PathBuf>,
     note: RunNoteForm,
+    with: ComparedWith,
 }
 
 /// What a sheet says besides what is stored.
@@ -60,13 +63,19 @@ pub enum SheetOf {
         fault: Id,
         run: Id,
     },
+    /// Two runs of a unit; with what passed in both, if wanted.
+    Compared {
+        before: Id,
+        after: Id,
+        all: bool,
+    },
 }
 
 impl SheetOf {
     /// The run it ends with.
     fn run(self) -> Id {
         match self {
-            Self::Run(run) | Self::Case { run, .. } => run,
+            Self::Run(run) | Self::Case { run, .. } | Self::Compared { after: run, .. } => run,
         }
     }
 }
@@ -83,7 +92,8 @@ struct Shown {
 impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
-        self.keep_up(ui, context, run.map(SheetOf::Run));
+        let of = run.map(|run| self.with.sheet_of(run));
+        self.keep_up(ui, context, of);
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
             self.sheet(ui, context);
@@ -92,6 +102,7 @@ impl ReportPage {
 
     pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
         self.runs.choose(run, context);
+        self.with = ComparedWith::default();
         self.ask(SheetOf::Run(run), context);
     }
 
@@ -121,7 +132,7 @@ impl ReportPage {
     fn ask(&mut self, of: SheetOf, context: &PageContext<'_>) {
         if self.asked_for.as_ref().is_none_or(|asked| asked.of != of) {
             self.shown = None;
-            self.file = file::named_after(of.run(), &self.file);
+            self.file = file::named_after(of, &self.file);
             self.written = None;
         }
         let wanted = self.wanted(of, context);
@@ -131,19 +142,33 @@ impl ReportPage {
             let store = paths.read()?;
             let scripts = Some(&paths.scripts);
             let words = wanted.language.words();
-            let shown = |pages, sheet: &Sheet| {
-                let seen = store.run_occurrences(sheet.run.run.id)?;
+            let shown = |pages, run: &RunDetail, traces: Option<&[SheetTrace]>| {
+                let seen = store.run_occurrences(run.run.id)?;
                 let parts = PartNames::of(&paths.scripts);
-                Ok(Shown::new(of, pages, sheet, (&seen, &parts), words))
+                let traces = traces.unwrap_or_default().iter().map(|trace| trace.id);
+                let traces = traces.collect();
+                Ok(Shown::new(
+                    of,
+                    pages,
+                    &run.run,
+                    traces,
+                    (&seen, &parts),
+                    words,
+                ))
             };
             match of {
                 SheetOf::Run(run) => {
                     let sheet = Sheet::gather(&store, scripts, run)?;
-                    shown(pages(&sheet, words)?, &sheet)
+                    shown(pages(&sheet, words)?, &sheet.run, Some(&sheet.traces))
                 }
                 SheetOf::Case { fault, .. } => {
                     let case = CaseSheet::gather(&store, scripts, fault, &wanted.depot, false)?;
-                    shown(pages(&case, words)?, case.last())
+                    let last = case.last();
+                    shown(pages(&case, words)?, &last.run, Some(&last.traces))
+                }
+                SheetOf::Compared { before, after, all } => {
+                    let compared = RunComparison::gather(&store, before, after, all)?;
+                    shown(pages(&compared, words)?, &compared.b, None)
                 }
             }
         }));
@@ -224,12 +249,11 @@ impl Shown {
     fn new(
         of: SheetOf,
         pages: Vec<Page>,
-        sheet: &Sheet,
+        run: &RunSummary,
+        traces: Vec<Id>,
         (seen, parts): (&[RunOccurrence], &PartNames),
         words: &Words,
     ) -> Self {
-        let run = &sheet.run.run;
-        let traces = sheet.traces.iter();
         let shows = |trace: Id| {
             let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
             let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, words));
@@ -238,7 +262,10 @@ impl Shown {
         Self {
             of,
             pages,
-            traces: traces.map(|trace| (trace.id, shows(trace.id))).collect(),
+            traces: traces
+                .into_iter()
+                .map(|trace| (trace, shows(trace)))
+                .collect(),
             faulty: run.steps_not_passed > 0 || run.faults > 0,
         }
     }
