@@ -2,8 +2,9 @@
 
 use crate::common::Place;
 use crate::common::window::{Window, latest, settings};
-use crate::common::{list, scripts, text};
+use crate::common::{list, record_bad_unit, scripts, text};
 use crate::layout::complaints;
+use eframe::egui::{Event, Key};
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::{Language, Words, fill};
 
@@ -156,7 +157,15 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     counted.click(case.find_part);
     counted.click(case.record_repair);
     counted.window.wait_for(case.serial_new);
-    counted.window.write(case.note, "cleaned its contacts");
+    // As a scanner types: each number ends with Enter, and the next one goes into the next field.
+    counted.window.write(case.serial_old, "R-0815");
+    for typed in ["R-4711", "cleaned its contacts"] {
+        counted.window.key(Key::Enter);
+        counted.window.step();
+        let typed = Event::Text(typed.into());
+        counted.window.harness().event(typed);
+        counted.window.step();
+    }
     counted.click(case.save);
     // Undone, the form is there again as it was written, and nothing is repaired.
     let undo = Language::English.words().frame.undo;
@@ -165,6 +174,15 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     let repaired = ["faults", "list", "--state", "repaired", "--json"];
     assert_eq!(list(&counted.window.place.json(&repaired)).len(), 0);
     counted.click(case.save);
+    counted.window.wait_for(case.fitted);
+    let shown = ["faults", "show", "latest", "--json"];
+    let shown = counted.window.place.json(&shown);
+    let mut events = list(&shown["events"]).iter();
+    let repair = events.find(|event| event["kind"] == "repair");
+    let repair = &repair.expect("a repair")["repair"];
+    assert_eq!(repair["serial_old"], "R-0815");
+    assert_eq!(repair["serial_new"], "R-4711");
+    assert_eq!(repair["note"], "cleaned its contacts");
     counted.click(case.fitted);
     counted.click(case.prove);
     counted.window.wait_for(case.record_repair);
@@ -182,4 +200,26 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     counted.click(case.save);
     counted.window.wait_for(case.prove);
     assert!(!counted.window.enabled(case.prove));
+}
+
+/// Goal: a unit that was here before needs no typing. Method: one click on it, and its case has its history.
+#[test]
+fn a_unit_seen_before_is_chosen_by_one_click() {
+    for language in Language::ALL {
+        let case = &language.words().case;
+        let place = Place::new();
+        record_bad_unit(&place);
+        let settings = Settings {
+            language,
+            ..settings(Page::Case)
+        };
+        let mut window = Window::with(place, scripts(), settings);
+        window.harness().set_size([900.0, 600.0].into());
+        window.wait_for(case.seen_last);
+        window.click_part("BAD-1 · ");
+        assert!(complaints(&mut window).is_empty());
+        window.click_last(language.words().frame.connect);
+        window.wait_for("BAD-1");
+        window.wait_for(case.open_faults);
+    }
 }

@@ -6,7 +6,7 @@ use eframe::egui::{
     ScrollArea, TextEdit, Ui, WidgetInfo, Window,
 };
 
-use crate::gui::parts::{field, name_edit, named_combo};
+use crate::gui::parts::{field, go_on, name_edit, named_combo};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::bench_worker::Phase;
@@ -198,9 +198,10 @@ impl Setup {
                 &mut choice.train,
                 of(|names| &names.trains),
             );
-            field(ui, frame.serial, name_edit(&mut choice.serial, 140.0));
+            let serial = field(ui, frame.serial, name_edit(&mut choice.serial, 140.0));
             let train_no = name_edit(&mut choice.train_no, 140.0);
-            field(ui, words.common.train_no, train_no);
+            let train_no = field(ui, words.common.train_no, train_no);
+            go_on(ui, &[serial, train_no]);
             // It stays with the window, whatever unit is chosen.
             field(ui, words.report.depot, name_edit(depot, 140.0));
             if choice.is_simulated() {

@@ -21,7 +21,7 @@ mod unit_filter;
 
 pub use chip::{chip, verdict_chip};
 pub use deliberate::ActionPlace;
-pub use edit::{field, name_edit, note_edit, typed};
+pub use edit::{field, go_on, name_edit, note_edit, typed};
 pub use file::usual_folder;
 pub use limit_bar::{limit_bar, value_text};
 pub use link::link;

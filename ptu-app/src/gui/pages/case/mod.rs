@@ -5,6 +5,7 @@ mod prove;
 mod repair;
 mod result;
 mod running;
+mod seen;
 mod stage;
 mod symptom;
 
@@ -23,6 +24,7 @@ use ptu_bench::bench_worker::{Phase, Progress};
 use ptu_report::words::fill;
 use repair::Repair;
 use result::Found;
+use seen::SeenUnits;
 use stage::Stage;
 use symptom::SymptomTiles;
 
@@ -39,6 +41,7 @@ pub struct CasePage {
     /// Serial number of the unit the case is about.
     unit: Option<String>,
     known: KnownUnit,
+    units: SeenUnits,
     tiles: SymptomTiles,
     /// Its last run that was looked at.
     seen: Option<Id>,
@@ -56,6 +59,7 @@ impl CasePage {
     ) {
         self.follow_unit(context);
         self.known.poll();
+        self.units.poll();
         self.tiles.poll(context);
         self.proof.poll(context);
         if self.repair.poll(&self.known, context) {
@@ -196,7 +200,9 @@ impl CasePage {
         }
         if !offline {
             ui.spinner();
+            return;
         }
+        self.units.show(ui, context);
     }
 
     /// Who works on the case.

@@ -9,7 +9,7 @@ use super::known::KnownUnit;
 use super::result::Found;
 use super::{CasePage, TEXT, large};
 use crate::gui::messages::Written;
-use crate::gui::parts::{ActionPlace, field, name_edit, named_combo, note_edit, typed};
+use crate::gui::parts::{ActionPlace, field, go_on, name_edit, named_combo, note_edit, typed};
 use crate::gui::request::Request;
 use crate::gui::{DataPaths, PageContext};
 use ptu_bench::clock::now_us;
@@ -123,9 +123,12 @@ impl CasePage {
             ui.end_row();
             let title = |name: &str| RichText::new(name).size(TEXT);
             let (old, new) = (&mut form.serial_old, &mut form.serial_new);
-            field(ui, title(words.serial_old), name_edit(old, FIELD));
-            field(ui, title(words.serial_new), name_edit(new, FIELD));
-            field(ui, title(words.note), note_edit(&mut form.note, FIELD));
+            let fields = [
+                field(ui, title(words.serial_old), name_edit(old, FIELD)),
+                field(ui, title(words.serial_new), name_edit(new, FIELD)),
+                field(ui, title(words.note), note_edit(&mut form.note, FIELD)),
+            ];
+            go_on(ui, &fields);
         });
         self.name(ui, context);
         let form = &mut self.repair;
