@@ -19,6 +19,8 @@ text_enum! {
         Error = "error",
         /// Not run, by choice or condition.
         Skipped = "skipped",
+        /// Of a search for a fault that found none: all that was run passed, and that was not enough to accept the unit.
+        Inconclusive = "inconclusive",
         /// Stopped by the operator.
         Aborted = "aborted",
     }

@@ -17,17 +17,20 @@ pub enum Verdict {
     Error,
     /// Not run, by choice or condition.
     Skipped,
+    /// Of a search for a fault that found none: all that was run passed, and that was not enough to accept the unit.
+    Inconclusive,
     /// Stopped by the operator.
     Aborted,
 }
 
 impl Verdict {
-    /// All five, in order.
-    pub const ALL: [Self; 5] = [
+    /// All, in order.
+    pub const ALL: [Self; 6] = [
         Self::Passed,
         Self::Failed,
         Self::Error,
         Self::Skipped,
+        Self::Inconclusive,
         Self::Aborted,
     ];
 
@@ -38,6 +41,7 @@ impl Verdict {
             Self::Failed => "failed",
             Self::Error => "error",
             Self::Skipped => "skipped",
+            Self::Inconclusive => "inconclusive",
             Self::Aborted => "aborted",
         }
     }
@@ -59,9 +63,10 @@ impl Verdict {
         match self {
             Self::Skipped => 0,
             Self::Passed => 1,
-            Self::Error => 2,
-            Self::Failed => 3,
-            Self::Aborted => 4,
+            Self::Inconclusive => 2,
+            Self::Error => 3,
+            Self::Failed => 4,
+            Self::Aborted => 5,
         }
     }
 }

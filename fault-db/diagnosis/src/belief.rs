@@ -151,19 +151,10 @@ impl<'m, 'd> Belief<'m, 'd> {
                 Hypothesis::Unseen { part } => {
                     ln_sum(self.like_effects(part)) + model.settings.suspect * suspicion[part]
                 }
-                Hypothesis::Unknown => ln_sum(self.any_effect()),
             };
             model.ln_priors[i] + steps + self.signs.ln(model, *hypothesis)
         });
         of.collect()
-    }
-
-    /// The same under an unknown fault.
-    pub(super) fn any_effect(&self) -> impl Iterator<Item = f64> + Clone + '_ {
-        let frequency = self.model.frequency().iter();
-        frequency
-            .zip(&self.like_effects)
-            .map(|(frequency, ln)| frequency + ln)
     }
 
     /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of
@@ -185,7 +176,7 @@ impl<'m, 'd> Belief<'m, 'd> {
                     .max_by(|a, b| a.1.total_cmp(&b.1))
                     .map(|(effect, _)| effect)
             }
-            Hypothesis::NoFault | Hypothesis::Unknown => None,
+            Hypothesis::NoFault => None,
         }
     }
 

@@ -91,18 +91,6 @@ impl Sentence {
         .then(next)
     }
 
-    /// No fault of the dictionary explains what was seen.
-    pub(crate) fn unknown_fault(probability: f64, next: Option<&NextCheck>) -> Self {
-        let sure = percent(probability);
-        Self::new(
-            format!("cannot tell: no fault mode of the dictionary explains this ({sure})"),
-            format!(
-                "판별할 수 없습니다: 고장 사전의 어떤 고장 모드로도 설명되지 않습니다 ({sure})"
-            ),
-        )
-        .then(next)
-    }
-
     /// Something is wrong, and these parts are the likely ones, the likeliest first.
     pub(crate) fn cannot_tell(
         likely: &[&PartProbability],

@@ -16,6 +16,7 @@ mod cell;
 mod conclusion;
 mod dictionary;
 mod explained;
+mod hidden;
 mod likelihood;
 pub mod matrix;
 mod model;

@@ -149,7 +149,7 @@ impl LikelihoodSettings {
             Verdict::Passed => self.passed,
             Verdict::Failed => self.failed,
             Verdict::Error => self.error,
-            Verdict::Skipped | Verdict::Aborted => 0.0,
+            Verdict::Skipped | Verdict::Inconclusive | Verdict::Aborted => 0.0,
         }
     }
 }

@@ -22,20 +22,18 @@ use super::settings::Settings;
 use super::signs::{ShownSign, shown_signs};
 use super::spells::{self, AS_COUNTED, RATES};
 use super::suspects::Suspects;
-use super::unseen::{frequency, resemblance};
+use super::unseen::resemblance;
 
 /// Index of [`Hypothesis::NoFault`] in every model.
 pub const NO_FAULT: usize = 0;
 /// Index of the first mode in every model.
-pub const FIRST_EFFECT: usize = 2;
+pub const FIRST_EFFECT: usize = 1;
 
 /// A hypothesis. Modes and levels are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hypothesis {
     /// Nothing is wrong.
     NoFault,
-    /// A fault that is not in the dictionary.
-    Unknown,
     /// One level of a fault mode.
     Mode {
         /// The mode.
@@ -69,7 +67,7 @@ pub struct Model<'a> {
     pub dictionary: &'a Dictionary,
     /// Priors and thresholds.
     pub settings: &'a Settings,
-    /// All single hypotheses: no fault, an unknown one, the modes, and an unseen mode of each part.
+    /// All single hypotheses: no fault, the modes, and an unseen mode of each part.
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
@@ -81,8 +79,6 @@ pub struct Model<'a> {
     effects_of_parts: Vec<Vec<usize>>,
     /// For each part, logarithms of the probability that an unseen mode of it acts like each effect.
     resemblance: Vec<Vec<f64>>,
-    /// The same of an unknown fault.
-    frequency: Vec<f64>,
     /// What each check may show.
     pub outlooks: Vec<Outlook>,
     /// Signs of each effect.
@@ -108,10 +104,10 @@ impl<'a> Model<'a> {
             name.weight * lru_factor.get(&name.lru).copied().unwrap_or(1.0)
         };
         let all: f64 = (0..dictionary.modes.len()).map(weight).sum();
-        let known = 1.0 - settings.no_fault - settings.unknown_fault;
-        let seen = known * (1.0 - settings.unseen_mode);
-        let mut hypotheses = vec![Hypothesis::NoFault, Hypothesis::Unknown];
-        let mut priors = vec![settings.no_fault, settings.unknown_fault];
+        let faulty = 1.0 - settings.no_fault;
+        let seen = faulty * (1.0 - settings.unseen_mode);
+        let mut hypotheses = vec![Hypothesis::NoFault];
+        let mut priors = vec![settings.no_fault];
         for (mode, entry) in dictionary.modes.iter().enumerate() {
             for column in 0..entry.columns.len() {
                 hypotheses.push(Hypothesis::Mode { mode, column });
@@ -125,7 +121,7 @@ impl<'a> Model<'a> {
         let of_all: f64 = factors.clone().sum();
         for (part, factor) in factors.enumerate() {
             hypotheses.push(Hypothesis::Unseen { part });
-            priors.push(known * settings.unseen_mode * factor / of_all);
+            priors.push(faulty * settings.unseen_mode * factor / of_all);
         }
         let effects = &hypotheses[FIRST_EFFECT..hypotheses.len() - parts.len()];
         let lru = |effect: &Hypothesis| match effect {
@@ -142,7 +138,6 @@ impl<'a> Model<'a> {
             dictionary,
             settings,
             effects_of_parts: parts.iter().map(of_part).collect(),
-            frequency: frequency(dictionary),
             outlooks: outlooks(dictionary, columns.clone()),
             signs: columns.map(shown_signs).collect(),
             suspects: Suspects::new(dictionary, &parts),
@@ -162,12 +157,12 @@ impl<'a> Model<'a> {
         Self { names, ..self }
     }
 
-    /// Part that has failed under a hypothesis; none of a healthy unit and of an unknown fault.
+    /// Part that has failed under a hypothesis; none of a healthy unit.
     pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a LruId> {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => Some(&self.dictionary.modes[mode].name.lru),
             Hypothesis::Unseen { part } => Some(self.parts[part]),
-            Hypothesis::NoFault | Hypothesis::Unknown => None,
+            Hypothesis::NoFault => None,
         }
     }
 
@@ -190,11 +185,6 @@ impl<'a> Model<'a> {
     /// Logarithms of the probability that an unseen mode of a part acts like each effect.
     pub fn resemblance(&self, part: usize) -> &[f64] {
         &self.resemblance[part]
-    }
-
-    /// Logarithms of the probability that an unknown fault acts like each effect.
-    pub fn frequency(&self) -> &[f64] {
-        &self.frequency
     }
 
     /// Place of a mode's level among the effects.
@@ -310,6 +300,12 @@ impl<'a> Model<'a> {
     pub fn likelihood_of_values(&self, effect: usize, place: usize, step: &ObservedStep) -> f64 {
         let expected = self.expected(self.effects()[effect], place);
         likelihood_of_values(expected, step, |name| self.scales.get(&place)?.get(name))
+    }
+
+    /// Time that a check takes on a healthy unit, s.
+    pub fn healthy_time_s(&self, place: usize) -> f64 {
+        let cell = self.dictionary.healthy.cells.get(&place);
+        cell.map_or(0.0, |cell| cell.time_s)
     }
 
     /// Whether the hypothesis is an intermittent mode.

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::belief::{Belief, normalised};
-use super::model::{FIRST_EFFECT, Hypothesis};
+use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
 
 /// A recommended check.
@@ -32,7 +32,7 @@ fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::E
     to.collect_str(check)
 }
 
-/// The classes to tell apart, each part, no fault, and an unknown fault, by the effects that they may have.
+/// The classes to tell apart, no fault and each part, by the effects that they may have.
 struct Classes {
     /// Probability of each class.
     all: Vec<f64>,
@@ -67,54 +67,19 @@ impl Belief<'_, '_> {
         again: bool,
     ) -> Option<NextCheck> {
         let classes = self.classes();
-        let dictionary = self.model.dictionary;
-        let settings = self.model.settings;
-        let mut best: Option<(f64, NextCheck)> = None;
-        let mut procedure = "";
-        let mut cost_s = 0.0;
-        for (place, check) in dictionary.checks.iter().enumerate() {
-            if check.procedure != procedure {
-                procedure = &check.procedure;
-                cost_s = if under_way == Some(procedure) {
-                    0.0
-                } else {
-                    settings.bring_up_s
-                };
-            }
-            if may.is_some_and(|may| !may.contains(procedure)) {
-                continue;
-            }
-            let is_done = done.contains(check);
-            if under_way == Some(procedure) && is_done {
-                continue;
-            }
-            cost_s += dictionary
-                .healthy
-                .cells
-                .get(&place)
-                .map_or(0.0, |cell| cell.time_s);
-            if is_done != again {
-                continue;
-            }
+        let least = self.model.settings.least_gain_bits;
+        let costs = costs(self.model, done, under_way, may, again);
+        let worth_making = costs.filter_map(|(place, cost_s)| {
             let gain_bits = self.gain_bits(place, &classes);
-            if gain_bits < settings.least_gain_bits {
-                continue;
-            }
-            let worth = gain_bits / cost_s.max(0.1);
-            if best.as_ref().is_none_or(|(most, _)| worth > *most) {
-                let check = check.clone();
-                best = Some((
-                    worth,
-                    NextCheck {
-                        check,
-                        gain_bits,
-                        cost_s,
-                        again,
-                    },
-                ));
-            }
-        }
-        best.map(|(_, next)| next)
+            (gain_bits >= least).then_some((place, cost_s, gain_bits))
+        });
+        let (place, cost_s, gain_bits) = most_per_second(worth_making)?;
+        Some(NextCheck {
+            check: self.model.dictionary.checks[place].clone(),
+            gain_bits,
+            cost_s,
+            again,
+        })
     }
 
     fn classes(&self) -> Classes {
@@ -124,7 +89,7 @@ impl Belief<'_, '_> {
         let mut with_effect = vec![vec![0.0; classes]; self.model.effects().len()];
         let hypotheses = self.model.hypotheses.iter().zip(self.probabilities());
         for (i, (hypothesis, p)) in hypotheses.enumerate() {
-            // No fault and the unknown one are the first two classes.
+            // No fault is the first class.
             let part = self.model.part(*hypothesis);
             let class = part.map_or(i, |part| FIRST_EFFECT + part);
             all[class] += p;
@@ -135,7 +100,6 @@ impl Belief<'_, '_> {
                     continue;
                 }
                 Hypothesis::Unseen { part } => normalised(&self.vaguely_like_effects(part)),
-                Hypothesis::Unknown => normalised(&self.any_effect().collect::<Vec<_>>()),
             };
             for (effect, share) in shares.into_iter().enumerate() {
                 with_effect[effect][class] += p * share;
@@ -180,6 +144,48 @@ impl Belief<'_, '_> {
         }
         information_bits(&joint)
     }
+}
+
+/// The checks that may be made, among those in `done` if `again` and among the others if not, each by its index with what it
+/// costs, s: all steps of its procedure up to it, but for those of the procedure `under_way` that have run.
+pub fn costs<'a>(
+    model: &'a Model<'_>,
+    done: &'a BTreeSet<CheckName>,
+    under_way: Option<&'a str>,
+    may: Option<&'a BTreeSet<String>>,
+    again: bool,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let mut procedure = "";
+    let mut cost_s = 0.0;
+    let checks = model.dictionary.checks.iter().enumerate();
+    checks.filter_map(move |(place, check)| {
+        let is_under_way = under_way == Some(&check.procedure);
+        if check.procedure != procedure {
+            procedure = &check.procedure;
+            cost_s = match is_under_way {
+                true => 0.0,
+                false => model.settings.bring_up_s,
+            };
+        }
+        let is_done = done.contains(check);
+        if may.is_some_and(|may| !may.contains(procedure)) || (is_under_way && is_done) {
+            return None;
+        }
+        cost_s += model.healthy_time_s(place);
+        (is_done == again).then_some((place, cost_s))
+    })
+}
+
+/// Of checks with their cost and worth the one with the greatest worth per second.
+pub fn most_per_second(
+    checks: impl Iterator<Item = (usize, f64, f64)>,
+) -> Option<(usize, f64, f64)> {
+    let per_second = |(_, cost_s, worth): &(usize, f64, f64)| worth / cost_s.max(0.1);
+    // Of several the first.
+    checks.reduce(|best, next| match per_second(&next) > per_second(&best) {
+        true => next,
+        false => best,
+    })
 }
 
 /// Mutual information of rows and columns of a table of joint probabilities, bits.

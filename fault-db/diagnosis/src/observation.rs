@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub const fn is_observed(verdict: Verdict) -> bool {
     match verdict {
         Verdict::Passed | Verdict::Failed | Verdict::Error => true,
-        Verdict::Skipped | Verdict::Aborted => false,
+        Verdict::Skipped | Verdict::Inconclusive | Verdict::Aborted => false,
     }
 }
 

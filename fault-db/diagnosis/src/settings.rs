@@ -8,8 +8,6 @@ use serde::{Deserialize, Serialize};
 pub struct Settings {
     /// Prior probability that a unit brought to the bench has no fault.
     pub no_fault: f64,
-    /// Prior probability of a fault that is not in the dictionary.
-    pub unknown_fault: f64,
     /// Probability of a second fault given a first, relative to its own prior.
     pub second_fault: f64,
     /// A part is found at this probability.
@@ -104,8 +102,6 @@ pub struct SignSettings {
     pub of_part: f64,
     /// Probability of one that names another part, or none.
     pub of_other_part: f64,
-    /// Probability of any under an unknown fault.
-    pub of_unknown: f64,
     /// Probability of a sign unrelated to the fault.
     pub stray: f64,
     /// Probability that the tester measures what a fault of another part, or no fault, does not show.
@@ -129,8 +125,6 @@ pub struct LogSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConclusionSettings {
-    /// An unknown fault is concluded at this probability.
-    pub unknown_fault_at: f64,
     /// Parts from this probability on are named when it cannot be told which has failed.
     pub named_at: f64,
     /// Candidates and pairs less likely than this are not shown, except for the first candidate.
@@ -151,7 +145,6 @@ impl Settings {
         let (log, conclusion) = (&self.log, &self.conclusion);
         let shares = [
             ("no_fault", self.no_fault),
-            ("unknown_fault", self.unknown_fault),
             ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
@@ -177,11 +170,9 @@ impl Settings {
             ("log.stray", log.stray),
             ("signs.of_part", signs.of_part),
             ("signs.of_other_part", signs.of_other_part),
-            ("signs.of_unknown", signs.of_unknown),
             ("signs.stray", signs.stray),
             ("signs.measured", signs.measured),
             ("signs.silent", signs.silent),
-            ("conclusion.unknown_fault_at", conclusion.unknown_fault_at),
             ("conclusion.named_at", conclusion.named_at),
             ("conclusion.least_shown", conclusion.least_shown),
             ("conclusion.explained_at", conclusion.explained_at),
@@ -190,9 +181,6 @@ impl Settings {
             if !(value > 0.0 && value < 1.0) {
                 return Err(format!("{key} = {value} is not between 0 and 1"));
             }
-        }
-        if self.no_fault + self.unknown_fault >= 1.0 {
-            return Err("no_fault and unknown_fault leave nothing for known faults".into());
         }
         if (likelihood.passed + likelihood.failed + likelihood.error - 1.0).abs() > 1e-9 {
             return Err("passed, failed and error of likelihood do not make 1".into());
@@ -223,7 +211,6 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             no_fault: 0.5,
-            unknown_fault: 0.002,
             second_fault: 1e-4,
             found_at: 0.95,
             healthy_at: 0.99,
@@ -276,7 +263,6 @@ impl Default for SignSettings {
         Self {
             of_part: 0.7,
             of_other_part: 0.015,
-            of_unknown: 0.02,
             stray: 0.003,
             measured: 1e-6,
             silent: 0.02,
@@ -296,7 +282,6 @@ impl Default for LogSettings {
 impl Default for ConclusionSettings {
     fn default() -> Self {
         Self {
-            unknown_fault_at: 0.5,
             named_at: 0.05,
             least_shown: 0.005,
             most_shown: 10,

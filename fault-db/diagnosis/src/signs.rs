@@ -29,7 +29,7 @@ impl SignsSeen {
                     + self.in_log.len() as f64 * log.stray.ln()
             }
             Hypothesis::Mode { .. } => self.ln_under(model, &[hypothesis]),
-            Hypothesis::Unseen { .. } | Hypothesis::Unknown => {
+            Hypothesis::Unseen { .. } => {
                 let named = model.lru(hypothesis);
                 let settings = &model.settings.signs;
                 let signs = self
@@ -40,7 +40,6 @@ impl SignsSeen {
                     let chance = match (&sign.lru, named) {
                         (Some(lru), Some(part)) if lru == part => settings.of_part,
                         _ if sign.is_measured() => settings.measured,
-                        (Some(_), None) => settings.of_unknown,
                         _ => settings.of_other_part,
                     };
                     chance.ln()

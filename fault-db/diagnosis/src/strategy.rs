@@ -7,19 +7,26 @@ use std::collections::BTreeSet;
 
 use protocol::Verdict;
 
-use super::belief::Belief;
+use super::belief::{Belief, Settled};
+use super::hidden::Hidden;
 use super::model::Model;
-use super::next_check::NextCheck;
+use super::next_check::{costs, most_per_second};
 use super::observation::{CheckName, Observation, ObservedStep};
 
 /// Isolates a fault, check by check.
+///
+/// A unit is not called healthy before each mode that can leave the train less protected had the checks that show it. All of
+/// it together takes no longer than the checks that may be made, each once.
 #[derive(Debug)]
 pub struct Strategy<'m, 'd> {
     belief: Belief<'m, 'd>,
+    hidden: Hidden,
     done: BTreeSet<CheckName>,
     allowed: Option<BTreeSet<String>>,
-    target: Option<NextCheck>,
+    target: Option<CheckName>,
     seen: Observation,
+    /// Time that is left, s.
+    left_s: f64,
 }
 
 impl<'m, 'd> Strategy<'m, 'd> {
@@ -27,33 +34,45 @@ impl<'m, 'd> Strategy<'m, 'd> {
     pub fn new(model: &'m Model<'d>, allowed: Option<BTreeSet<String>>) -> Self {
         Self {
             belief: Belief::new(model),
+            hidden: Hidden::new(model),
             done: BTreeSet::new(),
-            allowed,
             target: None,
             seen: Observation::default(),
+            left_s: suite_s(model, allowed.as_ref()),
+            allowed,
         }
     }
 
     /// The check to run next, in a procedure to be started; `None` when one part is found, the unit is
-    /// healthy, or no check gives more information.
-    pub fn begin(&mut self) -> Option<NextCheck> {
+    /// healthy, no check gives more information, or the time is over.
+    pub fn begin(&mut self) -> Option<CheckName> {
         self.aim(None);
+        if self.target.is_some() {
+            self.left_s -= self.belief.model.settings.bring_up_s;
+        }
         self.target.clone()
     }
 
     /// Adds the result of a step; whether its procedure is to go on.
     pub fn saw(&mut self, step: &ObservedStep) -> bool {
+        self.left_s -= step.time_s;
         let new = self.done.insert(step.check.clone());
         if new {
             self.belief.see(self.seen.steps.len(), step);
+            if let Some(place) = self.belief.model.dictionary.place(&step.check) {
+                self.hidden.see(place);
+            }
             self.seen.steps.push(step.clone());
         }
         let surprising = new && (step.result != Verdict::Passed || !step.signs.is_empty());
-        let reached = self.target.as_ref().is_none_or(|t| t.check == step.check);
+        let reached = self
+            .target
+            .as_ref()
+            .is_none_or(|check| *check == step.check);
         if surprising || reached {
             self.aim(Some(&step.check.procedure));
         }
-        let here = |target: &NextCheck| target.check.procedure == step.check.procedure;
+        let here = |target: &CheckName| target.procedure == step.check.procedure;
         self.target.as_ref().is_some_and(here)
     }
 
@@ -70,13 +89,50 @@ impl<'m, 'd> Strategy<'m, 'd> {
     }
 
     fn aim(&mut self, under_way: Option<&str>) {
-        self.target = if self.belief.is_settled() {
-            None
-        } else {
-            self.belief
-                .next_check(&self.done, under_way, self.allowed.as_ref())
+        self.target = match self.belief.answer() {
+            Some(Settled::Part(_)) => None,
+            Some(Settled::Healthy) => self.hidden_check(under_way),
+            None => {
+                let may = self.allowed.as_ref();
+                let next = self.belief.next_check(&self.done, under_way, may);
+                let next = next.map(|next| (next.check, next.cost_s));
+                next.filter(|(_, cost_s)| *cost_s <= self.left_s)
+                    .map(|(check, _)| check)
+                    .or_else(|| self.hidden_check(under_way))
+            }
         };
     }
+
+    /// The check that is worth most for what no check so far would have shown, while nothing has shown that a fault is there.
+    fn hidden_check(&self, under_way: Option<&str>) -> Option<CheckName> {
+        if self.seen.shows_a_fault() {
+            return None;
+        }
+        let model = self.belief.model;
+        let costs = costs(model, &self.done, under_way, self.allowed.as_ref(), false);
+        let within = costs.filter(|(_, cost_s)| *cost_s <= self.left_s);
+        let showing = within.filter_map(|(place, cost_s)| {
+            let worth = self.hidden.worth(place)?;
+            Some((place, cost_s, worth))
+        });
+        let (place, ..) = most_per_second(showing)?;
+        Some(model.dictionary.checks[place].clone())
+    }
+}
+
+/// Time of all procedures in `allowed`, each once, s.
+fn suite_s(model: &Model<'_>, allowed: Option<&BTreeSet<String>>) -> f64 {
+    let checks = model.dictionary.checks.iter().enumerate();
+    let allowed = checks
+        .filter(|(_, check)| allowed.is_none_or(|allowed| allowed.contains(&check.procedure)));
+    let mut procedures = BTreeSet::new();
+    let steps_s: f64 = allowed
+        .map(|(place, check)| {
+            procedures.insert(&check.procedure);
+            model.healthy_time_s(place)
+        })
+        .sum();
+    steps_s + procedures.len() as f64 * model.settings.bring_up_s
 }
 
 /// Effort until the question was answered, or all was done.
@@ -126,7 +182,7 @@ pub fn replayed(model: &Model<'_>, run: &Observation) -> (Effort, Observation) {
     let mut strategy = Strategy::new(model, None);
     let mut effort = Effort::default();
     while let Some(next) = strategy.begin() {
-        let procedure = &next.check.procedure;
+        let procedure = &next.procedure;
         effort.time_s += model.settings.bring_up_s;
         let mut steps = run.steps.iter().filter(|s| s.check.procedure == *procedure);
         let left = steps.any(|step| {

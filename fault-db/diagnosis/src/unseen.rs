@@ -46,16 +46,6 @@ pub fn resemblance(dictionary: &Dictionary, parts: &[&LruId], other_part: f64) -
     numbers.clone().map(like_each).collect()
 }
 
-/// Logarithms of the probability of each effect, where it is not known of which part: by the weights of the modes.
-pub fn frequency(dictionary: &Dictionary) -> Vec<f64> {
-    let all: f64 = dictionary.modes.iter().map(|mode| mode.name.weight).sum();
-    let effects = dictionary.modes.iter().flat_map(|mode| {
-        let levels = mode.columns.len();
-        std::iter::repeat_n((mode.name.weight / all / levels as f64).ln(), levels)
-    });
-    effects.collect()
-}
-
 fn profile<'a>(modes: impl Iterator<Item = &'a Mode>) -> Profile {
     let mut profile = Profile::new();
     for mode in modes {

@@ -65,8 +65,6 @@ pub enum Finding {
     NoFault,
     /// One of several parts, and it cannot be told which.
     CannotTell,
-    /// Something is wrong that no fault mode of the dictionary explains.
-    UnknownFault,
     /// What was run shows nothing wrong, and was not enough to say that nothing is.
     NotEnough,
 }
@@ -88,8 +86,6 @@ pub struct Diagnosis {
     pub two_faults: Vec<TwoFaults>,
     /// Probability that nothing is wrong.
     pub no_fault: f64,
-    /// Probability of a fault that stands in no dictionary.
-    pub unknown_fault: f64,
 }
 
 /// A run held against a model: what each answer about the run is taken from.
@@ -134,7 +130,6 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
                 })
                 .collect(),
             no_fault: weights.no_fault,
-            unknown_fault: weights.unknown,
             lrus: weights.lrus.clone(),
         }
     }
@@ -259,10 +254,6 @@ impl Weights {
         if !seen.shows_a_fault() {
             let checks = [seen.steps.len(), model.dictionary.checks.len()];
             return (Finding::NotEnough, Sentence::nothing_seen(checks, next));
-        }
-        if self.unknown >= settings.conclusion.unknown_fault_at {
-            let said = Sentence::unknown_fault(self.unknown, next);
-            return (Finding::UnknownFault, said);
         }
         let named_at = settings.conclusion.named_at;
         let parts = self.lrus.iter();

@@ -1,4 +1,4 @@
-//! The probabilities of an answer: one distribution over no fault, an unknown one, each part alone and each two parts.
+//! The probabilities of an answer: one distribution over no fault, each part alone and each two parts.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +43,7 @@ pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, String)
                 format!("in a way that is not in the dictionary{like}"),
             )
         }
-        Hypothesis::NoFault | Hypothesis::Unknown => (String::new(), String::new()),
+        Hypothesis::NoFault => (String::new(), String::new()),
     }
 }
 
@@ -74,7 +74,6 @@ pub struct Weights {
     pub both: Vec<([LruId; 2], f64)>,
     pub faults: Vec<Fault>,
     pub no_fault: f64,
-    pub unknown: f64,
 }
 
 impl Weights {
@@ -82,12 +81,11 @@ impl Weights {
     pub fn new(model: &Model<'_>, pairs: &[Pair], single: &[f64]) -> Self {
         let mut faults: Vec<Fault> = Vec::new();
         let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
-        let (mut no_fault, mut unknown) = (0.0, 0.0);
+        let mut no_fault = 0.0;
         for (hypothesis, p) in model.hypotheses.iter().zip(single) {
             let of_level = *p;
             match *hypothesis {
                 Hypothesis::NoFault => no_fault = of_level,
-                Hypothesis::Unknown => unknown = of_level,
                 Hypothesis::Mode { .. } | Hypothesis::Unseen { .. } => {
                     let fault = Fault {
                         hypothesis: *hypothesis,
@@ -147,7 +145,6 @@ impl Weights {
             both,
             faults,
             no_fault,
-            unknown,
         }
     }
 

@@ -156,7 +156,7 @@ const SELECT_RUN: &str = "
         r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
         r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
-        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'aborted')),
+        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'inconclusive', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
         r.seq, r.train, r.continues, r.connection, r.symptom
     FROM run r JOIN unit u ON u.seq = r.unit";

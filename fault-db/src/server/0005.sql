@@ -68,3 +68,9 @@ CREATE VIEW events AS
     CAST(EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id) AS integer) AS withdrawn,
     e.turn, time_text(e.at_us) AS happened_at, e.at_us
   FROM fault_event e JOIN fault f ON f.seq = e.fault;
+
+-- A search for a fault that found none.
+ALTER TABLE run DROP CONSTRAINT run_verdict_check, ADD CONSTRAINT run_verdict_check
+  CHECK(verdict IN ('passed','failed','error','skipped','inconclusive','aborted'));
+ALTER TABLE step DROP CONSTRAINT step_verdict_check, ADD CONSTRAINT step_verdict_check
+  CHECK(verdict IN ('passed','failed','error','skipped','inconclusive','aborted'));

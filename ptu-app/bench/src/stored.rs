@@ -15,6 +15,7 @@ pub fn stored(verdict: Verdict) -> fault_db::Verdict {
         Verdict::Failed => fault_db::Verdict::Failed,
         Verdict::Error => fault_db::Verdict::Error,
         Verdict::Skipped => fault_db::Verdict::Skipped,
+        Verdict::Inconclusive => fault_db::Verdict::Inconclusive,
         Verdict::Aborted => fault_db::Verdict::Aborted,
     }
 }
@@ -26,6 +27,7 @@ pub fn from_stored(verdict: fault_db::Verdict) -> Verdict {
         fault_db::Verdict::Failed => Verdict::Failed,
         fault_db::Verdict::Error => Verdict::Error,
         fault_db::Verdict::Skipped => Verdict::Skipped,
+        fault_db::Verdict::Inconclusive => Verdict::Inconclusive,
         fault_db::Verdict::Aborted => Verdict::Aborted,
     }
 }

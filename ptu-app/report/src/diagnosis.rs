@@ -33,7 +33,6 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,
-        "unknown_fault": d.unknown_fault,
         "warnings": answer.warnings,
         "dictionary": Language::English.words().report.origin(answer.dictionary_from),
         "run": answer.run.run.id.to_string(),
@@ -64,12 +63,7 @@ pub fn diagnosis_text(answer: &Answer) -> String {
             two.faults.join(" and ")
         );
     }
-    let _ = writeln!(
-        text,
-        "\n{:5.1} %  no fault\n{:5.1} %  a fault that is not in the dictionary",
-        100.0 * d.no_fault,
-        100.0 * d.unknown_fault
-    );
+    let _ = writeln!(text, "\n{:5.1} %  no fault", 100.0 * d.no_fault);
     if let Some(c) = &answer.why_not {
         let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
         candidate_text(&mut text, c);

@@ -122,7 +122,9 @@ fn status(verdict: Verdict, kind: &str, message: &str) -> TestCaseStatus {
         Verdict::Passed => return TestCaseStatus::success(),
         Verdict::Skipped => TestCaseStatus::skipped(),
         Verdict::Failed => TestCaseStatus::non_success(NonSuccessKind::Failure),
-        Verdict::Error | Verdict::Aborted => TestCaseStatus::non_success(NonSuccessKind::Error),
+        Verdict::Error | Verdict::Inconclusive | Verdict::Aborted => {
+            TestCaseStatus::non_success(NonSuccessKind::Error)
+        }
     };
     status.set_message(&*display_text::lines(message));
     if verdict != Verdict::Skipped {

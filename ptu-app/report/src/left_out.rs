@@ -22,7 +22,6 @@ fn figures_json(figures: &UnseenFigures) -> Value {
         "first_two": share_json(figures.first_two),
         "found": share_json(figures.found),
         "wrong": share_json(figures.wrong),
-        "unknown": share_json(figures.unknown),
         "reliability": figures.reliability.map(share_json),
         "brier": figures.brier,
         "confused": figures.confused.iter().map(|(part, taken, runs)| {
@@ -109,7 +108,6 @@ fn figures_text(text: &mut String, figures: &UnseenFigures) {
         ("among the first two", figures.first_two),
         ("named for certain, the right one", figures.found),
         ("named for certain, a wrong one", figures.wrong),
-        ("\"no fault mode explains this\"", figures.unknown),
     ];
     shares_text(text, &shares);
     let curve = figures.reliability.iter().enumerate();

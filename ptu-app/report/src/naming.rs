@@ -2,6 +2,7 @@
 
 use protocol::event::Event;
 use protocol::injection::Lru;
+use protocol::lru::from_stored;
 
 use crate::words::{Language, Words, fill};
 use ptu_bench::data::ScriptsDirectory;
@@ -21,8 +22,11 @@ impl PartNames {
         Self(scripts.faults().map(|all| all.lrus).unwrap_or_default())
     }
 
-    /// What a part is called in this language.
+    /// What a part is called in this language, or that it is not known which one it is.
     pub fn name<'a>(&'a self, id: &'a str, language: Language) -> &'a str {
+        if !id.is_empty() && from_stored(id).is_none() {
+            return language.words().common.no_part;
+        }
         let known = self.0.iter().find(|part| part.id == id);
         known.map_or(id, |part| match language {
             Language::English => &part.name,

@@ -116,7 +116,7 @@ impl Palette {
         match verdict {
             Verdict::Passed => self.good,
             Verdict::Failed => self.bad,
-            Verdict::Error | Verdict::Aborted => self.warn,
+            Verdict::Error | Verdict::Inconclusive | Verdict::Aborted => self.warn,
             Verdict::Skipped => self.quiet,
         }
     }

@@ -1,5 +1,4 @@
-//! From a run to the part: the dictionary that comes with the scripts, campaigns, adaptive runs, and
-//! what is said when the evidence or the dictionary is not good enough.
+//! From a run to the part: the dictionary that comes with the scripts, campaigns, and what is said when the evidence or the dictionary is not good enough.
 
 use std::path::Path;
 use std::process::{Output, Stdio};
@@ -91,23 +90,6 @@ fn a_whole_run_names_the_part_with_reasons() {
         assert!(text(&said["conclusion"]).contains(lru), "{fault}");
         assert!(said["next_check"].is_null(), "{fault}: nothing is open");
     }
-}
-
-#[test]
-fn an_adaptive_run_finds_the_part_in_fewer_steps() {
-    let place = Place::new();
-    let (_, whole) = place.run(&["--inject", "tra.dead"]);
-    let place = Place::new();
-    let (said, report) = place.run(&["--adaptive", "--inject", "tra.dead"]);
-    let said = said.exits(1);
-    let steps = |report: &Value| list(&report["steps"]).len();
-    assert!(steps(&report) * 4 < steps(&whole), "{}", said.all());
-    assert!(
-        said.out.contains("replace the TRA (tra, "),
-        "{}",
-        said.all()
-    );
-    assert_eq!(diagnosis(&place)["candidates"][0]["lru"], "tra");
 }
 
 #[test]

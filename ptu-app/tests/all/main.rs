@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod adaptive;
 mod at_hand;
 mod automatic_runs;
 mod bad_database;

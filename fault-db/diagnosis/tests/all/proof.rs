@@ -59,7 +59,6 @@ fn settings() -> Settings {
         other_spells: 1e-6,
         otherwise_unseen: 1e-6,
         unseen_mode: 1e-6,
-        unknown_fault: 1e-6,
         doubt_runs: 1e-3,
         ..Settings::default()
     }

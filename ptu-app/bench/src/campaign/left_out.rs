@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Basis, Finding, Settings};
+use diagnosis::{Basis, Settings};
 use protocol::LruId;
 use protocol::injection::FaultMode;
 
@@ -37,8 +37,6 @@ pub struct UnseenFigures {
     pub found: Share,
     /// Another part is named for certain.
     pub wrong: Share,
-    /// Something is wrong that the dictionary does not know.
-    pub unknown: Share,
     /// By the probability of the likeliest part, 0–10 % to 90–100 %: how often it is the right one.
     pub reliability: [Share; CLASSES],
     /// Brier score: mean over the runs of the squared errors of all parts' probabilities, 0 = all certain and right.
@@ -156,7 +154,6 @@ impl UnseenFigures {
             first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
             found: share(&Assessment::is_found),
             wrong: share(&Assessment::is_wrong),
-            unknown: share(&|run| run.finding == Finding::UnknownFault),
             reliability: std::array::from_fn(|of| {
                 let in_class = runs.iter().copied().filter(|run| class(run) == of);
                 Share::over(in_class, |run| run.rank() == Some(0))

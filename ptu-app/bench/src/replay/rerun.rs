@@ -155,7 +155,7 @@ pub fn rerun(
         exit: match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,
             Verdict::Failed => Exit::Failed,
-            Verdict::Error => Exit::Bench,
+            Verdict::Error | Verdict::Inconclusive => Exit::Bench,
             Verdict::Aborted => Exit::Aborted,
         },
     })

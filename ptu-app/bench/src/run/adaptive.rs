@@ -63,7 +63,7 @@ fn isolate(
     let model = Model::new(dictionary, settings, lru_factors);
     let mut strategy = Strategy::new(&model, Some(may));
     while let Some(next) = strategy.begin() {
-        let Some(task) = tasks.get(next.check.procedure.as_str()) else {
+        let Some(task) = tasks.get(next.procedure.as_str()) else {
             return;
         };
         let (sender, events) = stream();
@@ -95,7 +95,7 @@ fn isolate(
         };
         worker.run(&task, &mut sink, &|| !enough.get());
         if !enough.get() {
-            strategy.ended(&next.check.procedure);
+            strategy.ended(&next.procedure);
         }
     }
 }

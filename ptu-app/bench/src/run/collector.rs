@@ -1,6 +1,8 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
+use std::collections::BTreeSet;
+
 use btu_rig::procedure::{Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
 use fault_db::{Id, MeasurementRecord, RecordingRecord, StepRecord};
@@ -74,6 +76,8 @@ pub struct Collector<'a> {
     run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,
+    /// Steps that passed, by procedure and name.
+    passed: BTreeSet<(String, String)>,
     link_lost: bool,
     /// The tester itself could not go on.
     broken_off: bool,
@@ -98,6 +102,7 @@ impl<'a> Collector<'a> {
             says_why: false,
             run_says_why: false,
             finished: 0,
+            passed: BTreeSet::new(),
             link_lost: false,
             broken_off: false,
         }
@@ -227,6 +232,10 @@ impl<'a> Collector<'a> {
 
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
         let index = self.next_index(result.verdict);
+        if result.verdict == Verdict::Passed {
+            self.passed
+                .insert((procedure.id.clone(), result.name.clone()));
+        }
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
@@ -279,14 +288,34 @@ impl<'a> Collector<'a> {
     ///
     /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
     /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
-    pub fn finish(mut self, id: Id, stopped: Option<Verdict>) -> (RunStore, Outcome) {
+    ///
+    /// `searched` = the steps that a search for a fault could have run; one that passed without all of them accepts nothing.
+    pub fn finish(
+        mut self,
+        id: Id,
+        stopped: Option<Verdict>,
+        searched: Option<usize>,
+    ) -> (RunStore, Outcome) {
         if let Some(verdict) = stopped
             && !self.is_finished()
         {
             self.verdict = self.verdict.and(verdict);
         }
         self.broken_off = stopped == Some(Verdict::Error) && self.verdict == Verdict::Error;
-        let verdict = self.overall();
+        let mut verdict = self.overall();
+        if let Some(of) = searched.filter(|of| self.passed.len() < *of)
+            && is_passed(verdict)
+        {
+            verdict = Verdict::Inconclusive;
+            let run = self.passed.len();
+            self.outside.push(OutsideStep {
+                place: Outside::Whole,
+                verdict,
+                message: format!("not an acceptance: {run} of {of} steps run, all passed"),
+                at: Instant::ZERO,
+            });
+            self.run_says_why = true;
+        }
         if !is_passed(verdict) && !self.run_says_why {
             self.outside.push(OutsideStep {
                 place: Outside::Whole,
@@ -300,7 +329,8 @@ impl<'a> Collector<'a> {
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,
             Verdict::Failed => Exit::Failed,
-            Verdict::Error => Exit::Bench,
+            // Not all that a verdict on the unit takes was run.
+            Verdict::Error | Verdict::Inconclusive => Exit::Bench,
             Verdict::Aborted => Exit::Aborted,
         };
         (

@@ -234,7 +234,8 @@ pub fn run_on(
     if worked.is_err() {
         collector.broken_off("the program failed in this run");
     }
-    let (run_store, outcome) = collector.finish(id, left_out(stop));
+    let searched = plan.adaptive.as_ref().map(|_| steps_of(&plan.tasks));
+    let (run_store, outcome) = collector.finish(id, left_out(stop), searched);
     let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.

@@ -213,7 +213,7 @@ pub(super) fn connection_of(run: &RunDetail) -> Connection {
 fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
     let passed = matches!(
         run.run.verdict,
-        Some(Verdict::Passed | Verdict::Skipped) | None
+        Some(Verdict::Passed | Verdict::Skipped | Verdict::Inconclusive) | None
     );
     let nothing_wrong = matches!(diagnosis.finding, Finding::NoFault | Finding::NotEnough);
     if !passed && !run.steps.is_empty() && nothing_wrong {

@@ -137,7 +137,7 @@ pub fn tone(verdict: Verdict) -> Tone {
     match verdict {
         Verdict::Passed => Tone::Good,
         Verdict::Skipped => Tone::Soft,
-        Verdict::Failed | Verdict::Error | Verdict::Aborted => Tone::Bad,
+        Verdict::Failed | Verdict::Error | Verdict::Inconclusive | Verdict::Aborted => Tone::Bad,
     }
 }
 

@@ -13,6 +13,8 @@ wordings! {
         failed: "failed", "불합격";
         error: "error", "판정 불가";
         skipped: "skipped", "생략";
+        inconclusive: "inconclusive", "판정 보류";
+        no_part: "unknown", "알 수 없음";
         aborted: "aborted", "중단";
         running: "running", "진행 중";
         interrupted: "interrupted", "미완료";
@@ -73,6 +75,7 @@ impl Common {
             Verdict::Failed => self.failed,
             Verdict::Error => self.error,
             Verdict::Skipped => self.skipped,
+            Verdict::Inconclusive => self.inconclusive,
             Verdict::Aborted => self.aborted,
         }
     }

@@ -17,7 +17,6 @@ wordings! {
         speaks_against: "speaks against it", "반대 근거";
         both: "both {faults}", "동시 고장 {faults}";
         no_fault: "no fault", "고장 없음";
-        unknown_fault: "a fault that is not in the dictionary", "사전에 없는 고장";
         next_check: "Next best check", "다음 권장 점검";
         gains: "{bits} bits for {time} of bench time", "시험대 시간 {time}에 {bits} bit";
         settled: "Nothing more needs to be run", "더 실행할 점검이 없습니다";

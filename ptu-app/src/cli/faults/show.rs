@@ -1,8 +1,6 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{
-    CauseRecord, FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store,
-};
+use fault_db::{CauseRecord, FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 

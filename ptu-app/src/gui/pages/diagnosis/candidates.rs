@@ -29,7 +29,6 @@ pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
         likely(ui, two.probability, &said);
     }
     likely(ui, diagnosis.no_fault, words.no_fault);
-    likely(ui, diagnosis.unknown_fault, words.unknown_fault);
 }
 
 fn at_once<T>(all: &[T]) -> (&[T], &[T]) {

@@ -1,7 +1,7 @@
 //! One fault: its repairs and notes, its occurrences, and the freeze frame of each.
 
 use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
-use fault_db::{FaultDetail, FaultEvent, FreezeSample};
+use fault_db::{CauseRecord, FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
 use crate::gui::parts::link;
@@ -79,7 +79,12 @@ fn part(words: &Words, detail: &FaultDetail, parts: &PartNames) -> String {
 }
 
 /// Events, occurrences and the freeze frame of the latest.
-pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<Destination>) {
+pub fn rest(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    detail: &FaultDetail,
+    go_to: &mut Vec<Destination>,
+) {
     ui.separator();
     ui.label(RichText::new(words.faults.what_was_done).strong());
     // What a run found was not done by anybody, and stands above.
@@ -88,7 +93,7 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
     let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
     events.sort_by_key(|event| event.at_us);
     for event in events.into_iter().filter(|event| !is_finding(event)) {
-        show_event(ui, words, event, detail);
+        show_event(ui, (words, parts), event, detail);
         if let Some(correction) = &event.correction {
             let (at, who) = (clock::local(correction.at_us), correction.who.as_str());
             let said = fill(words.faults.withdrawn, &[("at", &at), ("who", &who)]);
@@ -128,7 +133,13 @@ pub fn rest(ui: &mut Ui, words: &Words, detail: &FaultDetail, go_to: &mut Vec<De
     }
 }
 
-fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent, detail: &FaultDetail) {
+fn show_event(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    event: &FaultEvent,
+    detail: &FaultDetail,
+) {
+    let name = |part: &str| parts.name(part, words.language).to_owned();
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
         match event.state {
@@ -137,7 +148,10 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent, detail: &FaultDeta
                 let cause = event.cause.as_ref();
                 ui.label(cause.map_or(words.common.note, |_| words.faults.cause));
                 if let Some(cause) = cause {
-                    ui.label(cause_text(cause));
+                    ui.label(cause_text(&CauseRecord {
+                        part: name(&cause.part),
+                        ..cause.clone()
+                    }));
                 }
             }
         }
@@ -154,7 +168,7 @@ fn show_event(ui: &mut Ui, words: &Words, event: &FaultEvent, detail: &FaultDeta
     if let Some(repair) = &event.repair {
         let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
         let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
-        said = format!("{} {old} → {new} {}", repair.part, repair.note);
+        said = format!("{} {old} → {new} {}", name(&repair.part), repair.note);
     }
     if !said.is_empty() {
         ui.indent(event.id.to_string(), |ui| ui.label(said));
@@ -173,9 +187,9 @@ fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
         .show(ui, |ui| {
             for pair in samples.chunks(beside) {
                 for sample in pair {
-                    ui.label(&sample.name);
+                    ui.label(words.signal(&sample.name));
                     let value = match (&sample.label, sample.value) {
-                        (Some(label), _) => label.clone(),
+                        (Some(label), _) => words.state(&sample.name, label).into_owned(),
                         (None, Some(value)) => format!("{} {}", short(value), sample.unit),
                         (None, None) => words.faults.not_known.to_owned(),
                     };

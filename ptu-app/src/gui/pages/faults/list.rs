@@ -3,6 +3,7 @@
 use eframe::egui::{ComboBox, RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
 use fault_db::{FaultState, FaultSummary, Id};
 
+use super::History;
 use super::filter::{Filter, names};
 use crate::gui::Palette;
 use crate::gui::page_context::FaultsOf;
@@ -11,13 +12,17 @@ use ptu_bench::clock;
 use ptu_report::naming::{DOT, PartNames};
 use ptu_report::words::{Words, fill};
 
-pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultSummary]) {
-    let faults_of = || faults.iter();
+pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &History) {
+    let faults_of = || history.faults.iter();
+    let as_it_is = |name: &str| name.to_owned();
+    let part = |part: &str| history.parts.name(part, words.language).to_owned();
     ui.horizontal_wrapped(|ui| {
         let units = names(faults_of().map(|fault| fault.unit_serial.as_str()));
-        choose(ui, words, words.common.unit, &units, &mut filter.unit);
+        let what = words.common.unit;
+        choose(ui, words, (what, &units), as_it_is, &mut filter.unit);
         let parts = names(faults_of().map(|fault| fault.lru.as_str()));
-        choose(ui, words, words.common.part, &parts, &mut filter.lru);
+        let what = words.common.part;
+        choose(ui, words, (what, &parts), part, &mut filter.lru);
         state(ui, words, &mut filter.state);
         look_back::look_back(ui, words, &mut filter.days);
         let label = ui.label(words.faults.find);
@@ -26,8 +31,16 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, faults: &[FaultS
     });
 }
 
-fn choose(ui: &mut Ui, words: &Words, what: &str, names: &[&str], chosen: &mut Option<String>) {
-    let shown = chosen.clone().unwrap_or_else(|| words.faults.any.into());
+/// `called` says what people call one of the names.
+fn choose(
+    ui: &mut Ui,
+    words: &Words,
+    (what, names): (&str, &[&str]),
+    called: impl Fn(&str) -> String,
+    chosen: &mut Option<String>,
+) {
+    let any = || words.faults.any.to_owned();
+    let shown = chosen.as_deref().map_or_else(any, &called);
     ui.label(what);
     let combo = ComboBox::from_id_salt(what)
         .selected_text(&shown)
@@ -35,7 +48,7 @@ fn choose(ui: &mut Ui, words: &Words, what: &str, names: &[&str], chosen: &mut O
     let response = combo.show_ui(ui, |ui| {
         ui.selectable_value(chosen, None, words.faults.any);
         for name in names {
-            ui.selectable_value(chosen, Some((*name).to_owned()), *name);
+            ui.selectable_value(chosen, Some((*name).to_owned()), called(name));
         }
     });
     named_combo(&response.response, what, &shown);

@@ -138,7 +138,7 @@ impl FaultsPage {
         }
         match self.history.get() {
             Request::Ready(history) => {
-                list::filters(ui, words, &mut self.filter, &history.faults);
+                list::filters(ui, words, &mut self.filter, history);
                 ui.horizontal_wrapped(|ui| {
                     self.units.show(ui, context);
                     list::of_bar(ui, words, &mut self.filter, &history.parts);
@@ -184,7 +184,7 @@ impl FaultsPage {
             Request::Ready(detail) => {
                 detail::head(ui, context.words, detail, parts);
                 self.change.show(ui, context, &detail.fault, stale);
-                detail::rest(ui, context.words, detail, context.go_to);
+                detail::rest(ui, (context.words, parts), detail, context.go_to);
             }
             Request::Failed(why) => {
                 ui.label(RichText::new(why).color(Palette::of(ui).bad));
