@@ -50,6 +50,9 @@ fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
     settings.unit.faults = faults.split(',').map(str::to_owned).collect();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.harness().set_size(size.into());
+    // Bars that have more lines in another size have their height in the picture after.
+    window.step();
+    window.step();
     Counted {
         window,
         clicks: 0,

@@ -251,7 +251,7 @@ fn what_a_person_wrote_is_undone_for_the_whole_case() {
     assert_eq!(asked(&place), before);
     let shown = place.ptu(&["faults", "show", &cpu]).exits(0).out;
     assert!(
-        shown.contains("[withdrawn ") && shown.contains("Lee other unit]"),
+        shown.contains("[withdrawn ") && shown.contains("by Lee: other unit]"),
         "{shown}"
     );
     let told = place.json(&["faults", "show", &cpu, "--json"]);
