@@ -160,7 +160,7 @@ wordings! {
         run_a: "Run A", "시험 A";
         run_b: "Run B", "시험 B";
         change: "change", "변화";
-        compared_said: "Steps that pass in B and did not in A: {now}. That passed in A and do not in B: {before}. That pass in neither: {neither}.", "A 미합격, B 합격: {now}건. A 합격, B 미합격: {before}건. 두 시험 모두 미합격: {neither}건.";
+        compared_said: "Steps that pass in B and did not in A: {now}. That passed in A and do not in B: {before}. That pass in neither: {neither}. Skipped steps are not counted.", "A 미합격, B 합격: {now}건. A 합격, B 미합격: {before}건. 두 시험 모두 미합격: {neither}건. 생략한 단계는 제외.";
         only_in_a: "Steps of A alone: {n}.", "A에만 있는 단계: {n}건.";
         only_in_b: "Steps of B alone: {n}.", "B에만 있는 단계: {n}건.";
         passed_in_both: "Further steps, passed in both runs: {n}.", "그 밖에 두 시험 모두 합격한 단계: {n}건.";
