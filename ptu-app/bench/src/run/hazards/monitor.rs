@@ -277,7 +277,7 @@ impl Monitor {
             ),
             (
                 Hazard::RolledBack,
-                seen.reverser != 0 && self.rolled_back(seen, fsb) && !eb && !blind,
+                seen.reverser != 0 && self.rolled_back(seen, fsb, blind) && !eb,
                 ms(0),
             ),
             (
@@ -302,7 +302,7 @@ impl Monitor {
             ),
             (
                 Hazard::RollsNeutral,
-                seen.reverser == 0 && self.rolled_back(seen, fsb) && !eb && !blind,
+                seen.reverser == 0 && self.rolled_back(seen, fsb, blind) && !eb,
                 ms(0),
             ),
             (
@@ -318,8 +318,8 @@ impl Monitor {
         ]
     }
 
-    /// A jog back does not count, nor does what its brake takes to stop the train.
-    fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool) -> bool {
+    /// A jog back does not count, nor does what its brake takes to stop the train, nor the way that no wheel has told.
+    fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool, blind: bool) -> bool {
         let jogs = jogs_back(seen) && (seen.kmh() <= JOG_KMH + SPEED_OFF_KMH || fsb);
         let way_m = match seen.reverser {
             0 => seen.speed_mps.abs() * 0.01,
@@ -328,7 +328,7 @@ impl Monitor {
         let against_m = if jogs { 0.0 } else { way_m };
         self.against_m = (self.against_m + against_m).max(0.0);
         // A brake that was released at standstill begins anew.
-        if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) {
+        if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) || blind {
             self.against_m = 0.0;
         }
         self.against_m > ROLLED_BACK_M
