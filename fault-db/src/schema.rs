@@ -44,8 +44,7 @@ pub(crate) fn bring_to(conn: &Connection, version: usize) -> Result<(), rusqlite
     // This is the program's own SQL: one step widens the check of a column, which no `ALTER TABLE` does.
     let defensive = conn.db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE)?;
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, false)?;
-    let mut steps = steps.iter();
-    let done = steps.try_for_each(|step| conn.execute_batch(step));
+    let done = steps.iter().try_for_each(|step| conn.execute_batch(step));
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, defensive)?;
     done?;
     conn.pragma_update(None, "user_version", version as i64)

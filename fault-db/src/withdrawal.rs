@@ -74,7 +74,7 @@ pub enum WithdrawalError {
         /// Kind of the event after it.
         after: String,
     },
-    /// It was closed, and the same fault was opened anew.
+    /// It was closed, and the same fault was opened again.
     #[error("it was seen again after it was closed, and is a fault of its own since")]
     SeenSince,
 }

@@ -47,8 +47,8 @@ impl Hidden {
         }
     }
 
-    /// By how much the check with this index makes the modes that still hide likelier to be shown, over all of them; none of
-    /// what is not worth a check.
+    /// By how much the check with this index makes the modes that still hide likelier to be shown, over all of them; `None` if
+    /// that is not worth a check.
     pub fn worth(&self, place: usize) -> Option<f64> {
         let hiding = self.modes.iter().filter(|mode| mode.hidden > self.enough);
         let worth: f64 = hiding.map(|mode| mode.hidden * mode.shows(place)).sum();

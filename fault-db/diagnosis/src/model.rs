@@ -157,7 +157,7 @@ impl<'a> Model<'a> {
         Self { names, ..self }
     }
 
-    /// Part that has failed under a hypothesis; none of a healthy unit.
+    /// Part that has failed under a hypothesis; `None` if the unit is healthy.
     pub fn lru(&self, hypothesis: Hypothesis) -> Option<&'a LruId> {
         match hypothesis {
             Hypothesis::Mode { mode, .. } => Some(&self.dictionary.modes[mode].name.lru),

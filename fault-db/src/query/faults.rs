@@ -69,6 +69,13 @@ pub struct FaultDetail {
 impl FaultDetail {
     /// Most occurrences that are read of a fault.
     pub const MAX_OCCURRENCES: u32 = 200;
+
+    /// All its events, those that were withdrawn among them, oldest first.
+    pub fn history(&self) -> Vec<&FaultEvent> {
+        let mut events: Vec<_> = self.events.iter().chain(&self.withdrawn).collect();
+        events.sort_by_key(|event| event.at_us);
+        events
+    }
 }
 
 /// An occurrence of a fault.

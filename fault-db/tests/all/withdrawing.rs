@@ -234,7 +234,7 @@ fn all_that_can_be_asked_is_after_an_undo_what_it_was_before_the_step() {
             }
         }
         sound(&store);
-        store.rebuild(now_us).expect("counted anew");
+        store.rebuild(now_us).expect("counted again");
         sound(&store);
         assert!(undone.len() >= 4, "{undone:?}");
     }

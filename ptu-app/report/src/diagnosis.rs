@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use diagnosis::Candidate;
-use fault_db::{CauseRecord, Id};
+use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
 
@@ -91,20 +91,4 @@ fn candidate_text(text: &mut String, c: &Candidate) {
             let _ = writeln!(text, "         {sign} {reason}");
         }
     }
-}
-
-/// The part that a fault was attributed to, `-` if it stands alone, and what that rests on.
-pub fn cause_text(cause: &CauseRecord) -> String {
-    let part = match cause.part.as_str() {
-        "" => "-",
-        part => part,
-    };
-    let run = cause.run.as_ref().map_or_else(String::new, |run| {
-        let percent = 100.0 * cause.probability.unwrap_or_default();
-        // As an id is shortened elsewhere: its last digits.
-        let id = run.rsplit('-').next().unwrap_or_default();
-        let id: String = id.chars().skip(4).collect();
-        format!(" ({percent:.1} %, run {id})")
-    });
-    format!("{part}{run} {}", cause.note).trim_end().to_owned()
 }

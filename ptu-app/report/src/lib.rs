@@ -12,6 +12,7 @@ mod coverage;
 pub mod csv;
 pub mod diagnosis;
 pub mod drive;
+pub mod event_text;
 pub mod fonts;
 mod json;
 mod junit;

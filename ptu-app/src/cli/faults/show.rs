@@ -1,6 +1,6 @@
 //! `ptu faults show`: one fault with its occurrences, repairs and notes.
 
-use fault_db::{CauseRecord, FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
+use fault_db::{FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use crate::cli::{print_json, print_out};
 use ptu_bench::clock::{local, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
-use ptu_report::diagnosis::cause_text;
+use ptu_report::event_text::{cause_text, correction_text, note_text, repair_text};
 use ptu_report::fault_json;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Language, Words, fill};
@@ -130,38 +130,15 @@ fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String 
         ));
     }
     let mut done = table(&[faults.at, faults.event, faults.who, common.note]);
-    let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
-    events.sort_by_key(|event| event.at_us);
-    for event in events {
-        let repair = event.repair.as_ref().map_or_else(String::new, |repair| {
-            format!(
-                "{} {} → {} {}",
-                part(&repair.part),
-                repair.serial_old.as_deref().unwrap_or("?"),
-                repair.serial_new.as_deref().unwrap_or("?"),
-                repair.note
-            )
-        });
-        let cause = event.cause.as_ref().map_or_else(String::new, |cause| {
-            cause_text(&CauseRecord {
-                part: part(&cause.part),
-                ..cause.clone()
-            })
-        });
-        // What a person wrote stays as it is.
-        let is_message = detail
-            .occurrences
-            .iter()
-            .any(|seen| seen.message == event.note);
-        let said = match is_message {
-            true => words.content(&event.note),
-            false => event.note.as_str().into(),
-        };
+    for event in detail.history() {
+        let repair = event.repair.as_ref();
+        let repair = repair.map_or_else(String::new, |repair| repair_text(repair, part));
+        let cause = event.cause.as_ref();
+        let cause = cause.map_or_else(String::new, |cause| cause_text(cause, part));
         let correction = event.correction.as_ref().map_or_else(String::new, |by| {
-            let at = local(by.at_us);
-            let withdrawn = fill(faults.withdrawn, &[("at", &at), ("who", &line(&by.who))]);
-            format!(" [{withdrawn} {}]", line(&by.note))
+            format!(" [{}]", line(&correction_text(by, words)))
         });
+        let said = note_text(detail, event, words);
         let note = format!("{said}{repair}{cause}{correction}");
         done.row([
             local(event.at_us),

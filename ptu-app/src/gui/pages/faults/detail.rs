@@ -1,13 +1,13 @@
 //! One fault: its repairs and notes, its occurrences, and the freeze frame of each.
 
 use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
-use fault_db::{CauseRecord, FaultDetail, FaultEvent, FreezeSample};
+use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
 use crate::gui::parts::link;
 use crate::gui::{Destination, Palette};
 use ptu_bench::clock;
-use ptu_report::diagnosis::cause_text;
+use ptu_report::event_text::{cause_text, correction_text, note_text, repair_text};
 use ptu_report::limits::short;
 use ptu_report::naming::{self, PartNames};
 use ptu_report::words::{Words, fill};
@@ -90,14 +90,11 @@ pub fn rest(
     // What a run found was not done by anybody, and stands above.
     let is_finding =
         |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
-    let mut events: Vec<&FaultEvent> = detail.events.iter().chain(&detail.withdrawn).collect();
-    events.sort_by_key(|event| event.at_us);
-    for event in events.into_iter().filter(|event| !is_finding(event)) {
+    let events = detail.history().into_iter();
+    for event in events.filter(|event| !is_finding(event)) {
         show_event(ui, (words, parts), event, detail);
         if let Some(correction) = &event.correction {
-            let (at, who) = (clock::local(correction.at_us), correction.who.as_str());
-            let said = fill(words.faults.withdrawn, &[("at", &at), ("who", &who)]);
-            let said = format!("{said} {}", correction.note);
+            let said = correction_text(correction, words);
             let said = RichText::new(said).color(Palette::of(ui).warn);
             ui.indent((event.id, "withdrawn"), |ui| ui.label(said));
         }
@@ -148,10 +145,7 @@ fn show_event(
                 let cause = event.cause.as_ref();
                 ui.label(cause.map_or(words.common.note, |_| words.faults.cause));
                 if let Some(cause) = cause {
-                    ui.label(cause_text(&CauseRecord {
-                        part: name(&cause.part),
-                        ..cause.clone()
-                    }));
+                    ui.label(cause_text(cause, name));
                 }
             }
         }
@@ -159,17 +153,10 @@ fn show_event(
             ui.label(RichText::new(&event.who).strong());
         }
     });
-    // What a person wrote stays as it is.
-    let mut seen = detail.occurrences.iter();
-    let mut said = match seen.any(|seen| seen.message == event.note) {
-        true => words.content(&event.note).into_owned(),
-        false => event.note.clone(),
+    let said = match &event.repair {
+        Some(repair) => repair_text(repair, name),
+        None => note_text(detail, event, words).into_owned(),
     };
-    if let Some(repair) = &event.repair {
-        let serial = |serial: &Option<String>| serial.clone().unwrap_or_else(|| "?".into());
-        let (old, new) = (serial(&repair.serial_old), serial(&repair.serial_new));
-        said = format!("{} {old} → {new} {}", name(&repair.part), repair.note);
-    }
     if !said.is_empty() {
         ui.indent(event.id.to_string(), |ui| ui.label(said));
     }
