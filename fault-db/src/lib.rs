@@ -73,10 +73,11 @@ pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
 pub use open_options::{OpenOptions, Synchronous};
 pub use query::{
     ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat,
-    FaultSummary, LOG_SOURCE, Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult,
-    RepairsOf, RunDetail, RunFault, RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US,
-    SqlValue, StatKey, StatQuery, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint,
-    TrendQuery, TrendStep, TrendUnit, code_number, is_practice,
+    FaultSummary, LOG_SOURCE, Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault,
+    Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RepairsOf, RunDetail, RunFault,
+    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
+    Stay, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep,
+    TrendUnit, code_number, is_practice,
 };
 pub use record::{
     CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,

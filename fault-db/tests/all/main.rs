@@ -13,6 +13,7 @@ mod daily;
 mod dictionaries;
 mod foreign_files;
 mod history;
+mod life;
 mod merging;
 mod older_schemas;
 mod opening;

@@ -235,6 +235,14 @@ fn lists() -> Vec<Question> {
             let known = store.knows_occurrence("U-1", (101, "speed code lost"), None)?;
             Ok((parts, spans, known))
         }),
+        question("lives by serial number", |store| {
+            let serials = ["U-1", "부품-3", "T1", "SN-0", "nothing"];
+            let lives = serials.map(|serial| store.lives(serial));
+            let lives = lives.into_iter().collect::<Result<Vec<_>, _>>()?;
+            let known: Vec<_> = lives.iter().map(Vec::len).collect();
+            assert_eq!(known, [1, 1, 1, 1, 0]);
+            Ok(lives)
+        }),
         question("what confirmed repairs tell", |store| {
             let of = RepairsOf {
                 before_us: day(60),

@@ -17,6 +17,7 @@ pub mod fonts;
 mod json;
 mod junit;
 mod left_out;
+pub mod life;
 pub mod limits;
 pub mod naming;
 pub mod plot;

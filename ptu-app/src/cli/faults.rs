@@ -3,6 +3,7 @@
 mod change;
 mod filter;
 mod import;
+mod life;
 mod list;
 mod show;
 mod stats;
@@ -43,6 +44,7 @@ enum Verb {
         #[command(flatten)]
         scripts: ScriptsOption,
     },
+    Life(life::LifeArguments),
     Stats(Box<stats::StatsArguments>),
     Trend(trend::TrendArguments),
     State(change::StateArguments),
@@ -58,7 +60,7 @@ impl FaultsArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let reads = matches!(
             self.verb,
-            Verb::List(_) | Verb::Show { .. } | Verb::Stats(_) | Verb::Trend(_)
+            Verb::List(_) | Verb::Show { .. } | Verb::Life(_) | Verb::Stats(_) | Verb::Trend(_)
         );
         let store = match reads {
             true => self.database.open_read_only()?,
@@ -83,6 +85,7 @@ impl FaultsArguments {
                     (lang.words(), &names.unwrap_or_default()),
                 )
             }
+            Verb::Life(arguments) => arguments.tell(&store),
             Verb::Stats(arguments) => arguments.stats(&store),
             Verb::Trend(arguments) => arguments.trend(&store),
             Verb::State(arguments) => arguments.change(&store),

@@ -59,6 +59,10 @@ pub enum Destination {
     /// The test sheet of a run.
     Report(Id),
     Diagnosis(Id),
+    /// One fault.
+    Fault(Id),
+    /// The life of a unit, a train or a part by its serial number.
+    Life(String),
     /// The faults that a bar of the statistics stands for.
     Faults(FaultsOf),
     /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.

@@ -63,6 +63,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         window.wait_for(said);
         look(&mut window, page.name(words));
     }
+    window.write(words.life.search, "BAD-1");
+    window.click(words.life.show);
+    window.wait_for(words.life.stored);
+    look(&mut window, "life");
     window.click(words.frame.setup);
     window.wait_for("eb_relay.slow");
     look(&mut window, "setup");

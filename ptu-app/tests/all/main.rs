@@ -26,6 +26,7 @@ mod figures;
 mod history;
 mod history_page;
 mod layout;
+mod life;
 mod lock_step;
 mod no_unit;
 mod on_ports;

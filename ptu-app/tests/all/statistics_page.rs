@@ -97,6 +97,39 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
     }
 }
 
+/// Goal: from a serial number a technician gets to everything stored about it, and back to the fault. Method: the life of the
+/// repaired unit, searched; from its repair to the fault, from the serial number there to the life of the part.
+#[test]
+fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
+    for language in Language::ALL {
+        let words = language.words();
+        let mut window = window(depot(), language);
+        window.wait_for(words.statistics.mtbf_is);
+        window.write(words.life.search, "A-1");
+        window.click(words.life.show);
+        window.wait_for_part(&fill(words.life.unit, &[("serial", &"A-1")]));
+        window.wait_for(words.life.stored);
+        let lives = window.place.json(&["faults", "life", "A-1", "--json"]);
+        let events = list(&lives[0]["events"]).len();
+        let told = fill(
+            words.life.span,
+            &[("n", &events), ("first", &""), ("last", &"")],
+        );
+        let told = told.split(',').next().unwrap_or_default().to_owned();
+        assert!(window.shows_part(&told), "{told}: {:#?}", window.shown());
+        window.click_part(&format!("{}: ", words.faults.kind_repair));
+        window.until("the fault", |window| window.app().page() == Page::Faults);
+        window.click("SN-1");
+        window.wait_for_part(&fill(words.life.part, &[("serial", &"SN-1")]));
+        window.wait_for(words.life.units_of_part);
+        window.click(words.life.back);
+        window.wait_for(words.statistics.mtbf_is);
+        window.write_over(words.life.search, "no-such");
+        window.click(words.life.show);
+        window.wait_for(&fill(words.life.nothing, &[("serial", &"no-such")]));
+    }
+}
+
 #[test]
 fn an_empty_history_says_so() {
     let mut window = window(Place::new(), Language::English);

@@ -12,6 +12,7 @@ mod diagnosis;
 mod faults;
 mod fill;
 mod frame;
+mod life;
 mod memory;
 mod procedures;
 mod report;
@@ -25,6 +26,7 @@ pub use diagnosis::Diagnosis;
 pub use faults::Faults;
 pub use fill::fill;
 pub use frame::Frame;
+pub use life::Life;
 pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
@@ -128,6 +130,8 @@ pub struct Words {
     pub faults: Faults,
     /// Statistics of the fault history.
     pub statistics: Statistics,
+    /// Life by serial number.
+    pub life: Life,
     /// What a unit has stored.
     pub memory: Memory,
     /// Parts to replace.
@@ -185,6 +189,7 @@ static ENGLISH: Words = Words {
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
     statistics: Statistics::ENGLISH,
+    life: Life::ENGLISH,
     memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
     report: Report::ENGLISH,
@@ -200,6 +205,7 @@ static KOREAN: Words = Words {
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
     statistics: Statistics::KOREAN,
+    life: Life::KOREAN,
     memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
     report: Report::KOREAN,
@@ -219,6 +225,7 @@ mod tests {
             Traces::all(),
             Faults::all(),
             Statistics::all(),
+            Life::all(),
             Memory::all(),
             Diagnosis::all(),
             Report::all(),

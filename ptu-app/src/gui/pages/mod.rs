@@ -69,6 +69,14 @@ impl Pages {
                 self.diagnosis.open(run, context);
                 Page::Diagnosis
             }
+            Destination::Fault(id) => {
+                self.faults.open(id, context);
+                Page::Faults
+            }
+            Destination::Life(serial) => {
+                self.statistics.show_life(&serial);
+                Page::Statistics
+            }
             Destination::Faults(of) => {
                 self.faults.show_of(of);
                 Page::Faults

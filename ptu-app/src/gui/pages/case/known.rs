@@ -4,12 +4,13 @@ use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
 
 use super::TEXT;
+use crate::gui::parts::{link, repair_line};
 use crate::gui::request::CachedResponse;
-use crate::gui::{DataPaths, PageContext, Palette};
+use crate::gui::{DataPaths, Destination, PageContext, Palette};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
-use ptu_report::words::Words;
+use ptu_report::words::{Words, fill};
 
 /// As many faults are read for their repairs, the latest first.
 const MOST: u32 = 50;
@@ -61,7 +62,7 @@ impl KnownUnit {
         history.map_or(id, |known| known.parts.name(id, words.language))
     }
 
-    pub fn show(&self, ui: &mut Ui, words: &Words) {
+    pub fn show(&self, ui: &mut Ui, words: &Words, go_to: &mut Vec<Destination>) {
         let Some(history) = self.history.get().value() else {
             ui.label(words.common.loading);
             return;
@@ -76,30 +77,28 @@ impl KnownUnit {
             let said = history.parts.fault(fault.cause(), &fault.message, words);
             format!("{at}  {said}")
         });
-        lines(ui, words.case.open_faults, open);
-        let repairs = history.repairs.iter().map(|(at_us, repair)| {
-            let serials = [&repair.serial_old, &repair.serial_new];
-            let serials = serials.map(|serial| serial.as_deref().unwrap_or("–"));
-            let (at, part) = (
-                clock::local(*at_us),
-                history.parts.name(&repair.part, words.language),
-            );
-            format!(
-                "{at}  {part}: {} → {}  {}",
-                serials[0], serials[1], repair.note
-            )
-        });
-        lines(ui, words.case.repairs, repairs);
+        for (place, said) in open.take(SHOWN).enumerate() {
+            heading(ui, words.case.open_faults, place);
+            ui.label(said);
+        }
+        for (place, (at_us, repair)) in history.repairs.iter().take(SHOWN).enumerate() {
+            heading(ui, words.case.repairs, place);
+            let part = history.parts.name(&repair.part, words.language);
+            let said = format!("{}  {part}", clock::local(*at_us));
+            repair_line(ui, words, &said, repair, go_to);
+        }
+        if let Some((serial, _)) = &self.of
+            && link(ui, fill(words.life.open, &[("serial", serial)])).clicked()
+        {
+            go_to.push(Destination::Life(serial.clone()));
+        }
     }
 }
 
-fn lines(ui: &mut Ui, title: &str, lines: impl ExactSizeIterator<Item = String>) {
-    if lines.len() == 0 {
-        return;
-    }
-    ui.label(RichText::new(title).size(TEXT).strong());
-    for line in lines.take(SHOWN) {
-        ui.label(line);
+/// A title above the first line.
+fn heading(ui: &mut Ui, title: &str, place: usize) {
+    if place == 0 {
+        ui.label(RichText::new(title).size(TEXT).strong());
     }
 }
 

@@ -62,7 +62,7 @@ impl CasePage {
         let (serial, may) = (unit.name(), unit.may_run());
         ui.label(RichText::new(&serial).size(super::HEADLINE).strong());
         self.known.keep(&serial, context);
-        self.known.show(ui, context.words);
+        self.known.show(ui, context.words, context.go_to);
         ui.add_space(8.0);
         ui.label(RichText::new(words.what_is_wrong).size(TEXT).strong());
         self.tiles.show(ui, context);

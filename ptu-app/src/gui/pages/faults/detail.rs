@@ -4,10 +4,10 @@ use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
 use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 
 use super::list::state_chip;
-use crate::gui::parts::link;
+use crate::gui::parts::{link, repair_line, serial_link};
 use crate::gui::{Destination, Palette};
 use ptu_bench::clock;
-use ptu_report::event_text::{cause_text, correction_text, note_text, repair_text};
+use ptu_report::event_text::{cause_text, correction_text, note_text};
 use ptu_report::limits::short;
 use ptu_report::naming::{self, PartNames};
 use ptu_report::words::{Words, fill};
@@ -18,7 +18,12 @@ const MOST: usize = 50;
 const TWO_BESIDE: f32 = 560.0;
 
 /// What the fault is and where it stands.
-pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames) {
+pub fn head(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    detail: &FaultDetail,
+    go_to: &mut Vec<Destination>,
+) {
     let fault = &detail.fault;
     ui.horizontal_wrapped(|ui| {
         let name = parts.fault(&fault.lru, &fault.message, words);
@@ -41,9 +46,12 @@ pub fn head(ui: &mut Ui, words: &Words, detail: &FaultDetail, parts: &PartNames)
         let part = part(words, detail, parts);
         let code = naming::code(fault.code, &fault.code_name, words);
         let id = fault.id.to_string();
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(words.common.unit).color(Palette::of(ui).quiet));
+            serial_link(ui, words, &fault.unit_serial, go_to);
+        });
         for (what, value) in [
-            (words.common.unit, fault.unit_serial.as_str()),
-            (words.common.part, &part),
+            (words.common.part, &*part),
             (words.common.code, &code),
             (words.common.number, &id),
             (
@@ -92,7 +100,7 @@ pub fn rest(
         |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
     let events = detail.history().into_iter();
     for event in events.filter(|event| !is_finding(event)) {
-        show_event(ui, (words, parts), event, detail);
+        show_event(ui, (words, parts), event, (detail, go_to));
         if let Some(correction) = &event.correction {
             let said = correction_text(correction, words);
             let said = RichText::new(said).color(Palette::of(ui).warn);
@@ -134,7 +142,7 @@ fn show_event(
     ui: &mut Ui,
     (words, parts): (&Words, &PartNames),
     event: &FaultEvent,
-    detail: &FaultDetail,
+    (detail, go_to): (&FaultDetail, &mut Vec<Destination>),
 ) {
     let name = |part: &str| parts.name(part, words.language).to_owned();
     ui.horizontal_wrapped(|ui| {
@@ -153,12 +161,15 @@ fn show_event(
             ui.label(RichText::new(&event.who).strong());
         }
     });
-    let said = match &event.repair {
-        Some(repair) => repair_text(repair, name),
-        None => note_text(detail, event, words).into_owned(),
-    };
+    if let Some(repair) = &event.repair {
+        ui.indent(event.id.to_string(), |ui| {
+            repair_line(ui, words, &name(&repair.part), repair, go_to);
+        });
+        return;
+    }
+    let said = note_text(detail, event, words);
     if !said.is_empty() {
-        ui.indent(event.id.to_string(), |ui| ui.label(said));
+        ui.indent(event.id.to_string(), |ui| ui.label(&*said));
     }
 }
 

@@ -182,7 +182,7 @@ impl FaultsPage {
             .map_or(&none, |known| &known.parts);
         match self.detail.get() {
             Request::Ready(detail) => {
-                detail::head(ui, context.words, detail, parts);
+                detail::head(ui, (context.words, parts), detail, context.go_to);
                 self.change.show(ui, context, &detail.fault, stale);
                 detail::rest(ui, (context.words, parts), detail, context.go_to);
             }

@@ -3,6 +3,7 @@
 
 mod counted;
 mod figures;
+mod life;
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
@@ -27,6 +28,7 @@ pub struct StatisticsPage {
     counted: CachedResponse<Counted>,
     /// What was asked last, and of which data.
     asked: Option<(Asked, (usize, u64))>,
+    life: life::LifeView,
 }
 
 impl StatisticsPage {
@@ -35,7 +37,11 @@ impl StatisticsPage {
         ui.horizontal_wrapped(|ui| {
             look_back::look_back(ui, words, &mut self.days);
             self.units.show(ui, context);
+            self.life.search(ui, words);
         });
+        if self.life.show(ui, context) {
+            return;
+        }
         self.keep_up(context);
         match self.counted.get() {
             Request::Ready(counted) => {
@@ -57,6 +63,11 @@ impl StatisticsPage {
                 ui.label(words.common.loading);
             }
         }
+    }
+
+    /// Shows the life of what has this serial number.
+    pub fn show_life(&mut self, serial: &str) {
+        self.life.open(serial);
     }
 
     /// Asks again when the data, the span or the unit are others.

@@ -1,0 +1,99 @@
+//! `ptu faults life`: what is stored about a unit, a train or a part by its serial number.
+
+use clap::Args;
+use fault_db::{Life, Store};
+use protocol::display_text::line;
+
+use crate::cli::{ScriptsOption, at_least_one, print_json, print_out};
+use ptu_bench::clock::local;
+use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
+use ptu_bench::table::Table;
+use ptu_report::life;
+use ptu_report::naming::PartNames;
+use ptu_report::words::{Language, Words, fill};
+
+/// Tell everything stored about a unit, a train or a part, by its serial number
+///
+/// Examples:
+///   ptu faults life SG-0142
+///   ptu faults life SN-77 --lang ko
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct LifeArguments {
+    /// Serial number of a unit or of a part that a repair put in or took out, or number of a train
+    serial: String,
+    /// At most so many entries, the latest
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least_one())]
+    limit: u32,
+    /// Print JSON, with all entries
+    #[arg(long)]
+    json: bool,
+    /// Language: en or ko
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+impl LifeArguments {
+    pub fn tell(&self, store: &Store) -> Result<Exit, Failure> {
+        let lives = store.lives(&self.serial)?;
+        if lives.is_empty() {
+            return Err(self.unknown(store)?);
+        }
+        if self.json {
+            return print_json(&lives.iter().map(life::json).collect::<Vec<_>>());
+        }
+        let names = self.scripts.find_if_there()?;
+        let names = names
+            .map(|scripts| PartNames::of(&scripts))
+            .unwrap_or_default();
+        let told = lives.iter().map(|life| self.told(life, &names));
+        print_out(told.collect::<Vec<_>>().join("\n").trim_end())
+    }
+
+    fn told(&self, told: &Life, parts: &PartNames) -> String {
+        let words = self.lang.words();
+        let mut text = format!("{}\n", line(&life::title(told, words)));
+        if !told.stays.is_empty() {
+            let of = words.life.stays(told.of);
+            let mut stays =
+                table(&[of, words.life.from, words.life.until, words.life.runs]).right([3]);
+            for stay in &told.stays {
+                stays.row(life::stay(told.of, stay, words, parts));
+            }
+            text.push_str(&format!("\n{}\n", stays.render()));
+        }
+        let earlier = told.events.len().saturating_sub(self.limit as usize);
+        text.push_str(&format!("\n{}", events(told, earlier, words, parts)));
+        if earlier > 0 {
+            let said = fill(words.life.earlier, &[("n", &earlier)]);
+            text.push_str(&format!("\n… {said}; --limit"));
+        }
+        text.push('\n');
+        text
+    }
+
+    fn unknown(&self, store: &Store) -> Result<Failure, Failure> {
+        let mut known = store.known_units()?;
+        known.extend(store.known_trains()?);
+        known.extend(store.known_part_serials()?);
+        let hint = did_you_mean_number(&self.serial, known.iter().map(String::as_str));
+        let nothing = fill(self.lang.words().life.nothing, &[("serial", &self.serial)]);
+        Ok(Failure::usage(format!("{nothing}{hint}")))
+    }
+}
+
+fn events(told: &Life, earlier: usize, words: &Words, parts: &PartNames) -> String {
+    let mut rows = table(&[words.faults.at, words.common.unit, words.life.what]);
+    for entry in &told.events[earlier..] {
+        let what = life::happened(entry, words, parts);
+        rows.row([local(entry.at_us), entry.unit.clone(), what]);
+    }
+    rows.render()
+}
+
+fn table(headings: &[&str]) -> Table {
+    let headings: Vec<_> = headings.iter().map(|name| name.to_uppercase()).collect();
+    Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>())
+}
