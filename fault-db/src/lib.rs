@@ -86,7 +86,7 @@ pub use record::{
 pub use recording::{Recording, RecordingRecord};
 pub use regular_file::{open_regular_file, read_regular_file};
 pub use replication::{
-    CopyOf, Difference, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
+    CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
 };
 pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};

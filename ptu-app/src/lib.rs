@@ -7,6 +7,7 @@
 //! the database crate opens its own files and connections.
 
 pub mod cli;
+mod computer_name;
 mod console;
 mod fault_months;
 #[cfg(feature = "window")]

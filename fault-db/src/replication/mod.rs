@@ -16,4 +16,4 @@ mod to_file;
 mod to_server;
 
 pub use merge::{CopyOf, MergeCounts};
-pub use sync::{Difference, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
+pub use sync::{Difference, LastSync, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};

@@ -55,6 +55,11 @@ impl Address {
         self.host.starts_with('/')
     }
 
+    /// Whether the address holds a password, which is nowhere to be shown or kept.
+    pub fn has_password(&self) -> bool {
+        self.password.is_some()
+    }
+
     /// The user that the address names.
     pub fn user(&self) -> Option<&str> {
         self.user.as_deref()

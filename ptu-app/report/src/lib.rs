@@ -8,6 +8,7 @@
 //! * [`words`]: the texts in two languages; [`fonts`]: the font for them; [`limits`]: values and limits.
 
 pub mod campaign;
+pub mod care;
 mod coverage;
 pub mod csv;
 pub mod diagnosis;

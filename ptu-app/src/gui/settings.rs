@@ -40,6 +40,8 @@ pub struct Settings {
     pub operator_at_us: i64,
     /// Where units are brought to; it stands on the sheet of a case.
     pub depot: String,
+    /// The server synced with last.
+    pub server: String,
     /// The unit connected last.
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
@@ -59,6 +61,7 @@ impl Default for Settings {
             operator: String::new(),
             operator_at_us: 0,
             depot: String::new(),
+            server: String::new(),
             unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)

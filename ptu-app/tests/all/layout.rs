@@ -67,6 +67,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.click(words.life.show);
     window.wait_for(words.life.stored);
     look(&mut window, "life");
+    window.click(words.care.title);
+    window.wait_for(words.care.never_synced);
+    look(&mut window, "care");
+    window.click(words.care.title);
     window.click(words.frame.setup);
     window.wait_for("eb_relay.slow");
     look(&mut window, "setup");

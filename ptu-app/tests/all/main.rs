@@ -12,6 +12,7 @@ mod bad_scripts;
 mod bench_page;
 mod by_the_clock;
 mod care;
+mod care_dialog;
 mod case_page;
 mod cases;
 mod compare_runs;

@@ -5,7 +5,11 @@
 mod owner_only;
 
 use self::owner_only::{free_port, shared};
+use crate::common::scripts;
+use crate::common::window::{Window, settings};
 use crate::common::{Place, list, record_bad_unit, relay_fault, text};
+use ptu_app::gui::{Page, Settings};
+use ptu_report::words::{Language, fill};
 use serde_json::Value;
 
 /// An answer without what grows while one asks: the days that units have been watched for.
@@ -180,5 +184,69 @@ fn a_password_on_the_command_line_is_refused_and_never_shown() {
             .ptu(&["db", verb, "postgre://kim@a/h"])
             .exits(2)
             .explains(&["postgres://USER@HOST"]);
+    }
+}
+
+/// Goal: a technician syncs from the window, sees when that was, and which fault two people disagree about. Method: two
+/// laptops saw one unit; at the desk its fault is closed, on the other laptop it is repaired; then the window syncs.
+#[test]
+fn the_window_syncs_and_names_conflicts_and_the_last_sync() {
+    for language in Language::ALL {
+        let words = language.words();
+        let server = shared().database();
+        let (one, two) = (Place::new(), Place::new());
+        record_bad_unit(&one);
+        one.ptu(&["db", "sync", &server]).exits(0);
+        // The other laptop has the same history, and decides differently.
+        two.ptu(&["db", "import", &one.text_path("history.db")])
+            .exits(0);
+        let fault = text(&relay_fault(&one)["id"]).to_owned();
+        two.ptu(&["faults", "state", &fault, "closed", "--who", "Lee"])
+            .exits(0);
+        two.ptu(&["db", "sync", &server]).exits(0);
+        one.ptu(&["faults", "state", &fault, "acknowledged", "--who", "Kim"])
+            .exits(0);
+
+        let settings = Settings {
+            language,
+            server: server.clone(),
+            ..settings(Page::Faults)
+        };
+        let mut window = Window::with(one, scripts(), settings);
+        window.click(words.care.title);
+        let last = words
+            .care
+            .last_synced
+            .split("{at}")
+            .next()
+            .unwrap_or_default();
+        window.wait_for_part(last);
+        window.click(words.care.sync);
+        let synced = words.care.synced.split("{runs}").next().unwrap_or_default();
+        let failed = words.care.failed;
+        window.until("a sync", |window| {
+            window.shows_part(synced) || window.shows_part(failed)
+        });
+        assert!(window.shows_part(synced), "{:#?}", window.shown());
+        let unit = fill(words.care.conflict, &[("unit", &"BAD-1")]);
+        let conflict = unit.split("{fault}").next().unwrap_or_default();
+        window.wait_for_part(conflict);
+        for (who, state) in [
+            ("Lee", words.common.closed),
+            ("Kim", words.common.acknowledged),
+        ] {
+            let said = fill(words.care.says, &[("who", &who), ("state", &state)]);
+            assert!(window.shows_part(&said), "{said}: {:#?}", window.shown());
+        }
+        // All is there: nothing waits, and the address is remembered as it was typed.
+        let none = words
+            .care
+            .last_synced
+            .split("{server}")
+            .last()
+            .unwrap_or_default();
+        window.wait_for_part(&fill(none, &[("n", &0)]));
+        let synced = window.place.json(&["db", "sync", &server, "--json"]);
+        assert_eq!(synced["sent"]["events"], 0, "{synced}");
     }
 }

@@ -8,6 +8,7 @@
 
 mod batch;
 mod cursors;
+mod last;
 mod outbox;
 mod outcome;
 mod receive;
@@ -22,6 +23,7 @@ use crate::server::schema::server_id;
 use crate::store::Store;
 use batch::Batch;
 use cursors::{Cursors, FileRecord};
+pub use last::LastSync;
 pub use outcome::{Difference, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
 use seal_chains::Chain;
 pub(crate) use seal_chains::chain_error;

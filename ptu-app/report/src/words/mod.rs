@@ -4,6 +4,7 @@
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
 
 mod bench;
+mod care;
 mod case;
 mod common;
 mod condition;
@@ -20,6 +21,7 @@ mod statistics;
 mod traces;
 
 pub use bench::Bench;
+pub use care::Care;
 pub use case::Case;
 pub use common::Common;
 pub use diagnosis::Diagnosis;
@@ -130,6 +132,8 @@ pub struct Words {
     pub faults: Faults,
     /// Statistics of the fault history.
     pub statistics: Statistics,
+    /// The care of the history.
+    pub care: Care,
     /// Life by serial number.
     pub life: Life,
     /// What a unit has stored.
@@ -189,6 +193,7 @@ static ENGLISH: Words = Words {
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
     statistics: Statistics::ENGLISH,
+    care: Care::ENGLISH,
     life: Life::ENGLISH,
     memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
@@ -205,6 +210,7 @@ static KOREAN: Words = Words {
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
     statistics: Statistics::KOREAN,
+    care: Care::KOREAN,
     life: Life::KOREAN,
     memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
@@ -225,6 +231,7 @@ mod tests {
             Traces::all(),
             Faults::all(),
             Statistics::all(),
+            Care::all(),
             Life::all(),
             Memory::all(),
             Diagnosis::all(),

@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::maintenance::{rivals, told_refused};
 use crate::cli::{Database, answered, print_json, print_out};
+use crate::computer_name::computer_name;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stop::Stop;
 use ptu_bench::{clock, process_id, stdio};
@@ -58,7 +59,7 @@ impl SyncArguments {
         let outcome = file.sync(
             &server,
             &mut SyncOptions {
-                laptop: &laptop(),
+                laptop: &computer_name(),
                 traces: !self.no_traces,
                 as_copy: self.as_copy,
                 is_alive: &process_id::is_alive,
@@ -92,14 +93,6 @@ impl SyncArguments {
         };
         answered(told, exit)
     }
-}
-
-/// This computer's name.
-fn laptop() -> String {
-    rustix::system::uname()
-        .nodename()
-        .to_string_lossy()
-        .into_owned()
 }
 
 fn text(outcome: &SyncOutcome, server: &Store, took_s: f64) -> String {

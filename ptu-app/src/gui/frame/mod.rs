@@ -1,6 +1,7 @@
 //! The frame around the pages: connection bar, navigation, messages, keys.
 
 mod about;
+mod care;
 mod connection;
 mod keys;
 mod messages;
@@ -11,6 +12,7 @@ use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
 use super::{PageContext, Palette};
 use about::About;
+use care::Care;
 use ptu_report::words::Words;
 use setup::Setup;
 
@@ -19,6 +21,7 @@ use setup::Setup;
 pub struct Frame {
     setup: Setup,
     about: About,
+    care: Care,
     undo: messages::Undo,
 }
 
@@ -33,7 +36,7 @@ impl Frame {
     }
 
     pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        navigation::bar(ui, context, &mut self.about);
+        navigation::bar(ui, context, (&mut self.about, &mut self.care));
     }
 
     /// The latest message, and all of them.

@@ -3,6 +3,7 @@
 use eframe::egui::{ComboBox, RichText, Ui};
 
 use super::about::About;
+use super::care::Care;
 use super::connection::both_ends;
 use crate::gui::parts::{ActionPlace, named_combo};
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
@@ -11,12 +12,13 @@ use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
 
-pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, about: &mut About) {
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut About, &mut Care)) {
     both_ends(
         ui,
         context,
         |ui, context| {
             about.button(ui, context);
+            care.button(ui, context);
             look(ui, context);
         },
         |ui, context| {

@@ -1,10 +1,9 @@
 //! A button that reads what the chosen unit has stored: its log into the fault history, or its run record into traces.
 
-use eframe::egui::{Button, RichText, Ui};
+use eframe::egui::{Button, Ui};
 
-use crate::gui::query_worker::QueryWorker;
-use crate::gui::request::Request;
-use crate::gui::{DataPaths, PageContext, Palette};
+use super::{Done, Job};
+use crate::gui::{DataPaths, PageContext};
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::failure::Failure;
 use ptu_bench::field::AskedUnit;
@@ -27,18 +26,7 @@ pub enum Stored {
 #[derive(Default)]
 pub struct MemoryReader {
     stored: Stored,
-    thread: Option<QueryWorker>,
-    under_way: Request<Done>,
-    stop: Stop,
-    done: Option<Done>,
-}
-
-/// What a reading came to, in words.
-struct Done {
-    text: String,
-    notes: Vec<String>,
-    /// It was not read to its end: why.
-    broken_off: Option<String>,
+    job: Job,
 }
 
 impl MemoryReader {
@@ -52,17 +40,10 @@ impl MemoryReader {
 
     /// Shows it; true when something was stored.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
-        let stored = self.poll(context);
+        let stored = self.job.poll(context, context.words.memory.failed);
         let words = context.words;
-        if matches!(self.under_way, Request::Pending(_)) {
-            ui.horizontal(|ui| {
-                ui.spinner();
-                let unit = context.units.chosen().choice.endpoint.clone();
-                ui.label(fill(words.memory.reading, &[("unit", &unit)]));
-                if ui.button(words.memory.stop).clicked() {
-                    self.stop.press_once();
-                }
-            });
+        if self.job.is_under_way() {
+            self.job.progress(ui, words);
             return stored;
         }
         let asked = asked(context);
@@ -78,55 +59,18 @@ impl MemoryReader {
                 button.on_disabled_hover_text(why);
             }
         }
-        if let Some(done) = &self.done {
-            ui.label(&done.text);
-            for note in &done.notes {
-                ui.label(RichText::new(note).color(Palette::of(ui).warn));
-            }
-        }
+        self.job.result(ui);
         stored
     }
 
     fn begin(&mut self, asked: AskedUnit, context: &mut PageContext<'_>) {
-        let queries = context.queries;
-        if self.thread.is_none() {
-            match QueryWorker::new(queries.paths().clone(), queries.wake().clone()) {
-                Ok(thread) => self.thread = Some(thread),
-                Err(failure) => {
-                    return context
-                        .messages
-                        .trouble(context.words.memory.failed, failure.message);
-                }
-            }
-        }
-        self.stop = Stop::default();
-        self.done = None;
-        let (stop, stored, words) = (self.stop.clone(), self.stored, context.words);
-        if let Some(thread) = &self.thread {
-            let reading = thread.run(move |paths| read(&asked, stored, paths, &stop, words));
-            self.under_way = Request::Pending(reading);
-        }
-    }
-
-    fn poll(&mut self, context: &mut PageContext<'_>) -> bool {
-        if !self.under_way.poll() {
-            return false;
-        }
-        let words = context.words;
-        match std::mem::take(&mut self.under_way) {
-            Request::Ready(done) => {
-                if let Some(why) = &done.broken_off {
-                    context.messages.trouble(words.memory.failed, why.clone());
-                }
-                self.done = Some(done);
-                true
-            }
-            Request::Failed(why) => {
-                context.messages.trouble(words.memory.failed, why);
-                false
-            }
-            Request::Idle | Request::Pending(_) => false,
-        }
+        let (stored, words) = (self.stored, context.words);
+        let unit = context.units.chosen().choice.endpoint.clone();
+        let said = fill(words.memory.reading, &[("unit", &unit)]);
+        self.job
+            .begin(context, (said, words.memory.failed), move |paths, told| {
+                read(&asked, stored, paths, &told.stop, words)
+            });
     }
 }
 

@@ -179,7 +179,9 @@ fn row(
         }
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         let said = life::happened(entry, words, parts);
-        if ui.selectable_label(false, said).clicked() {
+        let row = ui.selectable_label(false, &said);
+        // Longer than the row.
+        if row.on_hover_text(said).clicked() {
             go_to.extend(to);
         }
     });
