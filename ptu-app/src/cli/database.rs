@@ -84,6 +84,14 @@ impl Database {
         }
     }
 
+    /// The server, if it is one; for what tells a server from a file by itself.
+    pub(in crate::cli) fn server(&self) -> Result<Option<Address>, Failure> {
+        Ok(match self.place()? {
+            DatabasePlace::File(_) => None,
+            DatabasePlace::Server(address) => Some(address),
+        })
+    }
+
     /// Opens one that is there for writing: a name that is mistyped makes none.
     pub(in crate::cli) fn open(&self) -> Result<Store, Failure> {
         match self.place()? {

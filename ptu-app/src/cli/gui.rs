@@ -2,6 +2,7 @@
 
 use btu_rig::rig::Harness;
 use clap::{Args, Parser};
+use fault_db::Store;
 
 use super::{Database, ScriptsOption};
 use crate::gui::DataPaths;
@@ -19,6 +20,7 @@ use ptu_report::words::Language;
 ///   ptu gui --page traces       with the traces in front
 ///   ptu gui --unit sim          connected to the embedded unit at once
 ///   ptu gui --new --db b.db     with a database that is made
+///   ptu gui --db postgres://kim@depot/history   reads the history of a server
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct GuiArguments {
@@ -79,7 +81,20 @@ impl GuiArguments {
             .unwrap_or_default();
         settings.language = self.lang.unwrap_or(settings.language);
         settings.page = self.page.unwrap_or(settings.page);
-        let paths = DataPaths::new(self.database.file()?, self.scripts.find()?);
+        let scripts = self.scripts.find()?;
+        let paths = match self.database.server()? {
+            Some(_) if self.unit.is_some() => {
+                return Err(Failure::usage(
+                    "a server's history is only read: without --unit, or with --db FILE",
+                ));
+            }
+            Some(server) => {
+                // Before there is a window to say it in.
+                Store::connect_read_only(&server)?;
+                DataPaths::of_server(server, scripts)
+            }
+            None => DataPaths::new(self.database.file()?, scripts),
+        };
         settings.unit.harness = self.harness.unwrap_or(settings.unit.harness);
         if let Some(unit) = &self.unit {
             settings.unit.endpoint = unit.to_string();

@@ -1,10 +1,10 @@
-//! Where the window's data are: the database file and the scripts directory.
+//! Where the window's data are: the database, a file or a server, and the scripts directory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fault_db::{Store, StoreError};
+use fault_db::{Address, Store, StoreError};
 
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
@@ -14,8 +14,10 @@ use ptu_bench::owner_only;
 /// The files that pages read and runs are recorded in.
 #[derive(Clone, Debug)]
 pub struct DataPaths {
-    /// The database file.
+    /// The database file, or the address of a server as it is shown.
     pub database: PathBuf,
+    /// The server, if it is one: it is read and never written to.
+    server: Option<Address>,
     /// Procedures, lines, units.
     pub scripts: ScriptsDirectory,
     /// The database was there; the same for all copies.
@@ -27,21 +29,44 @@ impl DataPaths {
     pub fn new(database: PathBuf, scripts: ScriptsDirectory) -> Self {
         Self {
             database,
+            server: None,
             scripts,
             was_there: Arc::default(),
         }
     }
 
+    /// Those of a server; it is not connected to yet.
+    pub fn of_server(server: Address, scripts: ScriptsDirectory) -> Self {
+        Self {
+            server: Some(server.clone()),
+            ..Self::new(server.to_string().into(), scripts)
+        }
+    }
+
+    /// It is a server, which is only read.
+    pub fn is_server(&self) -> bool {
+        self.server.is_some()
+    }
+
+    /// There is something to read.
+    pub fn is_there(&self) -> bool {
+        self.is_server() || self.database.exists()
+    }
+
     /// The database was there and is no longer.
     pub fn is_gone(&self) -> bool {
-        self.was_there.load(Ordering::Relaxed) && !self.database.exists()
+        self.was_there.load(Ordering::Relaxed) && !self.is_there()
     }
 
     /// The database, to be written to; made if it is not there yet, but never in place of one that was.
     ///
     /// # Errors
-    /// It cannot be opened, or is gone.
+    /// It cannot be opened, is gone, or is a server.
     pub fn open(&self) -> Result<Store, Failure> {
+        if self.is_server() {
+            let path = self.database.clone();
+            return Err(StoreError::ReadOnly { path }.into());
+        }
         if self.is_gone() {
             return Err(Failure::bench(format!(
                 "the database {} is gone",
@@ -63,6 +88,9 @@ impl DataPaths {
     /// # Errors
     /// It cannot be opened.
     pub fn read(&self) -> Result<Store, Failure> {
+        if let Some(server) = &self.server {
+            return Ok(self.seen(Store::connect_read_only(server)?));
+        }
         if !self.database.exists() {
             self.open()?.close()?;
         }

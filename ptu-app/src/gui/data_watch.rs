@@ -17,6 +17,9 @@ use ptu_bench::failure::Failure;
 /// Time between two looks.
 const LOOK: Duration = Duration::from_secs(1);
 
+/// Looks after which a server is asked again: it does not say when somebody has written to it.
+const ASK_AGAIN: u32 = 60;
+
 /// What the thread has seen.
 #[derive(Default)]
 struct Seen {
@@ -43,11 +46,14 @@ impl DataWatch {
             .name("database".into())
             .spawn(move || {
                 let mut before = Stamp::of(&paths.database);
+                let mut looks = 0;
                 while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
                     let now = Stamp::of(&paths.database);
                     let gone = paths.is_gone();
+                    looks += 1;
+                    let is_old = paths.is_server() && looks % ASK_AGAIN == 0;
                     let was_gone = told.gone.swap(gone, Ordering::Relaxed);
-                    if now != before || gone != was_gone {
+                    if now != before || gone != was_gone || is_old {
                         before = now;
                         told.changes.fetch_add(1, Ordering::Relaxed);
                         wake();

@@ -31,6 +31,12 @@ pub struct PageContext<'a> {
 }
 
 impl PageContext<'_> {
+    /// Why nothing can be recorded here, if nothing can: the window reads a server.
+    pub fn only_reads(&self) -> Option<&'static str> {
+        let reads = self.queries.paths().is_server();
+        reads.then_some(self.words.care.is_server)
+    }
+
     /// What the database holds may have changed when this has: a run has ended here, or another program wrote.
     pub fn data_version(&self) -> (usize, u64) {
         (self.units.runs_ended(), self.database.changes())

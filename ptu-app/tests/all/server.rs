@@ -8,6 +8,7 @@ use self::owner_only::{free_port, shared};
 use crate::common::scripts;
 use crate::common::window::{Window, settings};
 use crate::common::{Place, list, record_bad_unit, relay_fault, text};
+use crate::layout::complaints;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::{Language, fill};
 use serde_json::Value;
@@ -249,4 +250,66 @@ fn the_window_syncs_and_names_conflicts_and_the_last_sync() {
         let synced = window.place.json(&["db", "sync", &server, "--json"]);
         assert_eq!(synced["sent"]["events"], 0, "{synced}");
     }
+}
+
+/// Goal: at the desk a server's history is looked through in the window, and nobody writes into it by mistake. Method: a laptop
+/// has synced a repaired fault; the window on the server shows it, its life and the statistics, and says why it records nothing.
+#[test]
+fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
+    let server = shared().database();
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = text(&relay_fault(&place)["id"]).to_owned();
+    let repair = [
+        "faults", "repair", &fault, "--part", "eb_relay", "--new", "SN-77", "--who", "Kim",
+    ];
+    place.ptu(&repair).exits(0);
+    place.ptu(&["db", "sync", &server]).exits(0);
+    // A unit is not connected to a window that could not record what it does.
+    let unit = ["gui", "--unit", "sim", "--db", &server];
+    place.ptu(&unit).exits(2).explains(&["server", "--unit"]);
+    for language in Language::ALL {
+        let words = language.words();
+        let settings = Settings {
+            language,
+            operator: "Kim".into(),
+            operator_at_us: ptu_bench::clock::now_us(),
+            ..settings(Page::Faults)
+        };
+        let here = Place::new();
+        let mut window = Window::on_server(&server, here, settings);
+        let relay = match language {
+            Language::English => "EB relay · ",
+            Language::Korean => "비상제동 계전기 · ",
+        };
+        window.click_part(relay);
+        window.wait_for("SN-77");
+        window.wait_for(words.care.is_server);
+        assert!(!window.shows(words.faults.verify), "{:#?}", window.shown());
+        assert!(!window.enabled(words.frame.connect) && !window.enabled(words.memory.import));
+        assert_eq!(complaints(&mut window), Vec::<String>::new());
+        window.key(Page::Case.key());
+        window.wait_for(words.care.is_server);
+        window.key(eframe::egui::Key::F9);
+        window.step();
+        window.wait_for(words.frame.not_connected);
+        window.key(Page::Statistics.key());
+        window.wait_for_part(relay.trim_end_matches(" · "));
+        window.key(Page::Report.key());
+        window.wait_for(words.report.write_pdf);
+        assert!(!window.enabled(words.report.note_save));
+        window.key(Page::Traces.key());
+        window.wait_for(words.traces.events);
+        window.key(Page::Faults.key());
+        window.click("SN-77");
+        window.wait_for(words.life.units_of_part);
+        window.click(words.care.title);
+        window.click(words.care.check);
+        let sound = words.care.sound.split('{').next().unwrap_or_default();
+        window.wait_for_part(sound);
+        assert!(!window.shows(words.care.sync));
+    }
+    let faults = place.json(&["faults", "list", "--json", "--db", &server]);
+    let here = place.json(&["faults", "list", "--json"]);
+    assert_eq!(faults, here, "nothing was written");
 }

@@ -48,10 +48,20 @@ impl Window {
         scripts: impl AsRef<std::path::Path>,
         settings: Settings,
     ) -> Self {
-        let paths = DataPaths::new(
-            place.path("history.db"),
-            ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts"),
-        );
+        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
+        let paths = DataPaths::new(place.path("history.db"), scripts);
+        Self::on(size, place, paths, settings)
+    }
+
+    /// A window on the history of a server.
+    pub fn on_server(server: &str, place: Place, settings: Settings) -> Self {
+        let scripts = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
+        let server = server.parse().expect("an address");
+        let paths = DataPaths::of_server(server, scripts);
+        Self::on([1280.0, 800.0], place, paths, settings)
+    }
+
+    fn on(size: [f32; 2], place: Place, paths: DataPaths, settings: Settings) -> Self {
         let settings_file = Some(place.path("config/window.json"));
         let mut options = Some(Options {
             paths,

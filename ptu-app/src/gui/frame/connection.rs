@@ -29,6 +29,14 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
             connect(ui, context);
             identity(ui, context);
             running(ui, context);
+            if context.only_reads().is_some() {
+                let care = &context.words.care;
+                let server = context.queries.paths().database.display().to_string();
+                let said = fill(care.reads, &[("server", &server)]);
+                let cut = shortened(&said);
+                chip(ui, &cut, Palette::of(ui).warn)
+                    .on_hover_text(format!("{said}. {}", care.is_server));
+            }
             if context.units.iter().any(|unit| unit.stopping) {
                 chip(ui, context.words.frame.stopping, Palette::of(ui).warn);
             }
@@ -90,13 +98,17 @@ fn units(ui: &mut Ui, context: &mut PageContext<'_>) {
 
 fn connect(ui: &mut Ui, context: &mut PageContext<'_>) {
     let frame = &context.words.frame;
+    let only_reads = context.only_reads();
     let unit = context.units.chosen_mut();
     let phase = unit.phase();
     let offline = (phase == Phase::Offline, phase == Phase::Connecting);
     let place = ActionPlace::new(ui, "connection", (unit.id, offline));
     match phase {
         Phase::Offline => {
-            if place.clicked(&ui.button(RichText::new(frame.connect).strong())) {
+            let button = Button::new(RichText::new(frame.connect).strong());
+            let button = ui.add_enabled(only_reads.is_none(), button);
+            let button = button.on_disabled_hover_text(only_reads.unwrap_or_default());
+            if place.clicked(&button) {
                 unit.connect(context.queries);
             }
         }

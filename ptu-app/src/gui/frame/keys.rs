@@ -16,11 +16,12 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
         context.units.stop_all();
     }
     if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
+        let only_reads = context.only_reads();
         let unit = context.units.chosen_mut();
-        if unit.phase() == Phase::Offline {
-            unit.connect(context.queries);
-        } else {
+        if unit.phase() != Phase::Offline {
             unit.disconnect();
+        } else if only_reads.is_none() {
+            unit.connect(context.queries);
         }
     }
     for page in Page::ALL {

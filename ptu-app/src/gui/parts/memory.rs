@@ -76,6 +76,9 @@ impl MemoryReader {
 
 /// The chosen unit, if it can be read now; why it cannot otherwise.
 fn asked(context: &PageContext<'_>) -> Result<AskedUnit, &'static str> {
+    if let Some(why) = context.only_reads() {
+        return Err(why);
+    }
     let unit = context.units.chosen();
     let on_port = unit.choice.endpoint.parse::<Endpoint>();
     let endpoint = on_port

@@ -57,12 +57,14 @@ impl RunNoteForm {
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
-        let may = !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
+        let writes = !queries.paths().is_server();
+        let may = writes && !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
+        let why = match writes {
+            true => words.report.note_hint,
+            false => words.care.is_server,
+        };
         let save = ui.add_enabled(may, Button::new(words.report.note_save));
-        if save
-            .on_disabled_hover_text(words.report.note_hint)
-            .clicked()
-        {
+        if save.on_disabled_hover_text(why).clicked() {
             self.under_way = Request::Pending(queries.run(move |paths| {
                 paths.open()?.add_run_note(run, &who, &text, now_us())?;
                 Ok(run)

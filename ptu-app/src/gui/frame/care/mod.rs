@@ -68,6 +68,9 @@ impl Care {
     }
 
     fn keep_up(&mut self, context: &PageContext<'_>) {
+        if context.only_reads().is_some() {
+            return;
+        }
         let wanted = Some(context.data_version());
         if self.asked != wanted {
             self.asked = wanted;
@@ -91,6 +94,14 @@ impl Care {
             self.job.result(ui);
         }
         ui.separator();
+        if let Some(why) = context.only_reads() {
+            ui.label(why);
+            let check = ui.add_enabled(!self.job.is_under_way(), Button::new(words.care.check));
+            if check.clicked() {
+                work::check(&mut self.job, context);
+            }
+            return;
+        }
         self.sync(ui, context);
         ui.separator();
         self.files(ui, context);

@@ -107,7 +107,7 @@ fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
         parts: PartNames::of(&paths.scripts),
         ..History::default()
     };
-    if !paths.database.exists() {
+    if !paths.is_there() {
         return Ok(history);
     }
     let store = paths.read()?;

@@ -188,6 +188,10 @@ impl CasePage {
 
     fn start(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
+        if let Some(why) = context.only_reads() {
+            ui.label(RichText::new(why).size(TEXT));
+            return;
+        }
         self.name(ui, context);
         let unit = context.units.chosen_mut();
         let place = fill(words.reached_at, &[("place", &unit.choice.endpoint)]);

@@ -62,7 +62,7 @@ impl SeenUnits {
         }
         self.version = Some(version);
         self.runs.request(context.queries.run(|paths| {
-            if !paths.database.exists() {
+            if !paths.is_there() {
                 return Ok(Vec::new());
             }
             let filter = RunFilter {

@@ -102,6 +102,10 @@ impl Change {
         is_stale: bool,
     ) {
         let words = context.words;
+        if let Some(why) = context.only_reads() {
+            ui.label(RichText::new(why).color(Palette::of(ui).quiet));
+            return;
+        }
         if self.form.of != Some(fault.id) {
             // What was begun about another fault is not meant for this one.
             self.form = Form::about(fault.id);

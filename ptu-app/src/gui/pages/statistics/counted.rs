@@ -44,7 +44,7 @@ impl Counted {
             months: Vec::new(),
             parts,
         };
-        if !paths.database.exists() {
+        if !paths.is_there() {
             return Ok(counted);
         }
         let store = paths.read()?;
