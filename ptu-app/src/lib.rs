@@ -14,3 +14,4 @@ mod fault_months;
 pub mod gui;
 mod operator;
 mod sparkline;
+mod trend;

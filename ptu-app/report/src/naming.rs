@@ -79,7 +79,7 @@ pub fn what_failed(message: &str, words: &Words) -> String {
 }
 
 /// A measurement's name without what only scripts write.
-fn measurement(name: &str, words: &Words) -> String {
+pub fn measurement(name: &str, words: &Words) -> String {
     let known = words.measurement(name);
     if known != name {
         return known.into_owned();

@@ -1,8 +1,9 @@
 //! The statistics in the window: the figures of the command line, and bars that lead to their faults.
 
 use crate::common::window::{Window, settings};
-use crate::common::{Place, list, scripts, text};
+use crate::common::{Place, list, record_bad_unit, scripts, text};
 use ptu_app::gui::{Page, Settings};
+use ptu_report::limits::short;
 use ptu_report::words::{Language, Words, fill};
 use serde_json::Value;
 
@@ -94,6 +95,48 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
         );
         window.wait_for(&chip);
         assert!(window.shows_part(&format!("{antenna} · ")));
+    }
+}
+
+/// Goal: the control limits on the page are those of `ptu faults trend`. Method: the measurement that comes first, of all units.
+#[test]
+fn control_limits_are_those_of_the_command_line() {
+    for language in Language::ALL {
+        let said = &language.words().statistics;
+        let place = Place::new();
+        record_bad_unit(&place);
+        let good = ["run", "atp/overspeed", "--serial-no", "A-2"];
+        place.ptu(&good).exits(0);
+        let first = "SELECT min(name) AS name FROM measurements WHERE value IS NOT NULL";
+        let first = place.json(&["db", "query", first, "--json"]);
+        let name = text(&list(&first["rows"])[0][0]).to_owned();
+        let trend = place.json(&["faults", "trend", &name, "--json"]);
+        let number = |value: &Value| short(value.as_f64().expect("a number"));
+        let process = &trend["process"];
+        let unit = text(&trend["unit"]);
+        let mean = [
+            ("n", &process["n"] as &dyn std::fmt::Display),
+            ("mean", &number(&process["mean"])),
+            ("unit", &unit),
+        ];
+        let [low, high] = [0, 1].map(|end| number(&process["control"][end]));
+        let control = [
+            ("low", &low as &dyn std::fmt::Display),
+            ("high", &high),
+            ("unit", &unit),
+        ];
+        let mut window = window(place, language);
+        window.wait_for(said.measured);
+        let mean = fill(said.mean, &mean);
+        assert!(window.shows_part(&mean), "{mean}: {:#?}", window.shown());
+        let control = fill(said.control_limits, &control);
+        assert!(
+            window.shows_part(&control),
+            "{control}: {:#?}",
+            window.shown()
+        );
+        let days = list(&trend["days"]).len();
+        assert!(window.shows(&fill(said.chart_of, &[("n", &days)])));
     }
 }
 

@@ -28,5 +28,30 @@ wordings! {
         hours: "{n} h", "{n}시간";
         percent: "{n} %", "{n} %";
         unknown: "–", "–";
+        control: "measured values with control limits", "측정값과 관리 한계";
+        measured: "measured value", "측정값";
+        all_steps: "all steps", "모든 단계";
+        nothing_measured: "Nothing has been measured yet.", "아직 측정한 값이 없습니다.";
+        not_measured: "It was not measured so in this span.", "이 기간에 이 조건으로 측정한 값이 없습니다.";
+        mean: "Values: {n}, mean {mean} {unit}", "값 {n}개, 평균 {mean} {unit}";
+        control_limits: "Control limits (3 sigma) {low} … {high} {unit}", "관리 한계(3σ) {low} … {high} {unit}";
+        limits_differ: "The steps have different limits: choose one to see them", "단계마다 허용값이 다릅니다. 허용값을 보려면 단계를 고르십시오";
+        cpk: "Cpk {n}", "Cpk {n}";
+        beyond_control: "Beyond the control limits: {n}", "관리 한계를 벗어난 값 {n}개";
+        nine_on_one_side: "Nine or more on one side of the mean: {n}", "평균의 한쪽에 9개 이상 연속 {n}회";
+        six_in_a_row: "Six or more rising or falling in a row: {n}", "6개 이상 연속 증가 또는 감소 {n}회";
+        forecast: "Reaches its limit of {limit} {unit} on {day}", "{day}에 허용값 {limit} {unit}에 도달할 것으로 예상";
+        chart_of: "values over time: {n}", "시간에 따른 값 {n}개";
+    }
+}
+
+impl Statistics {
+    /// What of a process chance does not explain.
+    pub fn sign(&self, kind: &str) -> &'static str {
+        match kind {
+            "nine_on_one_side" => self.nine_on_one_side,
+            "six_in_a_row" => self.six_in_a_row,
+            _ => self.beyond_control,
+        }
     }
 }

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use diagnosis::process::{Process, Sample};
-use fault_db::{Store, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit};
+use fault_db::{Store, TrendQuery};
 use serde_json::{Value, json};
 
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, check_unit};
-use ptu_bench::clock::{Span, local_day, rfc3339, utc_day};
+use crate::trend::{TimeSeries, Trend};
+use ptu_bench::clock::{Span, rfc3339, utc_day};
 use ptu_bench::data;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 
@@ -61,30 +61,6 @@ pub struct TrendArguments {
     output: Output,
 }
 
-/// What is known of a measurement over time.
-pub struct Trend {
-    /// What was asked.
-    pub query: TrendQuery,
-    /// Limits and their unit, as they were last.
-    pub limits: TrendLimits,
-    /// Value by value, or day by day.
-    pub course: TimeSeries,
-    /// All together.
-    pub process: Option<Process>,
-    /// Procedures that measure it.
-    pub procedures: Vec<String>,
-    /// Steps that measured it in the latest runs, with their limits.
-    pub steps: Vec<TrendStep>,
-}
-
-/// Values over time.
-pub enum TimeSeries {
-    /// Of one unit.
-    Points(Vec<TrendPoint>),
-    /// Of all.
-    Days(Vec<TrendDay>, Vec<TrendUnit>),
-}
-
 impl TrendArguments {
     pub fn trend(&self, store: &Store) -> Result<Exit, Failure> {
         let trend = self.read(store)?;
@@ -130,26 +106,10 @@ impl TrendArguments {
                 Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
             })?);
         }
-        let Some(mut limits) = store.trend_limits(&query)? else {
-            return Err(Failure::usage(self.nothing(store, &query, &procedures)?));
-        };
-        let steps = store.trend_steps(&query)?;
-        if limits_differ(&steps) {
-            // None holds for all values.
-            (limits.low, limits.high) = (None, None);
+        match Trend::read(store, query.clone())? {
+            Some(trend) => Ok(trend),
+            None => Err(Failure::usage(self.nothing(store, &query, &procedures)?)),
         }
-        let course = match query.unit {
-            Some(_) => TimeSeries::Points(store.trend(&query)?),
-            None => TimeSeries::Days(store.trend_by_day(&query)?, store.trend_by_unit(&query)?),
-        };
-        Ok(Trend {
-            process: Process::of(&course.samples()),
-            limits,
-            course,
-            procedures,
-            steps,
-            query,
-        })
     }
 
     /// Why there is no value: another procedure measures it, or it was measured at another time, or it was
@@ -214,55 +174,7 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-fn limits_differ(steps: &[TrendStep]) -> bool {
-    let limits = |step: &TrendStep| (step.low, step.high);
-    steps
-        .windows(2)
-        .any(|pair| limits(&pair[0]) != limits(&pair[1]))
-}
-
-impl TimeSeries {
-    /// How its days are called: those of a fleet are counted in UTC, and begin the evening before in its west.
-    pub fn day_name(&self) -> fn(i64) -> String {
-        match self {
-            Self::Points(_) => local_day,
-            Self::Days(..) => utc_day,
-        }
-    }
-
-    /// For its analysis.
-    pub fn samples(&self) -> Vec<Sample> {
-        match self {
-            Self::Points(points) => points
-                .iter()
-                .filter_map(|point| {
-                    Some(Sample {
-                        at_us: point.at_us,
-                        value: point.value?,
-                        n: 1,
-                        scatter: 0.0,
-                    })
-                })
-                .collect(),
-            Self::Days(days, _) => days
-                .iter()
-                .map(|day| Sample {
-                    at_us: day.day_us,
-                    value: day.mean,
-                    n: day.n,
-                    scatter: (day.sum_of_squares - f64::from(day.n) * day.mean * day.mean).max(0.0),
-                })
-                .collect(),
-        }
-    }
-}
-
 impl Trend {
-    /// The values are of steps with several limits.
-    pub fn limits_differ(&self) -> bool {
-        limits_differ(&self.steps)
-    }
-
     /// Keys of the values, or of the days, in their order.
     fn keys(&self) -> &'static [&'static str] {
         match self.course {

@@ -1,6 +1,6 @@
 //! A trend drawn on a page: values, limits, control limits, the line through them.
 
-use super::trend::{TimeSeries, Trend};
+use crate::trend::{TimeSeries, Trend};
 use ptu_report::plot::{Plot, Series, Style};
 
 /// Microseconds of a day.

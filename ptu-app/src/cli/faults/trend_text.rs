@@ -3,8 +3,8 @@
 use diagnosis::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendStep, TrendUnit};
 
-use super::trend::{TimeSeries, Trend};
 use crate::sparkline::sparkline_of;
+use crate::trend::{TimeSeries, Trend};
 use ptu_bench::clock::{local, utc_month};
 use ptu_bench::table::Table;
 use ptu_report::limits::short;

@@ -1,6 +1,7 @@
 //! Statistics of the fault history: which causes, how often, how long repairs take and whether they hold. Each bar leads to
 //! its faults.
 
+mod control;
 mod counted;
 mod figures;
 mod life;
@@ -29,6 +30,7 @@ pub struct StatisticsPage {
     /// What was asked last, and of which data.
     asked: Option<(Asked, (usize, u64))>,
     life: life::LifeView,
+    control: control::ControlChart,
 }
 
 impl StatisticsPage {
@@ -48,6 +50,8 @@ impl StatisticsPage {
                 let mut to = None;
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                     to = content(ui, words, counted, &self.units);
+                    ui.separator();
+                    self.control.show(ui, words);
                 });
                 context.go_to.extend(to.map(Destination::Faults));
             }
@@ -89,6 +93,9 @@ impl StatisticsPage {
             }
         }
         self.counted.poll();
+        if let Some((asked, _)) = &self.asked {
+            self.control.keep_up(asked.clone(), context);
+        }
     }
 }
 
