@@ -149,6 +149,11 @@ impl App {
         self.closed
     }
 
+    /// The settings as they are now.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// The page shown.
     pub fn page(&self) -> Page {
         self.settings.page

@@ -26,5 +26,6 @@ pub use display::open;
 pub(crate) use messages::Messages;
 pub use page::Page;
 pub(crate) use page_context::{Destination, PageContext};
+pub use parts::SavedQuestion;
 pub use settings::Settings;
 pub(crate) use theme::Palette;

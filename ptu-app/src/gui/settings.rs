@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
-use super::Page;
+use super::{Page, SavedQuestion};
 use ptu_bench::clock;
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;
@@ -48,6 +48,38 @@ pub struct Settings {
     pub plotted: Vec<String>,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
+    /// Questions of the page Statistics.
+    pub statistics: Vec<SavedQuestion<StatisticsQuestion>>,
+    /// Questions of the page Faults.
+    pub faults: Vec<SavedQuestion<FaultsQuestion>>,
+}
+
+/// What the page Statistics is asked.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct StatisticsQuestion {
+    /// Days to look back; none = all there is.
+    pub days: Option<i64>,
+    /// Measurement of the control chart.
+    pub measurement: Option<String>,
+    /// Procedure and step that measure it.
+    pub step: Option<(String, String)>,
+}
+
+/// What the page Faults is asked.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FaultsQuestion {
+    /// Serial number.
+    pub unit: Option<String>,
+    /// Part that is pointed at.
+    pub part: Option<String>,
+    /// State, by its word.
+    pub state: Option<String>,
+    /// Days to look back; none = all there is.
+    pub days: Option<i64>,
+    /// Something that is contained.
+    pub text: String,
 }
 
 impl Default for Settings {
@@ -67,6 +99,8 @@ impl Default for Settings {
                 .map(str::to_owned)
                 .to_vec(),
             lanes: Vec::new(),
+            statistics: Vec::new(),
+            faults: Vec::new(),
         }
     }
 }

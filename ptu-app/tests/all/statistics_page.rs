@@ -173,6 +173,37 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
     }
 }
 
+/// Goal: a depot asks its question again without setting it up. Method: the faults of one part are saved under a name, looked
+/// at without the filter, and chosen again; another window has the question, too.
+#[test]
+fn a_question_is_saved_by_name_and_asked_again() {
+    let words = Language::English.words();
+    let said = &words.statistics;
+    let mut window = Window::with(depot(), scripts(), settings(Page::Faults));
+    window.wait_for_part("TWC antenna · ");
+    window.write(words.faults.find, "eb_relay");
+    window.until("only the relay", |window| {
+        !window.shows_part("TWC antenna · ")
+    });
+    assert!(!window.enabled(said.save_question));
+    window.write(said.question_name, "relays");
+    window.click(said.save_question);
+    window.wait_for(said.forget_question);
+    window.write_over(words.faults.find, "antenna");
+    window.wait_for_part("TWC antenna · ");
+    window.click_last(said.questions);
+    window.click("relays");
+    window.until("only the relay", |window| {
+        !window.shows_part("TWC antenna · ")
+    });
+    let text = serde_json::to_string(window.app().settings()).expect("text");
+    let kept: Settings = serde_json::from_str(&text).expect("settings");
+    assert_eq!(kept.faults.len(), 1);
+    window.click(said.forget_question);
+    window.wait_for(said.question_name);
+    assert!(window.app().settings().faults.is_empty());
+}
+
 #[test]
 fn an_empty_history_says_so() {
     let mut window = window(Place::new(), Language::English);

@@ -41,6 +41,11 @@ wordings! {
         nine_on_one_side: "Nine or more on one side of the mean: {n}", "평균의 한쪽에 9개 이상 연속 {n}회";
         six_in_a_row: "Six or more rising or falling in a row: {n}", "6개 이상 연속 증가 또는 감소 {n}회";
         forecast: "Reaches its limit of {limit} {unit} on {day}", "{day}에 허용값 {limit} {unit}에 도달할 것으로 예상";
+        questions: "saved questions", "저장한 조건";
+        no_question: "none", "없음";
+        question_name: "name", "이름";
+        save_question: "Save this question", "이 조건 저장";
+        forget_question: "Forget it", "저장한 조건 삭제";
         chart_of: "values over time: {n}", "시간에 따른 값 {n}개";
     }
 }

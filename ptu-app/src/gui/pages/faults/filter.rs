@@ -3,6 +3,7 @@
 use fault_db::{DailyCount, FaultState, FaultSummary};
 
 use crate::gui::page_context::FaultsOf;
+use crate::gui::settings::FaultsQuestion;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
@@ -18,6 +19,29 @@ pub struct Filter {
 }
 
 impl Filter {
+    /// As it is saved; what a bar of the statistics stands for is not.
+    pub fn question(&self) -> FaultsQuestion {
+        FaultsQuestion {
+            unit: self.unit.clone(),
+            part: self.lru.clone(),
+            state: self.state.map(|state| state.to_string()),
+            days: self.days,
+            text: self.text.clone(),
+        }
+    }
+
+    /// As it was saved.
+    pub fn asked(question: FaultsQuestion) -> Self {
+        Self {
+            unit: question.unit,
+            lru: question.part,
+            state: question.state.and_then(|state| state.parse().ok()),
+            days: question.days,
+            text: question.text,
+            of_bar: FaultsOf::default(),
+        }
+    }
+
     /// Whether a fault is shown.
     pub fn takes(&self, fault: &FaultSummary) -> bool {
         let text = self.text.trim().to_lowercase();

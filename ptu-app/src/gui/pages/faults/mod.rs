@@ -12,7 +12,7 @@ use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
 use crate::gui::page_context::FaultsOf;
 use crate::gui::parts::look_back::since_us;
-use crate::gui::parts::{FirstHalf, MemoryReader, UnitFilter};
+use crate::gui::parts::{FirstHalf, MemoryReader, UnitFilter, saved_questions};
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
@@ -42,6 +42,8 @@ struct History {
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
+    /// Name for a question, as it is typed.
+    question: String,
     units: UnitFilter,
     history: CachedResponse<History>,
     /// What the history was asked for with: days, and its version.
@@ -139,6 +141,13 @@ impl FaultsPage {
         match self.history.get() {
             Request::Ready(history) => {
                 list::filters(ui, words, &mut self.filter, history);
+                ui.horizontal_wrapped(|ui| {
+                    let saved = (&mut context.settings.faults, &mut self.question);
+                    let now = self.filter.question();
+                    if let Some(asked) = saved_questions(ui, words, saved, &now) {
+                        self.filter = Filter::asked(asked);
+                    }
+                });
                 ui.horizontal_wrapped(|ui| {
                     self.units.show(ui, context);
                     list::of_bar(ui, words, &mut self.filter, &history.parts);

@@ -48,6 +48,16 @@ pub struct ControlChart {
 }
 
 impl ControlChart {
+    /// The measurement and the step that were chosen.
+    pub fn chosen(&self) -> (Option<String>, Option<(String, String)>) {
+        (self.of.measurement.clone(), self.of.step.clone())
+    }
+
+    /// Chooses a measurement and a step.
+    pub fn choose(&mut self, measurement: Option<String>, step: Option<(String, String)>) {
+        self.of = Measured { measurement, step };
+    }
+
     /// Asks again when the data or what is asked for are others.
     pub fn keep_up(&mut self, asked: Asked, context: &PageContext<'_>) {
         let wanted = (self.of.clone(), asked.clone(), context.data_version());

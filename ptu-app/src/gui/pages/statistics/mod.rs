@@ -10,8 +10,9 @@ use eframe::egui::{RichText, ScrollArea, Ui};
 
 use crate::gui::page_context::{Destination, FaultsOf};
 use crate::gui::parts::bars::{Bar, Chart};
-use crate::gui::parts::{UnitFilter, look_back};
+use crate::gui::parts::{UnitFilter, look_back, saved_questions};
 use crate::gui::request::{CachedResponse, Request};
+use crate::gui::settings::StatisticsQuestion;
 use crate::gui::{PageContext, Palette};
 use counted::{Asked, Counted};
 use ptu_report::words::{Words, fill};
@@ -31,6 +32,8 @@ pub struct StatisticsPage {
     asked: Option<(Asked, (usize, u64))>,
     life: life::LifeView,
     control: control::ControlChart,
+    /// Name for a question, as it is typed.
+    question: String,
 }
 
 impl StatisticsPage {
@@ -41,6 +44,7 @@ impl StatisticsPage {
             self.units.show(ui, context);
             self.life.search(ui, words);
         });
+        ui.horizontal_wrapped(|ui| self.questions(ui, context));
         if self.life.show(ui, context) {
             return;
         }
@@ -66,6 +70,21 @@ impl StatisticsPage {
             Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
             }
+        }
+    }
+
+    /// Questions that were given a name.
+    fn questions(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let (measurement, step) = self.control.chosen();
+        let now = StatisticsQuestion {
+            days: self.days,
+            measurement,
+            step,
+        };
+        let saved = (&mut context.settings.statistics, &mut self.question);
+        if let Some(asked) = saved_questions(ui, context.words, saved, &now) {
+            self.days = asked.days;
+            self.control.choose(asked.measurement, asked.step);
         }
     }
 
