@@ -114,7 +114,7 @@ fn a_server_that_cannot_be_used_is_named_with_the_exit_code_of_the_contract() {
             "needs a database file",
         ),
         (&["db", "check", "--db", &away], 3, "nothing listens there"),
-        (&["gui", "--db", &away], 2, "needs a database file"),
+        (&["gui", "--db", &away], 3, "nothing listens there"),
     ] {
         place.ptu(arguments).exits(code).explains(&[words]);
     }

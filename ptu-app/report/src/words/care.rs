@@ -10,7 +10,7 @@ wordings! {
         title: "History", "이력 관리";
         file: "history file", "이력 파일";
         server: "server", "서버";
-        address_hint: "postgres://USER@HOST/DATABASE; a password is kept in the password file of PostgreSQL", "postgres://사용자@호스트/데이터베이스. 비밀번호는 PostgreSQL 비밀번호 파일에 둡니다";
+        address_hint: "postgres://USER@HOST/DATABASE; a password is kept in the password file of PostgreSQL", "postgres://USER@HOST/DATABASE. 비밀번호는 PostgreSQL 비밀번호 파일에 둡니다";
         never_synced: "not synced with a server yet", "서버와 동기화한 적 없음";
         last_synced: "last synced {at} with {server}; entries that wait: {n}", "최근 동기화 {at}, 서버 {server}. 대기 중인 기록 {n}건";
         sync: "Sync", "동기화";
