@@ -191,6 +191,7 @@ impl App {
             context.set_theme(theme);
         }
         context.set_zoom_factor(self.settings.zoom);
+        self.settings.density.keep(context);
     }
 
     /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.

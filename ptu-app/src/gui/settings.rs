@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
-use super::Page;
+use super::{Density, Page};
 use ptu_bench::clock;
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;
@@ -28,6 +28,9 @@ pub struct Settings {
     pub language: Language,
     /// Dark window, as in a dark cab.
     pub dark: bool,
+    /// Who the window is laid out for; one that was used before stays as it was.
+    #[serde(default = "Density::as_before")]
+    pub density: Density,
     /// Size of everything, 1 = as the desktop has it.
     pub zoom: f32,
     /// Size of the window, points.
@@ -53,6 +56,7 @@ impl Default for Settings {
         Self {
             language: Language::default(),
             dark: true,
+            density: Density::default(),
             zoom: 1.0,
             window_size: None,
             page: Page::default(),
@@ -125,6 +129,8 @@ mod tests {
         };
         yesterday.save(&file).expect("saved");
         assert_eq!(Settings::load(&file).operator, "", "asked for again");
+        std::fs::write(&file, "{\"zoom\":1.25}").expect("one of before");
+        assert_eq!(Settings::load(&file).density, Density::Engineer);
         std::fs::write(&file, "{\"zoom\":").expect("damaged");
         assert_eq!(Settings::load(&file), Settings::default());
     }

@@ -16,6 +16,10 @@ wordings! {
         disarmed: "disarmed", "시험 허가 해제됨";
         stop_all: "Stop all", "전체 정지";
         language: "language", "언어";
+        operator: "operator view", "시험자 화면";
+        operator_hint: "Large text and buttons on the page of a case and around it", "정비 작업 화면의 글자와 단추를 크게";
+        engineer: "engineer view", "기술자 화면";
+        engineer_hint: "As much as there is room for on the page of a case and around it", "정비 작업 화면에 더 많은 내용 표시";
         dark: "dark", "어둡게";
         light: "light", "밝게";
         scale: "size", "크기";

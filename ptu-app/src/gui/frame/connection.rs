@@ -8,7 +8,7 @@ use protocol::signal::{Sample, Signal};
 use super::keys::STOP_ALL;
 use super::setup::Setup;
 use crate::gui::parts::{ActionPlace, chip};
-use crate::gui::{Page, PageContext, Palette};
+use crate::gui::{Page, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{self, Words, fill};
 
@@ -284,7 +284,7 @@ fn stop_button(ui: &mut Ui, context: &mut PageContext<'_>) {
     let text = RichText::new(context.words.frame.stop_all)
         .color(Color32::WHITE)
         .strong()
-        .size(16.0);
+        .size(Sizes::of(ui).body.max(16.0));
     let button = Button::new(text)
         .fill(palette.armed)
         .shortcut_text(RichText::new(STOP_ALL.name()).color(Color32::WHITE));

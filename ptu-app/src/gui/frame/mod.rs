@@ -9,7 +9,7 @@ mod setup;
 
 use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
-use super::{PageContext, Palette};
+use super::{PageContext, Palette, Sizes};
 use about::About;
 use ptu_report::words::Words;
 use setup::Setup;
@@ -29,16 +29,19 @@ impl Frame {
     }
 
     pub fn connection(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
         connection::bar(ui, context, &mut self.setup);
     }
 
     pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
         navigation::bar(ui, context, &mut self.about);
     }
 
     /// The latest message, and all of them.
     pub fn messages(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.undo.poll(context);
+        Sizes::of(ui).set(ui);
         messages::bar(ui, context, &mut self.undo);
     }
 

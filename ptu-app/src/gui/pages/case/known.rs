@@ -3,9 +3,8 @@
 use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
 
-use super::TEXT;
 use crate::gui::request::CachedResponse;
-use crate::gui::{DataPaths, PageContext, Palette};
+use crate::gui::{DataPaths, PageContext, Palette, Sizes};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
@@ -97,7 +96,7 @@ fn lines(ui: &mut Ui, title: &str, lines: impl ExactSizeIterator<Item = String>)
     if lines.len() == 0 {
         return;
     }
-    ui.label(RichText::new(title).size(TEXT).strong());
+    ui.label(RichText::new(title).size(Sizes::of(ui).text).strong());
     for line in lines.take(SHOWN) {
         ui.label(line);
     }

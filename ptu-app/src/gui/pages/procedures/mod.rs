@@ -321,7 +321,7 @@ impl ProceduresPage {
         let suite = self.suite.value();
         let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
         let texts = texts.map(|suite| &suite.texts);
-        let answer = present::present(ui, words, run, texts);
+        let answer = present::present(ui, words, run, texts, true);
         let note = (&mut self.note, context.settings.operator.as_str());
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
         // It comes later: below what is written and clicked meanwhile, and in a place kept for it.

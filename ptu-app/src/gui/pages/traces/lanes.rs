@@ -61,7 +61,7 @@ impl LaneColumns {
         Rect::from_x_y_ranges(right - VALUE + 6.0..=right - 2.0, beside.y_range())
     }
 
-    fn of(ui: &Ui, all: Rect, values: usize) -> Self {
+    pub fn of(ui: &Ui, all: Rect, values: usize) -> Self {
         let scroll = &ui.spacing().scroll;
         let end = all.right() - scroll.bar_width - scroll.bar_outer_margin - 2.0;
         let left = all.left() + NAMES + TICKS;
