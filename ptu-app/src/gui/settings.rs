@@ -41,6 +41,8 @@ pub struct Settings {
     pub operator: String,
     /// When the name was written, µs since 1970; 0 = not known.
     pub operator_at_us: i64,
+    /// Nothing is begun, armed or written until somebody gives a name.
+    pub locked: bool,
     /// Where units are brought to; it stands on the sheet of a case.
     pub depot: String,
     /// The unit connected last.
@@ -62,6 +64,7 @@ impl Default for Settings {
             page: Page::default(),
             operator: String::new(),
             operator_at_us: 0,
+            locked: false,
             depot: String::new(),
             unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
@@ -94,6 +97,12 @@ impl Settings {
         if !(0..SHIFT_US).contains(&since_us) {
             self.operator.clear();
         }
+    }
+
+    /// Who worked here has gone: somebody else is to give a name.
+    pub fn lock(&mut self) {
+        self.operator.clear();
+        self.locked = true;
     }
 
     /// Keeps them in `file`, at once or not at all.

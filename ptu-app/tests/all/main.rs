@@ -27,6 +27,7 @@ mod history;
 mod history_page;
 mod layout;
 mod lock_step;
+mod locked_window;
 mod no_unit;
 mod on_ports;
 mod questions;

@@ -6,6 +6,7 @@ use protocol::message::Identity;
 use protocol::signal::{Sample, Signal};
 
 use super::keys::STOP_ALL;
+use super::lock::only_look;
 use super::setup::Setup;
 use crate::gui::parts::{ActionPlace, chip};
 use crate::gui::{Page, PageContext, Palette, Sizes};
@@ -21,6 +22,9 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
         context,
         |ui, context| {
             stop_button(ui, context);
+            if context.settings.locked {
+                only_look(ui);
+            }
             arming(ui, context);
         },
         |ui, context| {

@@ -3,6 +3,7 @@
 mod about;
 mod connection;
 mod keys;
+mod lock;
 mod messages;
 mod navigation;
 mod setup;
@@ -11,6 +12,7 @@ use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
 use super::{PageContext, Palette, Sizes};
 use about::About;
+pub use lock::only_look;
 use ptu_report::words::Words;
 use setup::Setup;
 
@@ -36,6 +38,12 @@ impl Frame {
     pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         Sizes::of(ui).set(ui);
         navigation::bar(ui, context, &mut self.about);
+    }
+
+    /// What a locked window says, and the name that opens it.
+    pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
+        lock::bar(ui, context);
     }
 
     /// The latest message, and all of them.

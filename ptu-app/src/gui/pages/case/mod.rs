@@ -160,8 +160,8 @@ impl CasePage {
         None
     }
 
-    /// The stages with the present one marked, and the way to a new case.
-    fn way(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
+    /// The stages with the present one marked, the way to a new case, and the lock of the window.
+    fn way(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let palette = Palette::of(ui);
         ui.horizontal_wrapped(|ui| {
             for (place, stage) in (1..).zip(Stage::ALL) {
@@ -181,6 +181,10 @@ impl CasePage {
             );
             if place.clicked(&new) {
                 self.begin(unit);
+            }
+            let lock = ui.button(context.words.frame.lock);
+            if place.clicked(&lock.on_hover_text(context.words.frame.lock_hint)) {
+                context.settings.lock();
             }
         });
     }

@@ -28,8 +28,9 @@ pub struct Proof {
 
 impl Proof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        let locked = context.settings.locked;
         let unit = context.units.chosen_mut();
-        if self.reconnects && unit.phase() == Phase::Offline {
+        if self.reconnects && !locked && unit.phase() == Phase::Offline {
             self.reconnects = false;
             unit.connect(context.queries);
         }

@@ -156,8 +156,8 @@ impl ProceduresPage {
 
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.stops != context.units.stops() {
-            // Nothing begins by itself after everything was stopped.
+        if self.stops != context.units.stops() || context.settings.locked {
+            // Nothing begins by itself after everything was stopped, nor while nobody has given a name.
             self.stops = context.units.stops();
             self.orders.clear();
             self.wanted = None;
