@@ -82,9 +82,9 @@ impl SmallTrace {
         lane::grid(&ui.painter_at(all), middle, scene.window(), &palette);
         let sheet = sheet(places);
         let mut top = all.top();
-        for (number, (lane, height)) in scene.lanes().iter().zip(heights).enumerate() {
+        for (group, height) in scene.groups().into_iter().zip(heights) {
             let row = Rect::from_x_y_ranges(all.x_range(), top..=top + height + GAP);
-            sheet.lane(ui, number, lane, row, &mut self.scratch);
+            sheet.group(ui, group, row, &mut self.scratch);
             top = row.bottom();
         }
         let trigger = lane::x_at(middle, scene.window(), 0.0);
