@@ -103,26 +103,27 @@ impl Recorder {
             .then(|| self.close(false))?
     }
 
-    /// Fault number `fault` happened now, in a step that began at `step_began`. Inside an open
-    /// window it extends and shares that; returns the window it ends.
+    /// Fault number `fault` happened now, or what is to be kept without one, in a step that began at `step_began`. Inside an
+    /// open window it extends and shares that; returns the window it ends.
     pub fn trigger(
         &mut self,
         now: Instant,
         step_began: Instant,
-        fault: usize,
+        fault: impl Into<Option<usize>>,
     ) -> Option<RecordedWindow> {
+        let fault = fault.into();
         let until = now + AFTER;
         if let Some(open) = &mut self.open
             && until.since(open.from) <= LONGEST_WINDOW
         {
             open.until = until;
-            open.faults.push(fault);
+            open.faults.extend(fault);
             return None;
         }
         let done = self.close(true);
         let earliest = now.back(LONGEST_BEFORE);
         self.open = Some(Open {
-            faults: vec![fault],
+            faults: fault.into_iter().collect(),
             from: now.back(BEFORE).min(step_began.max(earliest)),
             trigger: now,
             until,

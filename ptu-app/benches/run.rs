@@ -44,7 +44,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         procedure,
         options: RunOptions::default(),
     };
-    let plan = RunPlan {
+    let mut plan = RunPlan {
         tasks: loaded
             .procedures
             .into_iter()
@@ -62,7 +62,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();
-    let (store, outcome) = run::run(&plan, setup.clone(), store, &stop, &mut ()).expect("run");
+    let (store, outcome) = run::run(&mut plan, setup.clone(), store, &stop, &mut ()).expect("run");
     store.close().expect("close");
     outcome
 }

@@ -5,6 +5,8 @@
 //! way. Steps after it may fail because it did, and what the unit logs fails any step. All else is a finding, about the
 //! file or about the unit; the file lists those that are understood.
 
+mod chain;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -19,6 +21,7 @@ use serde::Deserialize;
 
 use crate::data::{ScriptsDirectory, read};
 use crate::failure::Failure;
+pub use chain::{Chain, Link, Made};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "units/structure.toml";
@@ -80,6 +83,10 @@ pub struct OffWay {
 pub struct Structure {
     signals: BTreeMap<Signal, BTreeSet<LruId>>,
     events: BTreeMap<Event, BTreeSet<LruId>>,
+    /// As it is written: what each is made of, and by which parts.
+    steps: BTreeMap<Signal, WayStep>,
+    event_steps: BTreeMap<Event, WayStep>,
+    everywhere: Vec<LruId>,
     on_the_train: Vec<LruId>,
     /// What fails off the way, and why.
     pub known_off_way: Vec<KnownOffWay>,
@@ -110,11 +117,9 @@ impl Structure {
         let mut steps = BTreeMap::new();
         let mut events = Vec::new();
         for way in &written.ways {
-            let parts = way.parts.iter().chain(&written.everywhere);
-            let from = all(&way.from, signal)?;
             let made = WayStep {
-                parts: parts.cloned().collect(),
-                from,
+                parts: way.parts.clone(),
+                from: all(&way.from, signal)?,
             };
             for signal in all(&way.signals, signal)? {
                 if steps.insert(signal, made.clone()).is_some() {
@@ -131,13 +136,16 @@ impl Structure {
         }
         let of_signals = steps
             .iter()
-            .map(|(signal, step)| (*signal, upstream(step, &steps)));
+            .map(|(signal, step)| (*signal, upstream(step, &steps, &written.everywhere)));
         let of_events = events
             .iter()
-            .map(|(event, step)| (*event, upstream(step, &steps)));
+            .map(|(event, step)| (*event, upstream(step, &steps, &written.everywhere)));
         Ok(Self {
             signals: of_signals.collect(),
             events: of_events.collect(),
+            steps,
+            event_steps: events.into_iter().collect(),
+            everywhere: written.everywhere,
             on_the_train: written.on_the_train,
             known_off_way: written.off_way,
         })
@@ -211,13 +219,17 @@ impl Structure {
 /// One step of a way: the parts that make a signal, and what they make it of.
 #[derive(Clone, Debug)]
 struct WayStep {
-    parts: BTreeSet<LruId>,
+    parts: Vec<LruId>,
     from: Vec<Signal>,
 }
 
-/// All parts up to the sensors, whatever turns the ways take.
-fn upstream(last: &WayStep, steps: &BTreeMap<Signal, WayStep>) -> BTreeSet<LruId> {
-    let mut parts = last.parts.clone();
+/// All parts up to the sensors, whatever turns the ways take, and those that are everywhere.
+fn upstream(
+    last: &WayStep,
+    steps: &BTreeMap<Signal, WayStep>,
+    everywhere: &[LruId],
+) -> BTreeSet<LruId> {
+    let mut parts: BTreeSet<_> = last.parts.iter().chain(everywhere).cloned().collect();
     let (mut seen, mut ahead) = (BTreeSet::new(), last.from.clone());
     while let Some(signal) = ahead.pop() {
         if let Some(step) = steps.get(&signal).filter(|_| seen.insert(signal)) {

@@ -87,6 +87,14 @@ pub fn measurement(name: &str, words: &Words) -> String {
     spoken(name)
 }
 
+/// What a signal is called.
+pub fn signal(name: &str, words: &Words) -> String {
+    match words.language {
+        Language::English => spoken(name),
+        Language::Korean => words.signal(name).into_owned(),
+    }
+}
+
 /// An identifier as words.
 pub(crate) fn spoken(name: &str) -> String {
     let word = |word: &str| match CAPITALS.contains(&word) {

@@ -7,7 +7,7 @@ use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
 
 use super::data_paths::DataPaths;
 use super::data_watch::DataWatch;
-use super::frame::Frame;
+use super::frame::{Frame, only_look};
 use super::messages::{About, Messages};
 use super::page::Page;
 use super::page_context::Destination;
@@ -103,6 +103,7 @@ impl App {
     pub fn show(&mut self, ui: &mut Ui) {
         self.follow_operator();
         let words = self.settings.language.words();
+        self.units.lock(self.settings.locked);
         self.units.poll(words, &mut self.messages);
         self.tell_if_gone(words);
         self.apply_settings(ui.ctx());
@@ -121,9 +122,17 @@ impl App {
         Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut page_context));
         Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut page_context));
         Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut page_context));
+        if page_context.settings.locked {
+            Panel::top("locked").show(ui, |ui| self.frame.locked(ui, &mut page_context));
+        }
         let page = page_context.settings.page;
         page_context.units.watch(page == Page::Bench);
-        CentralPanel::default().show(ui, |ui| self.pages.show(page, ui, &mut page_context));
+        CentralPanel::default().show(ui, |ui| {
+            if page_context.settings.locked {
+                only_look(ui);
+            }
+            self.pages.show(page, ui, &mut page_context);
+        });
         if self.closing {
             let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
@@ -196,6 +205,7 @@ impl App {
             context.set_theme(theme);
         }
         context.set_zoom_factor(self.settings.zoom);
+        self.settings.density.keep(context);
     }
 
     /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.

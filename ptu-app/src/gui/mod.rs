@@ -6,6 +6,7 @@
 mod app;
 mod data_paths;
 mod data_watch;
+mod density;
 mod display;
 mod fonts;
 mod frame;
@@ -22,6 +23,8 @@ mod units;
 
 pub use app::{App, Options};
 pub use data_paths::DataPaths;
+pub use density::Density;
+pub(crate) use density::Sizes;
 pub use display::open;
 pub(crate) use messages::Messages;
 pub use page::Page;

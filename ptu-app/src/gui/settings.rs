@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
-use super::{Page, SavedQuestion};
+use super::{Density, Page, SavedQuestion};
 use ptu_bench::clock;
 use ptu_bench::data::LONGEST_FILE;
 use ptu_bench::failure::Failure;
@@ -28,6 +28,9 @@ pub struct Settings {
     pub language: Language,
     /// Dark window, as in a dark cab.
     pub dark: bool,
+    /// Who the window is laid out for; one that was used before stays as it was.
+    #[serde(default = "Density::as_before")]
+    pub density: Density,
     /// Size of everything, 1 = as the desktop has it.
     pub zoom: f32,
     /// Size of the window, points.
@@ -38,6 +41,8 @@ pub struct Settings {
     pub operator: String,
     /// When the name was written, µs since 1970; 0 = not known.
     pub operator_at_us: i64,
+    /// Nothing is begun, armed or written until somebody gives a name.
+    pub locked: bool,
     /// Where units are brought to; it stands on the sheet of a case.
     pub depot: String,
     /// The server synced with last.
@@ -87,11 +92,13 @@ impl Default for Settings {
         Self {
             language: Language::default(),
             dark: true,
+            density: Density::default(),
             zoom: 1.0,
             window_size: None,
             page: Page::default(),
             operator: String::new(),
             operator_at_us: 0,
+            locked: false,
             depot: String::new(),
             server: String::new(),
             unit: BenchChoice::default(),
@@ -129,6 +136,12 @@ impl Settings {
         }
     }
 
+    /// Who worked here has gone: somebody else is to give a name.
+    pub fn lock(&mut self) {
+        self.operator.clear();
+        self.locked = true;
+    }
+
     /// Keeps them in `file`, at once or not at all.
     ///
     /// # Errors
@@ -162,6 +175,8 @@ mod tests {
         };
         yesterday.save(&file).expect("saved");
         assert_eq!(Settings::load(&file).operator, "", "asked for again");
+        std::fs::write(&file, "{\"zoom\":1.25}").expect("one of before");
+        assert_eq!(Settings::load(&file).density, Density::Engineer);
         std::fs::write(&file, "{\"zoom\":").expect("damaged");
         assert_eq!(Settings::load(&file), Settings::default());
     }

@@ -3,9 +3,9 @@
 use crate::common::Place;
 use crate::common::window::{Window, latest, settings};
 use crate::common::{list, record_bad_unit, scripts, text};
-use crate::layout::complaints;
+use crate::layout::{complaints, complaints_of};
 use eframe::egui::{Event, Key};
-use ptu_app::gui::{Page, Settings};
+use ptu_app::gui::{Density, Page, Settings};
 use ptu_report::words::{Language, Words, fill};
 
 /// Where the unit of these cases is brought to.
@@ -21,6 +21,8 @@ const CLICKS: usize = 10;
 struct Counted {
     window: Window,
     clicks: usize,
+    /// What can be clicked is to be so high, points.
+    lowest: f32,
     /// What could not be read or clicked on the way.
     wrong: Vec<String>,
 }
@@ -33,16 +35,17 @@ impl Counted {
 
     /// Looks at the page as a person would who reads it.
     fn look(&mut self, stage: &str) {
-        let found = complaints(&mut self.window).into_iter();
+        let found = complaints_of(&mut self.window, self.lowest).into_iter();
         self.wrong
             .extend(found.map(|said| format!("{stage}: {said}")));
     }
 }
 
 /// A window on the case page, small or as a laptop has it, and an embedded unit with these faults.
-fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
+fn window(language: Language, size: [f32; 2], density: Density, faults: &str) -> Counted {
     let mut settings = Settings {
         language,
+        density,
         operator: "Kim".into(),
         depot: DEPOT.into(),
         ..settings(Page::Case)
@@ -56,20 +59,26 @@ fn window(language: Language, size: [f32; 2], faults: &str) -> Counted {
     Counted {
         window,
         clicks: 0,
+        lowest: match density {
+            // An operator's sizes are those of a window of this width.
+            Density::Operator if size[0] >= 1280.0 => 48.0,
+            Density::Operator => 38.0,
+            Density::Engineer => 24.0,
+        },
         wrong: Vec::new(),
     }
 }
 
 /// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was
 /// done. Method: a slow EB relay, in both languages, on both sizes of a depot's laptop.
-fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
+fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Density) {
     let words: &Words = language.words();
     let case = &words.case;
     let relay = match language {
         Language::English => "EB relay",
         Language::Korean => "비상제동 계전기",
     };
-    let mut counted = window(language, size, "eb_relay.slow");
+    let mut counted = window(language, size, density, "eb_relay.slow");
     counted.look("start");
     counted.click(words.frame.connect);
     counted.window.wait_for("SIM-0001");
@@ -79,7 +88,22 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.click(case.find_part);
     counted.window.wait_for(case.record_repair);
     counted.window.wait_for_part("eb_relay");
+    // Where the part is on the way of the signal, and what a good unit did.
+    let suspected = format!("{relay} · ");
+    counted.window.until("the marked part", |window| {
+        let shown = window.shown().into_iter();
+        shown
+            .filter(|said| said.starts_with(&suspected))
+            .any(|said| said.ends_with(case.suspected))
+    });
+    counted.window.wait_for(case.beside_twin);
     counted.look("result");
+    let path = counted.window.shows_part("atp/power_up: ");
+    assert_eq!(
+        path,
+        density == Density::Engineer,
+        "an operator reads no paths"
+    );
     let found = latest(&counted.window);
     assert_eq!(found["run"]["symptom"], "brakes_late");
     counted.click(case.record_repair);
@@ -98,7 +122,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
     counted.window.wait_for(words.report.write_pdf);
     counted.look("sheet");
     // What was said when the unit was brought, beside the check that found the part; a small screen shows less at once.
-    if language == Language::English {
+    if language == Language::English && size[0] >= 1280.0 {
         for said in [DEPOT, "Brakes late or not at all", "Found by"] {
             counted.window.wait_for(said);
         }
@@ -136,12 +160,22 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2]) {
 
 #[test]
 fn a_case_takes_ten_clicks_in_english() {
-    from_symptom_to_signed_sheet(Language::English, [1280.0, 800.0]);
+    from_symptom_to_signed_sheet(Language::English, [1280.0, 800.0], Density::Operator);
+}
+
+#[test]
+fn a_case_takes_an_engineer_ten_clicks_too() {
+    from_symptom_to_signed_sheet(Language::English, [900.0, 600.0], Density::Engineer);
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_korean() {
+    from_symptom_to_signed_sheet(Language::Korean, [1280.0, 800.0], Density::Operator);
 }
 
 #[test]
 fn a_case_takes_ten_clicks_in_korean_on_a_small_screen() {
-    from_symptom_to_signed_sheet(Language::Korean, [900.0, 600.0]);
+    from_symptom_to_signed_sheet(Language::Korean, [900.0, 600.0], Density::Operator);
 }
 
 /// Goal: a repair that did not help is found out. Method: the part that was found is changed, and a second fault is still
@@ -152,6 +186,7 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     let mut counted = window(
         Language::English,
         [1280.0, 800.0],
+        Density::Operator,
         "eb_relay.slow,fsb_output.dead",
     );
     counted.click("Connect");

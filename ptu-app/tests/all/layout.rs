@@ -100,6 +100,11 @@ fn armed(window: &mut Window, words: &Words) {
 
 /// What of the last frame cannot be read or clicked.
 pub fn complaints(window: &mut Window) -> Vec<String> {
+    complaints_of(window, LOWEST)
+}
+
+/// The same where all that can be clicked is to be so high, points.
+pub fn complaints_of(window: &mut Window, lowest: f32) -> Vec<String> {
     window.step();
     let harness = window.harness();
     let known: BTreeMap<u64, (Role, String)> = harness
@@ -141,7 +146,7 @@ pub fn complaints(window: &mut Window) -> Vec<String> {
         })
         .collect();
     for (place, input) in inputs.iter().enumerate() {
-        wrong.extend(input.misplaced(screen, &bars));
+        wrong.extend(input.misplaced(screen, &bars, lowest));
         for other in inputs.iter().skip(place + 1) {
             let both = input
                 .widget
@@ -175,10 +180,10 @@ struct Input<'a> {
 }
 
 impl Input<'_> {
-    fn misplaced(&self, screen: Rect, bars: &[Rect]) -> Option<String> {
+    fn misplaced(&self, screen: Rect, bars: &[Rect], lowest: f32) -> Option<String> {
         let rect = self.widget.rect;
         let seen = self.widget.interact_rect.intersect(screen);
-        let what = if rect.height() < LOWEST - 0.1 {
+        let what = if rect.height() < lowest - 0.1 {
             format!("is {} high", rect.height())
         } else if seen.width() < rect.width() - SLACK && !scrolls_sideways(seen, bars) {
             format!("is cut at its side: {rect} seen {seen}")

@@ -29,6 +29,7 @@ mod history_page;
 mod layout;
 mod life;
 mod lock_step;
+mod locked_window;
 mod no_unit;
 mod on_ports;
 mod questions;

@@ -108,6 +108,21 @@ fn the_sheet_of_a_proved_case_has_part_values_runs_and_verdict_on_its_first_page
         assert!(first.contains(word), "not on page 1: {word}");
     }
 
+    // The trace of the step that failed stands beside that of the same step that passed.
+    let traced = runs.iter().map(|run| {
+        let run = store.resolve_run(run).expect("the run");
+        let traces = store.traces(run).expect("traces");
+        let on_sheet = traces
+            .iter()
+            .filter(|trace| said.contains(&format!("(신호 기록 {})", trace.id.short())));
+        on_sheet
+            .map(|trace| trace.occurrences > 0)
+            .collect::<Vec<_>>()
+    });
+    let mut traced: Vec<_> = traced.collect();
+    traced.sort();
+    assert_eq!(traced, [[false], [true]], "one of each run");
+
     let case = place.read_json("case.json");
     assert_eq!(text(&case["repair_is"]), "proved");
     let slow = list(&case["compared"]).iter().find(|one| {

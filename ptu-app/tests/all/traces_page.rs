@@ -209,3 +209,57 @@ fn a_database_that_is_none_is_told_and_the_window_stays() {
     window.click("refresh");
     window.wait_for_part("The traces cannot be listed");
 }
+
+/// Goal: two speeds can be read off one axis, and a stretch is looked at and left again. Method: the limit is put into the
+/// lane of the speed, which is kept; a drag with the right button, and back.
+#[test]
+fn signals_share_a_lane_and_a_stretch_is_zoomed_to_and_left() {
+    use eframe::egui::{Event, Modifiers, PointerButton, pos2};
+    use egui_kittest::kittest::{NodeT, Queryable};
+    let lanes = ["speed", "limit", "eb"].map(str::to_owned).to_vec();
+    let mut window = window(Settings {
+        lanes,
+        ..Settings::default()
+    });
+    window.wait_for("0.00 s trigger");
+    window.click("Signals");
+    let join = "in one lane with the signal above: limit";
+    window.click(join);
+    window.step();
+    let joined = window.harness().get_by_label(join);
+    let joined = joined.accesskit_node().toggled();
+    assert!(format!("{joined:?}").contains("True"), "{joined:?}");
+    assert!(!window.shows("in one lane with the signal above: eb"));
+    let field = "file name, without its ending";
+    let (heads, rows) = csv(&mut window, "Save CSV", field);
+    assert_eq!(heads[..3], ["time_s", "speed_kmh", "limit_kmh"]);
+
+    assert!(!window.enabled("Zoom back"));
+    let rect = window.harness().get_by_label("lanes").rect();
+    let at = |share: f32| pos2(rect.left() + share * rect.width(), rect.center().y);
+    let button = |share, pressed| Event::PointerButton {
+        pos: at(share),
+        button: PointerButton::Secondary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    for events in [
+        vec![Event::PointerMoved(at(0.4)), button(0.4, true)],
+        vec![Event::PointerMoved(at(0.5))],
+        vec![Event::PointerMoved(at(0.6))],
+        vec![button(0.6, false)],
+    ] {
+        window.harness().input_mut().events.extend(events);
+        window.step();
+    }
+    let (_, part) = csv(&mut window, "Save CSV", field);
+    assert!(
+        part.len() < rows.len() / 3,
+        "{} of {}",
+        part.len(),
+        rows.len()
+    );
+    window.click("Zoom back");
+    let (_, again) = csv(&mut window, "Save CSV", field);
+    assert_eq!(again.len(), rows.len());
+}

@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// A person takes longer between two things that are meant, s.
 const MOMENT_S: f64 = 0.7;
 /// Height of the messages below every page, points.
-const MESSAGES: f32 = 32.0;
+const MESSAGES: f32 = 45.0;
 const STEP: Duration = Duration::from_millis(15);
 
 /// A window in a place of its own.

@@ -26,6 +26,8 @@ pub struct RunOptions {
     /// A step begins one scan after the one before it ended, not with it, so that
     /// [`Runner::leave`](super::Runner::leave) can come between.
     pub one_by_one: bool,
+    /// Places of steps of which a trace is kept though they pass.
+    pub traced: Vec<usize>,
 }
 
 impl Default for RunOptions {
@@ -36,6 +38,7 @@ impl Default for RunOptions {
             stop_on_fail: false,
             prompts: PromptPolicy::Refuse,
             one_by_one: false,
+            traced: Vec::new(),
         }
     }
 }

@@ -19,7 +19,8 @@ use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
 use crate::link::{Pace, keep_time};
 use crate::run::{
-    BenchSetup, Connected, Listener, READY_WITHIN, RunStart, Session, SessionEvent, run_on, settled,
+    BenchSetup, Connected, Listener, READY_WITHIN, RunStart, Session, SessionEvent, run_on,
+    settled, trace_repaired,
 };
 use crate::stop::Stop;
 
@@ -264,8 +265,13 @@ impl BenchThread {
         }
         let mut forwarder = EventForwarder(self);
         let began = RunStart::now();
-        let (plan, store) = (&order.plan, order.store);
-        let result = run_on(connected, &began, plan, setup, store, stop, &mut forwarder);
+        let RunOrder {
+            mut plan, store, ..
+        } = order;
+        let serial = connected.serial();
+        let traced = trace_repaired(&mut plan.tasks, &store, &serial);
+        let result = traced
+            .and_then(|()| run_on(connected, &began, &plan, setup, store, stop, &mut forwarder));
         let closed = result.and_then(|(store, outcome)| {
             store.close()?;
             Ok(outcome)

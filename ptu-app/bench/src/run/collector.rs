@@ -268,9 +268,12 @@ impl<'a> Collector<'a> {
             .map(|number| self.faults_before + number)
             .collect();
         let date = faults.first().and_then(|number| self.dates.get(*number));
-        trace.t0_us = date.map_or_else(clock::now_us, |(bench_us, at_us)| {
-            at_us - (bench_us - trace.t0_bench_us)
-        });
+        // Without a fault it is dated by its end, which is now.
+        let length_us = trace.period_us * cut.rows.len() as i64;
+        trace.t0_us = match date {
+            Some((bench_us, at_us)) => at_us - (bench_us - trace.t0_bench_us),
+            None => clock::now_us() - length_us,
+        };
         self.store.trace(faults, trace);
     }
 

@@ -305,7 +305,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
     let steps = "procedure(title = \"Long\", suspect = \"-\")\n\
         for n in range(2000):\n    step(\"%d: a name that takes some room on the disk\" % n)\n\
         step(\"waits\", do = [wait(s(600))])\n";
-    let plan = plan_of(&[steps]);
+    let mut plan = plan_of(&[steps]);
     let (folder, first) = store();
     first.close().expect("closed");
     let file = folder.path().join("history.db");
@@ -323,7 +323,7 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
         until: stop.clone(),
         at_most: slowly.clone(),
     };
-    let Err(failure) = run(&plan, setup, store, &stop, &mut busy) else {
+    let Err(failure) = run(&mut plan, setup, store, &stop, &mut busy) else {
         panic!("there is no room for it")
     };
     assert_eq!(failure.exit, Exit::Bench, "{}", failure.message);
@@ -377,8 +377,8 @@ fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     let stop = Stop::default();
     stop.press();
     let (folder, store) = store();
-    let plan = plan_of(&[PASSES]);
-    let Err(failure) = run(&plan, setup, store, &stop, &mut ()) else {
+    let mut plan = plan_of(&[PASSES]);
+    let Err(failure) = run(&mut plan, setup, store, &stop, &mut ()) else {
         panic!("there is no unit")
     };
     assert_eq!(failure.exit, Exit::Aborted, "{}", failure.message);

@@ -26,6 +26,7 @@ pub mod loading;
 mod observe;
 #[cfg(test)]
 mod on_train_tests;
+mod repaired;
 mod repetitions;
 #[cfg(test)]
 mod resume_tests;
@@ -60,6 +61,7 @@ pub use event::{RecordedStimuli, SessionEvent};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use observe::{ObservationBuilder, of_run};
+pub(crate) use repaired::trace_repaired;
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
 pub(crate) use trace_data::channel;
@@ -119,7 +121,7 @@ type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
 /// # Errors
 /// The unit cannot be reached or the database fails; what was recorded stays.
 pub fn run(
-    plan: &RunPlan,
+    plan: &mut RunPlan,
     setup: BenchSetup,
     store: Store,
     stop: &Stop,
@@ -127,6 +129,7 @@ pub fn run(
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
     let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
@@ -145,6 +148,7 @@ pub fn search(
     let began = RunStart::now();
     let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
     let connection = connected.connection();
+    trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
     plan.adaptive = Some(adaptive(&store, &connected.serial(), connection)?);
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }

@@ -186,7 +186,10 @@ fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
     match &trace.samples {
         Ok(samples) => {
             let faults = trace.faults.join(", ");
-            let mut head = fill(report.trace_of, &[("id", &id), ("faults", &faults)]);
+            let mut head = match trace.faults.is_empty() {
+                true => fill(report.trace_of_passed, &[("id", &id)]),
+                false => fill(report.trace_of, &[("id", &id), ("faults", &faults)]),
+            };
             if samples.partial {
                 head += &format!(" ({})", report.cut_short);
             }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fault_db::{Id, RunDetail, RunOccurrence, Store, Verdict};
+use fault_db::{Id, RunDetail, RunOccurrence, StepRecord, Store, StoreError, Verdict};
 
 use super::plots::drawn_channels;
 use super::{Sheet, SheetTrace};
@@ -24,7 +24,8 @@ impl Sheet {
     ) -> Result<Self, Failure> {
         let run = store.run(id, &process_id::is_alive)?;
         let occurrences = store.run_occurrences(id)?;
-        let all = traces(&run, &occurrences);
+        let mut all = traces(&run, &occurrences);
+        all.extend(of_passed_steps(store, &run)?);
         let more_traces = all.len().saturating_sub(Self::MOST_TRACES);
         let read = |(id, steps, faults): Traced| SheetTrace {
             samples: store
@@ -56,6 +57,35 @@ impl Sheet {
             run,
         })
     }
+}
+
+/// Traces that show no fault: of steps that passed and had failed before a repair. Each is triggered by the end of its step.
+fn of_passed_steps(store: &Store, run: &RunDetail) -> Result<Vec<Traced>, StoreError> {
+    let mut all = Vec::new();
+    for listed in store.traces(run.run.id)? {
+        if listed.occurrences > 0 {
+            continue;
+        }
+        let Ok(trace) = store.trace(listed.id) else {
+            continue;
+        };
+        let trigger = i64::from(trace.trigger_row.unwrap_or(0));
+        let at_us = trace.t0_bench_us + trigger * trace.period_us;
+        let begun = run
+            .steps
+            .iter()
+            .filter(|step| step.started_bench_us < at_us);
+        // The row of the trigger is that of the cycle in which the step ended.
+        let ended_us = |step: &StepRecord| step.started_bench_us + step.bench_time_us;
+        let of_step = begun.filter(|step| ended_us(step) <= at_us);
+        let step = of_step.max_by_key(|step| ended_us(step));
+        all.push((
+            listed.id,
+            step.map(|step| step.index).into_iter().collect(),
+            Vec::new(),
+        ));
+    }
+    Ok(all)
 }
 
 /// A trace, the steps it belongs to and the faults it shows.

@@ -32,7 +32,7 @@ pub use min_max_index::MinMaxIndex;
 pub use overlay::{FirstDifference, Overlay, OverlaySource};
 pub use runs::Runs;
 pub use spans::{Span, SpanKind};
-pub use trace_plot::{Cursor, Lane, OverlayTrace, TracePlot};
+pub use trace_plot::{Cursor, Lane, OverlayTrace, TracePlot, bare, toggled};
 pub use view::{Summary, TraceView};
 pub use visible_range::VisibleRange;
 

@@ -7,13 +7,16 @@ use super::listing::OpenTrace;
 use super::overlay::{FirstDifference, Overlay, OverlaySource};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
-use super::{Axis, Kind, VisibleRange, choose};
+use super::{Axis, Kind, VisibleRange, Window, choose};
 use crate::ticks;
 
 /// Fewest rows in view.
 const FEWEST_ROWS: f64 = 8.0;
 /// Least way in view, m.
 const LEAST_WAY_M: f64 = 0.5;
+
+/// Zooms that can be undone.
+const MOST_ZOOMS: usize = 50;
 
 /// A cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +36,24 @@ pub struct Lane {
     pub place: Option<usize>,
     /// Size it was given, 1 = as usual.
     pub stretch: f32,
+    /// It is to be drawn in the lane of the signal above it.
+    pub joined: bool,
+}
+
+/// Before the name of a signal that is to be drawn in the lane of the one above it, where signals are listed.
+const JOINED: char = '+';
+
+/// The signal of an entry of such a list.
+pub fn bare(entry: &str) -> &str {
+    entry.strip_prefix(JOINED).unwrap_or(entry)
+}
+
+/// The entry of the same signal in a lane of its own, or in that of the one above it.
+pub fn toggled(entry: &str) -> String {
+    match entry.strip_prefix(JOINED) {
+        Some(alone) => alone.to_owned(),
+        None => format!("{JOINED}{entry}"),
+    }
 }
 
 /// The trace that is drawn behind for comparison.
@@ -58,6 +79,8 @@ pub struct TracePlot {
     cursors: [Option<usize>; 2],
     close: bool,
     behind: Option<OverlayTrace>,
+    /// What was in view before each zoom, the latest last.
+    before: Vec<Window>,
     /// What is said of these rows, by lane; empty until asked for.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
@@ -74,6 +97,7 @@ impl TracePlot {
             cursors: [None; 2],
             close: false,
             behind: None,
+            before: Vec::new(),
             said: Default::default(),
         };
         scene.set_signals(signals);
@@ -101,7 +125,7 @@ impl TracePlot {
     }
 
     /// The part in view.
-    pub fn window(&self) -> super::Window {
+    pub fn window(&self) -> Window {
         self.camera.window()
     }
 
@@ -123,6 +147,7 @@ impl TracePlot {
         let Some(axis) = axis(&self.opened.view, kind, 0) else {
             return false;
         };
+        self.before.clear();
         let rows = self.rows_in_view();
         self.camera = camera(&axis, &self.opened.view);
         if rows.len() < self.axis.rows() && !rows.is_empty() {
@@ -145,21 +170,83 @@ impl TracePlot {
             signals
         };
         let known = std::mem::take(&mut self.lanes);
-        let lane = |signal: &String| Lane {
-            stretch: known
-                .iter()
-                .find(|lane| lane.signal == *signal)
-                .map_or(1.0, |lane| lane.stretch),
-            place: self.opened.view.place(signal),
-            signal: signal.clone(),
+        let lane = |entry: &String| {
+            let signal = bare(entry);
+            Lane {
+                stretch: known
+                    .iter()
+                    .find(|lane| lane.signal == signal)
+                    .map_or(1.0, |lane| lane.stretch),
+                place: self.opened.view.place(signal),
+                joined: signal.len() < entry.len(),
+                signal: signal.to_owned(),
+            }
         };
         self.lanes = signals.iter().map(lane).collect();
         self.said = Default::default();
     }
 
-    /// The signals shown, from top to bottom.
+    /// The signals shown, from top to bottom, as [`set_signals`](Self::set_signals) takes them.
     pub fn signals(&self) -> Vec<String> {
-        self.lanes.iter().map(|lane| lane.signal.clone()).collect()
+        let entry = |lane: &Lane| match lane.joined {
+            true => toggled(&lane.signal),
+            false => lane.signal.clone(),
+        };
+        self.lanes.iter().map(entry).collect()
+    }
+
+    /// Whether a signal can be drawn in the lane of the one above it: both are quantities of the same unit.
+    pub fn can_join(&self, lane: usize) -> bool {
+        let unit = |lane: usize| {
+            let place = self.lanes.get(lane)?.place?;
+            let is_quantity = matches!(self.view().summary(place), Summary::Quantity(_));
+            is_quantity.then(|| &self.view().channel(place).unit)
+        };
+        lane > 0 && unit(lane).is_some() && unit(lane) == unit(lane - 1)
+    }
+
+    /// The signals that are drawn in one lane each, from top to bottom.
+    pub fn groups(&self) -> Vec<Range<usize>> {
+        let mut groups: Vec<Range<usize>> = Vec::new();
+        for (place, lane) in self.lanes.iter().enumerate() {
+            match groups.last_mut() {
+                Some(group) if lane.joined && self.can_join(place) => group.end = place + 1,
+                _ => groups.push(place..place + 1),
+            }
+        }
+        groups
+    }
+
+    /// Zooms to a stretch of the axis; [`zoom_back`](Self::zoom_back) undoes it.
+    pub fn zoom_to(&mut self, from: f64, to: f64) {
+        self.remember();
+        let (from, to) = (from.min(to), from.max(to));
+        self.camera.restore(Window { from, to });
+    }
+
+    /// Keeps what is in view now for [`zoom_back`](Self::zoom_back).
+    pub fn remember(&mut self) {
+        if self.before.last() == Some(&self.window()) {
+            return;
+        }
+        if self.before.len() == MOST_ZOOMS {
+            self.before.remove(0);
+        }
+        self.before.push(self.window());
+    }
+
+    /// Has in view what was before the last zoom; false when there was none.
+    pub fn zoom_back(&mut self) -> bool {
+        let before = self.before.pop();
+        if let Some(window) = before {
+            self.camera.restore(window);
+        }
+        before.is_some()
+    }
+
+    /// There is a zoom to undo.
+    pub fn can_zoom_back(&self) -> bool {
+        !self.before.is_empty()
     }
 
     /// Makes a lane taller or flatter.

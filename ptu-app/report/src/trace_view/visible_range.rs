@@ -45,6 +45,12 @@ impl VisibleRange {
         self.set(fixed - share * length, length);
     }
 
+    /// What was in view before.
+    pub fn restore(&mut self, window: Window) {
+        let length = window.length().clamp(self.least, self.whole.length());
+        self.set(window.from, length);
+    }
+
     /// Moves on by a share of what is in view.
     pub fn pan(&mut self, share: f64) {
         let length = self.window.length();

@@ -30,6 +30,13 @@ wordings! {
         no_fault: "The test found no fault.", "시험에서 고장을 찾지 못했습니다.";
         not_finished: "The test did not come to its end: {verdict}", "시험이 끝까지 진행되지 않음: {verdict}";
         because: "Because", "근거";
+        next_check: "Next check: {check}, {time}", "다음 점검: {check}, {time}";
+        way: "The way of the signal, from the sensor to what the check judges", "센서에서 판정 신호까지의 신호 경로";
+        suspected: "suspected", "고장 추정";
+        fails_with_it: "fails with it", "함께 불합격";
+        needed_by_all: "needed by all", "모두에 필요";
+        beside_twin: "In colour this unit, in grey a good one with the same inputs", "색: 이 장치, 회색: 같은 입력을 준 정상 장치";
+        no_twin: "The trace of the failed check; a good unit could not be run with the same inputs", "불합격한 점검의 신호 기록. 같은 입력으로 정상 장치를 시험하지 못함";
         record_repair: "Record repair", "수리 기록";
         to_sheet: "Sheet", "성적서";
         part: "Part", "부품";

@@ -16,6 +16,15 @@ wordings! {
         disarmed: "disarmed", "시험 허가 해제됨";
         stop_all: "Stop all", "전체 정지";
         language: "language", "언어";
+        operator: "operator view", "시험자 화면";
+        operator_hint: "Large text and buttons on the page of a case and around it", "정비 작업 화면의 글자와 단추를 크게";
+        engineer: "engineer view", "기술자 화면";
+        engineer_hint: "As much as there is room for on the page of a case and around it", "정비 작업 화면에 더 많은 내용 표시";
+        lock: "Lock", "잠금";
+        lock_hint: "Nothing can be started, armed or written until somebody gives a name; a run under way goes on", "누군가 이름을 적을 때까지 시험 시작, 시험 허가, 기록을 할 수 없습니다. 진행 중인 시험은 계속됩니다";
+        locked: "Locked: give a name to work on. Stop all (F12) works.", "잠김: 이름을 적으면 계속할 수 있습니다. 전체 정지(F12)는 언제나 됩니다.";
+        unlock: "Unlock", "잠금 해제";
+        lock_is_no_password: "It is a name and no password: it says who tests from now on.", "암호가 아니라 이름입니다. 지금부터 누가 시험하는지를 나타냅니다.";
         dark: "dark", "어둡게";
         light: "light", "밝게";
         scale: "size", "크기";

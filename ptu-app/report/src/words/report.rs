@@ -75,6 +75,7 @@ wordings! {
         seen: "Seen", "횟수";
         first_seen: "First seen", "최초 발생";
         trace: "Trace", "신호 기록";
+        trace_of_passed: "Trace {id}: passed after the repair", "신호 기록 {id}: 수리 후 합격";
         trace_of: "Trace {id}: {faults}", "신호 기록 {id}: {faults}";
         trace_shown: "Trace {id} is shown above.", "신호 기록 {id}은(는) 위에 있습니다.";
         trace_missing: "Trace {id} cannot be shown: {why}", "신호 기록 {id}을(를) 표시할 수 없음: {why}";

@@ -38,12 +38,14 @@ wordings! {
         zoom_in: "Zoom in", "확대";
         zoom_out: "Zoom out", "축소";
         fit: "Fit", "전체 보기";
+        zoom_back: "Zoom back", "이전 구간";
+        zoom_back_hint: "What was in view before; a drag with the right button zooms to a stretch", "이전에 보던 구간. 오른쪽 단추로 끌면 그 구간이 확대됨";
         close_axes: "Scale to view", "세로축 맞춤";
         close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 신호 기록에 맞춤";
         trigger: "trigger", "트리거";
         events: "events", "이벤트";
         lanes: "lanes", "신호 칸";
-        keys: "wheel or + and −: zoom; drag or arrows: pan; F: all; click or A: cursor A; Shift+click or B: cursor B; , and .: move A by a row (with Shift: B); Esc: no cursors", "휠 또는 + −: 확대/축소, 끌기 또는 화살표: 이동, F: 전체, 클릭 또는 A: 커서 A, Shift+클릭 또는 B: 커서 B, , 와 .: 커서 A를 한 행씩 이동 (Shift와 함께 B), Esc: 커서 지우기";
+        keys: "wheel or + and −: zoom; drag or arrows: pan; right drag: zoom to a stretch; Backspace: zoom back; F: all; click or A: cursor A; Shift+click or B: cursor B; , and .: move A by a row (with Shift: B); Esc: no cursors", "휠 또는 + −: 확대/축소, 끌기 또는 화살표: 이동, 오른쪽 단추로 끌기: 구간 확대, Backspace: 이전 구간, F: 전체, 클릭 또는 A: 커서 A, Shift+클릭 또는 B: 커서 B, , 와 .: 커서 A를 한 행씩 이동 (Shift와 함께 B), Esc: 커서 지우기";
 
         // Lanes.
         signals: "Signals", "신호";
@@ -57,6 +59,7 @@ wordings! {
         higher: "taller: {signal}", "높게: {signal}";
         lower: "flatter: {signal}", "낮게: {signal}";
         hide: "hide: {signal}", "숨기기: {signal}";
+        join: "in one lane with the signal above: {signal}", "위 신호와 한 칸에: {signal}";
         not_in_trace: "not in this trace", "이 신호 기록에 없음";
 
         // Cursors.

@@ -6,9 +6,10 @@ use protocol::message::Identity;
 use protocol::signal::{Sample, Signal};
 
 use super::keys::STOP_ALL;
+use super::lock::only_look;
 use super::setup::Setup;
 use crate::gui::parts::{ActionPlace, chip};
-use crate::gui::{Page, PageContext, Palette};
+use crate::gui::{Page, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::{self, Words, fill};
 
@@ -21,6 +22,9 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
         context,
         |ui, context| {
             stop_button(ui, context);
+            if context.settings.locked {
+                only_look(ui);
+            }
             arming(ui, context);
         },
         |ui, context| {
@@ -296,7 +300,7 @@ fn stop_button(ui: &mut Ui, context: &mut PageContext<'_>) {
     let text = RichText::new(context.words.frame.stop_all)
         .color(Color32::WHITE)
         .strong()
-        .size(16.0);
+        .size(Sizes::of(ui).body.max(16.0));
     let button = Button::new(text)
         .fill(palette.armed)
         .shortcut_text(RichText::new(STOP_ALL.name()).color(Color32::WHITE));

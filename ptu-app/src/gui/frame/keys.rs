@@ -15,7 +15,8 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
         context.units.stop_all();
     }
-    if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
+    let connect = egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT));
+    if connect && !context.settings.locked {
         let only_reads = context.only_reads();
         let unit = context.units.chosen_mut();
         if unit.phase() != Phase::Offline {

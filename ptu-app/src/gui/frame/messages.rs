@@ -59,6 +59,7 @@ impl Undo {
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
     let undoable = context.messages.undoable(ui.input(|input| input.time));
+    let undoable = undoable.filter(|_| !context.settings.locked);
     let all = context.messages.all();
     let Some(last) = all.last() else {
         let quiet = Palette::of(ui).quiet;

@@ -4,15 +4,17 @@ mod about;
 mod care;
 mod connection;
 mod keys;
+mod lock;
 mod messages;
 mod navigation;
 mod setup;
 
 use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
 
-use super::{PageContext, Palette};
+use super::{PageContext, Palette, Sizes};
 use about::About;
 use care::Care;
+pub use lock::only_look;
 use ptu_report::words::Words;
 use setup::Setup;
 
@@ -32,16 +34,25 @@ impl Frame {
     }
 
     pub fn connection(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
         connection::bar(ui, context, &mut self.setup);
     }
 
     pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
         navigation::bar(ui, context, (&mut self.about, &mut self.care));
+    }
+
+    /// What a locked window says, and the name that opens it.
+    pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
+        lock::bar(ui, context);
     }
 
     /// The latest message, and all of them.
     pub fn messages(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.undo.poll(context);
+        Sizes::of(ui).set(ui);
         messages::bar(ui, context, &mut self.undo);
     }
 

@@ -7,7 +7,7 @@ use super::care::Care;
 use super::connection::both_ends;
 use crate::gui::parts::{ActionPlace, named_combo};
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
-use crate::gui::{Page, PageContext};
+use crate::gui::{Density, Page, PageContext, Sizes};
 use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
@@ -24,7 +24,8 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut Abou
         |ui, context| {
             for page in Page::ALL {
                 let chosen = context.settings.page == page;
-                let text = RichText::new(page.name(context.words)).size(16.0);
+                let text =
+                    RichText::new(page.name(context.words)).size(Sizes::of(ui).body.max(16.0));
                 let button = ui.selectable_label(chosen, text);
                 if button.on_hover_text(page.key().name()).clicked() {
                     context.settings.page = page;
@@ -38,7 +39,7 @@ fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
     let frame = &context.words.frame;
     let settings = &mut *context.settings;
     // The scale moves all of them under the pointer.
-    let state = (settings.zoom.to_bits(), settings.dark);
+    let state = (settings.zoom.to_bits(), settings.dark, settings.density);
     let place = ActionPlace::new(ui, "look", state);
     let smaller = ui.button("A-").on_hover_text(frame.scale);
     if place.clicked(&smaller) {
@@ -55,6 +56,13 @@ fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
     };
     if place.clicked(&ui.button(light)) {
         settings.dark = !settings.dark;
+    }
+    let (density, hint) = match settings.density {
+        Density::Operator => (frame.engineer, frame.engineer_hint),
+        Density::Engineer => (frame.operator, frame.operator_hint),
+    };
+    if place.clicked(&ui.button(density).on_hover_text(hint)) {
+        settings.density = settings.density.other();
     }
     let combo = ComboBox::from_id_salt("language").selected_text(settings.language.name());
     let shown = combo.show_ui(ui, |ui| {

@@ -53,7 +53,7 @@ impl Setup {
                 .messages
                 .trouble(context.words.frame.cannot_list, why.clone());
         }
-        let free = context.units.chosen().phase() == Phase::Offline;
+        let free = context.units.chosen().phase() == Phase::Offline && ui.is_enabled();
         let words = context.words;
         let choice = &mut context.units.chosen_mut().choice;
         let shown = if choice.is_simulated() {

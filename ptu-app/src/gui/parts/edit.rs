@@ -1,12 +1,13 @@
 //! Text fields that accept no more than the database stores.
 
-use eframe::egui::{Key, Response, TextEdit, Ui, WidgetText};
+use eframe::egui::{Align2, Key, Response, TextEdit, Ui, WidgetText};
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 
 /// A field for a name or a serial number, so many points wide.
 pub fn name_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     TextEdit::singleline(text)
         .char_limit(MOST_NAME)
+        .align(Align2::LEFT_CENTER)
         .desired_width(wide)
 }
 
@@ -14,6 +15,7 @@ pub fn name_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
 pub fn note_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     TextEdit::singleline(text)
         .char_limit(MOST_TEXT)
+        .align(Align2::LEFT_CENTER)
         .desired_width(wide)
 }
 

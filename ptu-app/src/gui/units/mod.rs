@@ -130,6 +130,16 @@ impl Units {
         }
     }
 
+    /// Nothing is connected, begun or armed while `locked`; what is under way goes on.
+    pub(super) fn lock(&mut self, locked: bool) {
+        for unit in self.iter_mut() {
+            if locked && !unit.locked {
+                unit.disarm();
+            }
+            unit.locked = locked;
+        }
+    }
+
     /// Times everything was stopped.
     pub fn stops(&self) -> u64 {
         self.stops

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use btu_rig::procedure::UnitEvent;
 use btu_rig::procedure::plan::Connection;
+use btu_rig::stimulus::Stimulus;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
@@ -35,6 +36,8 @@ pub struct Unit {
     lost: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
+    /// Nothing is begun: nobody has given a name.
+    pub(super) locked: bool,
     /// It was let go without its outputs being confirmed safe.
     pub(super) not_safe: bool,
 }
@@ -51,6 +54,7 @@ impl Unit {
             runs_ended: 0,
             lost: false,
             stopping: false,
+            locked: false,
             not_safe: false,
         })
     }
@@ -71,7 +75,9 @@ impl Unit {
     /// A unit is there and waits for a run: nothing is run, nor ordered and not begun yet. A bench that is
     /// held up takes seconds to begin what it was told.
     pub fn may_run(&self) -> bool {
-        self.phase() == Phase::Idle && !self.run.as_ref().is_some_and(Progress::is_running)
+        !self.locked
+            && self.phase() == Phase::Idle
+            && !self.run.as_ref().is_some_and(Progress::is_running)
     }
 
     pub fn identity(&self) -> Option<Identity> {
@@ -90,6 +96,9 @@ impl Unit {
     }
 
     pub fn connect(&mut self, queries: &QueryWorker) {
+        if self.locked {
+            return;
+        }
         let choice = self.choice.clone().with_offered_faults();
         self.setup = Request::Pending(queries.run(move |paths| choice.setup(&paths.scripts)));
     }
@@ -135,6 +144,14 @@ impl Unit {
 
     pub fn is_armed(&self) -> bool {
         self.bench.live().sample.get(Signal::Armed) == Some(1.0)
+    }
+
+    /// Takes test signals away and disarms, unless a run has the bench.
+    pub(super) fn disarm(&mut self) {
+        if self.is_armed() && self.bench.permits(&Stimulus::PtuDisarm).is_ok() {
+            // Refused only while a run has the bench.
+            let _ = self.bench.apply(Stimulus::PtuDisarm);
+        }
     }
 
     /// Takes what happened since the last time, and tells the person what matters.

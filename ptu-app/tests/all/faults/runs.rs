@@ -78,7 +78,7 @@ impl TestBench {
             ..self.setup.clone()
         };
         let asked_for = self.suite.procedures.iter().filter(|p| !p.on_request);
-        let plan = RunPlan {
+        let mut plan = RunPlan {
             tasks: asked_for
                 .map(|procedure| Task {
                     procedure: procedure.clone(),
@@ -97,7 +97,7 @@ impl TestBench {
         let place = Place::new();
         let path = place.path("history.db");
         let store = Store::open(&path, clock::open_options()).expect("a database");
-        let ran = run::run(&plan, setup, store, &Stop::default(), &mut ());
+        let ran = run::run(&mut plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
         let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
         answer.attribute(&store).expect("attributed");

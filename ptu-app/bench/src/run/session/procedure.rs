@@ -24,11 +24,14 @@ struct Progress<'a> {
     step_began: Instant,
     explained: bool,
     faults: usize,
+    /// Steps of which a trace is kept though they pass.
+    traced: &'a [usize],
 }
 
 impl<'a> Progress<'a> {
-    fn new(procedure: &'a Procedure, now: Instant) -> Self {
+    fn new(procedure: &'a Procedure, traced: &'a [usize], now: Instant) -> Self {
         Self {
+            traced,
             procedure,
             step: None,
             turn: 0,
@@ -65,7 +68,7 @@ impl<L: UnitLink> Session<L> {
         if let Some(why) = self.bench.rig().cannot_run(procedure) {
             runner.pass_over_all(why);
         }
-        let mut progress = Progress::new(procedure, self.bench.now());
+        let mut progress = Progress::new(procedure, &options.traced, self.bench.now());
         for fault in found {
             runner.found_before(&fault.name, fault.at);
             self.report(fault, &mut progress, sink);
@@ -233,6 +236,8 @@ impl<L: UnitLink> Session<L> {
                 let fault = self.fault_of_step(result, progress);
                 if let Some(fault) = fault {
                     self.report(fault, progress, sink);
+                } else if progress.traced.contains(&result.index) {
+                    self.keep_trace(now, progress, sink);
                 }
                 progress.turn += 1;
                 return;
@@ -242,6 +247,19 @@ impl<L: UnitLink> Session<L> {
         if let Some(fault) = fault {
             progress.explained = true;
             self.report(fault, progress, sink);
+        }
+    }
+
+    /// What a step did that passed is to be seen beside what it did when it failed.
+    fn keep_trace(
+        &mut self,
+        now: Instant,
+        progress: &Progress<'_>,
+        sink: &mut dyn FnMut(SessionEvent),
+    ) {
+        let done = self.recorder.trigger(now, progress.step_began, None);
+        if let Some(cut) = done {
+            sink(SessionEvent::Trace(Box::new(cut)));
         }
     }
 

@@ -77,3 +77,40 @@ fn statistics_follow_cursors_or_view_and_a_missing_signal_has_none() {
     ));
     assert_eq!(said[1], None);
 }
+
+/// Goal: curves that share an axis are of one unit. Method: two speeds, a way and a signal that is not there, each to be
+/// drawn with the one above it; the wish stays in the list.
+#[test]
+fn only_quantities_of_one_unit_share_a_lane() {
+    let column = [0.0, 1.0, 2.0];
+    let mut data = trace(&[("speed", &column), ("limit", &column), ("way", &column)]);
+    for (place, unit) in [(0, "km/h"), (1, "km/h"), (2, "m")] {
+        data.channels[place].unit = unit.into();
+    }
+    let opened = OpenTrace {
+        id: Id::from_bytes([1; 16]),
+        run: None,
+        view: TraceView::new(data),
+        events: Vec::new(),
+    };
+    let signals = ["+speed", "+limit", "+way", "+nothing"].map(str::to_owned);
+    let scene = TracePlot::new(Arc::new(opened), &signals);
+    assert_eq!(scene.groups(), [0..2, 2..3, 3..4]);
+    assert_eq!(scene.signals(), signals);
+    assert_eq!(scene.lanes()[1].signal, "limit");
+}
+
+#[test]
+fn a_zoom_to_a_stretch_is_undone_step_by_step() {
+    let mut scene = scene();
+    let whole = scene.window();
+    scene.zoom_to(1.0, -1.0);
+    let first = scene.window();
+    assert!((first.from + 1.0).abs() < 1e-9 && (first.to - 1.0).abs() < 1e-9);
+    scene.zoom_to(0.0, 0.5);
+    assert!(scene.zoom_back());
+    assert_eq!(scene.window(), first);
+    assert!(scene.zoom_back());
+    assert_eq!(scene.window(), whole);
+    assert!(!scene.zoom_back() && !scene.can_zoom_back());
+}

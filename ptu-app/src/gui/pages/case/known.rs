@@ -3,10 +3,9 @@
 use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
 
-use super::TEXT;
 use crate::gui::parts::{link, repair_line};
 use crate::gui::request::CachedResponse;
-use crate::gui::{DataPaths, Destination, PageContext, Palette};
+use crate::gui::{DataPaths, Destination, PageContext, Palette, Sizes};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
@@ -98,7 +97,7 @@ impl KnownUnit {
 /// A title above the first line.
 fn heading(ui: &mut Ui, title: &str, place: usize) {
     if place == 0 {
-        ui.label(RichText::new(title).size(TEXT).strong());
+        ui.label(RichText::new(title).size(Sizes::of(ui).text).strong());
     }
 }
 

@@ -1,5 +1,7 @@
 //! One case in ten clicks: connect, symptom, test, result, repair, proof, sheet.
 
+mod chain;
+mod evidence;
 mod known;
 mod prove;
 mod repair;
@@ -17,7 +19,7 @@ use super::report::SheetOf;
 use crate::gui::parts::{ActionPlace, name_edit};
 use crate::gui::request::Request;
 use crate::gui::units::Unit;
-use crate::gui::{PageContext, Palette};
+use crate::gui::{PageContext, Palette, Sizes};
 use known::KnownUnit;
 use prove::Proof;
 use ptu_bench::bench_worker::{Phase, Progress};
@@ -27,13 +29,6 @@ use result::Found;
 use seen::SeenUnits;
 use stage::Stage;
 use symptom::SymptomTiles;
-
-/// Size of what is read first, points.
-const HEADLINE: f32 = 24.0;
-/// Size of other text on this page, points: it is read at arm's length.
-const TEXT: f32 = 17.0;
-/// Height of what is touched, points.
-const TARGET: f32 = 48.0;
 
 #[derive(Default)]
 pub struct CasePage {
@@ -62,6 +57,9 @@ impl CasePage {
         self.units.poll();
         self.tiles.poll(context);
         self.proof.poll(context);
+        if let Some(found) = &mut self.found {
+            found.poll(context);
+        }
         if self.repair.poll(&self.known, context) {
             self.stage = Stage::Prove;
         }
@@ -120,7 +118,7 @@ impl CasePage {
         let proven = !proofs.is_empty() && proofs.iter().all(|proof| proof.says.is_proven());
         let next = self.stage.after_run(outcome.exit, proven);
         if next == Stage::Result {
-            self.found = Some(Found::of(outcome, run, said));
+            self.found = Some(Found::of(outcome, run, said, context));
             // Another repair is to be fitted and proved.
             self.proof = Proof::default();
         } else {
@@ -136,6 +134,7 @@ impl CasePage {
         has_orders: bool,
         context: &mut PageContext<'_>,
     ) -> Option<SheetOf> {
+        Sizes::of(ui).set(ui);
         self.way(ui, context);
         ui.separator();
         if self.stage == Stage::Sheet {
@@ -161,13 +160,13 @@ impl CasePage {
         None
     }
 
-    /// The stages with the present one marked, and the way to a new case.
-    fn way(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
+    /// The stages with the present one marked, the way to a new case, and the lock of the window.
+    fn way(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let palette = Palette::of(ui);
         ui.horizontal_wrapped(|ui| {
             for (place, stage) in (1..).zip(Stage::ALL) {
                 let text = format!("{place} {}", stage.name(context.words));
-                let text = RichText::new(text).size(TEXT);
+                let text = RichText::new(text).size(Sizes::of(ui).text);
                 ui.label(match stage == self.stage {
                     true => text.strong().color(palette.accent),
                     false => text.color(palette.quiet),
@@ -183,6 +182,10 @@ impl CasePage {
             if place.clicked(&new) {
                 self.begin(unit);
             }
+            let lock = ui.button(context.words.frame.lock);
+            if place.clicked(&lock.on_hover_text(context.words.frame.lock_hint)) {
+                context.settings.lock();
+            }
         });
     }
 
@@ -195,7 +198,7 @@ impl CasePage {
         self.name(ui, context);
         let unit = context.units.chosen_mut();
         let place = fill(words.reached_at, &[("place", &unit.choice.endpoint)]);
-        ui.label(RichText::new(place).size(TEXT));
+        ui.label(RichText::new(place).size(Sizes::of(ui).text));
         let offline = unit.phase() == Phase::Offline;
         let action = ActionPlace::new(ui, "case connect", offline);
         let connect = large(ui, context.words.frame.connect, offline);
@@ -212,7 +215,8 @@ impl CasePage {
     /// Who works on the case.
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.horizontal(|ui| {
-            let label = ui.label(RichText::new(context.words.case.your_name).size(TEXT));
+            let label =
+                ui.label(RichText::new(context.words.case.your_name).size(Sizes::of(ui).text));
             ui.add(name_edit(&mut context.settings.operator, 220.0))
                 .labelled_by(label.id);
         });
@@ -221,8 +225,8 @@ impl CasePage {
 
 /// A button that is found and hit at arm's length.
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
-    let button = Button::new(RichText::new(text).size(TEXT).strong());
-    let button = button.min_size(vec2(180.0, TARGET));
+    let button = Button::new(RichText::new(text).size(Sizes::of(ui).text).strong());
+    let button = button.min_size(vec2(180.0, Sizes::of(ui).target));
     if ui.layout().is_horizontal() {
         return ui.add_enabled(enabled, button);
     }

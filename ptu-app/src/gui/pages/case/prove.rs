@@ -4,11 +4,11 @@ use btu_rig::procedure::Verdict;
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
 
-use super::{CasePage, Stage, TEXT, large};
+use super::{CasePage, Stage, large};
 use crate::gui::pages::procedures::Concluded;
 use crate::gui::parts::ActionPlace;
 use crate::gui::request::Request;
-use crate::gui::{Destination, PageContext, Palette};
+use crate::gui::{Destination, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::{Phase, Progress};
 use ptu_bench::clock::now_us;
 use ptu_report::words::fill;
@@ -28,8 +28,9 @@ pub struct Proof {
 
 impl Proof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        let locked = context.settings.locked;
         let unit = context.units.chosen_mut();
-        if self.reconnects && unit.phase() == Phase::Offline {
+        if self.reconnects && !locked && unit.phase() == Phase::Offline {
             self.reconnects = false;
             unit.connect(context.queries);
         }
@@ -51,12 +52,16 @@ impl Proof {
     pub fn sign(&mut self, ui: &mut Ui, run: Id, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some(said) = &self.said {
-            ui.label(RichText::new(said).size(TEXT).strong());
+            ui.label(RichText::new(said).size(Sizes::of(ui).text).strong());
         }
         ui.horizontal_wrapped(|ui| {
             if let Some((_, who)) = self.signing.value().filter(|(of, _)| *of == run) {
                 let said = fill(words.signed_by, &[("who", who)]);
-                ui.label(RichText::new(said).size(TEXT).color(Palette::of(ui).good));
+                ui.label(
+                    RichText::new(said)
+                        .size(Sizes::of(ui).text)
+                        .color(Palette::of(ui).good),
+                );
                 return;
             }
             let who = context.settings.operator.trim().to_owned();
@@ -83,14 +88,14 @@ impl CasePage {
             return;
         }
         if let Some(said) = self.proof.said.as_ref().filter(|said| !said.is_empty()) {
-            ui.label(RichText::new(said).size(TEXT).strong());
+            ui.label(RichText::new(said).size(Sizes::of(ui).text).strong());
         } else if let Some(verdict) = self.proof.verdict {
             let name = context.words.common.verdict(verdict);
             let said = match verdict {
                 Verdict::Passed => words.no_fault.to_owned(),
                 _ => fill(words.not_finished, &[("verdict", &name)]),
             };
-            ui.label(RichText::new(said).size(TEXT));
+            ui.label(RichText::new(said).size(Sizes::of(ui).text));
         }
         let quiet = Palette::of(ui).quiet;
         ui.label(RichText::new(words.fitted_hint).color(quiet));

@@ -7,11 +7,11 @@ use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
-use super::{CasePage, TEXT, large};
+use super::{CasePage, large};
 use crate::gui::messages::Written;
 use crate::gui::parts::{ActionPlace, field, go_on, name_edit, named_combo, note_edit, typed};
 use crate::gui::request::Request;
-use crate::gui::{DataPaths, PageContext};
+use crate::gui::{DataPaths, PageContext, Sizes};
 use ptu_bench::clock::now_us;
 use ptu_bench::failure::Failure;
 use ptu_report::words::fill;
@@ -107,7 +107,7 @@ impl CasePage {
         let known = &self.known;
         let form = &mut self.repair;
         Grid::new("repair").num_columns(2).show(ui, |ui| {
-            ui.label(RichText::new(words.part).size(TEXT));
+            ui.label(RichText::new(words.part).size(Sizes::of(ui).text));
             let before = form.part.clone();
             let name = |part: &str| known.part_name(part, context.words).to_owned();
             let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
@@ -121,7 +121,8 @@ impl CasePage {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
             ui.end_row();
-            let title = |name: &str| RichText::new(name).size(TEXT);
+            let size = Sizes::of(ui).text;
+            let title = |name: &str| RichText::new(name).size(size);
             let (old, new) = (&mut form.serial_old, &mut form.serial_new);
             let fields = [
                 field(ui, title(words.serial_old), name_edit(old, FIELD)),

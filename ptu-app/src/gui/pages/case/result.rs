@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 
 use btu_rig::procedure::{Measurement, Verdict};
-use diagnosis::Finding;
+use diagnosis::NextCheck;
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
 
-use super::{CasePage, HEADLINE, Stage, TEXT, large};
+use super::evidence::Evidence;
+use super::{CasePage, Stage, large};
 use crate::gui::pages::procedures::{Concluded, measurements};
 use crate::gui::parts::ActionPlace;
-use crate::gui::{Destination, PageContext, Palette};
+use crate::gui::{Density, Destination, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Progress;
 use ptu_bench::failure::Exit;
 use ptu_bench::run::Outcome;
@@ -32,13 +33,19 @@ pub struct Found {
     /// The first measured values that were out of their limits, with their step.
     shown_by: Option<(String, Vec<Measurement>)>,
     trace: Option<Id>,
-    next: Option<(String, String)>,
+    next: Option<NextCheck>,
+    evidence: Option<Evidence>,
     /// Procedures that did not pass.
     pub procedures: BTreeSet<String>,
 }
 
 impl Found {
-    pub fn of(outcome: &Outcome, run: &Progress, said: Option<&Concluded>) -> Self {
+    pub fn of(
+        outcome: &Outcome,
+        run: &Progress,
+        said: Option<&Concluded>,
+        context: &PageContext<'_>,
+    ) -> Self {
         let answer = said.and_then(|said| said.answer.as_deref());
         let diagnosis = answer.map(|answer| &answer.diagnosis);
         let candidates = || diagnosis.into_iter().flat_map(|said| &said.candidates);
@@ -52,7 +59,9 @@ impl Found {
         let first = candidates().next();
         let traces = answer.and_then(|answer| answer.traces.get(parts.first()?));
         let any = answer.and_then(|answer| answer.traces.values().flatten().next());
-        let next = diagnosis.and_then(|said| said.next_check.as_ref());
+        let trace = traces.and_then(|traces| traces.first()).or(any).copied();
+        let part = parts.first().filter(|_| outcome.exit == Exit::Failed);
+        let shown = |part: &String| Evidence::ask(part, (outcome.id, trace), run, context);
         Self {
             run: outcome.id,
             exit: outcome.exit,
@@ -60,12 +69,19 @@ impl Found {
             headline: said.map(|said| said.text.clone()).unwrap_or_default(),
             reasons: first.map(|first| first.for_it.clone()).unwrap_or_default(),
             shown_by: shown_by(run),
-            trace: traces.and_then(|traces| traces.first()).or(any).copied(),
-            next: next
-                .filter(|_| diagnosis.is_some_and(|said| said.finding == Finding::CannotTell))
-                .map(|next| (next.check.procedure.clone(), next.check.step.clone())),
+            evidence: part.map(shown),
+            trace,
+            next: diagnosis.and_then(|said| said.next_check.clone()),
             procedures: not_passed(run),
             parts,
+        }
+    }
+}
+
+impl Found {
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if let Some(evidence) = &mut self.evidence {
+            evidence.poll(context);
         }
     }
 }
@@ -95,7 +111,9 @@ fn shown_by(run: &Progress) -> Option<(String, Vec<Measurement>)> {
 impl CasePage {
     pub(super) fn result(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
-        let Some(found) = &self.found else { return };
+        let Some(found) = &mut self.found else {
+            return;
+        };
         let headline = match found.exit {
             Exit::Failed => found.headline.clone(),
             Exit::Passed => words.case.no_fault.to_owned(),
@@ -104,35 +122,16 @@ impl CasePage {
                 fill(words.case.not_finished, &[("verdict", &verdict)])
             }
         };
-        ui.label(RichText::new(headline).size(HEADLINE).strong());
+        ui.label(
+            RichText::new(headline)
+                .size(Sizes::of(ui).headline)
+                .strong(),
+        );
         if let Some((step, measured)) = &found.shown_by {
-            ui.label(RichText::new(&*words.content(step)).size(TEXT));
+            ui.label(RichText::new(&*words.content(step)).size(Sizes::of(ui).text));
             measurements(ui, words, measured);
         }
         reasons(ui, words, found);
-        ui.horizontal_wrapped(|ui| {
-            if let Some(trace) = found.trace
-                && ui.button(words.diagnosis.traces).clicked()
-            {
-                context.go_to.push(Destination::Trace(trace));
-            }
-            if ui.button(words.procedures.to_diagnosis).clicked() {
-                context.go_to.push(Destination::Diagnosis(found.run));
-            }
-            if let (Some((procedure, step)), Some(unit)) = (&found.next, &self.unit)
-                && ui
-                    .button(words.diagnosis.run_it)
-                    .on_hover_text(step)
-                    .clicked()
-            {
-                context.go_to.push(Destination::RunStep {
-                    procedure: procedure.clone(),
-                    step: step.clone(),
-                    unit: unit.clone(),
-                });
-            }
-        });
-        ui.add_space(8.0);
         let place = ActionPlace::new(ui, "case result", found.run);
         let mut next = None;
         ui.horizontal_wrapped(|ui| {
@@ -143,12 +142,50 @@ impl CasePage {
             if place.clicked(&large(ui, words.case.to_sheet, true)) {
                 next = Some(Stage::Sheet);
             }
+            if let Some(trace) = found.trace
+                && ui.button(words.diagnosis.traces).clicked()
+            {
+                context.go_to.push(Destination::Trace(trace));
+            }
+            if ui.button(words.procedures.to_diagnosis).clicked() {
+                context.go_to.push(Destination::Diagnosis(found.run));
+            }
         });
+        next_check(ui, found, self.unit.as_deref(), context);
+        if let Some(evidence) = &mut found.evidence {
+            evidence.show(ui, words);
+        }
         if let Some(next) = next {
             self.repair.prepare(found, &self.known);
             self.stage = next;
         }
     }
+}
+
+/// What would tell more, and how long it takes.
+fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut PageContext<'_>) {
+    let words = context.words;
+    let (Some(next), Some(unit)) = (&found.next, unit) else {
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        let step = words.content(&next.check.step);
+        let time = format!("{:.0} s", next.cost_s.ceil());
+        let said = [("check", &step as &dyn std::fmt::Display), ("time", &time)];
+        ui.label(RichText::new(fill(words.case.next_check, &said)).size(Sizes::of(ui).text));
+        let run = ui.button(words.diagnosis.run_it);
+        let run = match Sizes::of(ui).density {
+            Density::Operator => run,
+            Density::Engineer => run.on_hover_text(next.check.to_string()),
+        };
+        if run.clicked() {
+            context.go_to.push(Destination::RunStep {
+                procedure: next.check.procedure.clone(),
+                step: next.check.step.clone(),
+                unit: unit.to_owned(),
+            });
+        }
+    });
 }
 
 fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
@@ -158,6 +195,34 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
     let quiet = Palette::of(ui).quiet;
     ui.label(RichText::new(words.case.because).color(quiet));
     for reason in found.reasons.iter().take(REASONS) {
-        ui.label(format!("+ {}", words.content(reason)));
+        let reason = words.content(reason);
+        let said = match Sizes::of(ui).density {
+            Density::Operator => without_path(&reason),
+            Density::Engineer => &reason,
+        };
+        ui.label(format!("+ {said}"));
+    }
+}
+
+/// A reason without the path of the script that it begins with.
+fn without_path(reason: &str) -> &str {
+    let is_path = |text: &str| text.contains('/') && !text.contains(' ');
+    match reason.split_once(": ") {
+        Some((path, rest)) if is_path(path) => rest,
+        _ => reason,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_loses_the_path_of_its_script_and_nothing_else() {
+        let reason = "atp/overspeed: code 55: alarm, FSB, EB failed";
+        assert_eq!(without_path(reason), "code 55: alarm, FSB, EB failed");
+        for other in ["a brake and/or door: late", "logged: eb/fsb", "no path"] {
+            assert_eq!(without_path(other), other);
+        }
     }
 }

@@ -4,11 +4,11 @@ use btu_rig::procedure::Verdict;
 use eframe::egui::{RichText, Ui};
 use protocol::signal::{Sample, Signal};
 
-use super::{CasePage, Stage, TEXT, large};
-use crate::gui::PageContext;
+use super::{CasePage, Stage, large};
 use crate::gui::pages::bench::text::known;
 use crate::gui::pages::procedures::{measurements, present};
 use crate::gui::parts::{ActionPlace, verdict_chip};
+use crate::gui::{Density, PageContext, Sizes};
 use ptu_bench::bench_worker::{Phase, Progress};
 use ptu_report::words::{Words, fill};
 
@@ -33,14 +33,15 @@ impl CasePage {
                 true => words.case.preparing,
                 false => words.case.not_begun,
             };
-            ui.label(RichText::new(said).size(TEXT));
+            ui.label(RichText::new(said).size(Sizes::of(ui).text));
             let place = ActionPlace::new(ui, "case back", has_orders);
             if place.clicked(&large(ui, words.case.back, !has_orders)) {
                 self.stage = back;
             }
             return;
         };
-        let answer = present(ui, words, run, None);
+        let with_path = Sizes::of(ui).density == Density::Engineer;
+        let answer = present(ui, words, run, None, with_path);
         live(ui, words, &unit.bench.live().sample);
         failures(ui, words, run);
         let place = ActionPlace::new(ui, "case stop", unit.bench.stop_presses());
@@ -74,7 +75,7 @@ fn live(ui: &mut Ui, words: &Words, sample: &Sample) {
                 continue;
             };
             let value = known(&words.bench, signal, value);
-            ui.label(RichText::new(format!("{name} {value}")).size(TEXT));
+            ui.label(RichText::new(format!("{name} {value}")).size(Sizes::of(ui).text));
         }
     });
 }
@@ -88,7 +89,11 @@ fn failures(ui: &mut Ui, words: &Words, run: &Progress) {
     for (place, (procedure, result)) in failed.take(FAILURES).enumerate() {
         ui.horizontal_wrapped(|ui| {
             verdict_chip(ui, result.verdict, words);
-            ui.label(format!("{procedure}: {}", words.content(&result.name)));
+            let name = words.content(&result.name);
+            ui.label(match Sizes::of(ui).density {
+                Density::Operator => name.into_owned(),
+                Density::Engineer => format!("{procedure}: {name}"),
+            });
             ui.label(&*words.content(&result.message));
         });
         ui.push_id(("failure", place), |ui| {

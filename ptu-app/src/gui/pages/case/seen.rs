@@ -3,9 +3,8 @@
 use eframe::egui::{Button, RichText, Ui, vec2};
 use fault_db::{RunFilter, RunSummary};
 
-use super::{TARGET, TEXT};
-use crate::gui::PageContext;
 use crate::gui::request::CachedResponse;
+use crate::gui::{PageContext, Sizes};
 use ptu_bench::clock;
 use ptu_bench::process_id;
 use ptu_report::naming::DOT;
@@ -35,7 +34,11 @@ impl SeenUnits {
         }
         let words = context.words;
         ui.add_space(8.0);
-        ui.label(RichText::new(words.case.seen_last).size(TEXT).strong());
+        ui.label(
+            RichText::new(words.case.seen_last)
+                .size(Sizes::of(ui).text)
+                .strong(),
+        );
         let choice = &mut context.units.chosen_mut().choice;
         ui.horizontal_wrapped(|ui| {
             for run in self.runs.items() {
@@ -46,8 +49,11 @@ impl SeenUnits {
                 let at = clock::local(run.started_at_us);
                 let name = [&*run.unit_serial, place, &at].join(DOT);
                 let on = choice.serial == run.unit_serial && choice.endpoint == run.source;
-                let button = Button::new(RichText::new(name).size(TEXT)).selected(on);
-                if ui.add(button.min_size(vec2(0.0, TARGET))).clicked() {
+                let button = Button::new(RichText::new(name).size(Sizes::of(ui).text)).selected(on);
+                if ui
+                    .add(button.min_size(vec2(0.0, Sizes::of(ui).target)))
+                    .clicked()
+                {
                     choice.endpoint.clone_from(&run.source);
                     choice.serial.clone_from(&run.unit_serial);
                 }

@@ -2,10 +2,10 @@
 
 use eframe::egui::{Button, RichText, Ui, vec2};
 
-use super::{CasePage, Stage, TARGET, TEXT, large};
+use super::{CasePage, Stage, large};
 use crate::gui::parts::ActionPlace;
 use crate::gui::request::Request;
-use crate::gui::{Destination, PageContext};
+use crate::gui::{Destination, PageContext, Sizes};
 use ptu_bench::symptoms::{self, Symptom};
 
 /// Width of a tile, points.
@@ -45,8 +45,11 @@ impl SymptomTiles {
         ui.horizontal_wrapped(|ui| {
             for (name, symptom) in tiles.chain([unknown]) {
                 let on = self.chosen.as_ref() == Some(&symptom);
-                let button = Button::new(RichText::new(name).size(TEXT)).selected(on);
-                if ui.add(button.min_size(vec2(WIDE, TARGET))).clicked() {
+                let button = Button::new(RichText::new(name).size(Sizes::of(ui).text)).selected(on);
+                if ui
+                    .add(button.min_size(vec2(WIDE, Sizes::of(ui).target)))
+                    .clicked()
+                {
                     clicked = Some(symptom);
                 }
             }
@@ -60,11 +63,15 @@ impl CasePage {
         let words = &context.words.case;
         let unit = context.units.chosen();
         let (serial, may) = (unit.name(), unit.may_run());
-        ui.label(RichText::new(&serial).size(super::HEADLINE).strong());
+        ui.label(RichText::new(&serial).size(Sizes::of(ui).headline).strong());
         self.known.keep(&serial, context);
         self.known.show(ui, context.words, context.go_to);
         ui.add_space(8.0);
-        ui.label(RichText::new(words.what_is_wrong).size(TEXT).strong());
+        ui.label(
+            RichText::new(words.what_is_wrong)
+                .size(Sizes::of(ui).text)
+                .strong(),
+        );
         self.tiles.show(ui, context);
         ui.add_space(8.0);
         self.name(ui, context);

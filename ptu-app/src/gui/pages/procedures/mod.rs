@@ -156,8 +156,8 @@ impl ProceduresPage {
 
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.stops != context.units.stops() {
-            // Nothing begins by itself after everything was stopped.
+        if self.stops != context.units.stops() || context.settings.locked {
+            // Nothing begins by itself after everything was stopped, nor while nobody has given a name.
             self.stops = context.units.stops();
             self.orders.clear();
             self.wanted = None;
@@ -321,7 +321,7 @@ impl ProceduresPage {
         let suite = self.suite.value();
         let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
         let texts = texts.map(|suite| &suite.texts);
-        let answer = present::present(ui, words, run, texts);
+        let answer = present::present(ui, words, run, texts, true);
         let note = (&mut self.note, context.settings.operator.as_str());
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
         // It comes later: below what is written and clicked meanwhile, and in a place kept for it.

@@ -15,12 +15,14 @@ use ptu_report::words::{Words, fill};
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;
 
-/// How far the run is, and the step under way; what the operator answers.
+/// How far the run is, and the step under way, with the text of its script if there is one, or without the script's path
+/// for an operator; what the operator answers.
 pub fn present(
     ui: &mut Ui,
     words: &Words,
     run: &Progress,
     texts: Option<&BTreeMap<String, String>>,
+    with_path: bool,
 ) -> Option<bool> {
     head(ui, words, run);
     if !run.is_running() {
@@ -32,11 +34,11 @@ pub fn present(
     };
     let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
-    ui.label(
-        RichText::new(format!("{}: {}", procedure.id, present.name))
-            .strong()
-            .size(17.0),
-    );
+    let name = match with_path {
+        true => format!("{}: {}", procedure.id, present.name),
+        false => words.content(&present.name).into_owned(),
+    };
+    ui.label(RichText::new(name).strong().size(17.0));
     ui.label(RichText::new(title(procedure, words)).italics());
     waits(ui, words, present);
     let answer = prompt(ui, words, present);

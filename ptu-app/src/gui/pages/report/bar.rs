@@ -1,12 +1,12 @@
 //! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
-use eframe::egui::{Button, ComboBox, Label, RichText, TextEdit, Ui};
+use eframe::egui::{Align2, Button, ComboBox, Label, RichText, TextEdit, Ui};
 
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::gui::data_paths::DataPaths;
 use crate::gui::parts::{name_edit, named_combo, open_file};
 use crate::gui::request::Request;
-use crate::gui::{Destination, PageContext, Palette};
+use crate::gui::{Destination, PageContext, Palette, Sizes};
 use ptu_report::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
@@ -15,11 +15,16 @@ const BUTTONS: f32 = 190.0;
 const NAME: f32 = 120.0;
 
 impl ReportPage {
-    pub(super) fn bar(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    pub(super) fn bar(&mut self, ui: &mut Ui, brief: bool, context: &mut PageContext<'_>) {
         let words = context.words;
         let language = self.language(context);
         let Some(shown) = &self.shown else { return };
         let of = shown.of;
+        if brief {
+            ui.horizontal(|ui| self.files(ui, context));
+            self.open_written(ui, context);
+            return;
+        }
         ui.horizontal_wrapped(|ui| {
             ways_on(ui, words, shown, context.go_to);
             if let Some(other) = languages(ui, words, language) {
@@ -43,9 +48,10 @@ impl ReportPage {
     fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.report;
         let label = ui.label(words.file);
-        let wide = (ui.available_width() - BUTTONS).max(BUTTONS);
-        ui.add(TextEdit::singleline(&mut self.file).desired_width(wide))
-            .labelled_by(label.id);
+        let buttons = BUTTONS * Sizes::of(ui).body / 14.5;
+        let wide = (ui.available_width() - buttons).max(BUTTONS);
+        let file = TextEdit::singleline(&mut self.file).align(Align2::LEFT_CENTER);
+        ui.add(file.desired_width(wide)).labelled_by(label.id);
         for (name, ending) in [
             (words.write_html, ".html"),
             (words.write_pdf, ".pdf"),

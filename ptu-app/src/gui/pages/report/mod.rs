@@ -12,7 +12,7 @@ use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
 
 use crate::gui::parts::{FirstHalf, RunList, RunNoteForm};
 use crate::gui::request::Request;
-use crate::gui::{PageContext, Palette};
+use crate::gui::{Density, PageContext, Palette, Sizes};
 use compare::ComparedWith;
 use ptu_report::naming::PartNames;
 use ptu_report::run::page::{Page, pages};
@@ -96,7 +96,7 @@ impl ReportPage {
         self.keep_up(ui, context, of);
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
-            self.sheet(ui, context);
+            self.sheet(ui, false, context);
         });
     }
 
@@ -109,7 +109,8 @@ impl ReportPage {
     /// This sheet, without the list of runs.
     pub fn show_one(&mut self, of: SheetOf, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(ui, context, Some(of));
-        self.sheet(ui, context);
+        let brief = Sizes::of(ui).density == Density::Operator;
+        self.sheet(ui, brief, context);
     }
 
     /// Asks when another run is to be shown, and again when something may have been added to this one:
@@ -222,7 +223,8 @@ impl ReportPage {
         }
     }
 
-    fn sheet(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    /// The sheet below its bar; `brief` = only with what writes and prints it, which leaves more room for it.
+    fn sheet(&mut self, ui: &mut Ui, brief: bool, context: &mut PageContext<'_>) {
         let words = context.words;
         if let Request::Failed(why) = &self.asked {
             let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
@@ -237,7 +239,7 @@ impl ReportPage {
             });
             return;
         }
-        self.bar(ui, context);
+        self.bar(ui, brief, context);
         ui.separator();
         if let Some(shown) = &self.shown {
             sheet_view::show(ui, shown.of.run(), &shown.pages);

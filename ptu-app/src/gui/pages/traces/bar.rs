@@ -1,6 +1,6 @@
 //! The tool bar: axis, zoom, cursors and the trace shown behind.
 
-use eframe::egui::{RichText, Role, Ui, WidgetInfo};
+use eframe::egui::{Button, RichText, Role, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
 use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
@@ -35,11 +35,17 @@ pub fn view(
             let button = ui.button(sign);
             button.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
             if button.on_hover_text(name).clicked() {
+                scene.remember();
                 scene.camera().zoom(0.5, times);
             }
         }
         if ui.button(words.fit).clicked() {
+            scene.remember();
             scene.camera().fit();
+        }
+        let back = ui.add_enabled(scene.can_zoom_back(), Button::new(words.zoom_back));
+        if back.on_hover_text(words.zoom_back_hint).clicked() {
+            scene.zoom_back();
         }
         ui.separator();
         for (cursor, name) in [(Cursor::A, words.cursor_a), (Cursor::B, words.cursor_b)] {

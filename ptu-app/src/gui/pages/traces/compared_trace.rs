@@ -64,6 +64,16 @@ impl OverlayRequest {
         }
     }
 
+    /// Has the good twin laid behind.
+    pub fn ask_twin(&mut self, scene: &mut TracePlot, context: &PageContext<'_>) {
+        self.ask(Some(OverlaySource::Twin), scene, context);
+    }
+
+    /// The trace to compare with is being made or read.
+    pub fn is_pending(&self) -> bool {
+        matches!(self.overlay, Request::Pending(_))
+    }
+
     /// There is something to compare with, or will be.
     pub fn is_asked(&self) -> bool {
         self.against.is_some()
@@ -99,7 +109,7 @@ impl OverlayRequest {
         if against != self.against {
             self.ask(against, scene, context);
         }
-        if matches!(self.overlay, Request::Pending(_)) {
+        if self.is_pending() {
             ui.spinner();
             ui.label(match self.against {
                 Some(OverlaySource::Twin) => words.making_twin,

@@ -1,6 +1,6 @@
 //! Pointer and keyboard input over the lanes.
 
-use eframe::egui::{Event, EventFilter, Key, Rect, Response, Ui};
+use eframe::egui::{Event, EventFilter, Key, PointerButton, Rect, Response, Ui};
 
 use super::bar::ZOOM;
 use crate::gui::parts::lane;
@@ -10,14 +10,18 @@ use ptu_report::trace_view::{Cursor, TracePlot};
 const WHEEL: f64 = 0.005;
 /// Share of the view one press of an arrow moves.
 const PAN: f64 = 0.1;
+/// A stretch shorter than this share of the view was a click.
+const SHORTEST: f64 = 0.01;
 /// A cursor nearer than that to the pointer is taken along.
 const NEAR: f32 = 6.0;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Drag {
     #[default]
     View,
     Cursor(Cursor),
+    /// A stretch to zoom to, from this place of the axis on.
+    Stretch(f64),
 }
 
 /// Wheel, drag and click over the lanes, which lie in `rect`.
@@ -50,6 +54,18 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, 
             .into_iter()
             .find(|cursor| near(scene, *cursor, from.x));
         *drag = taken.map_or(Drag::View, Drag::Cursor);
+        if response.drag_started_by(PointerButton::Secondary) {
+            *drag = Drag::Stretch(scene.window().at(share(from.x)));
+        }
+    }
+    if response.drag_stopped()
+        && let (Drag::Stretch(from), Some(at)) = (*drag, response.interact_pointer_pos())
+    {
+        *drag = Drag::View;
+        let to = scene.window().at(share(at.x));
+        if (to - from).abs() > scene.window().length() * SHORTEST {
+            scene.zoom_to(from, to);
+        }
     }
     if response.dragged() {
         match (*drag, response.interact_pointer_pos()) {
@@ -57,6 +73,7 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, 
                 let place = scene.window().at(share(at.x));
                 scene.put(cursor, place);
             }
+            (Drag::Stretch(_), _) => {}
             _ => scene
                 .camera()
                 .pan(-f64::from(response.drag_delta().x) / width),
@@ -107,10 +124,23 @@ pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
             count(&[Key::Comma]),
             count(&[Key::Period]),
             count(&[Key::Escape]),
+            count(&[Key::Backspace]),
         ];
         (pressed, input.modifiers.shift)
     });
-    let [closer, wider, left, right, fit, a, b, back, on, none] = pressed;
+    let [
+        closer,
+        wider,
+        left,
+        right,
+        fit,
+        a,
+        b,
+        back,
+        on,
+        none,
+        before,
+    ] = pressed;
     let pointer = response.hover_pos().filter(|at| rect.contains(*at));
     let share = pointer.map_or(0.5, |at| f64::from((at.x - rect.left()) / rect.width()));
     if closer + wider > 0 {
@@ -121,7 +151,11 @@ pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
         scene.camera().pan(PAN * (right as f64 - left as f64));
     }
     if fit > 0 {
+        scene.remember();
         scene.camera().fit();
+    }
+    for _ in 0..before {
+        scene.zoom_back();
     }
     let place = scene.window().at(share);
     if a > 0 {

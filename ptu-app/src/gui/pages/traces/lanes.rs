@@ -61,7 +61,7 @@ impl LaneColumns {
         Rect::from_x_y_ranges(right - VALUE + 6.0..=right - 2.0, beside.y_range())
     }
 
-    fn of(ui: &Ui, all: Rect, values: usize) -> Self {
+    pub fn of(ui: &Ui, all: Rect, values: usize) -> Self {
         let scroll = &ui.spacing().scroll;
         let end = all.right() - scroll.bar_width - scroll.bar_outer_margin - 2.0;
         let left = all.left() + NAMES + TICKS;
@@ -124,6 +124,13 @@ impl LaneCache {
         title(&painter, &sheet, strip);
         self.stack(ui, &sheet, middle);
         events::flags(&painter, strip, middle, &sheet);
+        if let (Drag::Stretch(from), Some(at)) = (self.drag, response.interact_pointer_pos()) {
+            let from = lane::x_at(middle, scene.window(), from);
+            let (left, right) = (from.min(at.x), from.max(at.x));
+            let stretch = Rect::from_x_y_ranges(left..=right, middle.y_range());
+            let ground = palette.accent.gamma_multiply(0.25);
+            painter.rect_filled(stretch.intersect(middle), 0.0, ground);
+        }
         let unit = match scene.axis().kind() {
             Kind::Time => words.traces.seconds,
             Kind::Distance => words.traces.metres,
@@ -142,12 +149,11 @@ impl LaneCache {
                     ui.label(sheet.words.traces.no_signals);
                 }
                 let heights = sheet.heights(middle.height());
-                let lanes = sheet.scene.lanes().iter().zip(heights);
-                for (number, (lane, height)) in lanes.enumerate() {
+                for (group, height) in sheet.scene.groups().into_iter().zip(heights) {
                     let size = vec2(ui.available_width(), height + GAP);
                     let (row, _) = ui.allocate_exact_size(size, Sense::hover());
                     if ui.is_rect_visible(row) {
-                        sheet.lane(ui, number, lane, row, &mut self.scratch);
+                        sheet.group(ui, group, row, &mut self.scratch);
                     }
                 }
             });

@@ -10,6 +10,7 @@ mod list;
 mod record_comparison;
 mod row;
 mod signals;
+mod small;
 mod table;
 
 use std::sync::Arc;
@@ -29,6 +30,7 @@ use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
 use record_comparison::RecordComparison;
+pub use small::SmallTrace;
 
 /// Height of a row of controls.
 const ROW: f32 = 24.0;

@@ -1,5 +1,7 @@
 //! Draws one lane with its name, its values at the cursors, and the trace behind.
 
+use std::ops::Range;
+
 use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
 };
@@ -22,6 +24,8 @@ const BIT: f32 = 24.0;
 const TWO: f32 = 1.7;
 /// How much taller than usual a quantity gets where there is room.
 const TALLEST: f32 = 2.0;
+/// Height of a name among several in a lane.
+const LINE: f32 = 24.0;
 /// Between lanes.
 pub const GAP: f32 = 4.0;
 
@@ -68,11 +72,18 @@ impl Scratch {
 impl Sheet<'_> {
     /// Heights of all lanes; where there is room, quantities take it.
     pub fn heights(&self, room: f32) -> Vec<f32> {
+        let groups = self.scene.groups();
         let lanes = self.scene.lanes();
-        let mut heights: Vec<f32> = lanes.iter().map(|lane| self.height(lane)).collect();
-        let gaps = GAP * lanes.len() as f32;
+        let first = |group: &Range<usize>| &lanes[group.start];
+        let height = |group: &Range<usize>| {
+            // Each name in it has a line.
+            self.height(first(group)).max(group.len() as f32 * LINE)
+        };
+        let mut heights: Vec<f32> = groups.iter().map(height).collect();
+        let gaps = GAP * groups.len() as f32;
         let used = |of: &dyn Fn(&Lane) -> bool| -> f32 {
-            let those = lanes.iter().zip(&heights).filter(|(lane, _)| of(lane));
+            let those = groups.iter().zip(&heights);
+            let those = those.filter(|(group, _)| of(first(group)));
             those.map(|(_, height)| height).sum()
         };
         let elastic = |lane: &Lane| {
@@ -81,8 +92,8 @@ impl Sheet<'_> {
         };
         let free = room - gaps - used(&|_| true);
         let times = (1.0 + free / used(&elastic).max(1.0)).clamp(1.0, TALLEST);
-        for (lane, height) in lanes.iter().zip(&mut heights) {
-            if elastic(lane) {
+        for (group, height) in groups.iter().zip(&mut heights) {
+            if elastic(first(group)) {
                 *height *= times;
             }
         }
@@ -104,23 +115,30 @@ impl Sheet<'_> {
         usual * lane.stretch
     }
 
-    pub fn lane(&self, ui: &mut Ui, number: usize, lane: &Lane, row: Rect, scratch: &mut Scratch) {
-        let colours = &self.palette.curves;
-        let colour = colours[number % colours.len()];
+    /// Draws the signals of one lane.
+    pub fn group(&self, ui: &mut Ui, group: Range<usize>, row: Rect, scratch: &mut Scratch) {
         let places = &self.places;
         let rect =
             Rect::from_x_y_ranges(places.left..=places.right, row.top()..=row.bottom() - GAP);
         let between = Stroke::new(1.0, self.palette.grid);
         ui.painter()
             .hline(places.names..=places.end, row.bottom() - GAP / 2.0, between);
-        self.name(ui, lane, rect, colour);
-        let Some(place) = lane.place else {
+        let lanes = &self.scene.lanes()[group.clone()];
+        let colours = &self.palette.curves;
+        let colour = |number: usize| colours[(group.start + number) % colours.len()];
+        let high = rect.height() / lanes.len() as f32;
+        for (number, lane) in lanes.iter().enumerate() {
+            let top = rect.top() + number as f32 * high;
+            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
+            self.name(ui, lane, line, colour(number));
+            if let Some(behind) = self.scene.behind().filter(|_| lane.place.is_some()) {
+                self.shade(ui, behind, &lane.signal, rect);
+            }
+        }
+        let Some((first, place)) = lanes.first().and_then(|lane| Some((lane, lane.place?))) else {
             note(ui, rect, self.words.traces.not_in_trace, self.palette.warn);
             return;
         };
-        if let Some(behind) = self.scene.behind() {
-            self.shade(ui, behind, &lane.signal, rect);
-        }
         let own = Source {
             view: self.scene.view(),
             place,
@@ -128,12 +146,18 @@ impl Sheet<'_> {
         };
         match own.view.summary(place) {
             Summary::Unknown => note(ui, rect, self.words.traces.not_known, self.palette.quiet),
-            Summary::Quantity(_) => self.quantity(ui, lane, own, rect, colour, scratch),
+            Summary::Quantity(_) => self.quantities(ui, lanes, rect, &colour, scratch),
             Summary::Choice(_) | Summary::Bit(_) => {
-                self.two_states(ui, lane, own, rect, colour, scratch);
+                self.two_states(ui, first, own, rect, colour(0), scratch);
             }
         }
-        self.values(ui, place, rect);
+        for (number, lane) in lanes.iter().enumerate() {
+            let top = rect.top() + number as f32 * high;
+            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
+            if let Some(place) = lane.place {
+                self.values(ui, place, line);
+            }
+        }
     }
 
     /// The same signal of the trace behind.
@@ -147,16 +171,21 @@ impl Sheet<'_> {
         })
     }
 
-    fn quantity(
+    /// Curves on one axis, as long as all of them need.
+    fn quantities(
         &self,
         ui: &Ui,
-        lane: &Lane,
-        own: Source<'_>,
+        lanes: &[Lane],
         rect: Rect,
-        colour: Color32,
+        colour: &dyn Fn(usize) -> Color32,
         scratch: &mut Scratch,
     ) {
-        let range = self.scene.range(own.place);
+        let of = |lane: &Lane| Some(self.scene.range(lane.place?));
+        let ranges = lanes.iter().filter_map(of);
+        let both = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        let Some(range) = ranges.reduce(both) else {
+            return;
+        };
         let ticks = self.places.left - TICKS..=self.places.left;
         let gutter = Rect::from_x_y_ranges(ticks, rect.y_range());
         lane::y_axis(ui.painter(), gutter, rect, range, self.palette);
@@ -172,10 +201,18 @@ impl Sheet<'_> {
                 lane::quantity(ui.painter(), rect, columns, range, colour);
             }
         };
-        if let Some(other) = self.other(&lane.signal) {
+        for other in lanes.iter().filter_map(|lane| self.other(&lane.signal)) {
             curve(other, behind, self.palette.quiet);
         }
-        curve(own, edges, colour);
+        for (number, place) in lanes.iter().map(|lane| lane.place).enumerate() {
+            let Some(place) = place else { continue };
+            let own = Source {
+                view: self.scene.view(),
+                place,
+                axis: self.scene.axis(),
+            };
+            curve(own, edges, colour(number));
+        }
     }
 
     /// The trace behind a state would hide its text, so it is drawn below.

@@ -3,7 +3,7 @@
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use crate::gui::{PageContext, Palette};
-use ptu_report::trace_view::{Summary, TracePlot};
+use ptu_report::trace_view::{Summary, TracePlot, bare, toggled};
 use ptu_report::words::fill;
 
 /// How much one press makes a lane taller.
@@ -15,6 +15,7 @@ enum LaneAction {
     Down(usize),
     Stretch(usize, f32),
     Hide(usize),
+    Join(usize),
 }
 
 pub fn choose(
@@ -52,13 +53,13 @@ pub fn choose(
             if !channel.name.contains(&wanted) {
                 continue;
             }
-            let mut on = signals.contains(&channel.name);
+            let mut on = signals.iter().any(|entry| bare(entry) == channel.name);
             let mut text = RichText::new(&channel.name);
             if matches!(view.summary(place), Summary::Unknown) {
                 text = text.weak();
             }
             if ui.checkbox(&mut on, text).changed() {
-                signals.retain(|signal| *signal != channel.name);
+                signals.retain(|entry| bare(entry) != channel.name);
                 if on {
                     signals.push(channel.name.clone());
                 }
@@ -97,6 +98,15 @@ fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<La
                     pressed = Some(what);
                 }
             }
+            if scene.can_join(i) {
+                let name = fill(words.join, &[("signal", &lane.signal)]);
+                let join = ui.selectable_label(lane.joined, "&");
+                let (enabled, on) = (join.enabled(), lane.joined);
+                join.widget_info(|| WidgetInfo::selected(Role::Button, enabled, on, &name));
+                if join.on_hover_text(&name).clicked() {
+                    pressed = Some(LaneAction::Join(i));
+                }
+            }
             ui.add(Label::new(&lane.signal).truncate());
         });
     }
@@ -114,5 +124,10 @@ fn act(pressed: LaneAction, signals: &mut Vec<String>, scene: &mut TracePlot) {
             signals.remove(i);
         }
         LaneAction::Hide(_) => {}
+        LaneAction::Join(i) => {
+            if let Some(entry) = signals.get_mut(i) {
+                *entry = toggled(entry);
+            }
+        }
     }
 }

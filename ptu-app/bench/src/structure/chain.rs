@@ -1,0 +1,194 @@
+//! One way through the structure: from a sensor over a part to what a step judges.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use btu_rig::procedure::Procedure;
+use btu_rig::procedure::plan::{Connection, Expectation, Step};
+use protocol::LruId;
+use protocol::event::Event;
+use protocol::signal::Signal;
+
+use super::{Structure, WayStep};
+
+/// What a link of a chain makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Made {
+    /// A signal.
+    Signal(Signal),
+    /// An event that the unit logs.
+    Event(Event),
+}
+
+/// Parts, and what they make of the link before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// What they make.
+    pub made: Made,
+    /// The parts.
+    pub parts: Vec<LruId>,
+}
+
+/// A way from a sensor to what a step judges.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chain {
+    /// A part that all links need, as the supply; none where the part is in a link.
+    pub before: Option<LruId>,
+    /// From the sensor to what is judged.
+    pub links: Vec<Link>,
+    /// The first link that the part fails; those after it fail by it.
+    pub failing: usize,
+}
+
+impl Structure {
+    /// The shortest way by which a part fails what a step judges, with a way on to a sensor; none if the part is on no way
+    /// of the step.
+    pub fn chain(&self, procedure: &Procedure, step: &Step, part: &LruId) -> Option<Chain> {
+        let judged = self.judged(step);
+        let signals: BTreeSet<_> = judged.iter().filter_map(|made| signal_of(*made)).collect();
+        let ways = judged.iter().filter_map(|made| self.down_from(*made, part));
+        let way = ways.min_by_key(Vec::len);
+        let needed = self.everywhere.contains(part)
+            || procedure.needs == Connection::Ptu && self.on_the_train.contains(part);
+        let (mut way, before) = match way {
+            Some(way) => (way, None),
+            None if needed => (vec![*judged.first()?], Some(part.clone())),
+            None => return None,
+        };
+        let failing = way.len();
+        self.on_to_a_sensor(&mut way, &signals);
+        let failing = match before {
+            Some(_) => 0,
+            None => way.len() - failing,
+        };
+        way.reverse();
+        let links = way.into_iter().filter_map(|made| {
+            let parts = self.step_of(made)?.parts.clone();
+            Some(Link { made, parts })
+        });
+        Some(Chain {
+            before,
+            links: links.collect(),
+            failing,
+        })
+    }
+
+    /// What a step looks at and has a way: what it measures and expects before what it only waits for.
+    fn judged(&self, step: &Step) -> Vec<Made> {
+        let mut judged = Vec::new();
+        let mut add = |made: Made| {
+            if self.step_of(made).is_some() && !judged.contains(&made) {
+                judged.push(made);
+            }
+        };
+        for expectation in &step.expectations {
+            if let Expectation::Logs { event, .. } = expectation {
+                add(Made::Event(*event));
+            }
+        }
+        let mut signals = Vec::new();
+        step.for_each_signal(&mut |signal| signals.push(signal));
+        signals.into_iter().rev().map(Made::Signal).for_each(add);
+        judged
+    }
+
+    fn step_of(&self, made: Made) -> Option<&WayStep> {
+        match made {
+            Made::Signal(signal) => self.steps.get(&signal),
+            Made::Event(event) => self.event_steps.get(&event),
+        }
+    }
+
+    /// From what is judged to the nearest link that the part makes, both included.
+    fn down_from(&self, judged: Made, part: &LruId) -> Option<Vec<Made>> {
+        let mut came_from: BTreeMap<Signal, Made> = BTreeMap::new();
+        let mut ahead = VecDeque::from([judged]);
+        while let Some(made) = ahead.pop_front() {
+            let step = self.step_of(made)?;
+            if step.parts.contains(part) {
+                let before = |made: &Made| came_from.get(&signal_of(*made)?).copied();
+                let mut way: Vec<_> = std::iter::successors(Some(made), before).collect();
+                way.reverse();
+                return Some(way);
+            }
+            for signal in &step.from {
+                let is_new = Made::Signal(*signal) != judged && !came_from.contains_key(signal);
+                if is_new && self.steps.contains_key(signal) {
+                    came_from.insert(*signal, made);
+                    ahead.push_back(Made::Signal(*signal));
+                }
+            }
+        }
+        None
+    }
+
+    /// From the last link of a way on to one that is made of nothing else, over signals that the step looks at where there
+    /// are any, and otherwise over those that the file names first.
+    fn on_to_a_sensor(&self, way: &mut Vec<Made>, looked_at: &BTreeSet<Signal>) {
+        while let Some(step) = way.last().and_then(|made| self.step_of(*made)) {
+            let is_new = |signal: &&Signal| {
+                self.steps.contains_key(signal) && !way.contains(&Made::Signal(**signal))
+            };
+            let mut from = step.from.iter().filter(is_new);
+            let first = from.clone().next();
+            let Some(next) = from.find(|signal| looked_at.contains(signal)).or(first) else {
+                return;
+            };
+            way.push(Made::Signal(*next));
+        }
+    }
+}
+
+fn signal_of(made: Made) -> Option<Signal> {
+    match made {
+        Made::Signal(signal) => Some(signal),
+        Made::Event(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{procedures, scripts, setup};
+
+    fn chain(of: &str, part: &str) -> Option<String> {
+        let structure = Structure::load(&scripts(), &scripts().faults().unwrap()).unwrap();
+        let procedures = procedures(&setup(&[]));
+        let (id, step) = of.split_once(": ").unwrap();
+        let procedure = procedures.iter().find(|all| all.id == id).unwrap();
+        let step = procedure.steps.iter().find(|all| all.name == step).unwrap();
+        let part: LruId = part.parse().unwrap();
+        let chain = structure.chain(procedure, step, &part)?;
+        let links = chain.links.iter().enumerate().map(|(place, link)| {
+            let made = match link.made {
+                Made::Signal(signal) => signal.name(),
+                Made::Event(event) => event.definition().name,
+            };
+            let mark = if place < chain.failing { "" } else { "!" };
+            format!("{mark}{made}")
+        });
+        let links = links.collect::<Vec<_>>().join(" ");
+        let before = chain.before.map(|part| format!("{part}: "));
+        Some(before.unwrap_or_default() + &links)
+    }
+
+    /// Goal: the way that is drawn is that by which the part fails the check. Method: parts at the end and at the
+    /// beginning of it, below all of it and beside it.
+    #[test]
+    fn a_chain_leads_from_a_sensor_over_the_part_to_what_is_judged() {
+        let overspeed = "atp/overspeed: code 55: alarm, FSB, EB";
+        for (part, expected) in [
+            ("eb_relay", Some("speed1 speed eb_cause !eb")),
+            ("speed_sensor_2", Some("!speed2 !speed !alarm")),
+            (
+                "power_supply",
+                Some("power_supply: !speed1 !speed !eb_cause !eb"),
+            ),
+        ] {
+            assert_eq!(chain(overspeed, part).as_deref(), expected, "{part}");
+        }
+        assert_eq!(
+            chain("ptu/at_rest: nothing is heard where no loop is", "eb_relay"),
+            None
+        );
+    }
+}
