@@ -4,6 +4,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use serde::Serialize;
 
+use super::groups::Group;
 use super::next_check::NextCheck;
 use super::verdict::PartProbability;
 
@@ -69,6 +70,36 @@ impl Sentence {
             format!("two faults ({both}): replace {one} and {other}"),
             format!("복합 고장 ({both}), 교체 대상: {one_ko}, {other_ko}"),
         )
+    }
+
+    /// One of the parts of a group is found, and this tells which.
+    pub(crate) fn one_of(
+        group: &Group,
+        probability: f64,
+        next: Option<&NextCheck>,
+        names: &[Lru],
+    ) -> Self {
+        let sure = percent(probability);
+        let parts = group.parts.iter().map(|part| named(part, None, names));
+        let [parts, parts_ko]: [Vec<String>; 2] =
+            parts.fold(Default::default(), |mut all, part| {
+                all.iter_mut()
+                    .zip(part)
+                    .for_each(|(all, part)| all.push(part));
+                all
+            });
+        let said = Self::new(
+            format!("{} ({sure})", parts.join(" or ")),
+            format!("{} ({sure})", parts_ko.join(" 또는 ")),
+        )
+        .and(
+            &format!("to tell which, {}", group.measure.english),
+            &format!("판별 방법: {}", group.measure.korean),
+        );
+        match next {
+            Some(_) => said.then(next),
+            None => said,
+        }
     }
 
     /// Nothing is wrong.

@@ -13,6 +13,7 @@ use protocol::{LruId, Verdict};
 
 use super::cell::{Cell, StepOutcome};
 use super::dictionary::{Column, Dictionary};
+use super::groups::Group;
 use super::likelihood::{
     Expected, Scale, likelihood_of_anything, likelihood_of_values, likelihood_without_signs,
 };
@@ -73,6 +74,8 @@ pub struct Model<'a> {
     pub ln_priors: Vec<f64>,
     /// What people call the parts; conclusions use the identifier of a part that is not among them.
     pub names: &'a [Lru],
+    /// Parts that checks do not always tell apart.
+    pub groups: &'a [Group],
     /// The parts.
     parts: Vec<&'a LruId>,
     /// Effects of each part.
@@ -144,6 +147,7 @@ impl<'a> Model<'a> {
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
             names: &[],
+            groups: &[],
             parts,
             false_alarms: false_alarms(dictionary),
             ln_priors: priors.into_iter().map(f64::ln).collect(),
@@ -155,6 +159,11 @@ impl<'a> Model<'a> {
     /// With what people call the parts.
     pub fn with_names(self, names: &'a [Lru]) -> Self {
         Self { names, ..self }
+    }
+
+    /// With the parts that checks do not always tell apart.
+    pub fn with_groups(self, groups: &'a [Group]) -> Self {
+        Self { groups, ..self }
     }
 
     /// Part that has failed under a hypothesis; `None` if the unit is healthy.

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::belief::Belief;
 use super::conclusion::Sentence;
 use super::explained::{Cause, causes};
+use super::groups::{self, Group};
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
@@ -61,6 +62,8 @@ pub enum Finding {
     Found,
     /// Two parts are found.
     TwoFound,
+    /// One of the parts of a group, which a measurement tells apart.
+    OneOf,
     /// Nothing is wrong.
     NoFault,
     /// One of several parts, and it cannot be told which.
@@ -80,6 +83,8 @@ pub struct Diagnosis {
     pub conclusion: Sentence,
     /// In a word.
     pub finding: Finding,
+    /// The parts that were not told apart, and what tells which has failed, if that is the finding.
+    pub group: Option<Group>,
     /// Parts, the likeliest first.
     pub lrus: Vec<PartProbability>,
     /// Two faults at once, the likeliest first.
@@ -114,8 +119,15 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let (finding, conclusion) =
-            weights.conclusion(belief.model, self.seen, next_check.as_ref());
+        let group = groups::answer(belief, weights);
+        let (finding, conclusion) = match group {
+            Some((group, probability)) => {
+                let said =
+                    Sentence::one_of(group, probability, next_check.as_ref(), belief.model.names);
+                (Finding::OneOf, said)
+            }
+            None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
+        };
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
         let shown = self.pairs.iter().filter(is_shown);
         Diagnosis {
@@ -123,6 +135,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             next_check,
             conclusion,
             finding,
+            group: group.map(|(group, _)| group.clone()),
             two_faults: shown
                 .map(|pair| TwoFaults {
                     faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
@@ -136,7 +149,10 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
 
     /// The parts that are found, each with what it explains.
     pub fn causes(&self) -> Vec<Cause> {
-        causes(&self.belief, &self.weights, self.seen)
+        match groups::answer(&self.belief, &self.weights) {
+            Some(_) => Vec::new(),
+            None => causes(&self.belief, &self.weights, self.seen),
+        }
     }
 
     /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.

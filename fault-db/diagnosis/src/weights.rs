@@ -172,17 +172,34 @@ impl Weights {
             if sum >= sure {
                 break;
             }
-            // Two parts that have failed at once count with the first of them.
-            let beside =
-                self.pairs_of(&part.lru)
-                    .map(|(other, both)| match parts.contains(&other) {
-                        true => -both / 2.0,
-                        false => both / 2.0,
-                    });
-            sum += part.probability + beside.sum::<f64>();
+            sum += self.failed_without(part, &parts);
             parts.push(&part.lru);
         }
         parts
+    }
+
+    /// Probability that one of these parts has failed, alone or beside another.
+    pub fn any_failed(&self, parts: &[LruId]) -> f64 {
+        let of_group = self.lrus.iter().filter(|part| parts.contains(&part.lru));
+        let mut before: Vec<&LruId> = Vec::new();
+        let each = of_group.map(|part| {
+            let more = self.failed_without(part, &before);
+            before.push(&part.lru);
+            more
+        });
+        each.sum()
+    }
+
+    /// Probability that a part has failed and none of those `before`: two parts that have failed at once count with the
+    /// first of them.
+    fn failed_without(&self, part: &PartProbability, before: &[&LruId]) -> f64 {
+        let beside = self
+            .pairs_of(&part.lru)
+            .map(|(other, both)| match before.contains(&other) {
+                true => -both / 2.0,
+                false => both / 2.0,
+            });
+        part.probability + beside.sum::<f64>()
     }
 
     /// The parts that may have failed beside one, each with the probability of both.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::{Connection, Expectation, Step};
-use diagnosis::{Cell, CheckName, Dictionary, Mode};
+use diagnosis::{Cell, CheckName, Dictionary, Group, Mode, Sentence};
 use protocol::event::Event;
 use protocol::injection::FaultCatalogue;
 use protocol::signal::{Origin, Signal};
@@ -38,6 +38,7 @@ struct Written {
     /// Parts beside them in procedures that a laptop runs.
     on_the_train: Vec<LruId>,
     ways: Vec<WrittenWay>,
+    groups: Vec<WrittenGroup>,
     off_way: Vec<KnownOffWay>,
 }
 
@@ -55,6 +56,17 @@ struct WrittenWay {
     /// Parts that make them.
     #[serde(default)]
     parts: Vec<LruId>,
+}
+
+/// Parts that checks do not always tell apart.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenGroup {
+    parts: Vec<LruId>,
+    /// What tells which has failed, after "to tell which, ".
+    measure: String,
+    /// The same in Korean.
+    measure_ko: String,
 }
 
 /// Fault modes that are known to fail a step off the way of their part.
@@ -88,6 +100,8 @@ pub struct Structure {
     event_steps: BTreeMap<Event, WayStep>,
     everywhere: Vec<LruId>,
     on_the_train: Vec<LruId>,
+    /// Parts that checks do not always tell apart, and what tells which has failed.
+    pub groups: Vec<Group>,
     /// What fails off the way, and why.
     pub known_off_way: Vec<KnownOffWay>,
 }
@@ -110,7 +124,8 @@ impl Structure {
         let named = written.ways.iter().flat_map(|way| &way.parts);
         let mut named = named
             .chain(&written.everywhere)
-            .chain(&written.on_the_train);
+            .chain(&written.on_the_train)
+            .chain(written.groups.iter().flat_map(|group| &group.parts));
         if let Some(part) = named.find(|part| !parts.contains(part)) {
             return Err(format!("no part \"{part}\"; `ptu catalog lrus` lists them"));
         }
@@ -147,6 +162,7 @@ impl Structure {
             event_steps: events.into_iter().collect(),
             everywhere: written.everywhere,
             on_the_train: written.on_the_train,
+            groups: written.groups.into_iter().map(Group::from).collect(),
             known_off_way: written.off_way,
         })
     }
@@ -213,6 +229,18 @@ impl Structure {
             })
         };
         off_way.into_iter().filter(|off| !is_known(off)).collect()
+    }
+}
+
+impl From<WrittenGroup> for Group {
+    fn from(written: WrittenGroup) -> Self {
+        Self {
+            parts: written.parts,
+            measure: Sentence {
+                english: written.measure,
+                korean: written.measure_ko,
+            },
+        }
     }
 }
 
@@ -328,6 +356,9 @@ mod tests {
             Structure::from_toml(&text.replacen(from, to, 1), &parts).unwrap_err()
         };
         assert!(refused("\"eb_relay\"", "\"relay\"").contains("no part \"relay\""));
+        let group = "parts = [\"tcms\", \"rs485_link\"]\nmeasure";
+        let unknown = "parts = [\"tcms\", \"link\"]\nmeasure";
+        assert!(refused(group, unknown).contains("no part \"link\""));
         assert!(refused("\"limit\"", "\"limits\"").contains("no signal \"limits\""));
         assert!(refused("signals = [\"limit\"]", "signals = []").contains("limit has no way"));
         assert!(refused("signals = [\"eb\"]", "signals = [\"fsb\"]").contains("two ways"));

@@ -38,6 +38,7 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
             "isolated_1": share_json(figures.isolated[0]),
             "isolated_2": share_json(figures.isolated[1]),
             "isolated_3": share_json(figures.isolated[2]),
+            "named": share_json(figures.named),
             "wrong": share_json(figures.wrong),
             "adaptive_right": share_json(figures.adaptive_right),
         },
@@ -123,7 +124,8 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
             s,
         );
     }
-    line("one part named, the wrong one", figures.wrong);
+    line("right part named, or its group", figures.named);
+    line("wrong part or group named", figures.wrong);
     line("found by the adaptive order", figures.adaptive_right);
     let _ = writeln!(
         text,

@@ -30,6 +30,9 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "conclusion": d.conclusion.english,
         "conclusion_ko": Language::Korean.words().sentence(&d.conclusion),
         "finding": d.finding,
+        "group": d.group.as_ref().map(|group| json!({
+            "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
+        })),
         "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,

@@ -20,7 +20,9 @@ fn figures_json(figures: &UnseenFigures) -> Value {
     json!({
         "first": share_json(figures.first),
         "first_two": share_json(figures.first_two),
+        "first_or_group": share_json(figures.first_or_group),
         "found": share_json(figures.found),
+        "found_or_group": share_json(figures.found_or_group),
         "wrong": share_json(figures.wrong),
         "reliability": figures.reliability.map(share_json),
         "brier": figures.brier,
@@ -106,7 +108,9 @@ fn figures_text(text: &mut String, figures: &UnseenFigures) {
     let shares = [
         ("right part first", figures.first),
         ("among the first two", figures.first_two),
+        ("right part first, or its group", figures.first_or_group),
         ("named for certain, the right one", figures.found),
+        ("or a group with it", figures.found_or_group),
         ("named for certain, a wrong one", figures.wrong),
     ];
     shares_text(text, &shares);

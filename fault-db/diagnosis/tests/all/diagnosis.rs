@@ -1,6 +1,7 @@
 //! What diagnosis promises: it finds the part when the evidence does, asks for the check that tells the
 //! most, and says "cannot tell" rather than something wrong.
 
+mod groups;
 mod signs;
 mod strategy;
 

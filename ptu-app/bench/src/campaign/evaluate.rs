@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Diagnosis, Dictionary, Effort, Finding, Model, PartProbability, Settings, fixed_order, replayed,
+    Diagnosis, Dictionary, Effort, Finding, Group, Model, PartProbability, Settings, fixed_order,
+    replayed,
 };
 
 use protocol::LruId;
@@ -88,22 +89,38 @@ impl Assessment {
         self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
     }
 
-    /// One part or two are named for certain, and not the right one alone.
+    /// One part, two or a group are named for certain, and not the right one alone or a group with it.
     pub fn is_wrong(&self) -> bool {
         self.is_certain() && !self.names_the_part()
     }
 
-    /// The right part is named for certain, and nothing else.
-    pub fn is_found(&self) -> bool {
+    /// The right part is named for certain and nothing else, or a group that it is of.
+    pub fn is_found_or_group(&self) -> bool {
         self.is_certain() && self.names_the_part()
     }
 
+    /// The right part is the likeliest, or of the group that is named.
+    pub fn is_first_or_group(&self) -> bool {
+        self.rank() == Some(0) || self.is_found_or_group()
+    }
+
+    /// The right part is named for certain, and nothing else.
+    pub fn is_found(&self) -> bool {
+        self.finding == Finding::Found && self.names_the_part()
+    }
+
     fn is_certain(&self) -> bool {
-        matches!(self.finding, Finding::Found | Finding::TwoFound)
+        matches!(
+            self.finding,
+            Finding::Found | Finding::TwoFound | Finding::OneOf
+        )
     }
 
     fn names_the_part(&self) -> bool {
-        self.parts == [self.lru.clone()]
+        match self.finding {
+            Finding::OneOf => self.parts.contains(&self.lru),
+            _ => self.parts == [self.lru.clone()],
+        }
     }
 
     /// Place of the right part among all.
@@ -120,12 +137,12 @@ impl Assessment {
 /// Diagnoses these runs with a fault, in both orders of the suite `with_orders`.
 pub fn assess(
     dictionary: &Dictionary,
-    settings: &Settings,
+    (settings, groups): (&Settings, &[Group]),
     faulty: &[(&Sample, &SuiteRun)],
     with_orders: bool,
     jobs: usize,
 ) -> Vec<Assessment> {
-    let model = Model::new(dictionary, settings, &BTreeMap::new());
+    let model = Model::new(dictionary, settings, &BTreeMap::new()).with_groups(groups);
     let one = |i: usize| {
         let (sample, run) = faulty[i];
         let mut assessment = assess_one(&model, sample, run)?;
@@ -155,6 +172,11 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
             let found = diagnosis.lrus.iter().take(2);
             found.map(|part| &part.lru).collect()
         }
+        Finding::OneOf => diagnosis
+            .group
+            .iter()
+            .flat_map(|group| &group.parts)
+            .collect(),
         _ => assessed.credible_parts(SURE),
     };
     Some(Assessment {
@@ -236,8 +258,10 @@ pub struct Figures {
     pub detected_isolated: Share,
     /// Runs isolated to at most 1, 2, 3 parts.
     pub isolated: [Share; MOST_PARTS],
-    /// Runs in which diagnosis names one part for certain, and it is the wrong one.
+    /// Runs in which diagnosis names one part or a group for certain, and it is the wrong one.
     pub wrong: Share,
+    /// Runs in which it names the right part or a group with it, of those detected.
+    pub named: Share,
     /// Modes that were not detected in some run.
     pub undetected: Vec<Shortfall>,
     /// Modes that were not isolated to one part in some run.
@@ -305,6 +329,10 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         detected_isolated: Share::over(all().filter(|run| run.detected), |run| run.isolated(1)),
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
         wrong: Share::over(all(), Assessment::is_wrong),
+        named: Share::over(
+            all().filter(|run| run.detected),
+            Assessment::is_found_or_group,
+        ),
         undetected: lacking(&|run| run.detected),
         not_isolated: lacking(&|run| run.isolated(1)),
         ambiguous: ambiguous(assessments),
@@ -320,7 +348,9 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     let mut taken_for: BTreeMap<String, usize> = BTreeMap::new();
     for run in runs.iter().filter(|run| !has(run)) {
         let what = match run.finding {
-            Finding::Found | Finding::TwoFound | Finding::CannotTell => joined(&run.parts),
+            Finding::Found | Finding::TwoFound | Finding::OneOf | Finding::CannotTell => {
+                joined(&run.parts)
+            }
             _ => run.answer().to_owned(),
         };
         *taken_for.entry(what).or_default() += 1;

@@ -33,9 +33,13 @@ pub struct UnseenFigures {
     pub first: Share,
     /// It is among the first two.
     pub first_two: Share,
+    /// It is the likeliest, or of the group that is named.
+    pub first_or_group: Share,
     /// It is named for certain, and nothing else.
     pub found: Share,
-    /// Another part is named for certain.
+    /// It is named for certain, alone or with its group.
+    pub found_or_group: Share,
+    /// Another part, or a group without it, is named for certain.
     pub wrong: Share,
     /// By the probability of the likeliest part, 0–10 % to 90–100 %: how often it is the right one.
     pub reliability: [Share; CLASSES],
@@ -152,7 +156,9 @@ impl UnseenFigures {
         Self {
             first: share(&|run| run.rank() == Some(0)),
             first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
+            first_or_group: share(&Assessment::is_first_or_group),
             found: share(&Assessment::is_found),
+            found_or_group: share(&Assessment::is_found_or_group),
             wrong: share(&Assessment::is_wrong),
             reliability: std::array::from_fn(|of| {
                 let in_class = runs.iter().copied().filter(|run| class(run) == of);
@@ -192,7 +198,7 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
     });
     assess(
         &dictionary,
-        settings,
+        (settings, &suite.structure.groups),
         &of_these.collect::<Vec<_>>(),
         false,
         jobs,

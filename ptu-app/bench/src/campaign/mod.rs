@@ -184,6 +184,7 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
         jobs,
     } = *evidence;
     let dictionary = dictionary(basis.clone(), suite, modes, samples, runs);
+    let judged_by = (settings, &*suite.structure.groups);
     let held_out = samples.iter().zip(runs);
     let of = |purpose: Purpose, faults: usize| -> Vec<_> {
         let is_of =
@@ -195,16 +196,16 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
     Outcome {
         assessments: evaluate::assess(
             &dictionary,
-            settings,
+            judged_by,
             &of(Purpose::Assessment, 1),
             true,
             jobs,
         ),
-        pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, settings, &pairs)),
+        pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, judged_by, &pairs)),
         other_spells: (!other_spells.is_empty()).then(|| {
             OtherSpells::of(&evaluate::assess(
                 &dictionary,
-                settings,
+                judged_by,
                 &other_spells,
                 false,
                 jobs,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnosis::{Diagnosis, Dictionary, Finding, Model, Settings};
+use diagnosis::{Diagnosis, Dictionary, Finding, Group, Model, Settings};
 use protocol::LruId;
 
 use super::evaluate::Share;
@@ -29,26 +29,26 @@ impl PairFigures {
     /// Diagnoses these runs.
     pub(super) fn of(
         dictionary: &Dictionary,
-        settings: &Settings,
+        (settings, groups): (&Settings, &[Group]),
         runs: &[(&Sample, &SuiteRun)],
     ) -> Self {
-        let model = Model::new(dictionary, settings, &BTreeMap::new());
+        let model = Model::new(dictionary, settings, &BTreeMap::new()).with_groups(groups);
         let mut figures = Self::default();
         for (sample, run) in runs.iter().filter(|(_, run)| !run.passed) {
             let diagnosis = Diagnosis::of(&model, &run.seen);
             let is_bad = |part: &LruId| sample.faults.iter().any(|fault| fault.lru == *part);
             let first = diagnosis.lrus.iter().take(AMONG);
             let found = first.filter(|part| is_bad(&part.lru)).count();
-            let named = match diagnosis.finding {
-                Finding::Found => 1,
-                Finding::TwoFound => 2,
-                _ => 0,
+            let sound = match diagnosis.finding {
+                Finding::Found => !is_bad(&diagnosis.lrus[0].lru),
+                Finding::TwoFound => diagnosis.lrus.iter().take(2).any(|part| !is_bad(&part.lru)),
+                Finding::OneOf => !diagnosis
+                    .group
+                    .iter()
+                    .flat_map(|group| &group.parts)
+                    .any(is_bad),
+                _ => false,
             };
-            let sound = diagnosis
-                .lrus
-                .iter()
-                .take(named)
-                .any(|part| !is_bad(&part.lru));
             figures.both.count(found == 2);
             figures.one.count(found > 0);
             figures.wrong.count(sound);

@@ -26,7 +26,7 @@ pub struct Suite {
     /// Parts and fault modes.
     pub catalogue: FaultCatalogue,
     /// The parts that each signal comes through.
-    structure: Structure,
+    pub structure: Structure,
 }
 
 /// A run of the suite.

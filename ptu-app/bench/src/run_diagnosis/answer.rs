@@ -20,6 +20,7 @@ use crate::failure::{Failure, did_you_mean};
 use crate::process_id;
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
+use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 
 /// What decides what a healthy unit measures.
@@ -127,13 +128,26 @@ pub fn diagnose(
     };
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
     // Without a catalogue that can be read, parts go by their identifiers.
-    let names = directory.faults().map(|all| all.lrus).unwrap_or_default();
+    let catalogue = directory.faults();
+    let groups = match &catalogue {
+        Ok(catalogue) => Structure::load(directory, catalogue).map(|structure| structure.groups),
+        Err(_) => Ok(Vec::new()),
+    };
+    let groups = groups.unwrap_or_else(|failure| {
+        warnings.push(format!(
+            "parts that are hard to tell apart are not known: {failure}"
+        ));
+        Vec::new()
+    });
+    let names = catalogue.map(|all| all.lrus).unwrap_or_default();
     // A symptom that this directory's file no longer has says nothing.
     let said = run.run.symptom.as_deref();
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
         history.add_symptom(&symptom, &settings);
     }
-    let model = Model::new(&dictionary, &settings, &history.factors).with_names(&names);
+    let model = Model::new(&dictionary, &settings, &history.factors)
+        .with_names(&names)
+        .with_groups(&groups);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
     let causes = assessed.causes();

@@ -1,0 +1,101 @@
+//! Ambiguity groups: one part of a group is named only where what was seen tells it from the others.
+
+use diagnosis::{Group, Sentence};
+
+use super::*;
+
+fn group(parts: [&str; 2]) -> Group {
+    Group {
+        parts: parts.map(|part| part.parse().expect("a part")).into(),
+        measure: Sentence {
+            english: "measure between them".into(),
+            korean: "그 사이를 측정합니다".into(),
+        },
+    }
+}
+
+fn with_groups(dictionary: &Dictionary, seen: &Observation, groups: &[Group]) -> Diagnosis {
+    let settings = settings();
+    let model = Model::new(dictionary, &settings, &BTreeMap::new()).with_groups(groups);
+    Diagnosis::of(&model, seen)
+}
+
+/// Goal: parts that act alike are named together, with what tells which. Method: antenna and cable have the same effect; a
+/// group without one of them changes nothing.
+#[test]
+fn parts_that_act_alike_are_named_together_with_the_measurement() {
+    let (dictionary, seen) = (dictionary(), run(&["b.s1", "c.s1"], Some(240.0)));
+    let one_of = with_groups(&dictionary, &seen, &[group(["antenna", "cable"])]);
+    assert_eq!(one_of.finding, Finding::OneOf);
+    let said = &one_of.conclusion;
+    assert!(said.english.starts_with("antenna or cable ("), "{said:?}");
+    let measure = "; to tell which, measure between them";
+    assert!(said.english.contains(measure), "{said:?}");
+    assert!(
+        said.korean.contains("; 판별 방법: 그 사이를 측정합니다"),
+        "{said:?}"
+    );
+    assert!(
+        Assessment::of(
+            &Model::new(&dictionary, &settings(), &BTreeMap::new()),
+            &seen
+        )
+        .causes()
+        .is_empty()
+    );
+    let other = with_groups(&dictionary, &seen, &[group(["antenna", "sensor"])]);
+    assert_eq!(other.finding, Finding::CannotTell, "{:?}", other.conclusion);
+    assert_eq!(other.group, None);
+}
+
+/// Goal: a fault that acts as it was counted is named alone; the same part is not where its fault acts otherwise, as a fault
+/// of another part of the group may. Method: the sensor as counted; then with one more check that fails.
+#[test]
+fn one_part_of_a_group_is_named_where_its_fault_acts_as_counted() {
+    let dictionary = dictionary();
+    let groups = [group(["sensor", "cable"])];
+    for (fails, finding) in [
+        (&["a.s2", "b.s1"][..], Finding::Found),
+        (&["a.s2", "b.s1", "b.s2"], Finding::OneOf),
+    ] {
+        let seen = run(fails, Some(240.0));
+        let alone = diagnosed(&dictionary, &seen);
+        assert_eq!(alone.finding, Finding::Found, "{:?}", alone.conclusion);
+        let said = with_groups(&dictionary, &seen, &groups);
+        assert_eq!(said.finding, finding, "{fails:?}: {:?}", said.conclusion);
+        assert_eq!(said.lrus, alone.lrus);
+    }
+}
+
+/// Goal: a sign parts a group where the dictionary says so. Method: two modes of the sensor log that it is dead; then a mode
+/// of the cable does, too.
+#[test]
+fn a_sign_that_only_one_part_of_a_group_shows_names_it() {
+    let dead = diagnosis::Sign {
+        fault: "tacho_dead".into(),
+        lru: protocol::lru::from_stored("sensor"),
+    };
+    let logged = |fails: &[&str]| {
+        let mut run = run(fails, Some(240.0));
+        run.steps[1].signs.insert(dead.clone());
+        run
+    };
+    let mut dictionary = dictionary();
+    for (id, fails) in [
+        ("sensor.loose", ["a.s2", "c.s2"]),
+        ("sensor.worn", ["a.s2", "c.s3"]),
+    ] {
+        dictionary.add(&mode(id, 1.0), "nominal".into(), &vec![logged(&fails); 20]);
+    }
+    let groups = [group(["sensor", "cable"])];
+    let seen = logged(&["a.s2", "c.s2", "c.s3", "b.s2"]);
+    let said = with_groups(&dictionary, &seen, &groups);
+    assert_eq!(said.finding, Finding::Found, "{:?}", said.conclusion);
+    dictionary.add(
+        &mode("cable.worn", 1.0),
+        "nominal".into(),
+        &vec![logged(&["b.s1", "a.s3"]); 20],
+    );
+    let said = with_groups(&dictionary, &seen, &groups);
+    assert_eq!(said.finding, Finding::OneOf, "{:?}", said.conclusion);
+}
