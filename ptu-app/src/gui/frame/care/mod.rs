@@ -82,6 +82,9 @@ impl Care {
 
     fn contents(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
+        if context.settings.locked {
+            super::only_look(ui);
+        }
         ui.set_width(WIDE);
         let file = context.queries.paths().database.display().to_string();
         ui.horizontal_wrapped(|ui| {

@@ -192,7 +192,7 @@ impl CasePage {
     fn start(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some(why) = context.only_reads() {
-            ui.label(RichText::new(why).size(TEXT));
+            ui.label(RichText::new(why).size(Sizes::of(ui).text));
             return;
         }
         self.name(ui, context);
