@@ -13,18 +13,13 @@ const SHARE: [f32; 2] = [0.8, 1.5];
 #[serde(rename_all = "snake_case")]
 pub enum Density {
     /// Large text and targets, which grow with the window; nothing that only scripts name.
-    #[default]
     Operator,
     /// As much as there is room for.
+    #[default]
     Engineer,
 }
 
 impl Density {
-    /// That of a window that was used before there was a choice.
-    pub fn as_before() -> Self {
-        Self::Engineer
-    }
-
     /// The other one.
     pub fn other(self) -> Self {
         match self {

