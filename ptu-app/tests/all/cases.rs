@@ -139,7 +139,7 @@ fn what_a_person_says_stands_before_the_next_diagnosis() {
 }
 
 /// Goal: what a repair has proved once is known the next time, in another unit.
-/// Method: the suite on a unit with a fault that it cannot tell from one of another part; the same fault in a second unit,
+/// Method: the suite on a unit with a fault that it names with another part only; the same fault in a second unit,
 /// before and after a run proves the repair of the first.
 #[test]
 fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
@@ -151,7 +151,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
         place.json(&["diagnose", "latest", "--json"])
     };
     let first = run("BAD-1", "1");
-    assert_eq!(first["finding"], "cannot_tell", "{}", first["conclusion"]);
+    assert_eq!(first["finding"], "one_of", "{}", first["conclusion"]);
     let fault = id_of(&place, "atp_cpu");
     let repair = [
         "faults", "repair", &fault, "--part", "atp_cpu", "--new", "SN-9",
@@ -159,7 +159,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     place.ptu(&repair).exits(0);
     let unproved = run("BAD-2", "2");
     assert_eq!(
-        unproved["finding"], "cannot_tell",
+        unproved["finding"], "one_of",
         "{}",
         unproved["conclusion"]
     );
@@ -175,7 +175,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     // One case shows where to look, and makes nothing certain.
     let share = |of: &Value| of["lrus"][0]["probability"].as_f64().expect("a share");
     assert!(share(&known) > share(&first), "{}", known["conclusion"]);
-    assert_eq!(known["finding"], "cannot_tell", "{}", known["conclusion"]);
+    assert_eq!(known["finding"], "one_of", "{}", known["conclusion"]);
 }
 
 /// Goal: two laptops that saw the same unit have the same cases, whichever imports the other first.
