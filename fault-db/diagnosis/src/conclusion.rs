@@ -80,19 +80,13 @@ impl Sentence {
         names: &[Lru],
     ) -> Self {
         let sure = percent(probability);
-        let parts = group.parts.iter().map(|part| named(part, None, names));
-        let [parts, parts_ko]: [Vec<String>; 2] =
-            parts.fold(Default::default(), |mut all, part| {
-                all.iter_mut()
-                    .zip(part)
-                    .for_each(|(all, part)| all.push(part));
-                all
-            });
-        let said = Self::new(
-            format!("{} ({sure})", parts.join(" or ")),
-            format!("{} ({sure})", parts_ko.join(" 또는 ")),
-        )
-        .and(
+        let parts: Vec<_> = group
+            .parts
+            .iter()
+            .map(|part| named(part, None, names))
+            .collect();
+        let [parts, parts_ko] = one_or_other(&parts);
+        let said = Self::new(format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")).and(
             &format!("to tell which, {}", group.measure.english),
             &format!("판별 방법: {}", group.measure.korean),
         );
@@ -137,10 +131,7 @@ impl Sentence {
             0 => [String::new(), String::new()],
             n => [format!(" or one of {n} more"), format!(" 외 {n}개")],
         };
-        let all = |language: usize, or: &str| {
-            let named: Vec<_> = shown.iter().map(|part| &*part[language]).collect();
-            named.join(or)
-        };
+        let [all, all_ko] = one_or_other(&shown);
         match &shown[..] {
             // As many parts as nobody could choose from.
             [] if next.is_some() => Self::new(
@@ -153,8 +144,8 @@ impl Sentence {
                 format!("아직 확실하지 않습니다: {one_ko}"),
             ),
             _ => Self::new(
-                format!("cannot tell yet which: {}{more}", all(0, " or ")),
-                format!("아직 판별할 수 없습니다: {}{more_ko}", all(1, " 또는 ")),
+                format!("cannot tell yet which: {all}{more}"),
+                format!("아직 판별할 수 없습니다: {all_ko}{more_ko}"),
             ),
         }
         .then(next)
@@ -176,6 +167,15 @@ impl Sentence {
             "판별할 수 없습니다: 합격하지 못한 시험이며, 합격하지 못한 항목은 끝까지 수행되지 않았거나 고장 사전에 없습니다",
         )
     }
+}
+
+/// Named parts, one of which it is, in both languages.
+fn one_or_other(named: &[[String; 2]]) -> [String; 2] {
+    let all = |language: usize, or: &str| {
+        let named: Vec<_> = named.iter().map(|part| &*part[language]).collect();
+        named.join(or)
+    };
+    [all(0, " or "), all(1, " 또는 ")]
 }
 
 /// A part by its name in both languages, with the identifier that commands take and its probability; by the identifier alone

@@ -99,6 +99,8 @@ pub struct Assessment<'m, 'd, 's> {
     seen: &'s Observation,
     weights: Weights,
     pairs: Vec<Pair>,
+    /// The group that is the answer, with the probability that one of its parts has failed.
+    group: Option<(&'m Group, f64)>,
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
@@ -107,6 +109,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let belief = Belief::after(model, seen);
         let (weights, pairs) = Weights::after(&belief, seen);
         Self {
+            group: groups::answer(&belief, &weights),
             belief,
             seen,
             weights,
@@ -119,8 +122,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let group = groups::answer(belief, weights);
-        let (finding, conclusion) = match group {
+        let (finding, conclusion) = match self.group {
             Some((group, probability)) => {
                 let said =
                     Sentence::one_of(group, probability, next_check.as_ref(), belief.model.names);
@@ -135,7 +137,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             next_check,
             conclusion,
             finding,
-            group: group.map(|(group, _)| group.clone()),
+            group: self.group.map(|(group, _)| group.clone()),
             two_faults: shown
                 .map(|pair| TwoFaults {
                     faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
@@ -149,7 +151,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
 
     /// The parts that are found, each with what it explains.
     pub fn causes(&self) -> Vec<Cause> {
-        match groups::answer(&self.belief, &self.weights) {
+        match self.group {
             Some(_) => Vec::new(),
             None => causes(&self.belief, &self.weights, self.seen),
         }

@@ -158,11 +158,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     ];
     place.ptu(&repair).exits(0);
     let unproved = run("BAD-2", "2");
-    assert_eq!(
-        unproved["finding"], "one_of",
-        "{}",
-        unproved["conclusion"]
-    );
+    assert_eq!(unproved["finding"], "one_of", "{}", unproved["conclusion"]);
     let proof = place.ptu(&["run", "--serial-no", "BAD-1"]).exits(0).out;
     assert!(proof.contains("the repair is verified"), "{proof}");
     let known = run("BAD-3", "3");
