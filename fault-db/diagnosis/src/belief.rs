@@ -121,6 +121,18 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.shown.get(&place)
     }
 
+    /// Logarithm of the likelihood of whom the failed checks suspect under one cause at several parts.
+    pub(super) fn ln_suspicion(&self, parts: &[usize]) -> f64 {
+        let settings = self.model.settings;
+        settings.suspect * self.model.suspects.ln_of_several(&self.suspicion, parts)
+    }
+
+    /// Whether something that was seen names the part: a failed check that suspects it, or a sign.
+    pub(super) fn is_named(&self, part: &LruId) -> bool {
+        let mut signs = self.signs.in_steps.iter().chain(&self.signs.in_log);
+        self.suspicion.names(part) || signs.any(|sign| sign.lru.as_ref() == Some(part))
+    }
+
     /// The signs that showed.
     pub(super) fn signs(&self) -> &SignsSeen {
         &self.signs
@@ -142,7 +154,7 @@ impl<'m, 'd> Belief<'m, 'd> {
                 Hypothesis::Mode { .. } if model.is_intermittent(*hypothesis) => {
                     self.like_effects[i - FIRST_EFFECT]
                 }
-                Hypothesis::Mode { .. } => ln_sum(self.as_counted_and_loosely(i - FIRST_EFFECT)),
+                Hypothesis::Mode { .. } => self.effects[i - FIRST_EFFECT],
                 Hypothesis::Unseen { part } => {
                     ln_sum(self.like_effects(part)) + model.settings.suspect * suspicion[part]
                 }
@@ -150,24 +162,6 @@ impl<'m, 'd> Belief<'m, 'd> {
             model.ln_priors[i] + steps + self.signs.ln(model, *hypothesis)
         });
         of.collect()
-    }
-
-    /// Logarithms of the likelihood of all steps under an effect that lasts: that acts as counted, and more or less so.
-    fn as_counted_and_loosely(&self, effect: usize) -> impl Iterator<Item = f64> + Clone + use<> {
-        let loosely = self.model.settings.loosely;
-        let as_counted = (1.0 - loosely).ln() + self.effects[effect];
-        [as_counted, loosely.ln() + self.like_effects[effect]].into_iter()
-    }
-
-    /// Probability that a fault, if it is the one, acts as it was counted: 0 of one that comes and goes, or is not in the
-    /// dictionary.
-    pub(super) fn share_as_counted(&self, hypothesis: Hypothesis) -> f64 {
-        let lasting = self.model.effect(hypothesis);
-        let lasting = lasting.filter(|_| !self.model.is_intermittent(hypothesis));
-        lasting.map_or(0.0, |effect| {
-            let both: Vec<f64> = self.as_counted_and_loosely(effect).collect();
-            normalised(&both)[0]
-        })
     }
 
     /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of

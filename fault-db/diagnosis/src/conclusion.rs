@@ -4,6 +4,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use serde::Serialize;
 
+use super::common::Shared;
 use super::groups::Group;
 use super::next_check::NextCheck;
 use super::verdict::PartProbability;
@@ -29,7 +30,7 @@ impl Sentence {
     }
 
     /// With what to run next, or that nothing in the suite would tell more.
-    fn then(self, next: Option<&NextCheck>) -> Self {
+    pub(crate) fn then(self, next: Option<&NextCheck>) -> Self {
         let Some(next) = next else {
             return self.and(
                 "nothing in this suite would tell more",
@@ -41,11 +42,18 @@ impl Sentence {
         } else {
             [""; 2]
         };
-        let gain = format!("{:.2} bits in {:.0} s", next.gain_bits, next.cost_s);
-        let gain_ko = format!("{:.0}초에 {:.2} bit", next.cost_s, next.gain_bits);
+        let [tells, tells_ko] =
+            [&next.tells.english, &next.tells.korean].map(|tells| match &**tells {
+                "" => String::new(),
+                tells => format!(": {tells}"),
+            });
+        let time_s = next.cost_s.ceil();
         self.and(
-            &format!("next, run{again} {} ({gain})", next.check),
-            &format!("다음 점검:{again_ko} {} ({gain_ko})", next.check),
+            &format!("next, run{again} {} ({time_s:.0} s){tells}", next.check),
+            &format!(
+                "다음 점검:{again_ko} {} ({time_s:.0}초){tells_ko}",
+                next.check
+            ),
         )
     }
 
@@ -72,13 +80,33 @@ impl Sentence {
         )
     }
 
+    /// What a check tells that passes where these parts have failed, and does not pass where those have; empty if that is
+    /// not known.
+    pub(crate) fn tells(passes: &[LruId], fails: &[LruId], names: &[Lru]) -> Self {
+        let all = |parts: &[LruId]| {
+            let named: Vec<_> = parts.iter().map(|part| called(part, names)).collect();
+            one_or_other(&named)
+        };
+        let ([passed, passed_ko], [failed, failed_ko]) = (all(passes), all(fails));
+        match (passes.is_empty(), fails.is_empty()) {
+            (true, true) => Self::default(),
+            (false, true) => Self::new(
+                format!("it passes if the fault is in {passed}"),
+                format!("{passed_ko} 고장이면 합격합니다"),
+            ),
+            (true, false) => Self::new(
+                format!("it fails if the fault is in {failed}"),
+                format!("{failed_ko} 고장이면 불합격합니다"),
+            ),
+            (false, false) => Self::new(
+                format!("it passes if the fault is in {passed}, and fails if it is in {failed}"),
+                format!("{passed_ko} 고장이면 합격, {failed_ko} 고장이면 불합격합니다"),
+            ),
+        }
+    }
+
     /// One of the parts of a group is found, and this tells which.
-    pub(crate) fn one_of(
-        group: &Group,
-        probability: f64,
-        next: Option<&NextCheck>,
-        names: &[Lru],
-    ) -> Self {
+    pub(crate) fn one_of(group: &Group, probability: f64, names: &[Lru]) -> Self {
         let sure = percent(probability);
         let parts: Vec<_> = group
             .parts
@@ -86,14 +114,45 @@ impl Sentence {
             .map(|part| named(part, None, names))
             .collect();
         let [parts, parts_ko] = one_or_other(&parts);
-        let said = Self::new(format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")).and(
+        Self::new(format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")).and(
             &format!("to tell which, {}", group.measure.english),
             &format!("판별 방법: {}", group.measure.korean),
-        );
-        match next {
-            Some(_) => said.then(next),
-            None => said,
-        }
+        )
+    }
+
+    /// One cause at several parts, a fault of each, or one of a part `alone`, and what tells.
+    pub(crate) fn common(
+        (shared, reached): (&Shared, &[LruId]),
+        alone: Option<&LruId>,
+        probability: f64,
+        names: &[Lru],
+    ) -> Self {
+        let sure = percent(probability);
+        let places: Vec<_> = reached
+            .iter()
+            .map(|part| named(part, None, names))
+            .collect();
+        let [places, places_ko] = joined(&places, [" and ", ", "]);
+        let [part, part_ko] = named(&shared.part, None, names);
+        let [or_alone, or_alone_ko] = alone.map_or_else(Default::default, |alone| {
+            let [alone, alone_ko] = named(alone, None, names);
+            [
+                format!(", or {alone} alone"),
+                format!(". {alone_ko} 단독 고장일 수도 있습니다"),
+            ]
+        });
+        Self::new(
+            format!(
+                "one cause at {places} ({sure}): {part}, its wiring, or a fault of each{or_alone}"
+            ),
+            format!(
+                "{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장{or_alone_ko}"
+            ),
+        )
+        .and(
+            &format!("to tell which, {}", shared.measure.english),
+            &format!("판별 방법: {}", shared.measure.korean),
+        )
     }
 
     /// Nothing is wrong.
@@ -171,11 +230,24 @@ impl Sentence {
 
 /// Named parts, one of which it is, in both languages.
 fn one_or_other(named: &[[String; 2]]) -> [String; 2] {
-    let all = |language: usize, or: &str| {
+    joined(named, [" or ", " 또는 "])
+}
+
+/// Named parts with these words between them.
+fn joined(named: &[[String; 2]], words: [&str; 2]) -> [String; 2] {
+    [0, 1].map(|language| {
         let named: Vec<_> = named.iter().map(|part| &*part[language]).collect();
-        named.join(or)
-    };
-    [all(0, " or "), all(1, " 또는 ")]
+        named.join(words[language])
+    })
+}
+
+/// A part by its name alone in both languages, within a sentence.
+fn called(part: &LruId, names: &[Lru]) -> [String; 2] {
+    let known = names.iter().find(|known| known.id == *part);
+    known.map_or_else(
+        || [part.to_string(), part.to_string()],
+        |known| [in_sentence(&known.name), known.name_ko.clone()],
+    )
 }
 
 /// A part by its name in both languages, with the identifier that commands take and its probability; by the identifier alone

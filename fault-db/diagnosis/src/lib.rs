@@ -13,6 +13,7 @@
 
 mod belief;
 mod cell;
+mod common;
 mod conclusion;
 mod dictionary;
 mod explained;
@@ -39,14 +40,16 @@ mod weights;
 
 pub use belief::{Belief, Settled};
 pub use cell::{Cell, StepOutcome, Values};
+pub use common::Shared;
 pub use conclusion::Sentence;
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use explained::Cause;
-pub use groups::Group;
+pub use groups::{Group, Relations};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
 pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use proof::Proof;
+pub use reasons::Reason;
 pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
 pub use strategy::{Effort, Strategy, fixed_order, replayed};
 pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

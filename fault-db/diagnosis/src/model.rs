@@ -13,7 +13,7 @@ use protocol::{LruId, Verdict};
 
 use super::cell::{Cell, StepOutcome};
 use super::dictionary::{Column, Dictionary};
-use super::groups::Group;
+use super::groups::{NO_RELATIONS, Relations};
 use super::likelihood::{
     Expected, Scale, likelihood_of_anything, likelihood_of_values, likelihood_without_signs,
 };
@@ -74,8 +74,8 @@ pub struct Model<'a> {
     pub ln_priors: Vec<f64>,
     /// What people call the parts; conclusions use the identifier of a part that is not among them.
     pub names: &'a [Lru],
-    /// Parts that checks do not always tell apart.
-    pub groups: &'a [Group],
+    /// How parts depend on each other.
+    pub relations: &'a Relations,
     /// The parts.
     parts: Vec<&'a LruId>,
     /// Effects of each part.
@@ -147,7 +147,7 @@ impl<'a> Model<'a> {
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
             names: &[],
-            groups: &[],
+            relations: &NO_RELATIONS,
             parts,
             false_alarms: false_alarms(dictionary),
             ln_priors: priors.into_iter().map(f64::ln).collect(),
@@ -161,9 +161,9 @@ impl<'a> Model<'a> {
         Self { names, ..self }
     }
 
-    /// With the parts that checks do not always tell apart.
-    pub fn with_groups(self, groups: &'a [Group]) -> Self {
-        Self { groups, ..self }
+    /// With how parts depend on each other.
+    pub fn with_relations(self, relations: &'a Relations) -> Self {
+        Self { relations, ..self }
     }
 
     /// Part that has failed under a hypothesis; `None` if the unit is healthy.
@@ -194,6 +194,11 @@ impl<'a> Model<'a> {
     /// Logarithms of the probability that an unseen mode of a part acts like each effect.
     pub fn resemblance(&self, part: usize) -> &[f64] {
         &self.resemblance[part]
+    }
+
+    /// Effects of a part.
+    pub fn effects_of(&self, part: usize) -> &[usize] {
+        &self.effects_of_parts[part]
     }
 
     /// Place of a mode's level among the effects.
@@ -315,6 +320,11 @@ impl<'a> Model<'a> {
     pub fn healthy_time_s(&self, place: usize) -> f64 {
         let cell = self.dictionary.healthy.cells.get(&place);
         cell.map_or(0.0, |cell| cell.time_s)
+    }
+
+    /// Whether the hypothesis is a mode that acts as it was counted.
+    pub fn is_lasting(&self, hypothesis: Hypothesis) -> bool {
+        matches!(hypothesis, Hypothesis::Mode { .. }) && !self.is_intermittent(hypothesis)
     }
 
     /// Whether the hypothesis is an intermittent mode.

@@ -8,11 +8,16 @@
 
 use std::collections::BTreeSet;
 
+use protocol::{LruId, Verdict};
 use serde::Serialize;
 
 use super::belief::{Belief, normalised};
+use super::conclusion::Sentence;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
+
+/// A part is told by a check that passes, or does not, with this probability if the part has failed.
+const MOSTLY: f64 = 0.7;
 
 /// A recommended check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,6 +31,12 @@ pub struct NextCheck {
     pub cost_s: f64,
     /// It was made already, and is worth making again.
     pub again: bool,
+    /// Likely parts with whose fault it passes.
+    pub passes_with: Vec<LruId>,
+    /// Likely parts with whose fault it does not.
+    pub fails_with: Vec<LruId>,
+    /// The same in words.
+    pub tells: Sentence,
 }
 
 fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::Error> {
@@ -74,12 +85,47 @@ impl Belief<'_, '_> {
             (gain_bits >= least).then_some((place, cost_s, gain_bits))
         });
         let (place, cost_s, gain_bits) = most_per_second(worth_making)?;
+        let [passes_with, fails_with] = self.parted_by(place, &classes);
         Some(NextCheck {
             check: self.model.dictionary.checks[place].clone(),
             gain_bits,
             cost_s,
             again,
+            tells: Sentence::tells(&passes_with, &fails_with, self.model.names),
+            passes_with,
+            fails_with,
         })
+    }
+
+    /// The likely parts with whose fault the check at `place` passes, and those with whose fault it does not.
+    fn parted_by(&self, place: usize, classes: &Classes) -> [Vec<LruId>; 2] {
+        let joint = self.joint(place, classes);
+        let outcomes = &self.model.outlooks[place].outcomes;
+        let passed = |outcome: usize| {
+            let known = outcomes.get(outcome);
+            known.is_some_and(|known| known.result == Verdict::Passed)
+        };
+        let mut parted = [Vec::new(), Vec::new()];
+        let likely = self.model.settings.conclusion.named_at;
+        for (part, lru) in self.model.parts().iter().enumerate() {
+            let class = FIRST_EFFECT + part;
+            let all: f64 = joint.iter().map(|row| row[class]).sum();
+            let of_passed = joint
+                .iter()
+                .enumerate()
+                .filter(|(outcome, _)| passed(*outcome));
+            let passes =
+                of_passed.map(|(_, row)| row[class]).sum::<f64>() / all.max(f64::MIN_POSITIVE);
+            if classes.all[class] < likely {
+                continue;
+            }
+            if passes >= MOSTLY {
+                parted[0].push((*lru).clone());
+            } else if passes <= 1.0 - MOSTLY {
+                parted[1].push((*lru).clone());
+            }
+        }
+        parted
     }
 
     fn classes(&self) -> Classes {
@@ -110,10 +156,15 @@ impl Belief<'_, '_> {
 
     /// Mutual information of the class and what the check at `place` shows, bits.
     fn gain_bits(&self, place: usize, classes: &Classes) -> f64 {
-        let outlook = &self.model.outlooks[place];
-        if outlook.effects.is_empty() {
-            return 0.0;
+        match self.model.outlooks[place].effects.is_empty() {
+            true => 0.0,
+            false => information_bits(&self.joint(place, classes)),
         }
+    }
+
+    /// Probability of each outcome of the check at `place`, those that were counted first, with each class.
+    fn joint(&self, place: usize, classes: &Classes) -> Vec<Vec<f64>> {
+        let outlook = &self.model.outlooks[place];
         // What lasts shows what the check showed before.
         let before = self.shown(place).map(|outcome| {
             let known = outlook.outcomes.iter().position(|known| known == outcome);
@@ -142,7 +193,7 @@ impl Belief<'_, '_> {
             Some(outcome) => add(&[(outcome, 1.0)], &like_healthy),
             None => add(&outlook.healthy, &like_healthy),
         }
-        information_bits(&joint)
+        joint
     }
 }
 

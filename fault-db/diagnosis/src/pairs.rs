@@ -5,7 +5,8 @@
 
 use protocol::Verdict;
 
-use super::belief::{Belief, ln_sum, normalised};
+use super::belief::{Belief, normalised};
+use super::common::{CommonCause, common_causes};
 use super::model::{FIRST_EFFECT, Hypothesis, Model, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 use super::spells::AS_COUNTED;
@@ -23,14 +24,24 @@ pub struct Pair {
     pub probability: f64,
 }
 
-/// The pairs worth reporting, the likeliest first, and the probabilities of the single hypotheses beside them.
-pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64>) {
+/// Faults of several parts, and the probabilities of the single hypotheses beside them.
+#[derive(Default)]
+pub struct Several<'m> {
+    /// The pairs worth reporting, the likeliest first.
+    pub pairs: Vec<Pair>,
+    /// What several parts share.
+    pub common: Vec<CommonCause<'m>>,
+    /// Of the model's hypotheses.
+    pub single: Vec<f64>,
+}
+
+/// Faults of several parts that explain a run.
+pub fn several<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> Several<'m> {
     let model = belief.model;
     let effects = model.effects();
     let counted = Steps::new(belief, seen, |ln| &ln.effects);
-    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects[AS_COUNTED]);
     let mut ln = belief.ln();
-    let (mut found, mut like_both) = (Vec::new(), Vec::new());
+    let mut found = Vec::new();
     let best = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let worth_a_look = best + LEAST_SHARE.ln();
     let explaining = counted.explaining(model);
@@ -41,55 +52,44 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64
             if both.iter().all(|mode| model.is_intermittent(*mode)) {
                 continue;
             }
-            like_both.push(([*first, *second], loosely.ln_of_both(*first, *second)));
             if model.lru(both[0]) == model.lru(both[1]) {
                 continue;
             }
             let prior = model.ln_priors[FIRST_EFFECT + first]
                 + model.ln_priors[FIRST_EFFECT + second]
                 + model.settings.second_fault.ln();
-            let ln = prior + counted.ln_of_both(*first, *second);
+            let ln = prior + counted.ln_of_all(&[*first, *second]);
             // Signs make nothing likelier.
             if ln > worth_a_look {
                 found.push((both, ln + belief.signs().ln_under(model, &both)));
             }
         }
     }
-    combine(belief, &like_both, &mut ln);
+    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects[AS_COUNTED]);
+    let mut common = common_causes(belief, &loosely, &loosely.explaining(model));
     let singles = ln.len();
     ln.extend(found.iter().map(|(_, ln)| ln));
+    ln.extend(common.iter().map(|cause| cause.probability));
     let mut single = normalised(&ln);
-    let of_pairs = single.split_off(singles);
+    let mut of_pairs = single.split_off(singles);
+    let of_common = of_pairs.split_off(found.len());
+    for (cause, probability) in common.iter_mut().zip(of_common) {
+        cause.probability = probability;
+    }
+    common.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let found = found.into_iter().zip(of_pairs);
     let pair = |((both, _), probability)| Pair { both, probability };
-    let mut found: Vec<Pair> = found.map(pair).collect();
-    found.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    (found, single)
-}
-
-/// Takes into the unseen modes of `ln` that some act like two effects at once, each as likely as that one alone;
-/// `like_both` has the logarithms of the likelihood of all steps under such.
-fn combine(belief: &Belief<'_, '_>, like_both: &[([usize; 2], f64)], ln: &mut [f64]) {
-    let model = belief.model;
-    let combined = model.settings.combined;
-    let unseen = model.hypotheses.iter().zip(ln);
-    for (hypothesis, ln) in unseen {
-        let Hypothesis::Unseen { part } = *hypothesis else {
-            continue;
-        };
-        let alike = model.resemblance(part);
-        let like = like_both.iter().map(|([first, second], ln)| {
-            let in_either_order = std::f64::consts::LN_2;
-            alike[*first] + alike[*second] + in_either_order + ln
-        });
-        let beside_one = ln_sum(like) - ln_sum(belief.like_effects(part));
-        let shares = [(1.0 - combined).ln(), combined.ln() + beside_one];
-        *ln += ln_sum(shares.into_iter());
+    let mut pairs: Vec<Pair> = found.map(pair).collect();
+    pairs.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    Several {
+        pairs,
+        common,
+        single,
     }
 }
 
-/// What the steps tell of each two effects.
-struct Steps<'b> {
+/// What the steps tell of effects at once.
+pub struct Steps<'b> {
     /// Logarithms of the likelihood of each passed step under each effect.
     passed: Vec<&'b [f64]>,
     strange: Vec<StrangeStep<'b>>,
@@ -106,7 +106,7 @@ struct StrangeStep<'b> {
 
 impl<'b> Steps<'b> {
     /// `of_effects` takes from a step's likelihoods those under each effect.
-    fn new(
+    pub fn new(
         belief: &'b Belief<'_, '_>,
         seen: &Observation,
         of_effects: fn(&StepLikelihoods) -> &[f64],
@@ -136,7 +136,7 @@ impl<'b> Steps<'b> {
 
     /// Modes that explain the failures better than a healthy unit, with their best level, the best first; by the
     /// index of the effect.
-    fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
+    pub fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
         let explained = |effect: usize| -> f64 {
             let strange = self.strange.iter();
             let gains = strange.map(|step| (step.ln[effect] - step.ln_healthy).max(0.0));
@@ -159,16 +159,20 @@ impl<'b> Steps<'b> {
         best.into_iter().map(|(effect, ..)| effect).collect()
     }
 
-    /// Logarithm of the likelihood of all steps under two effects.
-    fn ln_of_both(&self, first: usize, second: usize) -> f64 {
-        let passed = self.passed.iter().map(|ln| ln[first].min(ln[second]));
+    /// Logarithm of the likelihood of all steps under effects at once.
+    pub fn ln_of_all(&self, effects: &[usize]) -> f64 {
+        let least = |ln: &&[f64]| {
+            let of_each = effects.iter().map(|effect| ln[*effect]);
+            of_each.fold(f64::INFINITY, f64::min)
+        };
         // Whose the effect is, is not known: as likely each one's as it is its own.
         let strange = self.strange.iter().map(|step| {
-            let (result, weighted) = step.weighted[first];
-            let (other_result, other_weighted) = step.weighted[second];
-            ((weighted + other_weighted) / (result + other_result)).ln()
+            let of_each = effects.iter().map(|effect| step.weighted[*effect]);
+            let (result, weighted) =
+                of_each.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+            (weighted / result).ln()
         });
-        passed.sum::<f64>() + strange.sum::<f64>()
+        self.passed.iter().map(least).sum::<f64>() + strange.sum::<f64>()
     }
 }
 

@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use protocol::Verdict;
+use serde::Serialize;
 
 use super::belief::Belief;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
-use super::observation::{Observation, ObservedStep};
+use super::observation::{CheckName, Observation, ObservedStep};
 use super::signs::SignsSeen;
 
 /// Most reasons in each direction.
@@ -16,13 +17,35 @@ const SPEAKS_AT: f64 = 1.0;
 /// Competing modes that a mode is compared with.
 const CONFLICTING_EVENTS: usize = 5;
 
-/// The reasons for and against a mode, the strongest first.
+/// What speaks for a fault, or against it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reason {
+    /// In short: what was seen.
+    pub said: String,
+    /// Held against the dictionary; none of what it does not have.
+    pub detail: Option<String>,
+    /// The step that showed it.
+    pub step: Option<CheckName>,
+}
+
+impl Reason {
+    /// What is known of a part from elsewhere.
+    pub fn told(said: String) -> Self {
+        Self {
+            said,
+            detail: None,
+            step: None,
+        }
+    }
+}
+
+/// The reasons for and against a mode, the strongest first; those of one procedure after the first of each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reasons {
     /// For it: steps likelier than on a healthy unit.
-    pub for_it: Vec<String>,
+    pub for_it: Vec<Reason>,
     /// Against it: steps likelier on a healthy unit, or under another part's fault.
-    pub against: Vec<String>,
+    pub against: Vec<Reason>,
 }
 
 /// The reasons for and against a fault of a part.
@@ -40,19 +63,34 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         let rival = rivals.iter().map(|rival| weighed.ln.effects[*rival]);
         let best_rival = rival.fold(healthy, f64::max);
         let step = &seen.steps[weighed.seen];
-        let text = || text(model, model.effects()[own], weighed.place, step);
+        let reason = || Reason {
+            said: format!(
+                "{}, {}: {}",
+                step.check.procedure,
+                step.check.step,
+                step.result.label()
+            ),
+            detail: Some(text(model, model.effects()[own], weighed.place, step)),
+            step: Some(step.check.clone()),
+        };
         // What a healthy unit hardly ever shows is likelier under any fault: what another part's explains better speaks
         // against this one.
         if best_rival - ln_own > SPEAKS_AT {
-            against.push((best_rival - ln_own, text()));
+            against.push((best_rival - ln_own, reason()));
         } else if ln_own - healthy > SPEAKS_AT {
-            for_it.push((ln_own - healthy, text()));
+            for_it.push((ln_own - healthy, reason()));
         }
     }
-    let strongest = |mut all: Vec<(f64, String)>| {
+    let strongest = |mut all: Vec<(f64, Reason)>| {
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let all = all.into_iter().map(|(_, text)| text);
-        all.take(MOST).collect()
+        let mut procedures = BTreeSet::new();
+        let is_first = |reason: &Reason| {
+            let step = reason.step.as_ref();
+            step.is_none_or(|step| procedures.insert(step.procedure.clone()))
+        };
+        let all = all.into_iter().map(|(_, reason)| reason);
+        let (first, more): (Vec<_>, Vec<_>) = all.partition(is_first);
+        first.into_iter().chain(more).take(MOST).collect()
     };
     let mut reasons = Reasons {
         for_it: strongest(for_it),
@@ -74,9 +112,9 @@ impl Reasons {
             let gain = alone.ln(model, hypothesis) - alone.ln(model, Hypothesis::NoFault);
             let text = format!("the unit's log: {} names {}", sign.fault, sign.part());
             if gain > SPEAKS_AT {
-                self.for_it.push(text);
+                self.for_it.push(Reason::told(text));
             } else if gain < -SPEAKS_AT {
-                self.against.push(text);
+                self.against.push(Reason::told(text));
             }
         }
     }

@@ -26,13 +26,11 @@ pub struct Settings {
     pub anything: f64,
     /// Share of a part's faults that act in a way which is not in the dictionary.
     pub unseen_mode: f64,
-    /// Share of those that act like two effects of the dictionary at once.
-    pub combined: f64,
+    /// Share of faults that are one cause at several parts, such as their supply.
+    pub common_cause: f64,
     /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
     /// of any part.
     pub other_part: f64,
-    /// Share of units on which a known mode acts as loosely as an unseen one.
-    pub loosely: f64,
     /// Share of intermittent faults whose spells come less or more often than counted.
     pub other_spells: f64,
     /// How much less or more.
@@ -154,8 +152,7 @@ impl Settings {
             ("otherwise_unseen", self.otherwise_unseen),
             ("anything", self.anything),
             ("unseen_mode", self.unseen_mode),
-            ("combined", self.combined),
-            ("loosely", self.loosely),
+            ("common_cause", self.common_cause),
             ("other_spells", self.other_spells),
             ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
@@ -221,9 +218,8 @@ impl Default for Settings {
             otherwise_unseen: 0.1,
             anything: 0.1,
             unseen_mode: 0.045,
-            combined: 0.001,
+            common_cause: 0.001,
             other_part: 0.02,
-            loosely: 0.05,
             other_spells: 0.8,
             spell_rate: 5.0,
             foresight: 0.15,

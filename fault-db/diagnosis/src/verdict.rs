@@ -9,12 +9,12 @@ use serde::Serialize;
 use super::belief::Belief;
 use super::conclusion::Sentence;
 use super::explained::{Cause, causes};
-use super::groups::{self, Group};
+use super::groups::{self, Answer, Group};
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
-use super::pairs::{Pair, pairs};
-use super::reasons::reasons;
+use super::pairs::{Pair, Several, several};
+use super::reasons::{Reason, reasons};
 use super::settings::ConclusionSettings;
 use super::weights::{Fault, Weights, name};
 
@@ -29,11 +29,11 @@ pub struct Candidate {
     pub text: String,
     /// Probability of the mode, alone or beside another.
     pub probability: f64,
-    /// Steps that speak for it.
+    /// What speaks for it.
     #[serde(rename = "for")]
-    pub for_it: Vec<String>,
-    /// Steps that speak against it.
-    pub against: Vec<String>,
+    pub for_it: Vec<Reason>,
+    /// What speaks against it.
+    pub against: Vec<Reason>,
 }
 
 /// A part and its probability.
@@ -98,22 +98,29 @@ pub struct Assessment<'m, 'd, 's> {
     belief: Belief<'m, 'd>,
     seen: &'s Observation,
     weights: Weights,
-    pairs: Vec<Pair>,
-    /// The group that is the answer, with the probability that one of its parts has failed.
-    group: Option<(&'m Group, f64)>,
+    several: Several<'m>,
+    /// Several parts that are the answer.
+    group: Option<Answer>,
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
     /// Of all that was seen.
     pub fn of(model: &'m Model<'d>, seen: &'s Observation) -> Self {
         let belief = Belief::after(model, seen);
-        let (weights, pairs) = Weights::after(&belief, seen);
+        let several = match seen.shows_a_fault() {
+            true => several(&belief, seen),
+            false => Several {
+                single: belief.probabilities(),
+                ..Several::default()
+            },
+        };
+        let weights = Weights::new(model, &several);
         Self {
-            group: groups::answer(&belief, &weights),
+            group: groups::answer(&belief, &weights, &several),
             belief,
             seen,
             weights,
-            pairs,
+            several,
         }
     }
 
@@ -122,22 +129,25 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let (finding, conclusion) = match self.group {
-            Some((group, probability)) => {
-                let said =
-                    Sentence::one_of(group, probability, next_check.as_ref(), belief.model.names);
+        let (finding, conclusion) = match &self.group {
+            Some(answer) => {
+                let said = answer.said.clone();
+                let said = match next_check.as_ref() {
+                    None => said,
+                    next => said.then(next),
+                };
                 (Finding::OneOf, said)
             }
             None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
         };
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
-        let shown = self.pairs.iter().filter(is_shown);
+        let shown = self.several.pairs.iter().filter(is_shown);
         Diagnosis {
-            candidates: weights.candidates(belief, self.seen),
+            candidates: self.candidates(),
             next_check,
             conclusion,
             finding,
-            group: self.group.map(|(group, _)| group.clone()),
+            group: self.group.as_ref().map(|answer| answer.group.clone()),
             two_faults: shown
                 .map(|pair| TwoFaults {
                     faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
@@ -147,6 +157,46 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             no_fault: weights.no_fault,
             lrus: weights.lrus.clone(),
         }
+    }
+
+    /// The faults that may be it, those of the likeliest part first; that part's likeliest however unlikely.
+    fn candidates(&self) -> Vec<Candidate> {
+        let model = self.belief.model;
+        let ConclusionSettings {
+            least_shown,
+            most_shown,
+            ..
+        } = model.settings.conclusion;
+        let rank = |lru: Option<&LruId>| {
+            let parts = &self.weights.lrus;
+            parts.iter().position(|part| Some(&part.lru) == lru)
+        };
+        let common = self.several.common.iter();
+        let common = common.filter(|cause| cause.probability >= least_shown);
+        let mut all: Vec<Candidate> = common
+            .map(|cause| cause.candidate(&self.belief, self.seen))
+            .collect();
+        let mut faults: Vec<&Fault> = self.weights.faults.iter().collect();
+        faults.sort_by(|a, b| {
+            let by_part = rank(model.lru(a.hypothesis)).cmp(&rank(model.lru(b.hypothesis)));
+            by_part.then(b.probability.total_cmp(&a.probability))
+        });
+        let is_first = all.iter().all(|common| rank(Some(&common.lru)) != Some(0));
+        let likely = |(place, fault): &(usize, &Fault)| {
+            (*place == 0 && is_first) || fault.probability >= least_shown
+        };
+        let likely = faults
+            .into_iter()
+            .enumerate()
+            .filter(likely)
+            .take(most_shown);
+        all.extend(likely.filter_map(|(_, fault)| candidate(&self.belief, self.seen, fault)));
+        all.sort_by(|a, b| {
+            let by_part = rank(Some(&a.lru)).cmp(&rank(Some(&b.lru)));
+            by_part.then(b.probability.total_cmp(&a.probability))
+        });
+        all.truncate(most_shown);
+        all
     }
 
     /// The parts that are found, each with what it explains.
@@ -199,44 +249,6 @@ fn candidate(belief: &Belief<'_, '_>, seen: &Observation, fault: &Fault) -> Opti
 }
 
 impl Weights {
-    /// Of all evidence, with the pairs of faults that explain it.
-    fn after(belief: &Belief<'_, '_>, seen: &Observation) -> (Self, Vec<Pair>) {
-        let (pairs, single) = if seen.shows_a_fault() {
-            pairs(belief, seen)
-        } else {
-            (Vec::new(), belief.probabilities())
-        };
-        (Self::new(belief.model, &pairs, &single), pairs)
-    }
-
-    fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
-        let model = belief.model;
-        let ConclusionSettings {
-            least_shown,
-            most_shown,
-            ..
-        } = model.settings.conclusion;
-        let rank = |fault: &Fault| {
-            let lru = model.lru(fault.hypothesis);
-            self.lrus.iter().position(|part| Some(&part.lru) == lru)
-        };
-        let mut faults: Vec<&Fault> = self.faults.iter().collect();
-        faults.sort_by(|a, b| {
-            let by_part = rank(a).cmp(&rank(b));
-            by_part.then(b.probability.total_cmp(&a.probability))
-        });
-        let likely =
-            |(shown, fault): &(usize, &Fault)| *shown == 0 || fault.probability >= least_shown;
-        let shown = faults
-            .into_iter()
-            .enumerate()
-            .filter(likely)
-            .take(most_shown);
-        shown
-            .filter_map(|(_, fault)| candidate(belief, seen, fault))
-            .collect()
-    }
-
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
         if !self.failed(settings.found_at).is_empty() || self.no_fault >= settings.healthy_at {

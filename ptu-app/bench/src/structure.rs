@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::{Connection, Expectation, Step};
-use diagnosis::{Cell, CheckName, Dictionary, Group, Mode, Sentence};
+use diagnosis::{Cell, CheckName, Dictionary, Group, Mode, Relations, Sentence, Shared};
 use protocol::event::Event;
 use protocol::injection::FaultCatalogue;
 use protocol::signal::{Origin, Signal};
@@ -39,6 +39,7 @@ struct Written {
     on_the_train: Vec<LruId>,
     ways: Vec<WrittenWay>,
     groups: Vec<WrittenGroup>,
+    shared: Vec<WrittenShared>,
     off_way: Vec<KnownOffWay>,
 }
 
@@ -66,6 +67,16 @@ struct WrittenGroup {
     /// What tells which has failed, after "to tell which, ".
     measure: String,
     /// The same in Korean.
+    measure_ko: String,
+}
+
+/// What several parts share.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenShared {
+    part: LruId,
+    reaches: Vec<LruId>,
+    measure: String,
     measure_ko: String,
 }
 
@@ -100,8 +111,8 @@ pub struct Structure {
     event_steps: BTreeMap<Event, WayStep>,
     everywhere: Vec<LruId>,
     on_the_train: Vec<LruId>,
-    /// Parts that checks do not always tell apart, and what tells which has failed.
-    pub groups: Vec<Group>,
+    /// Parts that checks do not always tell apart, and what several parts share.
+    pub relations: Relations,
     /// What fails off the way, and why.
     pub known_off_way: Vec<KnownOffWay>,
 }
@@ -125,7 +136,9 @@ impl Structure {
         let mut named = named
             .chain(&written.everywhere)
             .chain(&written.on_the_train)
-            .chain(written.groups.iter().flat_map(|group| &group.parts));
+            .chain(written.groups.iter().flat_map(|group| &group.parts))
+            .chain(written.shared.iter().flat_map(|shared| &shared.reaches))
+            .chain(written.shared.iter().map(|shared| &shared.part));
         if let Some(part) = named.find(|part| !parts.contains(part)) {
             return Err(format!("no part \"{part}\"; `ptu catalog lrus` lists them"));
         }
@@ -162,7 +175,10 @@ impl Structure {
             event_steps: events.into_iter().collect(),
             everywhere: written.everywhere,
             on_the_train: written.on_the_train,
-            groups: written.groups.into_iter().map(Group::from).collect(),
+            relations: Relations {
+                groups: written.groups.into_iter().map(Group::from).collect(),
+                shared: written.shared.into_iter().map(Shared::from).collect(),
+            },
             known_off_way: written.off_way,
         })
     }
@@ -236,6 +252,19 @@ impl From<WrittenGroup> for Group {
     fn from(written: WrittenGroup) -> Self {
         Self {
             parts: written.parts,
+            measure: Sentence {
+                english: written.measure,
+                korean: written.measure_ko,
+            },
+        }
+    }
+}
+
+impl From<WrittenShared> for Shared {
+    fn from(written: WrittenShared) -> Self {
+        Self {
+            part: written.part,
+            reaches: written.reaches,
             measure: Sentence {
                 english: written.measure,
                 korean: written.measure_ko,

@@ -1,14 +1,20 @@
 //! A diagnosis, as text and as JSON.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use diagnosis::Candidate;
+use diagnosis::{Candidate, Reason};
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
 
 use crate::words::Language;
 use ptu_bench::run_diagnosis::Answer;
+
+/// Parts that are shown at once.
+const MOST_PARTS: usize = 3;
+/// Reasons that are shown of each.
+pub const MOST_REASONS: usize = 3;
 
 /// The contract's keys first.
 pub fn diagnosis_json(answer: &Answer) -> Value {
@@ -20,7 +26,9 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     let candidate = |c: &Candidate| {
         json!({
             "lru": c.lru, "fault": c.fault, "probability": c.probability,
-            "for": c.for_it, "against": c.against, "text": c.text, "traces": traces(c.lru.as_str()),
+            "for": said(&c.for_it), "against": said(&c.against),
+            "details": { "for": details(&c.for_it), "against": details(&c.against) },
+            "text": c.text, "traces": traces(c.lru.as_str()),
         })
     };
     json!({
@@ -42,8 +50,22 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     })
 }
 
-/// For people.
-pub fn diagnosis_text(answer: &Answer) -> String {
+/// The first reasons, which differ.
+fn said(reasons: &[Reason]) -> Vec<&str> {
+    let said = reasons.iter().take(MOST_REASONS);
+    said.map(|reason| &*reason.said).collect()
+}
+
+/// All of them, held against the dictionary.
+fn details(reasons: &[Reason]) -> Vec<&str> {
+    let all = reasons.iter();
+    all.map(|reason| reason.detail.as_ref().unwrap_or(&reason.said).as_str())
+        .collect()
+}
+
+/// For people. Three parts at most, each by its likeliest fault and the reasons that convince most, or all of them with
+/// what the dictionary has if `all`; the part that was asked about alone if one was.
+pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
     let mut text = format!(
@@ -55,10 +77,23 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         run.faults,
         d.conclusion.english
     );
-    for c in &d.candidates {
-        candidate_text(&mut text, c);
+    if let Some(c) = &answer.why_not {
+        let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
+        candidate_text(&mut text, c, all);
+        return text.trim_end().to_owned();
     }
-    for two in &d.two_faults {
+    if all {
+        d.candidates
+            .iter()
+            .for_each(|c| candidate_text(&mut text, c, true));
+    } else {
+        first_of_parts(&d.candidates).for_each(|c| candidate_text(&mut text, c, false));
+    }
+    for two in d
+        .two_faults
+        .iter()
+        .take(if all { usize::MAX } else { MOST_PARTS })
+    {
         let _ = writeln!(
             text,
             "\n{:5.1} %  both {}",
@@ -67,20 +102,35 @@ pub fn diagnosis_text(answer: &Answer) -> String {
         );
     }
     let _ = writeln!(text, "\n{:5.1} %  no fault", 100.0 * d.no_fault);
-    if let Some(c) = &answer.why_not {
-        let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
-        candidate_text(&mut text, c);
-    }
+    let likely: Vec<_> = first_of_parts(&d.candidates)
+        .map(|c| c.lru.as_str())
+        .collect();
     for (lru, ids) in &answer.traces {
         let ids: Vec<_> = ids.iter().map(Id::short).collect();
-        if !ids.is_empty() {
+        if !ids.is_empty() && (all || likely.contains(&lru.as_str())) {
             let _ = writeln!(text, "traces of faults that name {lru}: {}", ids.join(", "));
         }
+    }
+    if !all {
+        let run = run.id.short();
+        let _ = writeln!(
+            text,
+            "`ptu diagnose {run} --all` shows all reasons, and what the dictionary has"
+        );
     }
     text.trim_end().to_owned()
 }
 
-fn candidate_text(text: &mut String, c: &Candidate) {
+/// The likeliest fault of each of the likeliest parts.
+pub fn first_of_parts(candidates: &[Candidate]) -> impl Iterator<Item = &Candidate> {
+    let mut parts = BTreeSet::new();
+    let first = candidates
+        .iter()
+        .filter(move |c| parts.insert(c.lru.clone()));
+    first.take(MOST_PARTS)
+}
+
+fn candidate_text(text: &mut String, c: &Candidate, all: bool) {
     let _ = writeln!(
         text,
         "\n{:5.1} %  {}  ({}: {})",
@@ -90,6 +140,7 @@ fn candidate_text(text: &mut String, c: &Candidate) {
         c.text
     );
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
+        let reasons = if all { details(reasons) } else { said(reasons) };
         for reason in reasons {
             let _ = writeln!(text, "         {sign} {reason}");
         }

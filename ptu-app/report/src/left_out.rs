@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use ptu_bench::campaign::{LeftOut, OtherSpells, PairFigures, Share, UnseenFigures};
+use ptu_bench::campaign::{LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
 
 use crate::campaign::{percent, share_json};
 
@@ -21,6 +21,8 @@ fn figures_json(figures: &UnseenFigures) -> Value {
         "first": share_json(figures.first),
         "first_two": share_json(figures.first_two),
         "first_or_group": share_json(figures.first_or_group),
+        "first_or_group_within": figures.first_or_group_within,
+        "wrong_within": figures.wrong_within,
         "found": share_json(figures.found),
         "found_or_group": share_json(figures.found_or_group),
         "wrong": share_json(figures.wrong),
@@ -51,20 +53,18 @@ pub fn left_out_text(left_out: &LeftOut) -> String {
     text
 }
 
-/// Faults that come and go at another rate.
-pub fn other_spells_json(spells: &OtherSpells) -> Value {
-    let mut json = figures_json(&spells.figures);
-    json["detected"] = share_json(spells.detected);
+/// Faults that act otherwise than counted.
+pub fn other_faults_json(faults: &OtherFaults) -> Value {
+    let mut json = figures_json(&faults.figures);
+    json["detected"] = share_json(faults.detected);
     json
 }
 
-/// For people.
-pub fn other_spells_text(spells: &OtherSpells) -> String {
-    let Share { of, all } = spells.detected;
-    let mut text = format!(
-        "\nfaults that come and go a quarter of and four times as often: {of} of {all} runs detected\n"
-    );
-    figures_text(&mut text, &spells.figures);
+/// For people; `what` they are.
+pub fn other_faults_text(what: &str, faults: &OtherFaults) -> String {
+    let Share { of, all } = faults.detected;
+    let mut text = format!("\n{what}: {of} of {all} runs detected\n");
+    figures_text(&mut text, &faults.figures);
     text
 }
 
@@ -114,6 +114,14 @@ fn figures_text(text: &mut String, figures: &UnseenFigures) {
         ("named for certain, a wrong one", figures.wrong),
     ];
     shares_text(text, &shares);
+    if let (Some(first), Some(wrong)) = (figures.first_or_group_within, figures.wrong_within) {
+        let [first, wrong] = [first, wrong]
+            .map(|[low, high]| format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high));
+        let _ = writeln!(
+            text,
+            "  95 % intervals, drawn by fault mode: first or its group {first}, wrong {wrong}"
+        );
+    }
     let curve = figures.reliability.iter().enumerate();
     let curve = curve.filter(|(_, share)| share.all > 0);
     let curve: Vec<_> = curve

@@ -31,6 +31,7 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign --harness none              what a laptop alone on a train can find
 ///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
 ///   ptu campaign --pairs 100                 what it is worth for two faults at once
+///   ptu campaign --common-causes 100         what it is worth for one cause at several parts
 ///   ptu campaign --other-spells              what it is worth for faults that come more or less often
 ///   ptu campaign --runs runs.zst             goes on where it was stopped
 #[derive(Debug, Args)]
@@ -58,6 +59,9 @@ pub struct CampaignArguments {
     /// Units with two random faults of different parts, to assess it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     pairs: u32,
+    /// Units with one cause at several parts that share it, such as their supply, to assess it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    common_causes: u32,
     /// Faults that come and go, too, a quarter of and four times as often as the catalogue says, to assess it
     #[arg(long)]
     other_spells: bool,
@@ -99,13 +103,14 @@ impl CampaignArguments {
             good: self.good,
             leave_out: self.leave_out_modes,
             pairs: self.pairs,
+            common: self.common_causes,
             other_spells: self.other_spells,
             units: self.units,
             kept: self.runs.clone(),
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;
-        let count = campaign::samples(&modes, &asked).len();
+        let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         for file in self.save.iter().chain(&self.runs) {
             ptu_bench::data::check_writable(file)?;
         }

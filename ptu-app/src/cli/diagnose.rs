@@ -38,6 +38,9 @@ pub struct DiagnoseArguments {
     /// A part of which to say what speaks for it and against it, however unlikely it is
     #[arg(long, value_name = "PART", requires = "runs")]
     why_not: Option<LruId>,
+    /// All candidates and reasons, with what the dictionary has of each
+    #[arg(long)]
+    all: bool,
     #[command(flatten)]
     matrix_options: MatrixOptions,
     /// Print JSON
@@ -74,7 +77,7 @@ impl DiagnoseArguments {
         if self.json {
             print_json(&diagnosis_json(&answer))
         } else {
-            print_out(&diagnosis_text(&answer))
+            print_out(&diagnosis_text(&answer, self.all))
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Diagnosis, Dictionary, Effort, Finding, Group, Model, PartProbability, Settings, fixed_order,
-    replayed,
+    Diagnosis, Dictionary, Effort, Finding, Model, PartProbability, Relations, Settings,
+    fixed_order, replayed,
 };
 
 use protocol::LruId;
@@ -137,12 +137,12 @@ impl Assessment {
 /// Diagnoses these runs with a fault, in both orders of the suite `with_orders`.
 pub fn assess(
     dictionary: &Dictionary,
-    (settings, groups): (&Settings, &[Group]),
+    (settings, relations): (&Settings, &Relations),
     faulty: &[(&Sample, &SuiteRun)],
     with_orders: bool,
     jobs: usize,
 ) -> Vec<Assessment> {
-    let model = Model::new(dictionary, settings, &BTreeMap::new()).with_groups(groups);
+    let model = Model::new(dictionary, settings, &BTreeMap::new()).with_relations(relations);
     let one = |i: usize| {
         let (sample, run) = faulty[i];
         let mut assessment = assess_one(&model, sample, run)?;
@@ -164,7 +164,12 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
 }
 
 fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
-    let mode = sample.fault()?;
+    let mode = sample.faults.first()?;
+    let ids: Vec<_> = sample
+        .faults
+        .iter()
+        .map(|fault| fault.id.as_str())
+        .collect();
     let assessed = diagnosis::Assessment::of(model, &run.seen);
     let diagnosis = assessed.diagnosis();
     let parts: Vec<_> = match diagnosis.finding {
@@ -180,8 +185,8 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         _ => assessed.credible_parts(SURE),
     };
     Some(Assessment {
-        fault: mode.id.clone(),
-        lru: mode.lru.clone(),
+        fault: ids.join(" and "),
+        lru: sample.cause.as_ref().unwrap_or(&mode.lru).clone(),
         kind: mode.kind().word(),
         unsafe_: mode.unsafe_,
         reachable: mode.out_of_reach.is_none(),

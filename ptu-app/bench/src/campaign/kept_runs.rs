@@ -261,6 +261,7 @@ fn key(sample: &Sample) -> String {
         sets_in_s,
         seed,
         purpose: _,
+        cause: _,
         level: _,
     } = sample;
     sha256(&json!({ "faults": faults, "sets_in_s": sets_in_s, "seed": seed }).to_string())

@@ -9,6 +9,7 @@ use diagnosis::{Basis, Settings};
 use protocol::LruId;
 use protocol::injection::FaultMode;
 
+use super::by_mode::interval;
 use super::dictionary;
 use super::evaluate::{Assessment, Share, assess};
 use super::samples::{Purpose, Sample};
@@ -35,12 +36,16 @@ pub struct UnseenFigures {
     pub first_two: Share,
     /// It is the likeliest, or of the group that is named.
     pub first_or_group: Share,
+    /// Interval of that share, 95 %, by fault mode.
+    pub first_or_group_within: Option<[f64; 2]>,
     /// It is named for certain, and nothing else.
     pub found: Share,
     /// It is named for certain, alone or with its group.
     pub found_or_group: Share,
     /// Another part, or a group without it, is named for certain.
     pub wrong: Share,
+    /// Interval of that share, 95 %, by fault mode.
+    pub wrong_within: Option<[f64; 2]>,
     /// By the probability of the likeliest part, 0–10 % to 90–100 %: how often it is the right one.
     pub reliability: [Share; CLASSES],
     /// Brier score: mean over the runs of the squared errors of all parts' probabilities, 0 = all certain and right.
@@ -51,16 +56,16 @@ pub struct UnseenFigures {
     pub wrong_answers: Vec<(String, String)>,
 }
 
-/// Figures over runs with faults that come and go less or more often than the dictionary counted.
+/// Figures over runs with faults that act otherwise than the dictionary counted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OtherSpells {
+pub struct OtherFaults {
     /// A step did not pass, or a fault was found.
     pub detected: Share,
     /// Of those.
     pub figures: UnseenFigures,
 }
 
-impl OtherSpells {
+impl OtherFaults {
     pub(super) fn of(runs: &[Assessment]) -> Self {
         Self {
             detected: Share::over(runs.iter(), |run| run.detected),
@@ -157,6 +162,8 @@ impl UnseenFigures {
             first: share(&|run| run.rank() == Some(0)),
             first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
             first_or_group: share(&Assessment::is_first_or_group),
+            first_or_group_within: interval(&runs, Assessment::is_first_or_group),
+            wrong_within: interval(&runs, Assessment::is_wrong),
             found: share(&Assessment::is_found),
             found_or_group: share(&Assessment::is_found_or_group),
             wrong: share(&Assessment::is_wrong),
@@ -198,7 +205,7 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
     });
     assess(
         &dictionary,
-        (settings, &suite.structure.groups),
+        (settings, &suite.structure.relations),
         &of_these.collect::<Vec<_>>(),
         false,
         jobs,

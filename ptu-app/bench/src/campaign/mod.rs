@@ -6,6 +6,7 @@
 //!                       held-out samples → suite runs → diagnosis → figures
 //! ```
 
+mod by_mode;
 mod evaluate;
 mod kept_runs;
 mod left_out;
@@ -25,7 +26,7 @@ use protocol::injection::FaultMode;
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
 use kept_runs::{KeptRuns, RunsFile};
 use left_out::Evidence;
-pub use left_out::{LeftOut, OtherSpells, UnseenFigures};
+pub use left_out::{LeftOut, OtherFaults, UnseenFigures};
 pub use pairs::PairFigures;
 pub use redundant::{Redundancy, redundancy};
 pub use samples::{Purpose, Sample, samples};
@@ -53,6 +54,8 @@ pub struct Request {
     pub leave_out: Option<u32>,
     /// Runs of units with two faults to assess it.
     pub pairs: u32,
+    /// Runs of units with one cause at several parts to assess it.
+    pub common: u32,
     /// Faults that come and go less and more often than counted, too.
     pub other_spells: bool,
     /// Which units: another number means other seeds for everything.
@@ -72,7 +75,9 @@ pub struct Outcome {
     /// What it is worth for two faults at once, if that was asked for.
     pub pairs: Option<PairFigures>,
     /// What it is worth for faults that come and go less or more often than counted, if that was asked for.
-    pub other_spells: Option<OtherSpells>,
+    pub other_spells: Option<OtherFaults>,
+    /// What it is worth for one cause at several parts, if that was asked for.
+    pub common: Option<OtherFaults>,
     /// Good runs, and what did not pass in those that did not.
     pub good: Vec<Vec<String>>,
     /// What it is worth for faults that it does not know, if that was asked for.
@@ -119,7 +124,7 @@ pub fn run(
     tell: &mut dyn FnMut(usize),
 ) -> Result<Option<Outcome>, Failure> {
     let modes = chosen(suite, asked)?;
-    let samples = samples(&modes, asked);
+    let samples = samples(&modes, &suite.structure.relations.shared, asked);
     let basis = basis(directory, suite.connection())?;
     let kept = asked.kept.as_deref();
     let mut known = kept.map_or_else(
@@ -184,7 +189,7 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
         jobs,
     } = *evidence;
     let dictionary = dictionary(basis.clone(), suite, modes, samples, runs);
-    let judged_by = (settings, &*suite.structure.groups);
+    let judged_by = (settings, &suite.structure.relations);
     let held_out = samples.iter().zip(runs);
     let of = |purpose: Purpose, faults: usize| -> Vec<_> {
         let is_of =
@@ -192,7 +197,14 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
         held_out.clone().filter(is_of).collect()
     };
     let pairs = of(Purpose::Assessment, 2);
-    let other_spells = of(Purpose::OtherSpells, 1);
+    let otherwise = |purpose: Purpose| {
+        let runs: Vec<_> = held_out
+            .clone()
+            .filter(|(sample, _)| sample.purpose == purpose)
+            .collect();
+        let assessed = || evaluate::assess(&dictionary, judged_by, &runs, false, jobs);
+        (!runs.is_empty()).then(|| OtherFaults::of(&assessed()))
+    };
     Outcome {
         assessments: evaluate::assess(
             &dictionary,
@@ -202,15 +214,8 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
             jobs,
         ),
         pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, judged_by, &pairs)),
-        other_spells: (!other_spells.is_empty()).then(|| {
-            OtherSpells::of(&evaluate::assess(
-                &dictionary,
-                judged_by,
-                &other_spells,
-                false,
-                jobs,
-            ))
-        }),
+        other_spells: otherwise(Purpose::OtherSpells),
+        common: otherwise(Purpose::CommonCause),
         good: evaluate::not_passed(&of(Purpose::Assessment, 0)),
         left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
         off_way: suite.off_way(&dictionary),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnosis::{Diagnosis, Dictionary, Finding, Group, Model, Settings};
+use diagnosis::{Diagnosis, Dictionary, Finding, Model, Relations, Settings};
 use protocol::LruId;
 
 use super::evaluate::Share;
@@ -29,10 +29,10 @@ impl PairFigures {
     /// Diagnoses these runs.
     pub(super) fn of(
         dictionary: &Dictionary,
-        (settings, groups): (&Settings, &[Group]),
+        (settings, relations): (&Settings, &Relations),
         runs: &[(&Sample, &SuiteRun)],
     ) -> Self {
-        let model = Model::new(dictionary, settings, &BTreeMap::new()).with_groups(groups);
+        let model = Model::new(dictionary, settings, &BTreeMap::new()).with_relations(relations);
         let mut figures = Self::default();
         for (sample, run) in runs.iter().filter(|(_, run)| !run.passed) {
             let diagnosis = Diagnosis::of(&model, &run.seen);

@@ -2,7 +2,9 @@
 //! units.
 
 use btu_rig::rig::Random;
-use protocol::injection::{FaultKind, FaultMode, Occurrence};
+use diagnosis::Shared;
+use protocol::LruId;
+use protocol::injection::{Effect, FaultKind, FaultMode, Occurrence};
 
 use super::Request;
 
@@ -23,6 +25,8 @@ const GOOD: u64 = APART / 2;
 const PAIRS: u64 = APART / 4 * 3;
 /// Seeds of faults whose spells are more or less frequent than the dictionary's.
 const OTHER_SPELLS: u64 = APART / 8 * 7;
+/// Seeds of units with one cause at several parts.
+const COMMON: u64 = APART / 16 * 15;
 /// So many times as often as the catalogue says they come.
 const SPELL_RATES: [f64; 2] = [0.25, 4.0];
 /// Two faults of different parts are found in far fewer tries than this.
@@ -37,6 +41,8 @@ pub enum Purpose {
     Assessment,
     /// The same for a fault that comes and goes less or more often than counted.
     OtherSpells,
+    /// The same for one cause at several parts.
+    CommonCause,
 }
 
 /// One run of the suite.
@@ -48,6 +54,8 @@ pub struct Sample {
     pub faults: Vec<FaultMode>,
     /// When they set in, s after the first power-up; what has set in is there at the next one.
     pub sets_in_s: f64,
+    /// The part to replace where the faults are one cause at other parts.
+    pub cause: Option<LruId>,
     /// Which of its mode's levels a fault alone has, 0 = nominal.
     pub level: usize,
     /// Seed of everything random.
@@ -70,7 +78,7 @@ impl Sample {
 }
 
 /// All runs of a campaign: those of a dictionary first.
-pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
+pub fn samples(modes: &[&FaultMode], shared: &[Shared], asked: &Request) -> Vec<Sample> {
     let purposes = [
         (
             Purpose::Dictionary,
@@ -87,6 +95,7 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
             purpose,
             faults: Vec::new(),
             sets_in_s: 0.0,
+            cause: None,
             level: 0,
             seed: from + GOOD + u64::from(i),
         }));
@@ -104,6 +113,7 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
                         purpose,
                         faults: vec![mode.at_level(level)?],
                         sets_in_s: sets_in(mode, i),
+                        cause: None,
                         level,
                         // Units of their own for each level: of the same few, what they have in common would
                         // look like the fault's doing.
@@ -122,12 +132,16 @@ pub fn samples(modes: &[&FaultMode], asked: &Request) -> Vec<Sample> {
                 purpose: Purpose::OtherSpells,
                 faults: vec![mode.clone()],
                 sets_in_s: 0.0,
+                cause: None,
                 level: 0,
                 seed: from + OTHER_SPELLS + LEVEL * number + u64::from(i),
             }));
         }
     }
     samples.extend((0..asked.pairs).filter_map(|i| pair(modes, from + PAIRS + u64::from(i))));
+    let common =
+        (0..asked.common).filter_map(|i| common(modes, shared, from + COMMON + u64::from(i)));
+    samples.extend(common);
     samples
 }
 
@@ -158,9 +172,61 @@ fn pair(modes: &[&FaultMode], seed: u64) -> Option<Sample> {
         purpose: Purpose::Assessment,
         faults: faults.into(),
         sets_in_s: 0.0,
+        cause: None,
         level: 0,
         seed,
     })
+}
+
+/// A unit with one cause at two to four of the parts that share it, drawn by its seed: a mode of each that a supply or a
+/// link may cause, all of which come and go alike. None where too few of them have modes.
+fn common(modes: &[&FaultMode], shared: &[Shared], seed: u64) -> Option<Sample> {
+    let mut random = Random::new(seed);
+    let modes: Vec<_> = modes
+        .iter()
+        .filter(|mode| may_have_outer_cause(mode))
+        .collect();
+    // What reaches more modes is drawn more often.
+    let drawn = |random: &mut Random| {
+        let part = &modes.get(random.below(modes.len()))?.lru;
+        let all = shared.iter();
+        let reaching: Vec<_> = all.filter(|shared| shared.reaches.contains(part)).collect();
+        reaching.get(random.below(reaching.len().max(1))).copied()
+    };
+    let cause = (0..MOST_TRIES).find_map(|_| drawn(&mut random))?;
+    let places = 2 + random.below(3);
+    let mut faults: Vec<FaultMode> = Vec::new();
+    for _ in 0..MOST_TRIES {
+        let mode = modes.get(random.below(modes.len()))?;
+        let new = faults
+            .iter()
+            .all(|fault| fault.lru != mode.lru && fault.place != mode.place);
+        if faults.len() < places && new && cause.reaches.contains(&mode.lru) {
+            let mut fault = mode.at_level(random.below(1 + mode.levels.len()))?;
+            if let Some(first) = faults.first() {
+                fault.occurs = first.occurs.clone();
+            }
+            faults.push(fault);
+        }
+    }
+    (faults.len() > 1).then(|| Sample {
+        purpose: Purpose::CommonCause,
+        faults,
+        sets_in_s: 0.0,
+        cause: Some(cause.part.clone()),
+        level: 0,
+        seed,
+    })
+}
+
+/// Whether something outside the part may make it act so: nothing comes through, less, or something else. A guard that is
+/// lost in a part's own program is its own fault.
+fn may_have_outer_cause(mode: &FaultMode) -> bool {
+    let outer = matches!(
+        mode.effect,
+        Effect::Dead | Effect::Gain { .. } | Effect::Noise { .. } | Effect::BitErrors { .. }
+    );
+    outer && !mode.unsafe_ && !mode.place.is_stored()
 }
 
 /// When the mode sets in for the seed with this number, s.

@@ -24,6 +24,7 @@ fn asked() -> Request {
         good: 0,
         leave_out: None,
         pairs: 0,
+        common: 0,
         other_spells: false,
         units: 0,
         jobs: 2,
@@ -42,7 +43,7 @@ fn a_laptop_alone_finds_nine_in_ten_of_what_is_within_its_reach() {
         held_out: 1,
         ..asked()
     };
-    let samples = samples(&reachable, &asked);
+    let samples = samples(&reachable, &[], &asked);
     let missed: Vec<_> = runs(&suite, &samples)
         .into_iter()
         .zip(&samples)
@@ -62,6 +63,7 @@ fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
         purpose: Purpose::Assessment,
         faults: mode.into_iter().cloned().collect(),
         sets_in_s: 0.0,
+        cause: None,
         level: 0,
         seed,
     };
@@ -91,7 +93,7 @@ fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
         leave_out: Some(2),
         ..asked()
     };
-    let samples = samples(&modes, &asked);
+    let samples = samples(&modes, &[], &asked);
     let runs = runs(&suite, &samples);
     let detected = runs.iter().zip(&samples).filter(|(run, sample)| {
         sample.purpose == Purpose::Assessment && sample.fault().is_some() && !run.passed

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{
-    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation, Sentence,
+    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation, Relations,
+    Sentence,
 };
 use fault_db::{Id, RepairsOf, RunDetail, Store, Verdict};
 use protocol::LruId;
@@ -129,15 +130,15 @@ pub fn diagnose(
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
     // Without a catalogue that can be read, parts go by their identifiers.
     let catalogue = directory.faults();
-    let groups = match &catalogue {
-        Ok(catalogue) => Structure::load(directory, catalogue).map(|structure| structure.groups),
-        Err(_) => Ok(Vec::new()),
+    let relations = match &catalogue {
+        Ok(catalogue) => Structure::load(directory, catalogue).map(|structure| structure.relations),
+        Err(_) => Ok(Relations::default()),
     };
-    let groups = groups.unwrap_or_else(|failure| {
+    let relations = relations.unwrap_or_else(|failure| {
         warnings.push(format!(
             "parts that are hard to tell apart are not known: {failure}"
         ));
-        Vec::new()
+        Relations::default()
     });
     let names = catalogue.map(|all| all.lrus).unwrap_or_default();
     // A symptom that this directory's file no longer has says nothing.
@@ -147,7 +148,7 @@ pub fn diagnose(
     }
     let model = Model::new(&dictionary, &settings, &history.factors)
         .with_names(&names)
-        .with_groups(&groups);
+        .with_relations(&relations);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
     let causes = assessed.causes();
@@ -156,6 +157,9 @@ pub fn diagnose(
         fault.ok_or_else(|| no_such_part(part, &model))
     });
     history.explain(&mut diagnosis);
+    let mut why_not = why_not.transpose()?;
+    let candidates = diagnosis.candidates.iter_mut().chain(&mut why_not);
+    candidates.for_each(|candidate| tell_messages(candidate, &run));
     cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
@@ -166,12 +170,30 @@ pub fn diagnose(
         causes: with_faults(causes, &run, &occurrences),
         run,
         diagnosis,
-        why_not: why_not.transpose()?,
+        why_not,
         traces,
         warnings,
         dictionary_from: from,
         dictionary_current: current,
     })
+}
+
+/// Has the reasons of a candidate say what its steps measured against which limit: their messages, the first that tells a
+/// value.
+fn tell_messages(candidate: &mut Candidate, run: &RunDetail) {
+    for reason in candidate.for_it.iter_mut().chain(&mut candidate.against) {
+        let Some(check) = &reason.step else {
+            continue;
+        };
+        let mut steps = run.steps.iter();
+        let step = steps.find(|step| step.procedure == check.procedure && step.name == check.step);
+        let parts = step.into_iter().flat_map(|step| step.message.split("; "));
+        let parts: Vec<_> = parts.filter(|part| !part.is_empty()).collect();
+        let measured = parts.iter().find(|part| part.contains(" = "));
+        if let Some(message) = measured.or(parts.first()) {
+            reason.said = format!("{}, {}: {message}", check.procedure, check.step);
+        }
+    }
 }
 
 /// A stored run and what was seen in it, as far as it can be compared with this dictionary.

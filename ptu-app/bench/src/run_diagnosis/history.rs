@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Diagnosis, Settings};
+use diagnosis::{Diagnosis, Reason, Settings};
 use fault_db::{PartHistory, PartRepair, RunDetail, RunOccurrence, Store};
 
 use protocol::lru::{LruId, from_stored};
@@ -14,6 +14,8 @@ use crate::symptoms::Symptom;
 /// More earlier runs than these say no more: a unit may lie on the bench for days with one fault.
 const MOST_RUNS: u32 = 4;
 const DAY_US: i64 = 86_400_000_000;
+/// What the history tells comes after so many reasons.
+const AFTER: usize = 2;
 
 /// What a unit's history says of its parts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,18 +100,18 @@ impl OwnHistory {
     /// Adds the words to the reasons of a diagnosis.
     pub fn explain(&self, diagnosis: &mut Diagnosis) {
         for candidate in &mut diagnosis.candidates {
-            candidate.for_it.extend(
-                self.for_it
-                    .get(&candidate.lru)
-                    .into_iter()
-                    .flatten()
-                    .cloned(),
-            );
-            candidate
-                .against
-                .extend(self.against.get(&candidate.lru).cloned());
+            let for_it = self.for_it.get(&candidate.lru).into_iter().flatten();
+            add(&mut candidate.for_it, for_it);
+            let against = self.against.get(&candidate.lru).into_iter();
+            add(&mut candidate.against, against);
         }
     }
+}
+
+/// Adds words to reasons, after the strongest of them: they differ from what the steps show, and are read with these.
+fn add<'a>(reasons: &mut Vec<Reason>, words: impl Iterator<Item = &'a String>) {
+    let place = reasons.len().min(AFTER);
+    reasons.splice(place..place, words.cloned().map(Reason::told));
 }
 
 /// How far a history goes back from a time, µs UTC.
@@ -207,10 +209,11 @@ mod tests {
         (history, diagnosis, probability)
     }
 
-    fn reasons<'a>(diagnosis: &'a Diagnosis, lru: &str) -> (&'a [String], &'a [String]) {
+    fn reasons(diagnosis: &Diagnosis, lru: &str) -> (Vec<String>, Vec<String>) {
         let candidate = diagnosis.candidates.iter().find(|c| c.lru == lru);
         let candidate = candidate.expect("a candidate");
-        (&candidate.for_it, &candidate.against)
+        let said = |reasons: &[Reason]| reasons.iter().map(|reason| reason.said.clone()).collect();
+        (said(&candidate.for_it), said(&candidate.against))
     }
 
     #[test]

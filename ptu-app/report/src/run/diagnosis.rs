@@ -2,6 +2,7 @@
 
 use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use crate::diagnosis::{MOST_REASONS, first_of_parts};
 use crate::words::{Language, Words, fill};
 use ptu_bench::run_diagnosis::Answer;
 
@@ -59,15 +60,15 @@ fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
 
 fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
     let report = &words.report;
-    let all = answer.diagnosis.candidates.iter();
-    let likely = all.filter(|candidate| candidate.probability >= LEAST_NAMED);
+    let first = first_of_parts(&answer.diagnosis.candidates);
+    let likely = first.filter(|candidate| candidate.probability >= LEAST_NAMED);
     let rows = likely.map(|candidate| {
         let cells = [
             format!("{:.1} %", 100.0 * candidate.probability),
             sheet.part(candidate.lru.as_str(), words),
             format!("{}: {}", candidate.fault, words.content(&candidate.text)),
-            (candidate.for_it.iter())
-                .map(|reason| words.content(reason))
+            (candidate.for_it.iter().take(MOST_REASONS))
+                .map(|reason| words.content(&reason.said))
                 .collect::<Vec<_>>()
                 .join("\n"),
         ];

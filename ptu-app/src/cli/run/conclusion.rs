@@ -34,7 +34,7 @@ impl RunArguments {
                 .warnings
                 .iter()
                 .for_each(|warning| stdio::note(warning));
-            print_out(&format!("\n{}", diagnosis_text(&answer)))?;
+            print_out(&format!("\n{}", diagnosis_text(&answer, false)))?;
         } else if let Ok(answer) = answer
             && answer.warnings.is_empty()
         {

@@ -1,6 +1,6 @@
 //! Ambiguity groups: one part of a group is named only where what was seen tells it from the others.
 
-use diagnosis::{Group, Sentence};
+use diagnosis::{Group, Relations, Sentence, Shared};
 
 use super::*;
 
@@ -19,7 +19,11 @@ fn with_groups(dictionary: &Dictionary, seen: &Observation, groups: &[Group]) ->
         found_at: 0.7,
         ..settings()
     };
-    let model = Model::new(dictionary, &settings, &BTreeMap::new()).with_groups(groups);
+    let relations = Relations {
+        groups: groups.to_vec(),
+        ..Relations::default()
+    };
+    let model = Model::new(dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
     Diagnosis::of(&model, seen)
 }
 
@@ -93,4 +97,53 @@ fn a_sign_that_only_one_part_of_a_group_shows_names_it() {
     );
     let said = with_groups(&dictionary, &seen, &groups);
     assert_eq!(said.finding, Finding::OneOf, "{:?}", said.conclusion);
+}
+
+/// Goal: one cause at the places of several parts is told as such, with what they share; a fault of one of them is not.
+/// Method: what the relay and the antenna show at once, in a unit where a supply reaches both; then the relay's alone.
+#[test]
+fn one_cause_at_several_parts_is_told_with_what_they_share() {
+    let mut dictionary = dictionary();
+    let part = |name: &str| name.parse().expect("a part");
+    let suspects = ["relay", "antenna", "antenna"].map(|suspect| [suspect; 3]);
+    dictionary.suspects = suspects
+        .into_iter()
+        .flatten()
+        .map(|name| Some(part(name)))
+        .collect();
+    let relations = Relations {
+        shared: vec![Shared {
+            part: part("supply"),
+            reaches: vec![part("antenna"), part("relay"), part("sensor")],
+            measure: Sentence {
+                english: "record the voltage".into(),
+                korean: "전압을 기록합니다".into(),
+            },
+        }],
+        ..Relations::default()
+    };
+    // Nine checks tell less than a suite.
+    let settings = Settings {
+        common_cause: 0.9,
+        found_at: 0.9,
+        ..settings()
+    };
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
+    let one = Diagnosis::of(&model, &run(&["a.s1"], Some(640.0)));
+    assert_eq!(one.finding, Finding::Found, "{:?}", one.conclusion);
+    let both = Diagnosis::of(&model, &run(&["a.s1", "b.s1", "c.s1"], Some(640.0)));
+    assert_eq!(both.finding, Finding::OneOf, "{:?}", both.conclusion);
+    let group = both.group.expect("a group");
+    let named = |name: &str| group.parts.iter().any(|part| *part == name);
+    assert!(
+        named("supply") && named("antenna") && named("relay"),
+        "{group:?}"
+    );
+    let said = &both.conclusion;
+    assert!(said.english.starts_with("one cause at "), "{said:?}");
+    assert!(
+        said.english.contains("; to tell which, record the voltage"),
+        "{said:?}"
+    );
+    assert!(said.korean.contains("공통된 원인"), "{said:?}");
 }

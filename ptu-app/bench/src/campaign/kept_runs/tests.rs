@@ -12,12 +12,13 @@ fn drawn(modes: &[FaultMode], units: u32) -> Vec<Sample> {
         good: 2,
         leave_out: None,
         pairs: 40,
+        common: 0,
         other_spells: true,
         units,
         jobs: 1,
         kept: None,
     };
-    samples(&modes.iter().collect::<Vec<_>>(), &asked)
+    samples(&modes.iter().collect::<Vec<_>>(), &[], &asked)
 }
 
 fn run(number: usize) -> SuiteRun {

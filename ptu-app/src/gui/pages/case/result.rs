@@ -15,10 +15,8 @@ use crate::gui::{Density, Destination, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Progress;
 use ptu_bench::failure::Exit;
 use ptu_bench::run::Outcome;
+use ptu_report::diagnosis::MOST_REASONS;
 use ptu_report::words::{Words, fill};
-
-/// As many reasons are given.
-const REASONS: usize = 3;
 
 /// What was found in a run.
 pub struct Found {
@@ -67,7 +65,13 @@ impl Found {
             exit: outcome.exit,
             verdict: outcome.verdict,
             headline: said.map(|said| said.text.clone()).unwrap_or_default(),
-            reasons: first.map(|first| first.for_it.clone()).unwrap_or_default(),
+            reasons: first
+                .map(|first| &*first.for_it)
+                .unwrap_or_default()
+                .iter()
+                .take(MOST_REASONS)
+                .map(|reason| reason.said.clone())
+                .collect(),
             shown_by: shown_by(run),
             evidence: part.map(shown),
             trace,
@@ -172,7 +176,12 @@ fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut Page
         let step = words.content(&next.check.step);
         let time = format!("{:.0} s", next.cost_s.ceil());
         let said = [("check", &step as &dyn std::fmt::Display), ("time", &time)];
-        ui.label(RichText::new(fill(words.case.next_check, &said)).size(Sizes::of(ui).text));
+        let mut said = fill(words.case.next_check, &said);
+        let tells = words.sentence(&next.tells);
+        if !tells.is_empty() {
+            said = format!("{said}: {tells}");
+        }
+        ui.label(RichText::new(said).size(Sizes::of(ui).text));
         let run = ui.button(words.diagnosis.run_it);
         let run = match Sizes::of(ui).density {
             Density::Operator => run,
@@ -194,7 +203,7 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
     }
     let quiet = Palette::of(ui).quiet;
     ui.label(RichText::new(words.case.because).color(quiet));
-    for reason in found.reasons.iter().take(REASONS) {
+    for reason in &found.reasons {
         let reason = words.content(reason);
         let said = match Sizes::of(ui).density {
             Density::Operator => without_path(&reason),
@@ -207,7 +216,7 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
 /// A reason without the path of the script that it begins with.
 fn without_path(reason: &str) -> &str {
     let is_path = |text: &str| text.contains('/') && !text.contains(' ');
-    match reason.split_once(": ") {
+    match reason.split_once(", ") {
         Some((path, rest)) if is_path(path) => rest,
         _ => reason,
     }
@@ -219,9 +228,12 @@ mod tests {
 
     #[test]
     fn a_reason_loses_the_path_of_its_script_and_nothing_else() {
-        let reason = "atp/overspeed: code 55: alarm, FSB, EB failed";
-        assert_eq!(without_path(reason), "code 55: alarm, FSB, EB failed");
-        for other in ["a brake and/or door: late", "logged: eb/fsb", "no path"] {
+        let reason = "atp/overspeed, code 55: alarm, FSB, EB: eb_reaction = 640";
+        assert_eq!(
+            without_path(reason),
+            "code 55: alarm, FSB, EB: eb_reaction = 640"
+        );
+        for other in ["a brake and/or door, late", "logged, eb/fsb", "no path"] {
             assert_eq!(without_path(other), other);
         }
     }

@@ -1,11 +1,12 @@
 //! The ranked parts and fault modes, with the reasons.
 
-use diagnosis::Candidate;
+use diagnosis::{Candidate, Reason};
 use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
 use super::NamedAnswer;
 use crate::gui::parts::{link, share_bar};
 use crate::gui::{Destination, PageContext, Palette};
+use ptu_report::diagnosis::first_of_parts;
 use ptu_report::words::{Diagnosis, fill};
 
 /// Candidates, and reasons of each, that are shown at once; the others are behind "more".
@@ -15,8 +16,10 @@ const AT_ONCE: usize = 3;
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
-    let (first, more) = at_once(&diagnosis.candidates);
-    for (place, candidate) in first.iter().enumerate() {
+    let first: Vec<_> = first_of_parts(&diagnosis.candidates).collect();
+    let more = diagnosis.candidates.iter();
+    let more: Vec<_> = more.filter(|one| !first.contains(one)).collect();
+    for (place, candidate) in first.into_iter().enumerate() {
         show(ui, context, named, candidate, place == 0);
     }
     behind_more(ui, words, "candidates", more.len(), |ui| {
@@ -113,7 +116,7 @@ fn reasons(
     context: &mut PageContext<'_>,
     named: &NamedAnswer,
     (sign, what): (&str, &str),
-    texts: &[String],
+    texts: &[Reason],
     colour: Color32,
 ) {
     if texts.is_empty() {
@@ -121,11 +124,14 @@ fn reasons(
     }
     ui.label(RichText::new(what).small().color(colour));
     let words = context.words;
-    let mut list = |ui: &mut Ui, texts: &[String]| {
+    let mut list = |ui: &mut Ui, texts: &[Reason]| {
         for text in texts {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).strong().color(colour));
-                ui.label(&*words.content(text));
+                let said = ui.label(&*words.content(&text.said));
+                if let Some(detail) = &text.detail {
+                    said.on_hover_text(&*words.content(detail));
+                }
                 if let Some(trace) = named.trace_of(text)
                     && link(ui, words.faults.to_trace).clicked()
                 {

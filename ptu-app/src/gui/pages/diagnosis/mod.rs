@@ -2,6 +2,7 @@
 
 mod candidates;
 
+use diagnosis::Reason;
 use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
 use fault_db::Id;
 
@@ -59,11 +60,12 @@ impl NamedAnswer {
     }
 
     /// The trace of the step that a reason is about.
-    fn trace_of(&self, reason: &str) -> Option<Id> {
+    fn trace_of(&self, reason: &Reason) -> Option<Id> {
+        let check = reason.step.as_ref()?;
         let mut traced = self.traced.iter();
         let about = |message: &str| {
             place(message).is_some_and(|(procedure, step, _)| {
-                reason.starts_with(&format!("{procedure}: {step} "))
+                procedure == check.procedure && step == check.step
             })
         };
         Some(traced.find(|(_, message, _)| about(message))?.2)
