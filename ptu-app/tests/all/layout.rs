@@ -62,6 +62,12 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         window.key(page.key());
         window.wait_for(said);
         look(&mut window, page.name(words));
+        if page == Page::Traces {
+            let hovered = eframe::egui::HoveredFile::default();
+            window.harness().input_mut().hovered_files.push(hovered);
+            look(&mut window, "file over the traces");
+            window.harness().input_mut().hovered_files.clear();
+        }
     }
     window.write(words.life.search, "BAD-1");
     window.click(words.life.show);

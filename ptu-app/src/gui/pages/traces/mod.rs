@@ -2,6 +2,7 @@
 
 mod bar;
 mod compared_trace;
+mod dropped;
 mod events;
 mod export;
 mod input;
@@ -59,6 +60,7 @@ impl TracesPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
+        let words = &context.words.traces;
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
         let clicked = LIST.show(ui, |ui| self.list.show(ui, context, chosen));
         // The latest trace is what most people come for.
@@ -69,6 +71,11 @@ impl TracesPage {
         CentralPanel::default()
             .frame(Frame::central_panel(ui.style()).inner_margin(4))
             .show(ui, |ui| self.central(ui, context));
+        match (dropped::file(ui, context), &mut self.scene) {
+            (Some(file), Some(scene)) => self.behind.ask_file(&file, scene, context),
+            (Some(_), None) => context.messages.note(words.open_first),
+            (None, _) => {}
+        }
     }
 
     pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
