@@ -69,6 +69,11 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
             window.harness().input_mut().hovered_files.clear();
         }
     }
+    window.key(Page::Drive.key());
+    window.click(words.drive.drive);
+    window.wait_for(words.drive.report);
+    look(&mut window, "drive");
+    window.key(Page::Statistics.key());
     window.write(words.life.search, "BAD-1");
     window.click(words.life.show);
     window.wait_for(words.life.stored);
