@@ -50,6 +50,8 @@ pub struct Settings {
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
     pub plotted: Vec<String>,
+    /// They are shown on the page Procedures, too.
+    pub live_plot: bool,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
     /// Questions of the page Statistics.
@@ -104,6 +106,7 @@ impl Default for Settings {
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
                 .to_vec(),
+            live_plot: false,
             lanes: Vec::new(),
             statistics: Vec::new(),
             faults: Vec::new(),

@@ -96,6 +96,9 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.key(Page::Procedures.key());
     window.wait_for("atp/overspeed");
     look(&mut window, "procedures");
+    window.click(words.procedures.live_signals);
+    window.step();
+    look(&mut window, "live signals");
     window.click(words.procedures.run);
     window.wait_for(words.procedures.to_report);
     window.step();

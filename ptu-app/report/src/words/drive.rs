@@ -5,7 +5,7 @@ use super::wordings;
 wordings! {
     /// Automatic runs of a whole train.
     Drive {
-        title: "Automatic run", "자동 주행";
+        title: "Drive", "자동 주행";
         explained: "An embedded unit drives a whole train from station to station in virtual time. A connected unit takes no part in it, and nothing is recorded.", "내장된 모의 장치가 가상 시간으로 열차를 역에서 역까지 운전합니다. 연결된 장치는 관여하지 않으며, 기록도 남지 않습니다.";
 
         // What is asked for.
@@ -22,7 +22,7 @@ wordings! {
         disturbance: "disturbance", "외란";
         no_disturbance: "none", "없음";
         s1: "S1, 20 kN·s/m at 1 Hz", "S1, 20 kN·s/m, 1 Hz";
-        drive: "Drive", "주행";
+        drive: "Start the run", "주행 시작";
         cannot_list: "Lines and trains cannot be listed", "노선과 열차 목록을 읽을 수 없습니다";
 
         // Under way, and what it came to.
