@@ -54,6 +54,8 @@ pub struct Settings {
     pub live_plot: bool,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
+    /// Layouts of its lanes that were given a name.
+    pub layouts: Vec<SavedQuestion<Vec<String>>>,
     /// Questions of the page Statistics.
     pub statistics: Vec<SavedQuestion<StatisticsQuestion>>,
     /// Questions of the page Faults.
@@ -108,6 +110,7 @@ impl Default for Settings {
                 .to_vec(),
             live_plot: false,
             lanes: Vec::new(),
+            layouts: Vec::new(),
             statistics: Vec::new(),
             faults: Vec::new(),
         }

@@ -63,6 +63,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         window.wait_for(said);
         look(&mut window, page.name(words));
         if page == Page::Traces {
+            window.click_last(words.traces.signals);
+            window.wait_for(words.traces.save_layout);
+            look(&mut window, "signals of a trace");
+            window.click_last(words.traces.signals);
             let hovered = eframe::egui::HoveredFile::default();
             window.harness().input_mut().hovered_files.push(hovered);
             look(&mut window, "file over the traces");

@@ -234,6 +234,17 @@ fn signals_share_a_lane_and_a_stretch_is_zoomed_to_and_left() {
     let (heads, rows) = csv(&mut window, "Save CSV", field);
     assert_eq!(heads[..3], ["time_s", "speed_kmh", "limit_kmh"]);
 
+    // The layout is kept under a name, and comes back after others were shown.
+    window.write("name", "brakes");
+    window.click("Save this layout");
+    window.click("Automatic");
+    window.wait_for("Save this layout");
+    window.click_last("layouts");
+    window.click("brakes");
+    window.wait_for("Forget it");
+    let (heads, _) = csv(&mut window, "Save CSV", field);
+    assert_eq!(heads[1..], ["speed_kmh", "limit_kmh", "eb"]);
+
     assert!(!window.enabled("Zoom back"));
     let rect = window.harness().get_by_label("lanes").rect();
     let at = |share: f32| pos2(rect.left() + share * rect.width(), rect.center().y);

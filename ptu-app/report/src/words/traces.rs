@@ -53,6 +53,9 @@ wordings! {
         shown_signals: "shown, from top to bottom", "표시 중 (위에서 아래로)";
         all_signals: "all signals", "전체 신호";
         usual_signals: "Automatic", "자동 선택";
+        layouts: "layouts", "저장한 배치";
+        save_layout: "Save this layout", "이 배치 저장";
+        forget_layout: "Forget it", "저장한 배치 삭제";
         no_signals: "Choose signals to show.", "표시할 신호를 선택하십시오.";
         up: "up: {signal}", "위로: {signal}";
         down: "down: {signal}", "아래로: {signal}";

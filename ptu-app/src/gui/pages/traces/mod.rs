@@ -52,6 +52,8 @@ pub struct TracesPage {
     record: RecordComparison,
     painted: LaneCache,
     find_signal: String,
+    /// Name for a layout, as it is typed.
+    layout_name: String,
     choosing: bool,
     told: bool,
 }
@@ -153,7 +155,8 @@ impl TracesPage {
                 .default_size(260.0)
                 .size_range(200.0..=400.0)
                 .show(ui, |ui| {
-                    signals::choose(ui, scene, &mut self.find_signal, context);
+                    let typed = (&mut self.find_signal, &mut self.layout_name);
+                    signals::choose(ui, scene, typed, context);
                 });
         }
         if self.told {
