@@ -140,18 +140,15 @@ fn choose<T: Clone + PartialEq>(
     let offered: Vec<(T, String)> = offered.collect();
     let shown = offered.iter().find(|(value, _)| value == chosen);
     let shown = shown.map_or_else(String::new, |(_, said)| said.clone());
-    // A name and its list go to the next row together.
-    ui.horizontal(|ui| {
-        ui.label(name);
-        let combo = ComboBox::from_id_salt(name)
-            .selected_text(&shown)
-            .width(WIDE)
-            .truncate();
-        let combo = combo.show_ui(ui, |ui| {
-            for (value, said) in offered {
-                ui.selectable_value(chosen, value, said);
-            }
-        });
-        named_combo(&combo.response, name, &shown);
+    ui.label(name);
+    let combo = ComboBox::from_id_salt(name)
+        .selected_text(&shown)
+        .width(WIDE)
+        .truncate();
+    let combo = combo.show_ui(ui, |ui| {
+        for (value, said) in offered {
+            ui.selectable_value(chosen, value, said);
+        }
     });
+    named_combo(&combo.response, name, &shown);
 }

@@ -44,8 +44,11 @@ impl DrivePage {
                 let free = !self.job.is_under_way();
                 let mut asked = false;
                 ui.horizontal_wrapped(|ui| {
-                    ui.add_enabled_ui(free, |ui| self.form.show(ui, words, offered));
-                    asked = free && ui.button(words.drive.drive).clicked();
+                    if !free {
+                        ui.disable();
+                    }
+                    self.form.show(ui, words, offered);
+                    asked = ui.button(words.drive.drive).clicked();
                 });
                 if asked {
                     self.begin(context);
