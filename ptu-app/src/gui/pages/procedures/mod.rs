@@ -37,12 +37,12 @@ const TREE: FirstHalf = FirstHalf {
     share: 0.35,
 };
 
-/// Least height of the live signals, and what their heading takes of it, points.
-const LIVE_LEAST: f32 = 110.0;
+/// Least height of the live signals, what their heading takes of it, and what is left to the run above, points.
+const LIVE_LEAST: f32 = 140.0;
 const LIVE_HEADING: f32 = 48.0;
-/// Share of the page that they take, and the most of it.
+const RUN_LEAST: f32 = 120.0;
+/// Share of the page that they take until the divider is dragged.
 const LIVE_SHARE: f32 = 0.3;
-const LIVE_MOST: f32 = 0.6;
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
@@ -123,14 +123,31 @@ impl ProceduresPage {
             {
                 script_errors(ui, suite, context);
             }
-            if context.settings.live_plot {
-                live_signals(ui, &mut self.plot, context);
+            let room = ui.available_height();
+            let live =
+                context.settings.live_plot && context.units.chosen().phase() != Phase::Offline;
+            // A low window has them at the top of what scrolls.
+            let scrolls = live && room < LIVE_LEAST + RUN_LEAST;
+            if live && !scrolls {
+                let panel = Panel::bottom("live signals").resizable(true);
+                let panel = panel.default_size((room * LIVE_SHARE).max(LIVE_LEAST));
+                panel
+                    .size_range(LIVE_LEAST..=room - RUN_LEAST)
+                    .show(ui, |ui| {
+                        let height = ui.available_height();
+                        live_signals(ui, &mut self.plot, height, context);
+                    });
             }
             // What is said of a run scrolls as one, so that each part of it is reached in a low window.
             ScrollArea::vertical()
                 .id_salt("run")
                 .auto_shrink(false)
-                .show(ui, |ui| self.run(ui, context));
+                .show(ui, |ui| {
+                    if scrolls {
+                        live_signals(ui, &mut self.plot, LIVE_LEAST, context);
+                    }
+                    self.run(ui, context);
+                });
         });
     }
 
@@ -360,23 +377,14 @@ impl ProceduresPage {
 }
 
 /// The chosen signals of the last seconds below the run, as on the page Bench.
-fn live_signals(ui: &mut Ui, plot: &mut Plot, context: &mut PageContext<'_>) {
+fn live_signals(ui: &mut Ui, plot: &mut Plot, height: f32, context: &mut PageContext<'_>) {
     let unit = context.units.chosen();
-    if unit.phase() == Phase::Offline {
-        return;
-    }
-    let room = ui.available_height();
-    let most = (room * LIVE_MOST).max(LIVE_LEAST);
-    let panel = Panel::bottom("live signals").resizable(true);
-    let panel = panel.default_size((room * LIVE_SHARE).clamp(LIVE_LEAST, most));
-    panel.size_range(LIVE_LEAST..=most).show(ui, |ui| {
-        let seen = BenchSnapshot::of(&unit.bench);
-        let plotted = &mut context.settings.plotted;
-        let signals = chosen(plotted);
-        plot.take(&unit.bench, &signals);
-        let height = (ui.available_height() - LIVE_HEADING).max(LIVE_LEAST - LIVE_HEADING);
-        plot.show(ui, height, &signals, plotted, (context.words, &seen));
-    });
+    let seen = BenchSnapshot::of(&unit.bench);
+    let plotted = &mut context.settings.plotted;
+    let signals = chosen(plotted);
+    plot.take(&unit.bench, &signals);
+    let height = height.max(LIVE_LEAST) - LIVE_HEADING;
+    plot.show(ui, height, &signals, plotted, (context.words, &seen));
 }
 
 fn script_errors(ui: &mut Ui, suite: &Suite, context: &PageContext<'_>) {
