@@ -317,6 +317,20 @@ fn tables_and_messages_of_other_programs() {
     let mcap = file("t.mcap");
     let examples = [mcap_file(None), mcap_file(Some(mcap::Compression::Zstd))];
     fuzz("mcap", examples).run(40_000, |bytes| read(&mcap, bytes));
+    let parquet = file("t.parquet");
+    fuzz("parquet", [parquet_file()]).run(20_000, |bytes| read(&parquet, bytes));
+}
+
+/// A trace of a run, as the program itself exports it.
+fn parquet_file() -> Vec<u8> {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let export = ["trace", "export", "latest", "--to", "t.parquet"];
+    let part = ["--signals", "speed,eb,mode", "--window", "-0.2..0.2"];
+    place.ptu(&[&export[..], &part].concat()).exits(0);
+    std::fs::read(place.path("t.parquet")).expect("written")
 }
 
 fn mcap_file(compression: Option<mcap::Compression>) -> Vec<u8> {

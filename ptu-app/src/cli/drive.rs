@@ -145,7 +145,7 @@ impl DriveArguments {
                         .map(|case| case.drawn(&scatter, self.seed))
                         .collect();
                 }
-                Outcomes::Single(drive_all(cases, jobs, &stop))
+                Outcomes::Single(drive_all(cases, jobs, &stop, &mut |_| {}))
             }
         };
         let results = Results {

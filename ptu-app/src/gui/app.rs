@@ -17,7 +17,7 @@ use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::{Unit, Units};
 use super::{fonts, theme};
-use ptu_bench::bench_worker::Wake;
+use ptu_bench::bench_worker::{Wake, Watched};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_bench::stop::Stop;
@@ -126,7 +126,11 @@ impl App {
             Panel::top("locked").show(ui, |ui| self.frame.locked(ui, &mut page_context));
         }
         let page = page_context.settings.page;
-        page_context.units.watch(page == Page::Bench);
+        page_context.units.watch(match page {
+            Page::Bench => Watched::All,
+            Page::Procedures if page_context.settings.live_plot => Watched::Curves,
+            _ => Watched::Bar,
+        });
         CentralPanel::default().show(ui, |ui| {
             if page_context.settings.locked {
                 only_look(ui);

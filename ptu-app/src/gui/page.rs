@@ -16,6 +16,8 @@ pub enum Page {
     Bench,
     /// Choosing and running procedures.
     Procedures,
+    /// Automatic runs of a whole train.
+    Drive,
     /// Recorded traces.
     Traces,
     /// The fault history.
@@ -30,7 +32,7 @@ pub enum Page {
 
 impl Page {
     /// All, in the order they are shown.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Case,
         Self::Bench,
         Self::Procedures,
@@ -39,6 +41,7 @@ impl Page {
         Self::Diagnosis,
         Self::Report,
         Self::Statistics,
+        Self::Drive,
     ];
 
     /// Its name on the command line.
@@ -47,6 +50,7 @@ impl Page {
             Self::Case => "case",
             Self::Bench => "bench",
             Self::Procedures => "procedures",
+            Self::Drive => "drive",
             Self::Traces => "traces",
             Self::Faults => "faults",
             Self::Diagnosis => "diagnosis",
@@ -61,6 +65,7 @@ impl Page {
             Self::Case => words.case.title,
             Self::Bench => words.bench.title,
             Self::Procedures => words.procedures.title,
+            Self::Drive => words.drive.title,
             Self::Traces => words.traces.title,
             Self::Faults => words.faults.title,
             Self::Diagnosis => words.diagnosis.title,
@@ -80,6 +85,7 @@ impl Page {
             Self::Diagnosis => Key::F5,
             Self::Report => Key::F6,
             Self::Statistics => Key::F8,
+            Self::Drive => Key::F10,
         }
     }
 }

@@ -50,8 +50,12 @@ pub struct Settings {
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
     pub plotted: Vec<String>,
+    /// They are shown on the page Procedures, too.
+    pub live_plot: bool,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
+    /// Layouts of its lanes that were given a name.
+    pub layouts: Vec<SavedQuestion<Vec<String>>>,
     /// Questions of the page Statistics.
     pub statistics: Vec<SavedQuestion<StatisticsQuestion>>,
     /// Questions of the page Faults.
@@ -104,7 +108,9 @@ impl Default for Settings {
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)
                 .to_vec(),
+            live_plot: false,
             lanes: Vec::new(),
+            layouts: Vec::new(),
             statistics: Vec::new(),
             faults: Vec::new(),
         }

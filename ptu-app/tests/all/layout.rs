@@ -62,7 +62,22 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         window.key(page.key());
         window.wait_for(said);
         look(&mut window, page.name(words));
+        if page == Page::Traces {
+            window.click_last(words.traces.signals);
+            window.wait_for(words.traces.save_layout);
+            look(&mut window, "signals of a trace");
+            window.click_last(words.traces.signals);
+            let hovered = eframe::egui::HoveredFile::default();
+            window.harness().input_mut().hovered_files.push(hovered);
+            look(&mut window, "file over the traces");
+            window.harness().input_mut().hovered_files.clear();
+        }
     }
+    window.key(Page::Drive.key());
+    window.click(words.drive.drive);
+    window.wait_for(words.drive.report);
+    look(&mut window, "drive");
+    window.key(Page::Statistics.key());
     window.write(words.life.search, "BAD-1");
     window.click(words.life.show);
     window.wait_for(words.life.stored);
@@ -85,6 +100,9 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.key(Page::Procedures.key());
     window.wait_for("atp/overspeed");
     look(&mut window, "procedures");
+    window.click(words.procedures.live_signals);
+    window.step();
+    look(&mut window, "live signals");
     window.click(words.procedures.run);
     window.wait_for(words.procedures.to_report);
     window.step();

@@ -21,6 +21,7 @@ mod diagnose_matrix;
 mod documents;
 mod drive;
 mod drive_by_hand;
+mod drive_page;
 mod fault_months;
 mod faults;
 mod figures;

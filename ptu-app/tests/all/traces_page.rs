@@ -234,6 +234,17 @@ fn signals_share_a_lane_and_a_stretch_is_zoomed_to_and_left() {
     let (heads, rows) = csv(&mut window, "Save CSV", field);
     assert_eq!(heads[..3], ["time_s", "speed_kmh", "limit_kmh"]);
 
+    // The layout is kept under a name, and comes back after others were shown.
+    window.write("name", "brakes");
+    window.click("Save this layout");
+    window.click("Automatic");
+    window.wait_for("Save this layout");
+    window.click_last("layouts");
+    window.click("brakes");
+    window.wait_for("Forget it");
+    let (heads, _) = csv(&mut window, "Save CSV", field);
+    assert_eq!(heads[1..], ["speed_kmh", "limit_kmh", "eb"]);
+
     assert!(!window.enabled("Zoom back"));
     let rect = window.harness().get_by_label("lanes").rect();
     let at = |share: f32| pos2(rect.left() + share * rect.width(), rect.center().y);
@@ -262,4 +273,71 @@ fn signals_share_a_lane_and_a_stretch_is_zoomed_to_and_left() {
     window.click("Zoom back");
     let (_, again) = csv(&mut window, "Save CSV", field);
     assert_eq!(again.len(), rows.len());
+}
+
+/// A file as a desktop hands it over.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl eframe::egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Goal: what another program recorded is seen beside the unit's trace without a command. Method: an export of the open trace
+/// in each format is dropped on the page and deviates nowhere, nor does a part of it; one with another value does; a file that
+/// cannot be read is told.
+#[test]
+fn a_dropped_file_is_laid_behind_the_trace() {
+    let mut window = window(Settings::default());
+    window.wait_for("0.00 s trigger");
+    // The page has the first trace of the latest run open.
+    let store = fault_db::Store::open_read_only(&window.place.path("history.db")).expect("read");
+    let run = store.resolve_run("latest").expect("a run");
+    let open = store.traces(run).expect("traces")[0].id.to_string();
+    let drop = |window: &mut Window, file: &std::path::Path| {
+        let dropped = Dropped(file.to_owned());
+        window
+            .harness()
+            .input_mut()
+            .dropped_files
+            .push(std::sync::Arc::new(dropped));
+        // What was said of the file before goes with the second frame.
+        window.step();
+        window.step();
+    };
+    let part = ["--window", "-1..1"];
+    for (name, part) in [
+        ("other.csv", &[][..]),
+        ("whole.parquet", &[]),
+        ("part.parquet", &part),
+        ("part.mcap", &part),
+    ] {
+        let file = window.place.path(name);
+        let to = window.place.text_path(name);
+        let export = [&["trace", "export", &open, "--to", &to][..], part].concat();
+        window.place.ptu(&export).exits(0);
+        drop(&mut window, &file);
+        window.wait_for("no signal deviates");
+    }
+    let file = window.place.path("other.csv");
+    let text = std::fs::read_to_string(&file).expect("exported");
+    assert!(text.contains(",released"), "{}", &text[..300]);
+    std::fs::write(&file, text.replace(",released", ",applied")).expect("changed");
+    drop(&mut window, &file);
+    window.wait_for_part("signals deviate, first ");
+    for (name, told) in [
+        ("other.parquet", "damaged, or no Parquet file"),
+        ("other.docx", "Only .csv, .parquet and .mcap files"),
+    ] {
+        window.place.write(name, "this is no trace");
+        let other = window.place.path(name);
+        drop(&mut window, &other);
+        window.wait_for_part(told);
+    }
 }

@@ -33,6 +33,32 @@ fn connects_arms_and_stops_everything_with_one_key() {
     window.wait_for("not connected");
 }
 
+/// Goal: who follows a run sees its signals as they come. Method: on the page of procedures with the live signals on, a run moves
+/// the train: the plot's speed is that of the unit, and it is gone with the switch.
+#[test]
+fn a_run_is_followed_by_its_signals() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    let plot = "Plot: speed ";
+    assert!(!window.shows_part(plot));
+    window.click("Live signals");
+    window.wait_for_part("Plot: speed 0.0 km/h");
+    window.click("None");
+    window.click("atp/overspeed");
+    window.click("Run");
+    window.until("speed in the plot", |window| {
+        let shown = window.shown();
+        let named = shown.iter().find_map(|text| text.split(plot).nth(1));
+        let speed = named.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+        running(window) && speed.is_some_and(|speed| speed > 5.0)
+    });
+    window.click("Live signals");
+    assert!(!window.shows_part(plot));
+    window.key(Key::F12);
+    window.until("the end of the run", |window| !running(window));
+}
+
 #[test]
 fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     let mut window = Window::open(Page::Procedures);

@@ -1,7 +1,7 @@
 //! The state that the bench thread shares with the window: the latest cycle, the rows before it, and the operator's
 //! requests to a run (pause, single step, answers).
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time;
 
@@ -20,6 +20,8 @@ use crate::run::RunControl;
 pub const HISTORY: Duration = Duration::from_ms(120_000);
 /// The window is woken at most this often …
 const OFTEN: time::Duration = time::Duration::from_millis(33);
+/// … or this often, where only curves over half a minute and more are seen …
+const FOR_CURVES: time::Duration = time::Duration::from_millis(125);
 /// … and at least this often while nothing changes but the time and counts.
 const SELDOM: time::Duration = time::Duration::from_secs(1);
 /// … or this often, when only the connection bar shows the unit.
@@ -28,6 +30,31 @@ const RARELY: time::Duration = time::Duration::from_secs(5);
 const COUNTS: [Signal; 2] = [Signal::TwcReceived, Signal::TwcAnswers];
 /// What the connection bar shows, whatever page is in front.
 const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
+
+/// What the window shows of the signals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Watched {
+    /// What the connection bar does.
+    Bar,
+    /// Curves.
+    Curves,
+    /// All of them as in the cab.
+    #[default]
+    All,
+}
+
+impl Watched {
+    const ALL: [Self; 3] = [Self::Bar, Self::Curves, Self::All];
+
+    /// The window is woken at most, and at least, this often.
+    fn often(self) -> (time::Duration, time::Duration) {
+        match self {
+            Self::Bar => (OFTEN, RARELY),
+            Self::Curves => (FOR_CURVES, SELDOM),
+            Self::All => (OFTEN, SELDOM),
+        }
+    }
+}
 
 /// What the bench thread does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,8 +110,8 @@ pub struct LiveState {
     live: Mutex<LiveData>,
     requests: Mutex<OperatorRequests>,
     pending: Mutex<Pending>,
-    /// Whether the window shows the signals.
-    watched: AtomicBool,
+    /// What the window shows, by its place among [`Watched::ALL`].
+    watched: AtomicUsize,
     wake: Wake,
 }
 
@@ -106,14 +133,19 @@ impl LiveState {
                 woken: time::Instant::now(),
                 shown: [0; Signal::COUNT],
             }),
-            watched: AtomicBool::new(true),
+            watched: AtomicUsize::new(Watched::All as usize),
             wake,
         }
     }
 
-    /// Whether the window shows the signals: if not, only a change in the connection bar wakes it.
-    pub fn watch(&self, watched: bool) {
-        self.watched.store(watched, Ordering::Relaxed);
+    /// What the window shows: a change of anything else does not wake it.
+    pub fn watch(&self, watched: Watched) {
+        self.watched.store(watched as usize, Ordering::Relaxed);
+    }
+
+    fn watched(&self) -> Watched {
+        let place = self.watched.load(Ordering::Relaxed);
+        Watched::ALL.get(place).copied().unwrap_or_default()
     }
 
     /// Locks the latest cycle; the bench thread publishes nothing meanwhile.
@@ -187,7 +219,7 @@ impl LiveState {
 impl LiveState {
     fn is_worth_a_look(&self, before: &[u64; Signal::COUNT], now: &[u64; Signal::COUNT]) -> bool {
         let differs = |signal: &Signal| before[signal.index()] != now[signal.index()];
-        if self.watched.load(Ordering::Relaxed) {
+        if self.watched() != Watched::Bar {
             let mut signals = Signal::ALL.iter();
             signals.any(|signal| differs(signal) && !COUNTS.contains(signal))
         } else {
@@ -221,9 +253,8 @@ impl RunControl for LiveState {
         drop(live);
         let shown = rig.sample().values().map(f64::to_bits);
         let since = pending.woken.elapsed();
-        let watched = self.watched.load(Ordering::Relaxed);
-        let at_least = if watched { SELDOM } else { RARELY };
-        if since >= at_least || (since >= OFTEN && self.is_worth_a_look(&pending.shown, &shown)) {
+        let (at_most, at_least) = self.watched().often();
+        if since >= at_least || (since >= at_most && self.is_worth_a_look(&pending.shown, &shown)) {
             pending.woken = time::Instant::now();
             pending.shown = shown;
             (self.wake)();

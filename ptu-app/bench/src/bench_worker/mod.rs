@@ -23,7 +23,7 @@ use btu_rig::stimulus::Stimulus;
 
 pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
-pub use live_state::{HISTORY, LiveData, LiveState, Phase};
+pub use live_state::{HISTORY, LiveData, LiveState, Phase, Watched};
 pub use permit::{Refused, permit};
 pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting, outside_place};
 

@@ -213,9 +213,15 @@ pub(super) fn track(
     Ok(line)
 }
 
-/// Drives all cases, some at a time, and gives them back in order. A stop leaves cases out.
-pub fn drive_all(cases: Vec<Case>, jobs: usize, stop: &Stop) -> Vec<Driven> {
-    let outcomes = pool::run(cases.len(), jobs, stop, &mut |_| {}, |i| cases[i].drive());
+/// Drives all cases, some at a time, and gives them back in order, telling how many there are now and then. A stop leaves
+/// cases out.
+pub fn drive_all(
+    cases: Vec<Case>,
+    jobs: usize,
+    stop: &Stop,
+    tell: &mut dyn FnMut(usize),
+) -> Vec<Driven> {
+    let outcomes = pool::run(cases.len(), jobs, stop, tell, |i| cases[i].drive());
     let mut cases: Vec<_> = cases.into_iter().map(Some).collect();
     outcomes
         .into_iter()

@@ -1,10 +1,12 @@
 //! Reports of drive runs: plain text, JSON, CSV, and HTML with plots; of automatic runs, of many of them, and of
-//! runs by hand. `facts` and `tables` are what text and page share; `plots` are drawn on the page.
+//! runs by hand. `facts` and `tables` are what text and page share; `plots` are drawn on the page, and `paper` has all of
+//! them in either language for the window.
 
 mod csv;
 mod facts;
 mod html;
 mod json;
+mod paper;
 mod plots;
 mod tables;
 mod text;
@@ -14,6 +16,7 @@ use std::str::FromStr;
 
 pub use html::page;
 pub use json::json;
+pub use paper::DriveSheet;
 pub use text::text;
 
 use crate::json_text;

@@ -6,6 +6,8 @@ use btu_rig::rig::PairEfforts;
 use maud::{Markup, html};
 
 use super::facts::{conditions, off, stop};
+use crate::run::block::{self, Align, Column, RowKind};
+use crate::words::Words;
 use ptu_bench::drive::Driven;
 use ptu_bench::drive::manual::ManualRun;
 use ptu_bench::drive::monte_carlo::{MonteCarlo, percentile};
@@ -15,6 +17,8 @@ use ptu_bench::table;
 const LATER_S: f64 = 3.0;
 /// Percentiles that are shown.
 const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
+/// Letters for which a printed column has room at least.
+const SHORTEST: usize = 8;
 /// What stands for a value that is not known.
 const UNKNOWN: &str = "–";
 
@@ -68,6 +72,39 @@ impl Table {
                     }
                 }
             }
+        }
+    }
+}
+
+impl Table {
+    /// For printed pages, in one language.
+    pub fn printed(&self, words: &Words) -> block::Table {
+        let columns = self.headings.len();
+        let said = |text: &String| words.content(text).into_owned();
+        let rows: Vec<Vec<String>> = (self.rows.iter())
+            .map(|row| row.iter().map(said).collect())
+            .collect();
+        let headings: Vec<_> = self.headings.iter().map(|head| said(&head.1)).collect();
+        let longest = |at: usize| {
+            let cells = rows.iter().filter_map(|row| row.get(at));
+            let letters = cells
+                .chain(headings.get(at))
+                .map(|cell| cell.chars().count());
+            letters.max().unwrap_or(0).max(SHORTEST) as f32
+        };
+        let all: f32 = (0..columns).map(longest).sum();
+        let column = |(at, name): (usize, &String)| {
+            let align = match self.words.contains(&at) {
+                true => Align::Left,
+                false => Align::Right,
+            };
+            Column::new(name, longest(at) / all, align)
+        };
+        block::Table {
+            columns: headings.iter().enumerate().map(column).collect(),
+            rows: (rows.iter().cloned())
+                .map(|row| block::Row::words(RowKind::Head, row))
+                .collect(),
         }
     }
 }

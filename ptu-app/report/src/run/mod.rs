@@ -4,7 +4,7 @@
 //!
 //! [`Sheet::gather`], [`CaseSheet::gather`] → [`Paper`] → [`html()`], or [`page::pages`] → [`pdf()`] and the window
 
-mod block;
+pub(crate) mod block;
 mod case;
 mod compare;
 mod content;

@@ -9,20 +9,20 @@ use crate::words::Words;
 /// What is printed, in one language.
 pub struct Paper {
     /// What it is, as its head and its margin say.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Serial number of the unit.
-    pub(super) unit: String,
+    pub(crate) unit: String,
     /// What tells it from others of its kind, for the title of a window or a file.
-    pub(super) short: String,
+    pub(crate) short: String,
     /// Its number, below each page.
-    pub(super) number: String,
+    pub(crate) number: String,
     /// Version of the program that tested.
-    pub(super) program: String,
+    pub(crate) program: String,
     /// When what it says was complete, µs UTC.
-    pub(super) at_us: i64,
+    pub(crate) at_us: i64,
     /// Stands across each page: it proves nothing of a unit in service.
-    pub(super) across: Option<String>,
-    pub(super) blocks: Vec<Block>,
+    pub(crate) across: Option<String>,
+    pub(crate) blocks: Vec<Block>,
 }
 
 /// What can be printed.

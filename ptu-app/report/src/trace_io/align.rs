@@ -1,6 +1,7 @@
 //! Resamples signals of a file at the times of a stored trace's rows.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use fault_db::TraceData;
 
@@ -19,7 +20,9 @@ pub struct Aligned {
     pub imported: TraceData,
     /// Names of the file's signals that the trace does not have: they are left out.
     pub unknown: Vec<String>,
-    /// Seconds from the trigger to the first and last row both have.
+    /// Rows of the trace for which the file has samples.
+    pub rows: Range<usize>,
+    /// Seconds from the trigger to the first and last of them.
     pub window_s: (f64, f64),
     /// Whether the file's samples came at the trace's own rows.
     pub is_row_by_row: bool,
@@ -92,6 +95,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         trace,
         imported,
         unknown,
+        rows: first..end,
         window_s: (at_s(first), at_s(end - 1)),
         is_row_by_row,
     })
@@ -101,7 +105,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
 struct RowAlignment {
     places: Vec<Option<usize>>,
     /// Rows of the trace from the first to the last that has one.
-    rows: std::ops::Range<usize>,
+    rows: Range<usize>,
     is_row_by_row: bool,
 }
 

@@ -200,7 +200,7 @@ fn fields(line: &str, separator: char) -> Result<Vec<String>, &'static str> {
 }
 
 /// The signal that is called so.
-fn channel(text: &str, known: &[&[Channel]]) -> Channel {
+pub(super) fn channel(text: &str, known: &[&[Channel]]) -> Channel {
     let all = || known.iter().flat_map(|channels| channels.iter());
     all()
         .find(|channel| is_called(channel, text))
@@ -209,13 +209,17 @@ fn channel(text: &str, known: &[&[Channel]]) -> Channel {
 
 fn time_us(cell: &str) -> Result<i64, String> {
     let seconds = cell.parse::<f64>().ok();
-    // As many seconds as microseconds have room for.
-    let seconds = seconds.filter(|seconds| seconds.abs() < 9e12);
-    let seconds = seconds.ok_or_else(|| format!("\"{cell}\" is no time in seconds"))?;
-    Ok((seconds * 1e6).round() as i64)
+    let time_us = seconds.and_then(whole_us);
+    time_us.ok_or_else(|| format!("\"{cell}\" is no time in seconds"))
 }
 
-fn sample(cell: &str, kind: &ChannelKind) -> Result<f64, String> {
+/// Seconds as microseconds, if there are as many.
+pub(super) fn whole_us(seconds: f64) -> Option<i64> {
+    (seconds.abs() < 9e12).then(|| (seconds * 1e6).round() as i64)
+}
+
+/// What a cell says: a number, or a word of this kind.
+pub(super) fn sample(cell: &str, kind: &ChannelKind) -> Result<f64, String> {
     if cell.is_empty() {
         return Ok(f64::NAN);
     }

@@ -3,11 +3,12 @@
 //! * [`export`]: a stored trace, or a part of it, as CSV, Parquet or MCAP, a piece at a time, so that an
 //!   hour of all signals takes no more memory than a second of one;
 //! * [`TraceInfo`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
-//! * [`import`]: signals of a CSV or MCAP file, ours or another program's;
+//! * [`import`]: signals of a CSV, Parquet or MCAP file, ours or another program's;
 //! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
 
 mod about;
 mod align;
+mod beside;
 mod column;
 pub mod csv;
 mod csv_read;
@@ -15,11 +16,13 @@ mod export;
 mod mcap_read;
 mod mcap_write;
 mod parquet;
+mod parquet_read;
 mod part;
 mod series;
 
 pub use about::TraceInfo;
 pub use align::{Aligned, align};
+pub use beside::beside;
 pub use column::column_name;
 pub use export::{Format, export};
 pub use part::{Seconds, TracePart};

@@ -28,7 +28,7 @@ const GROUP_ROWS: usize = 1 << 16;
 /// Heading of the column of seconds from the trigger.
 const TIME: &str = "time_s";
 /// Heading of the column of UTC.
-const UTC: &str = "time_utc";
+pub(super) const UTC: &str = "time_utc";
 
 pub(super) fn put(
     out: &mut (impl Write + Send),

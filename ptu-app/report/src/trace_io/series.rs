@@ -6,7 +6,7 @@ use fault_db::trace::MAX_SAMPLES;
 use fault_db::{Channel, ChannelKind};
 
 use super::about::TraceInfo;
-use super::{csv_read, mcap_read};
+use super::{csv_read, mcap_read, parquet_read};
 use ptu_bench::failure::Failure;
 
 /// A file has at most so many signals; a trace of ours has a few hundred.
@@ -36,16 +36,17 @@ pub struct Import {
 /// Whether a file of this name can be read.
 pub fn is_importable(file: &Path) -> bool {
     let ending = file.extension().and_then(|ending| ending.to_str());
-    matches!(ending, Some("csv" | "mcap"))
+    matches!(ending, Some("csv" | "parquet" | "mcap"))
 }
 
-/// Reads a CSV or MCAP file; signals that are among `known` are of their kind.
+/// Reads a CSV, Parquet or MCAP file; signals that are among `known` are of their kind.
 ///
 /// # Errors
 /// The file cannot be read, or is not what its ending says: with the place where.
 pub fn import(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let import = match file.extension().and_then(|ending| ending.to_str()) {
         Some("mcap") => mcap_read::read(file, known)?,
+        Some("parquet") => parquet_read::read(file, known)?,
         _ => csv_read::read(file, known)?,
     };
     if import.tables.iter().all(|table| table.times_us.is_empty()) {

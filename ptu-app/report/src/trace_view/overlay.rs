@@ -2,21 +2,26 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
 
-use fault_db::{Id, Store};
+use fault_db::{Id, Store, TraceData};
 
 use super::TraceView;
+use crate::trace_io::beside;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
 use ptu_bench::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
 /// What a trace is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverlaySource {
     /// The same stimuli on a sound unit.
     Twin,
     /// Another trace.
     Trace(Id),
+    /// Signals of a file.
+    File(Arc<Path>),
 }
 
 /// Which trace is shown behind another.
@@ -27,6 +32,8 @@ pub struct Overlay {
     /// Its samples.
     pub view: TraceView,
     rule: Rule,
+    /// Rows of the trace that it has samples for; none = wherever it has rows.
+    has: Option<Range<usize>>,
 }
 
 /// The first difference between a trace and the trace behind, which may be shifted by some rows.
@@ -46,28 +53,48 @@ impl Overlay {
     /// Reads or makes what the trace `id` is to be laid against.
     ///
     /// # Errors
-    /// The other trace is gone, this one has no recording, or what its bench was made of is gone.
+    /// The other trace is gone, this one has no recording, what its bench was made of is gone, or the file cannot be read or has
+    /// nothing in common with the trace.
     pub fn get(
         store: &Store,
         scripts: &ScriptsDirectory,
         id: Id,
         against: OverlaySource,
     ) -> Result<Self, Failure> {
-        let (data, rule) = match against {
-            OverlaySource::Twin => good_twin(&Original::read(store, id)?, scripts)?,
-            OverlaySource::Trace(other) => (store.trace(other)?, rule_between(store, id, other)?),
+        let (data, rule, has) = match &against {
+            OverlaySource::Twin => {
+                let (twin, rule) = good_twin(&Original::read(store, id)?, scripts)?;
+                (twin, rule, None)
+            }
+            OverlaySource::Trace(other) => {
+                (store.trace(*other)?, rule_between(store, id, *other)?, None)
+            }
+            OverlaySource::File(file) => {
+                let (aligned, rule) = beside(store, (id, store.trace(id)?), file, 0)?;
+                (aligned.imported, rule, Some(aligned.rows))
+            }
         };
         Ok(Self {
             against,
             view: TraceView::new(data),
             rule,
+            has,
         })
     }
 
     /// The first difference of `came` from it.
     pub fn parting(&self, came: &TraceView, shift_rows: i64) -> FirstDifference {
         let rule = self.rule.shifted(shift_rows);
-        let (found, trouble) = match compare(came.data(), self.view.data(), &rule, &[]) {
+        let beside;
+        let came = match &self.has {
+            None => came.data(),
+            // What a part of a trace leaves out does not differ.
+            Some(has) => {
+                beside = only(came.data(), has, shift_rows);
+                &beside
+            }
+        };
+        let (found, trouble) = match compare(came, self.view.data(), &rule, &[]) {
             Ok(found) => (Some(found), None),
             Err(failure) => (None, Some(failure.message)),
         };
@@ -84,6 +111,19 @@ impl Overlay {
     }
 }
 
+/// The trace with nothing known outside these rows, laid so many rows later.
+fn only(came: &TraceData, rows: &Range<usize>, later: i64) -> TraceData {
+    let mut came = came.clone();
+    let all = came.rows();
+    let at = |row: usize| row.saturating_add_signed(later as isize).min(all);
+    let (first, end) = (at(rows.start), at(rows.end));
+    for column in &mut came.columns {
+        column[..first].fill(f64::NAN);
+        column[end..].fill(f64::NAN);
+    }
+    came
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::tests::trace;
@@ -95,6 +135,7 @@ mod tests {
             against: OverlaySource::Twin,
             view: TraceView::new(trace(columns)),
             rule: Rule::exact(),
+            has: None,
         };
         let came = TraceView::new(trace(&[("speed", &[0.0, 0.0, 9.0, 9.0])]));
         let expected = other(&[("speed", &[0.0, 9.0, 9.0, 9.0])]);

@@ -376,9 +376,9 @@ impl TracePlot {
     }
 
     /// Takes the first difference from the trace behind.
-    pub fn told(&mut self, against: OverlaySource, parting: FirstDifference) {
+    pub fn told(&mut self, against: &OverlaySource, parting: FirstDifference) {
         if let Some(behind) = &mut self.behind
-            && behind.overlay.against == against
+            && behind.overlay.against == *against
         {
             behind.parting = Some(parting);
         }

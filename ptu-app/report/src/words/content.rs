@@ -148,6 +148,7 @@ fn in_place(place: &str, part: &str) -> Option<String> {
         "condition" | "seen" => condition::korean(part),
         "expectation" => condition::expectation(part),
         "signal" => condition::signal(part),
+        "mode" => condition::state("mode", part),
         "event" => {
             let (name, rest) = part.split_at(part.find(' ').unwrap_or(part.len()));
             let event = Event::from_name(name)?.definition();

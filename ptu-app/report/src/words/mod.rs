@@ -10,6 +10,7 @@ mod common;
 mod condition;
 mod content;
 mod diagnosis;
+mod drive;
 mod faults;
 mod fill;
 mod frame;
@@ -25,6 +26,7 @@ pub use care::Care;
 pub use case::Case;
 pub use common::Common;
 pub use diagnosis::Diagnosis;
+pub use drive::Drive;
 pub use faults::Faults;
 pub use fill::fill;
 pub use frame::Frame;
@@ -126,6 +128,8 @@ pub struct Words {
     pub case: Case,
     /// Choosing and running procedures.
     pub procedures: Procedures,
+    /// Automatic runs of a whole train.
+    pub drive: Drive,
     /// Recorded traces.
     pub traces: Traces,
     /// Fault history.
@@ -190,6 +194,7 @@ static ENGLISH: Words = Words {
     bench: Bench::ENGLISH,
     case: Case::ENGLISH,
     procedures: Procedures::ENGLISH,
+    drive: Drive::ENGLISH,
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
     statistics: Statistics::ENGLISH,
@@ -207,6 +212,7 @@ static KOREAN: Words = Words {
     bench: Bench::KOREAN,
     case: Case::KOREAN,
     procedures: Procedures::KOREAN,
+    drive: Drive::KOREAN,
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
     statistics: Statistics::KOREAN,
@@ -228,6 +234,7 @@ mod tests {
             Bench::all(),
             Case::all(),
             Procedures::all(),
+            Drive::all(),
             Traces::all(),
             Faults::all(),
             Statistics::all(),

@@ -6,6 +6,8 @@ wordings! {
     /// Choosing and running procedures.
     Procedures {
         title: "Procedures", "시험 절차";
+        live_signals: "Live signals", "실시간 신호";
+        live_signals_hint: "the signals of the page Bench, drawn below the run as they come", "시험대 화면의 신호를 시험 아래에 실시간으로 표시";
         find: "find", "찾기";
         reload: "Reload scripts", "스크립트 다시 읽기";
         all: "All", "전체";

@@ -53,6 +53,9 @@ wordings! {
         shown_signals: "shown, from top to bottom", "표시 중 (위에서 아래로)";
         all_signals: "all signals", "전체 신호";
         usual_signals: "Automatic", "자동 선택";
+        layouts: "layouts", "저장한 배치";
+        save_layout: "Save this layout", "이 배치 저장";
+        forget_layout: "Forget it", "저장한 배치 삭제";
         no_signals: "Choose signals to show.", "표시할 신호를 선택하십시오.";
         up: "up: {signal}", "위로: {signal}";
         down: "down: {signal}", "아래로: {signal}";
@@ -83,6 +86,9 @@ wordings! {
         no_overlay: "nothing", "없음";
         good_twin: "good twin", "정상 비교 장치";
         making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 장치에 다시 주는 중 …";
+        drop_here: "Let go: the file is laid behind this trace", "놓으면 이 신호 기록 뒤에 파일이 겹쳐집니다";
+        open_first: "Open a trace first: a file is laid behind it", "먼저 신호 기록을 여십시오. 파일은 그 뒤에 겹쳐집니다";
+        not_importable: "Only .csv, .parquet and .mcap files can be laid behind a trace", ".csv, .parquet, .mcap 파일만 신호 기록과 비교할 수 있습니다";
         cannot_overlay: "There is nothing to compare with", "비교할 수 없습니다";
         cannot_compare: "Where they differ cannot be told", "차이를 판단할 수 없습니다";
         offset: "offset", "이동";

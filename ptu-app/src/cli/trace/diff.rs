@@ -12,10 +12,7 @@ use super::plot::lanes;
 use crate::cli::{ScriptsOption, print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
-use ptu_report::trace_io::{align, import, is_importable};
-
-/// Names that are told of a file that has none of the trace's signals.
-const SHOWN_NAMES: usize = 10;
+use ptu_report::trace_io::{beside, is_importable};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -24,8 +21,8 @@ const SHOWN_NAMES: usize = 10;
 /// The number of log entries (`events`) is left out; on a port also efforts, accelerations and counts of
 /// frames.
 ///
-/// B may be a .csv or .mcap file: an export, or another program's table with seconds in its first column or
-/// messages in JSON. Seconds are from the trigger, messages at their time of day; each row is compared with
+/// B may be a .csv, .parquet or .mcap file: an export, or another program's table with seconds in its first
+/// column or messages in JSON. Seconds are from the trigger, messages at their time of day; each row is compared with
 /// the last sample until then, where they do not come at the trace's rows as with a unit on a port.
 ///
 /// Examples:
@@ -38,7 +35,7 @@ pub struct DiffArguments {
     /// A trace
     #[arg(value_name = "A")]
     came: String,
-    /// Another; `twin`: the same stimuli on a sound unit; or a .csv or .mcap file
+    /// Another; `twin`: the same stimuli on a sound unit; or a .csv, .parquet or .mcap file
     #[arg(value_name = "B")]
     expected: String,
     /// Only these signals
@@ -64,7 +61,7 @@ impl DiffArguments {
             self.with_file(store, a, came, file)?
         } else if file.extension().is_some() {
             return Err(Failure::usage(format!(
-                "cannot compare with {}: a file to compare with must end in .csv or .mcap",
+                "cannot compare with {}: a file to compare with must end in .csv, .parquet or .mcap",
                 file.display()
             )));
         } else if self.shift != 0.0 {
@@ -105,28 +102,8 @@ impl DiffArguments {
         came: TraceData,
         file: &Path,
     ) -> Result<ComparedTraces, Failure> {
-        let import = import(file, &came.channels)?;
-        let aligned = align(import, came, (self.shift * 1e6) as i64)?;
-        // Nothing compared must not look like nothing that differs.
-        if aligned.imported.channels.is_empty() {
-            let more = match aligned.unknown.len().saturating_sub(SHOWN_NAMES) {
-                0 => String::new(),
-                more => format!(" and {more} more"),
-            };
-            let shown: Vec<_> = (aligned.unknown.iter().take(SHOWN_NAMES))
-                .map(String::as_str)
-                .collect();
-            return Err(Failure::usage(format!(
-                "{}: none of its signals is one of the trace's: {}{more}",
-                file.display(),
-                shown.join(", ")
-            )));
-        }
-        let rule = if aligned.is_row_by_row {
-            rule_between(store, a, a)?
-        } else {
-            Rule::wall_clock()
-        };
+        let shift_us = (self.shift * 1e6) as i64;
+        let (aligned, rule) = beside(store, (a, came), file, shift_us)?;
         Ok(ComparedTraces {
             name: self.expected.clone(),
             came: aligned.trace,

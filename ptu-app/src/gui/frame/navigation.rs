@@ -11,28 +11,33 @@ use crate::gui::{Density, Page, PageContext, Sizes};
 use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
+/// A bar so wide has the pages and the rest in one line, points.
+const BESIDE: f32 = 1180.0;
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut About, &mut Care)) {
-    both_ends(
-        ui,
-        context,
-        |ui, context| {
-            about.button(ui, context);
-            care.button(ui, context);
-            look(ui, context);
-        },
-        |ui, context| {
-            for page in Page::ALL {
-                let chosen = context.settings.page == page;
-                let text =
-                    RichText::new(page.name(context.words)).size(Sizes::of(ui).body.max(16.0));
-                let button = ui.selectable_label(chosen, text);
-                if button.on_hover_text(page.key().name()).clicked() {
-                    context.settings.page = page;
-                }
-            }
-        },
-    );
+    let ends = |ui: &mut Ui, context: &mut PageContext<'_>| {
+        about.button(ui, context);
+        care.button(ui, context);
+        look(ui, context);
+    };
+    if ui.available_width() < BESIDE {
+        // Beside the rest the pages would take three lines.
+        ui.horizontal_wrapped(|ui| pages(ui, context));
+        both_ends(ui, context, ends, |_, _| {});
+    } else {
+        both_ends(ui, context, ends, pages);
+    }
+}
+
+fn pages(ui: &mut Ui, context: &mut PageContext<'_>) {
+    for page in Page::ALL {
+        let chosen = context.settings.page == page;
+        let text = RichText::new(page.name(context.words)).size(Sizes::of(ui).body.max(16.0));
+        let button = ui.selectable_label(chosen, text);
+        if button.on_hover_text(page.key().name()).clicked() {
+            context.settings.page = page;
+        }
+    }
 }
 
 fn look(ui: &mut Ui, context: &mut PageContext<'_>) {

@@ -3,6 +3,7 @@
 mod bench;
 mod case;
 mod diagnosis;
+mod drive;
 mod faults;
 mod procedures;
 mod report;
@@ -21,6 +22,7 @@ pub struct Pages {
     case: case::CasePage,
     bench: bench::BenchPage,
     procedures: procedures::ProceduresPage,
+    drive: drive::DrivePage,
     traces: traces::TracesPage,
     faults: faults::FaultsPage,
     diagnosis: diagnosis::DiagnosisPage,
@@ -46,6 +48,7 @@ impl Pages {
             }
             Page::Bench => self.bench.show(ui, context),
             Page::Procedures => self.procedures.show(ui, context),
+            Page::Drive => self.drive.show(ui, context),
             Page::Traces => self.traces.show(ui, context),
             Page::Faults => self.faults.show(ui, context),
             Page::Diagnosis => self.diagnosis.show(ui, context),

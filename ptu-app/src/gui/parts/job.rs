@@ -103,18 +103,21 @@ impl Job {
     pub fn progress(&self, ui: &mut Ui, words: &Words) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();
-            let said = self.told.said.lock();
-            ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
+            // Before the text, which changes: the button stays where it is.
             if ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }
+            let said = self.told.said.lock();
+            ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
         });
     }
 
     /// What it came to last.
     pub fn result(&self, ui: &mut Ui) {
         if let Some(done) = &self.done {
-            ui.label(&done.text);
+            if !done.text.is_empty() {
+                ui.label(&done.text);
+            }
             for note in &done.notes {
                 ui.label(RichText::new(note).color(Palette::of(ui).warn));
             }

@@ -25,7 +25,7 @@ const BLUR: f32 = 0.6;
 /// Width of a bit's line, and of the hatch where it changes too fast.
 const BIT_LINE: f32 = 1.5;
 const HATCH: f32 = 3.0;
-/// Narrowest box with text in it.
+/// Narrowest box with text in it; one lower than its text has none either.
 const NARROWEST: f32 = 18.0;
 
 /// Vertical lines at round values, behind lanes, over the whole height of `rect`.
@@ -157,7 +157,7 @@ pub fn choice(
             narrow.busy(area, colour);
             continue;
         };
-        if area.width() < NARROWEST {
+        if area.width() < NARROWEST || area.height() + 1.0 < TEXT {
             narrow.boxed(area, ground, colour);
             continue;
         }

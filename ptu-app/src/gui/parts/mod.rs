@@ -19,6 +19,7 @@ mod run_note;
 mod saved_questions;
 mod serial_link;
 mod share_bar;
+mod sheet_view;
 mod split;
 mod unit_filter;
 
@@ -35,8 +36,9 @@ pub use open_file::open_file;
 pub use rows::rows;
 pub use run_list::RunList;
 pub use run_note::RunNoteForm;
-pub use saved_questions::{SavedQuestion, saved_questions};
+pub use saved_questions::{SavedQuestion, SavedSaid, saved_questions};
 pub use serial_link::{repair_line, serial_link};
 pub use share_bar::share_bar;
+pub use sheet_view::show_sheet;
 pub use split::FirstHalf;
 pub use unit_filter::UnitFilter;

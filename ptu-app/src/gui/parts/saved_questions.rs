@@ -1,4 +1,4 @@
-//! Questions that were given a name: what a page was asked, to be asked again.
+//! Questions that were given a name: what a page was asked, to be asked again; and layouts of lanes likewise.
 
 use eframe::egui::{Button, ComboBox, Ui};
 use serde::{Deserialize, Serialize};
@@ -16,20 +16,54 @@ pub struct SavedQuestion<T> {
     asked: T,
 }
 
+/// What the list, its entries and its buttons are called.
+pub struct SavedSaid {
+    pub list: &'static str,
+    pub none: &'static str,
+    pub name: &'static str,
+    pub save: &'static str,
+    pub forget: &'static str,
+}
+
+impl SavedSaid {
+    /// Of questions.
+    pub fn questions(words: &Words) -> Self {
+        let said = &words.statistics;
+        Self {
+            list: said.questions,
+            none: said.no_question,
+            name: said.question_name,
+            save: said.save_question,
+            forget: said.forget_question,
+        }
+    }
+
+    /// Of layouts.
+    pub fn layouts(words: &Words) -> Self {
+        let said = &words.traces;
+        Self {
+            list: said.layouts,
+            none: words.statistics.no_question,
+            name: words.statistics.question_name,
+            save: said.save_layout,
+            forget: said.forget_layout,
+        }
+    }
+}
+
 /// The list of saved questions, and the field for the name of another one; the question that was chosen. `now` is what is
 /// asked at present.
 pub fn saved_questions<T: Clone + PartialEq>(
     ui: &mut Ui,
-    words: &Words,
+    said: &SavedSaid,
     (saved, name): (&mut Vec<SavedQuestion<T>>, &mut String),
     now: &T,
 ) -> Option<T> {
-    let said = &words.statistics;
     let at = saved.iter().position(|question| question.asked == *now);
     let mut chosen = None;
-    let shown = at.map_or(said.no_question, |at| saved[at].name.as_str());
-    ui.label(said.questions);
-    let combo = ComboBox::from_id_salt("questions")
+    let shown = at.map_or(said.none, |at| saved[at].name.as_str());
+    ui.label(said.list);
+    let combo = ComboBox::from_id_salt(said.list)
         .selected_text(shown)
         .width(FIELD)
         .truncate();
@@ -41,18 +75,18 @@ pub fn saved_questions<T: Clone + PartialEq>(
             }
         }
     });
-    named_combo(&combo.response, said.questions, shown);
+    named_combo(&combo.response, said.list, shown);
     match at {
         Some(at) => {
-            if ui.button(said.forget_question).clicked() {
+            if ui.button(said.forget).clicked() {
                 saved.remove(at);
             }
         }
         None => {
-            let label = ui.label(said.question_name);
+            let label = ui.label(said.name);
             ui.add(name_edit(name, FIELD)).labelled_by(label.id);
             let named = typed(name);
-            let save = ui.add_enabled(named.is_some(), Button::new(said.save_question));
+            let save = ui.add_enabled(named.is_some(), Button::new(said.save));
             if let (true, Some(named)) = (save.clicked(), named) {
                 saved.retain(|question| question.name != named);
                 saved.push(SavedQuestion {

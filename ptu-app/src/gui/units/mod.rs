@@ -5,7 +5,7 @@ mod unit;
 pub use unit::Unit;
 
 use super::messages::Messages;
-use ptu_bench::bench_worker::{Phase, Wake};
+use ptu_bench::bench_worker::{Phase, Wake, Watched};
 use ptu_bench::failure::Failure;
 use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
@@ -108,12 +108,15 @@ impl Units {
         self.iter().map(|unit| unit.runs_ended).sum()
     }
 
-    /// Whether the signals of the chosen one are looked at.
-    pub(super) fn watch(&self, looked_at: bool) {
+    /// What is looked at of the chosen one; of the others the bar.
+    pub(super) fn watch(&self, watched: Watched) {
         for (place, unit) in self.iter().enumerate() {
-            unit.bench
-                .live_state()
-                .watch(looked_at && place == self.chosen);
+            let watched = if place == self.chosen {
+                watched
+            } else {
+                Watched::Bar
+            };
+            unit.bench.live_state().watch(watched);
         }
     }
 

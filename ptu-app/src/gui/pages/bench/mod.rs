@@ -20,11 +20,11 @@ use eframe::egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 use crate::gui::PageContext;
 use forms::Forms;
 use live::{View, view};
-use live_copy::BenchSnapshot;
-use plot::Plot;
+pub use live_copy::BenchSnapshot;
+pub use plot::Plot;
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::run::BenchSetup;
-use rolling::chosen;
+pub use rolling::chosen;
 use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 
 /// Width of the stimuli, and the least that is left of it in a small window.
@@ -94,7 +94,8 @@ impl BenchPage {
         self.plot.take(&unit.bench, &signals);
         live_view(ui, &shown, |ui, height| {
             let plotted = &mut context.settings.plotted;
-            self.plot.show(ui, height, &signals, plotted, &shown);
+            self.plot
+                .show(ui, height, &signals, plotted, (context.words, &seen));
         });
     }
 }

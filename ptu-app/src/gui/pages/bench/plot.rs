@@ -2,12 +2,13 @@
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
-    Align2, Checkbox, Color32, Painter, PopupCloseBehavior, Rect, ScrollArea, Sense, TextEdit, Ui,
-    pos2, vec2,
+    Align2, Checkbox, Color32, Painter, PopupCloseBehavior, Rect, Role, ScrollArea, Sense,
+    TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 use protocol::signal::Signal;
 
-use super::live::{View, framed, heading, put};
+use super::live::{framed, heading, put};
+use super::live_copy::BenchSnapshot;
 use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
 use crate::gui::Palette;
@@ -63,17 +64,23 @@ impl Plot {
         height: f32,
         signals: &[Signal],
         plotted: &mut Vec<String>,
-        view: &View<'_>,
+        (words, seen): (&Words, &BenchSnapshot),
     ) {
         let palette = Palette::of(ui);
-        let words = &view.words.bench;
         framed(ui, |ui| {
             ui.horizontal(|ui| {
-                heading(ui, words.plot);
-                self.choose(ui, plotted, view.words);
+                heading(ui, words.bench.plot);
+                self.choose(ui, plotted, words);
             });
             let size = vec2(ui.available_width(), height);
-            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+            let (area, response) = ui.allocate_exact_size(size, Sense::hover());
+            response.widget_info(|| {
+                let value = |signal: &Signal| text::value(&words.bench, *signal, seen);
+                let now = signals.iter().map(|s| format!("{} {}", s.name(), value(s)));
+                let now: Vec<_> = now.collect();
+                let name = format!("{}: {}", words.bench.plot, now.join(", "));
+                WidgetInfo::labeled(Role::Image, true, name)
+            });
             if signals.is_empty() {
                 let (middle, centre) = (area.center(), Align2::CENTER_CENTER);
                 let painter = ui.painter();
@@ -83,7 +90,7 @@ impl Plot {
                     centre,
                     14.0,
                     palette.quiet,
-                    words.plot_nothing,
+                    words.bench.plot_nothing,
                 );
                 return;
             }
@@ -91,7 +98,8 @@ impl Plot {
                 painter: ui.painter_at(area),
                 area,
                 signals,
-                view,
+                words,
+                seen,
                 palette: &palette,
             });
         });
@@ -166,7 +174,7 @@ impl Plot {
                         lane::bit(painter, rect, spans, colour);
                     } else {
                         let signal = sheet.signals[*place];
-                        let label = |value| text::known(&sheet.view.words.bench, signal, value);
+                        let label = |value| text::known(&sheet.words.bench, signal, value);
                         lane::choice(painter, rect, spans, colour, palette, label);
                     }
                     sheet.names(rect, &[*place]);
@@ -226,7 +234,8 @@ struct Sheet<'a> {
     painter: Painter,
     area: Rect,
     signals: &'a [Signal],
-    view: &'a View<'a>,
+    words: &'a Words,
+    seen: &'a BenchSnapshot,
     palette: &'a Palette,
 }
 
@@ -253,7 +262,7 @@ impl Sheet<'_> {
                 colour,
                 signal.name(),
             );
-            let value = text::value(&self.view.words.bench, signal, self.view.seen);
+            let value = text::value(&self.words.bench, signal, self.seen);
             let right = pos2(self.area.left() + NAMES, y);
             put(
                 &self.painter,

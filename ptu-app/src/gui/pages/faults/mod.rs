@@ -12,7 +12,7 @@ use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
 
 use crate::gui::page_context::FaultsOf;
 use crate::gui::parts::look_back::since_us;
-use crate::gui::parts::{FirstHalf, MemoryReader, UnitFilter, saved_questions};
+use crate::gui::parts::{FirstHalf, MemoryReader, SavedSaid, UnitFilter, saved_questions};
 use crate::gui::query_worker::Pending;
 use crate::gui::request::CachedResponse;
 use crate::gui::request::Request;
@@ -144,7 +144,9 @@ impl FaultsPage {
                 ui.horizontal_wrapped(|ui| {
                     let saved = (&mut context.settings.faults, &mut self.question);
                     let now = self.filter.question();
-                    if let Some(asked) = saved_questions(ui, words, saved, &now) {
+                    if let Some(asked) =
+                        saved_questions(ui, &SavedSaid::questions(words), saved, &now)
+                    {
                         self.filter = Filter::asked(asked);
                     }
                 });

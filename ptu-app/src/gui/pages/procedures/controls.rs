@@ -31,6 +31,9 @@ impl ProceduresPage {
             } else {
                 self.begin(ui, context, phase, &place);
             }
+            let words = &context.words.procedures;
+            ui.toggle_value(&mut context.settings.live_plot, words.live_signals)
+                .on_hover_text(words.live_signals_hint);
         });
     }
 

@@ -12,14 +12,16 @@ mod wanted;
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
+use super::bench::{BenchSnapshot, Plot, chosen};
 use crate::gui::messages::About;
 use crate::gui::parts::{FirstHalf, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use prepare::{Prepared, RunSettings, ShownSuite};
 pub use present::present;
+use ptu_bench::bench_worker::Phase;
 use ptu_bench::run::{BenchChoice, Suite};
 use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_report::naming::PartNames;
@@ -34,6 +36,13 @@ const TREE: FirstHalf = FirstHalf {
     width: 380.0,
     share: 0.35,
 };
+
+/// Least height of the live signals, what their heading takes of it, and what is left to the run above, points.
+const LIVE_LEAST: f32 = 140.0;
+const LIVE_HEADING: f32 = 48.0;
+const RUN_LEAST: f32 = 120.0;
+/// Share of the page that they take until the divider is dragged.
+const LIVE_SHARE: f32 = 0.3;
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
@@ -58,6 +67,7 @@ pub struct ProceduresPage {
     /// What the faults of that run said, with their traces.
     traced: Request<Vec<(String, fault_db::Id)>>,
     note: RunNoteForm,
+    plot: Plot,
 }
 
 /// What is said of a run that has ended.
@@ -95,6 +105,7 @@ impl Default for ProceduresPage {
             concluded: None,
             traced: Request::Idle,
             note: RunNoteForm::default(),
+            plot: Plot::default(),
         }
     }
 }
@@ -112,11 +123,31 @@ impl ProceduresPage {
             {
                 script_errors(ui, suite, context);
             }
+            let room = ui.available_height();
+            let live =
+                context.settings.live_plot && context.units.chosen().phase() != Phase::Offline;
+            // A low window has them at the top of what scrolls.
+            let scrolls = live && room < LIVE_LEAST + RUN_LEAST;
+            if live && !scrolls {
+                let panel = Panel::bottom("live signals").resizable(true);
+                let panel = panel.default_size((room * LIVE_SHARE).max(LIVE_LEAST));
+                panel
+                    .size_range(LIVE_LEAST..=room - RUN_LEAST)
+                    .show(ui, |ui| {
+                        let height = ui.available_height();
+                        live_signals(ui, &mut self.plot, height, context);
+                    });
+            }
             // What is said of a run scrolls as one, so that each part of it is reached in a low window.
             ScrollArea::vertical()
                 .id_salt("run")
                 .auto_shrink(false)
-                .show(ui, |ui| self.run(ui, context));
+                .show(ui, |ui| {
+                    if scrolls {
+                        live_signals(ui, &mut self.plot, LIVE_LEAST, context);
+                    }
+                    self.run(ui, context);
+                });
         });
     }
 
@@ -343,6 +374,17 @@ impl ProceduresPage {
             context.units.chosen_mut().answer(yes);
         }
     }
+}
+
+/// The chosen signals of the last seconds below the run, as on the page Bench.
+fn live_signals(ui: &mut Ui, plot: &mut Plot, height: f32, context: &mut PageContext<'_>) {
+    let unit = context.units.chosen();
+    let seen = BenchSnapshot::of(&unit.bench);
+    let plotted = &mut context.settings.plotted;
+    let signals = chosen(plotted);
+    plot.take(&unit.bench, &signals);
+    let height = height.max(LIVE_LEAST) - LIVE_HEADING;
+    plot.show(ui, height, &signals, plotted, (context.words, &seen));
 }
 
 fn script_errors(ui: &mut Ui, suite: &Suite, context: &PageContext<'_>) {

@@ -3,14 +3,13 @@
 mod bar;
 mod compare;
 mod file;
-mod sheet_view;
 
 use std::path::PathBuf;
 
 use eframe::egui::{CentralPanel, RichText, Ui};
 use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
 
-use crate::gui::parts::{FirstHalf, RunList, RunNoteForm};
+use crate::gui::parts::{FirstHalf, RunList, RunNoteForm, show_sheet};
 use crate::gui::request::Request;
 use crate::gui::{Density, PageContext, Palette, Sizes};
 use compare::ComparedWith;
@@ -242,7 +241,7 @@ impl ReportPage {
         self.bar(ui, brief, context);
         ui.separator();
         if let Some(shown) = &self.shown {
-            sheet_view::show(ui, shown.of.run(), &shown.pages);
+            show_sheet(ui, shown.of.run(), &shown.pages);
         }
     }
 }

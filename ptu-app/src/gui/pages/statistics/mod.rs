@@ -10,7 +10,7 @@ use eframe::egui::{RichText, ScrollArea, Ui};
 
 use crate::gui::page_context::{Destination, FaultsOf};
 use crate::gui::parts::bars::{Bar, Chart};
-use crate::gui::parts::{UnitFilter, look_back, saved_questions};
+use crate::gui::parts::{SavedSaid, UnitFilter, look_back, saved_questions};
 use crate::gui::request::{CachedResponse, Request};
 use crate::gui::settings::StatisticsQuestion;
 use crate::gui::{PageContext, Palette};
@@ -82,7 +82,8 @@ impl StatisticsPage {
             step,
         };
         let saved = (&mut context.settings.statistics, &mut self.question);
-        if let Some(asked) = saved_questions(ui, context.words, saved, &now) {
+        if let Some(asked) = saved_questions(ui, &SavedSaid::questions(context.words), saved, &now)
+        {
             self.days = asked.days;
             self.control.choose(asked.measurement, asked.step);
         }

@@ -1,5 +1,6 @@
 //! Chooses the trace shown behind: that of a good unit, or another trace with an offset.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use eframe::egui::{ComboBox, DragValue, RichText, Ui};
@@ -43,7 +44,7 @@ impl OverlayRequest {
         }
         if let Some(answer) = self.parting.as_ref().and_then(Pending::take) {
             self.parting = None;
-            if let (Ok(parting), Some(against)) = (answer, self.against) {
+            if let (Ok(parting), Some(against)) = (answer, &self.against) {
                 if let Some(why) = &parting.trouble {
                     context
                         .messages
@@ -69,6 +70,11 @@ impl OverlayRequest {
         self.ask(Some(OverlaySource::Twin), scene, context);
     }
 
+    /// Has a file laid behind.
+    pub fn ask_file(&mut self, file: &Path, scene: &mut TracePlot, context: &PageContext<'_>) {
+        self.ask(Some(OverlaySource::File(file.into())), scene, context);
+    }
+
     /// The trace to compare with is being made or read.
     pub fn is_pending(&self) -> bool {
         matches!(self.overlay, Request::Pending(_))
@@ -89,7 +95,7 @@ impl OverlayRequest {
     ) {
         let words = &context.words.traces;
         ui.label(words.overlay);
-        let mut against = self.against;
+        let mut against = self.against.clone();
         let chosen = self.name(list, context);
         let combo = ComboBox::from_id_salt("compare with")
             .width(190.0)
@@ -98,6 +104,9 @@ impl OverlayRequest {
                 ui.selectable_value(&mut against, None, words.no_overlay);
                 ui.selectable_value(&mut against, Some(OverlaySource::Twin), words.good_twin);
                 let own = scene.opened().id;
+                if let Some(OverlaySource::File(file)) = &self.against {
+                    ui.selectable_value(&mut against, self.against.clone(), file_name(file));
+                }
                 for (run, trace) in list.all().filter(|(_, t)| t.id != own).take(OFFERED) {
                     let said = trace.said(context.words.language);
                     let name = [&*run.unit, &*run.began, &*said].join(DOT);
@@ -111,7 +120,7 @@ impl OverlayRequest {
         }
         if self.is_pending() {
             ui.spinner();
-            ui.label(match self.against {
+            ui.label(match &self.against {
                 Some(OverlaySource::Twin) => words.making_twin,
                 _ => context.words.common.loading,
             });
@@ -128,7 +137,7 @@ impl OverlayRequest {
         scene: &mut TracePlot,
         context: &PageContext<'_>,
     ) {
-        self.against = against;
+        self.against.clone_from(&against);
         self.parting = None;
         scene.lay_nothing_behind();
         let id = scene.opened().id;
@@ -143,16 +152,23 @@ impl OverlayRequest {
     }
 
     fn name(&self, list: &TraceList, context: &PageContext<'_>) -> String {
-        match self.against {
+        match &self.against {
             None => context.words.traces.no_overlay.to_owned(),
             Some(OverlaySource::Twin) => context.words.traces.good_twin.to_owned(),
+            Some(OverlaySource::File(file)) => file_name(file),
             Some(OverlaySource::Trace(id)) => {
-                let run = list.all().find(|(_, trace)| trace.id == id);
+                let run = list.all().find(|(_, trace)| trace.id == *id);
                 let unit = run.map_or("", |(run, _)| &run.unit);
                 format!("{unit} {}", id.short())
             }
         }
     }
+}
+
+/// What a file is called in lists and above the lanes.
+pub fn file_name(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
 }
 
 fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {

@@ -6,6 +6,7 @@ use eframe::egui::{
 };
 
 use super::bar;
+use super::compared_trace::file_name;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
 use super::row::{self, GAP, Scratch, Sheet};
@@ -173,8 +174,9 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let own = format!("{}  {when}", opened.id.short());
     line(0.0, own, sheet.palette.accent);
     if let Some(behind) = sheet.scene.behind() {
-        let name = match behind.overlay.against {
+        let name = match &behind.overlay.against {
             OverlaySource::Twin => sheet.words.traces.good_twin.to_owned(),
+            OverlaySource::File(file) => file_name(file),
             OverlaySource::Trace(id) => {
                 let when = clock::local(behind.overlay.view.data().t0_us);
                 format!("{}  {when}", id.short())

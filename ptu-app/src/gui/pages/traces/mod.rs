@@ -2,6 +2,7 @@
 
 mod bar;
 mod compared_trace;
+mod dropped;
 mod events;
 mod export;
 mod input;
@@ -51,6 +52,8 @@ pub struct TracesPage {
     record: RecordComparison,
     painted: LaneCache,
     find_signal: String,
+    /// Name for a layout, as it is typed.
+    layout_name: String,
     choosing: bool,
     told: bool,
 }
@@ -59,6 +62,7 @@ impl TracesPage {
     /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
+        let words = &context.words.traces;
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
         let clicked = LIST.show(ui, |ui| self.list.show(ui, context, chosen));
         // The latest trace is what most people come for.
@@ -69,6 +73,11 @@ impl TracesPage {
         CentralPanel::default()
             .frame(Frame::central_panel(ui.style()).inner_margin(4))
             .show(ui, |ui| self.central(ui, context));
+        match (dropped::file(ui, context), &mut self.scene) {
+            (Some(file), Some(scene)) => self.behind.ask_file(&file, scene, context),
+            (Some(_), None) => context.messages.note(words.open_first),
+            (None, _) => {}
+        }
     }
 
     pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
@@ -146,7 +155,8 @@ impl TracesPage {
                 .default_size(260.0)
                 .size_range(200.0..=400.0)
                 .show(ui, |ui| {
-                    signals::choose(ui, scene, &mut self.find_signal, context);
+                    let typed = (&mut self.find_signal, &mut self.layout_name);
+                    signals::choose(ui, scene, typed, context);
                 });
         }
         if self.told {

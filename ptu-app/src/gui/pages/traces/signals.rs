@@ -2,6 +2,7 @@
 
 use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
+use crate::gui::parts::{SavedSaid, saved_questions};
 use crate::gui::{PageContext, Palette};
 use ptu_report::trace_view::{Summary, TracePlot, bare, toggled};
 use ptu_report::words::fill;
@@ -21,7 +22,7 @@ enum LaneAction {
 pub fn choose(
     ui: &mut Ui,
     scene: &mut TracePlot,
-    find: &mut String,
+    (find, name): (&mut String, &mut String),
     context: &mut PageContext<'_>,
 ) {
     let words = &context.words.traces;
@@ -30,6 +31,14 @@ pub fn choose(
         if ui.button(words.usual_signals).clicked() {
             context.settings.lanes.clear();
             scene.set_signals(&[]);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let saved = (&mut context.settings.layouts, name);
+        let said = SavedSaid::layouts(context.words);
+        if let Some(signals) = saved_questions(ui, &said, saved, &scene.signals()) {
+            scene.set_signals(&signals);
+            context.settings.lanes = signals;
         }
     });
     let edit = TextEdit::singleline(find)

@@ -1,6 +1,8 @@
 //! The pages of a sheet in the window, as they will be printed: scaled to the room there is, dark on
 //! white. Only what is in view is drawn.
 
+use std::fmt::Debug;
+use std::hash::Hash;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -11,7 +13,6 @@ use eframe::egui::{
     Color32, FontId, Galley, Key, Label, Pos2, Rangef, Rect, Role, ScrollArea, Sense, Shape,
     Stroke, StrokeKind, Theme, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
-use fault_db::Id;
 
 use crate::gui::Palette;
 use ptu_report::run::page::{DASH, HEIGHT, Ink, Item, Page, Text, WIDTH};
@@ -28,10 +29,10 @@ const PAGE: f32 = 0.9;
 const ABOVE: f32 = 1.0;
 const BELOW: f32 = 0.4;
 
-/// Shows the pages of the sheet of this run.
-pub fn show(ui: &mut Ui, run: Id, pages: &[Page]) {
+/// Shows the pages of a sheet; each sheet is scrolled by itself.
+pub fn show_sheet(ui: &mut Ui, sheet: impl Hash + Debug, pages: &[Page]) {
     let area = ScrollArea::both()
-        .id_salt(("sheet", run))
+        .id_salt(("sheet", sheet))
         .auto_shrink(false);
     area.show_viewport(ui, |ui, viewport| {
         // Paper is white in a dark window, too: it is seen as it will be printed.
