@@ -116,12 +116,15 @@ pub fn event(code: i64, name: &str, words: &Words) -> String {
     text.map_or_else(by_name, str::to_owned)
 }
 
-/// A fault's code with its name and what it means, where that says more than the name.
+/// What a fault means, by its stored name.
+pub fn event_named(name: &str, words: &Words) -> String {
+    let code = Event::from_name(name).map(|event| event.definition().code);
+    event(code.unwrap_or_default().into(), name, words)
+}
+
+/// A fault's code with what it means.
 pub fn code(code: i64, name: &str, words: &Words) -> String {
-    match event(code, name, words) {
-        meaning if meaning == spoken(name) => format!("{code} {name}"),
-        meaning => format!("{code} {name}: {meaning}"),
-    }
+    format!("{code} {}", event(code, name, words))
 }
 
 #[cfg(test)]
@@ -161,8 +164,8 @@ mod tests {
         let [english, korean] = Language::ALL.map(Language::words);
         assert_eq!(event(9000, "check_failed", english), "check failed");
         assert_eq!(event(9000, "check_failed", korean), "점검 불합격");
-        assert_eq!(code(9000, "check_failed", english), "9000 check_failed");
-        let dead = "221 tacho1_dead: 속도센서 1 무신호";
+        assert_eq!(code(9000, "check_failed", english), "9000 check failed");
+        let dead = "221 속도센서 1 무신호";
         assert_eq!(code(221, "tacho1_dead", korean), dead);
     }
 }

@@ -89,7 +89,7 @@ impl ControlChart {
                     None => drop(ui.label(said.not_measured)),
                 }
             }
-            Request::Failed(why) => drop(ui.label(why)),
+            Request::Failed(why) => drop(ui.label(&*words.trouble(why))),
             Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
         }
     }
