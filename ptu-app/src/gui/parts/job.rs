@@ -99,13 +99,13 @@ impl Job {
         }
     }
 
-    /// How far it is, with the button that stops it.
-    pub fn progress(&self, ui: &mut Ui, words: &Words) {
+    /// How far it is, with the button that stops it, if it can be.
+    pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();
             let said = self.told.said.lock();
             ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
-            if ui.button(words.memory.stop).clicked() {
+            if stops && ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }
         });
