@@ -38,11 +38,23 @@ fn every_page_can_be_read_and_clicked_at_every_size() {
 
 fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
     let place = Place::new();
+    // In a train whose distance is known.
+    let in_train = [
+        "run",
+        "tcms/link",
+        "--serial-no",
+        "OLD-1",
+        "--train-no",
+        "612",
+    ];
+    place.ptu(&in_train).exits(0);
     record_bad_unit(&place);
     let words = language.words();
     let mut settings = settings(Page::Faults);
     settings.language = language;
     settings.unit.faults = vec!["eb_relay.slow".into()];
+    let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
+    settings.distances = place.write("odometers.csv", readings);
     let mut window = Window::sized(size, place, scripts(), settings);
     let relay = match language {
         Language::English => "EB relay · ",
