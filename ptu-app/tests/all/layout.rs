@@ -256,3 +256,33 @@ fn texts(shape: &Shape, clip: Rect, bars: &[Rect], fields: &[Rect], wrong: &mut 
         ));
     }
 }
+
+/// Goal: the smallest display at 150 % still shows a page. Method: a window of 900 by 600 pixels at that scale, a unit connected;
+/// the bars above take a third of its height at most, and all pages are reached.
+#[test]
+fn bars_leave_room_for_the_page_in_the_smallest_window() {
+    for language in Language::ALL {
+        let words = language.words();
+        let mut settings = settings(Page::Case);
+        settings.language = language;
+        let mut window = Window::sized([600.0, 400.0], Place::new(), scripts(), settings);
+        window.click_last(words.frame.connect);
+        window.wait_for("SIM-0001");
+        window.wait_for(words.case.unknown);
+        let bottom = |window: &mut Window, label: &str| {
+            let harness = window.harness();
+            let mut named = harness.query_all_by_label(label);
+            named.next().expect("it is shown").rect().bottom()
+        };
+        for label in [words.frame.page, words.care.title] {
+            let bottom = bottom(&mut window, label);
+            assert!(bottom < 134.0, "{label} ends at {bottom}");
+        }
+        window.click(words.frame.page);
+        window.click(&format!("F8  {}", words.statistics.title));
+        // The unit was never here.
+        window.wait_for(words.statistics.nothing);
+        let wrong = complaints(&mut window);
+        assert!(wrong.is_empty(), "{language:?}: {wrong:#?}");
+    }
+}

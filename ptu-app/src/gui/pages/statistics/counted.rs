@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery};
+use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
 
 use crate::distances::Distances;
 use crate::fault_months::{Month, OnTheWay, by_month, on_the_way};
@@ -57,6 +57,9 @@ impl Counted {
             return Ok(counted);
         }
         let store = paths.read()?;
+        if !is_known(&store, counted.asked.unit.as_deref())? {
+            return Ok(counted);
+        }
         let now_us = clock::now_us();
         let mut query = StatQuery {
             by: StatKey::Cause,
@@ -81,4 +84,10 @@ impl Counted {
         }
         Ok(counted)
     }
+}
+
+/// Whether the history has this unit; one that comes for the first time has nothing to count.
+pub fn is_known(store: &Store, unit: Option<&str>) -> Result<bool, Failure> {
+    let Some(unit) = unit else { return Ok(true) };
+    Ok(store.known_units()?.iter().any(|known| known == unit))
 }
