@@ -227,6 +227,19 @@ impl Store {
         done.map_err(|error| self.failed("writing back the log", error))
     }
 
+    /// Ends work on the file once `stops` says so, within milliseconds and with [`StoreError::Stopped`]: what one
+    /// transaction was to add is not added, and a copy that is not whole is removed. It holds until another one is set.
+    ///
+    /// # Errors
+    /// SQLite does not take it, or this is a server, whose work is not ended so.
+    pub fn stop_when(
+        &self,
+        stops: impl FnMut() -> bool + Send + 'static,
+    ) -> Result<(), StoreError> {
+        let set = self.file()?.progress_handler(STEPS_AT_ONCE, Some(stops));
+        set.map_err(|error| self.failed("preparing to stop", error))
+    }
+
     /// The file's connection, for operations that only files have.
     pub(crate) fn file(&self) -> Result<&Connection, StoreError> {
         match &self.backend {
@@ -370,6 +383,9 @@ impl Store {
         })
     }
 }
+
+/// Steps of SQLite's engine between two looks at whether to stop; a statement of a few rows has about as many.
+const STEPS_AT_ONCE: i32 = 50;
 
 /// Refuses to write to a file that holds objects which no version of this program made.
 fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreError> {

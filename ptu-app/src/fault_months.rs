@@ -1,8 +1,12 @@
 //! Counts of faults month by month, as `ptu faults stats --by month` and the window's statistics show them.
 
+use std::collections::BTreeMap;
+
 use fault_db::{FaultStat, StatQuery, Store};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
+
+use crate::distances::Distances;
 
 /// A local month of the span, or its part in it.
 pub struct Month {
@@ -50,4 +54,64 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
         span_us: since_us..until_us,
     });
     Ok(counted.collect())
+}
+
+/// What trains whose distances are known ran in a month, and the faults that were first seen on them meanwhile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OnTheWay {
+    /// Distance of all of them, km.
+    pub km: f64,
+    /// Trains.
+    pub trains: u32,
+    /// Their faults, counted as those of the month are.
+    pub faults: u32,
+}
+
+impl OnTheWay {
+    /// Faults for each 10 000 km; `None` of trains that did not move.
+    pub fn per_10000_km(&self) -> Option<f64> {
+        (self.km > 0.0).then(|| 1e4 * f64::from(self.faults) / self.km)
+    }
+}
+
+/// The same months with the distances of trains. A train counts, with its distance and its faults, from its first run or its first
+/// reading, whichever is later, to its last reading: else there would be a distance without faults, or faults without one.
+pub fn on_the_way(
+    store: &Store,
+    query: &StatQuery,
+    distances: &Distances,
+) -> Result<BTreeMap<String, OnTheWay>, Failure> {
+    let mut all: BTreeMap<String, OnTheWay> = BTreeMap::new();
+    for (train, first_run_us) in store.first_runs_of_trains()? {
+        let filter = &query.filter;
+        if filter.train.as_ref().is_some_and(|only| *only != train) {
+            continue;
+        }
+        let Some(known) = distances.span_us(&train) else {
+            continue;
+        };
+        let since_us = known
+            .start
+            .max(first_run_us)
+            .max(filter.since_us.unwrap_or(i64::MIN));
+        let until_us = known
+            .end
+            .min(query.now_us)
+            .min(filter.until_us.unwrap_or(i64::MAX));
+        for (name, since_us, until_us) in clock::months(since_us, until_us) {
+            let of_month = all.entry(name).or_default();
+            of_month.km += distances.km(&train, &(since_us..until_us));
+            of_month.trains += 1;
+        }
+        let mut of_train = query.clone();
+        of_train.filter.train = Some(train);
+        of_train.filter.since_us = Some(since_us);
+        of_train.filter.until_us = Some(until_us);
+        for month in by_month(store, &of_train)? {
+            if let Some(of_month) = all.get_mut(&month.name) {
+                of_month.faults += month.stat.faults;
+            }
+        }
+    }
+    Ok(all)
 }

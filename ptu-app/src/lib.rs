@@ -9,6 +9,7 @@
 pub mod cli;
 mod computer_name;
 mod console;
+mod distances;
 mod fault_months;
 #[cfg(feature = "window")]
 pub mod gui;

@@ -25,6 +25,9 @@ pub enum StoreError {
         /// The database file.
         path: PathBuf,
     },
+    /// Who asked for the work has stopped it: nothing of it is kept.
+    #[error("stopped before its end")]
+    Stopped,
     /// No room for the write; what was committed before remains.
     #[error("no room left to write {} (all that was recorded before is kept); free some space or choose another disk", .path.display())]
     Full {

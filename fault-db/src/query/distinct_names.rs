@@ -55,6 +55,15 @@ impl Store {
         self.select("listing units", sql, &[], |row| row.get(0))
     }
 
+    /// Every train with the time of the first run in it, µs since 1970.
+    pub fn first_runs_of_trains(&self) -> Result<Vec<(String, i64)>, StoreError> {
+        let sql = "SELECT train, min(started_at_us) FROM run WHERE train <> ''
+            GROUP BY train ORDER BY train";
+        self.select("listing trains", sql, &[], |row| {
+            Ok((row.get(0)?, row.get(1)?))
+        })
+    }
+
     /// Every train a unit was in when it was tested.
     pub fn known_trains(&self) -> Result<Vec<String>, StoreError> {
         let sql = "WITH RECURSIVE c(train) AS (

@@ -344,3 +344,32 @@ fn two_laptops_that_saw_one_fault_have_one_fault() {
         );
     }
 }
+
+/// Goal: who stops work on a file finds it as it was. Method: an import, a backup and a check are stopped at once, and done
+/// again when nobody stops them.
+#[test]
+fn work_that_is_stopped_leaves_nothing_behind() {
+    let dir = tempdir().expect("a directory");
+    let ours = open(&dir.path().join("a.db"));
+    let from = dir.path().join("b.db");
+    let theirs = Store::open(&from, OpenOptions::new(ids(2))).expect("opens");
+    one_run(&ours, "ATC-7", 1);
+    one_run(&theirs, "ATC-8", 1);
+    theirs.close().expect("closed");
+    let to = dir.path().join("copy.db");
+    ours.stop_when(|| true).expect("taken");
+    assert!(matches!(ours.import(&from), Err(StoreError::Stopped)));
+    assert!(matches!(ours.backup(&to), Err(StoreError::Stopped)));
+    assert!(matches!(ours.check(), Err(StoreError::Stopped)));
+
+    ours.stop_when(|| false).expect("taken");
+    let left = std::fs::read_dir(dir.path()).expect("listed");
+    let names = left.map(|file| file.expect("a file").file_name());
+    let of_copy = names.filter(|name| name.to_string_lossy().contains("copy"));
+    assert_eq!(of_copy.count(), 0, "no unfinished copy");
+    let all = ours.faults(&FaultFilter::default()).expect("listed");
+    assert_eq!(all.len(), 1, "nothing was imported");
+    assert_eq!(ours.import(&from).expect("imported").runs, 1);
+    ours.backup(&to).expect("copied");
+    assert_eq!(ours.check().expect("checked").problems, []);
+}

@@ -84,7 +84,7 @@ pub fn imported(counts: &MergeCounts, conflicts: &[StateConflict], words: &Words
     Said { text, notes }
 }
 
-/// A check. Where a problem is stays as the check names it: by tables and ids.
+/// A check: the problems, and once for each kind what to do.
 pub fn checked(report: &CheckReport, words: &Words) -> Said {
     let care = &words.care;
     let text = match report.problems.len() {
@@ -96,8 +96,18 @@ pub fn checked(report: &CheckReport, words: &Words) -> Said {
     };
     let problems = report.problems.iter();
     let mut notes: Vec<_> = problems
-        .map(|problem| format!("{}: {}", problem.kind, problem.detail))
+        .map(|problem| {
+            let (kind, detail) = (words.trouble(problem.kind), words.trouble(&problem.detail));
+            format!("{kind}: {detail}")
+        })
         .collect();
+    let mut advice: Vec<_> = report.problems.iter().map(|one| one.advice).collect();
+    advice.dedup();
+    notes.extend(
+        advice
+            .into_iter()
+            .map(|next| words.trouble(next).into_owned()),
+    );
     notes.extend(report.head.as_ref().map(|head| chain(head, words)));
     Said { text, notes }
 }
@@ -129,7 +139,7 @@ fn different<'a>(all: &'a [Difference], words: &'a Words) -> impl Iterator<Item 
 fn refused(refused: &Refusals, words: &Words) -> Vec<String> {
     let named = refused.named.iter();
     let mut all: Vec<_> = named
-        .map(|one| fill(words.care.refused, &[("what", &one.what)]))
+        .map(|one| fill(words.care.refused, &[("what", &words.trouble(&one.what))]))
         .collect();
     let more = refused.count.saturating_sub(refused.named.len() as u64);
     if more > 0 {

@@ -53,29 +53,36 @@ pub fn place(message: &str) -> Option<(&str, &str, &str)> {
     procedure.contains('/').then_some((procedure, step, after))
 }
 
-/// A message in few words: the step, the measured value, and its limit; as it is where it measures nothing.
+/// A message in few words: the step, the measured value, and its limit, or why else it failed; as it is where it names no
+/// step.
 pub fn what_failed(message: &str, words: &Words) -> String {
-    let short = || {
-        let (_, step, measured) = place(message)?;
-        let (name, value) = measured.split_once(" = ")?;
-        let (value, limits) = value.split_once(", allowed ")?;
-        let limits = limits.split_once("; ").map_or(limits, |(first, _)| first);
-        let (limits, unit) = match limits.rsplit_once(' ') {
-            Some((limits, unit)) if unit.parse::<f64>().is_err() => (limits, unit),
-            _ => (limits, ""),
-        };
-        let limit = limits.replace("at most ", "").replace(" to ", "…");
-        let step = words.content(step);
-        let step = step.split(": ").next().unwrap_or_default();
-        let limit = fill(
-            words.common.limit_is,
-            &[("limit", &limit.replace("at least ", "≥ "))],
-        );
-        let value = format!("{value} {unit}");
-        let name = measurement(name, words);
-        Some(format!("{step}: {name} {}, {limit}", value.trim_end()))
+    let Some((_, step, why)) = place(message) else {
+        return words.content(message).into_owned();
     };
-    short().unwrap_or_else(|| words.content(message).into_owned())
+    let step = words.content(step);
+    let step = step.split(": ").next().unwrap_or_default();
+    let why = beyond_limit(why, words).unwrap_or_else(|| words.content(why).into_owned());
+    format!("{step}: {why}")
+}
+
+/// A measured value with its limit; `None` for a condition.
+fn beyond_limit(measured: &str, words: &Words) -> Option<String> {
+    let (name, value) = measured.split_once(" = ")?;
+    let (value, limits) = value.split_once(", allowed ")?;
+    value.parse::<f64>().ok()?;
+    let limits = limits.split_once("; ").map_or(limits, |(first, _)| first);
+    let (limits, unit) = match limits.rsplit_once(' ') {
+        Some((limits, unit)) if unit.parse::<f64>().is_err() => (limits, unit),
+        _ => (limits, ""),
+    };
+    let limit = limits.replace("at most ", "").replace(" to ", "…");
+    let limit = fill(
+        words.common.limit_is,
+        &[("limit", &limit.replace("at least ", "≥ "))],
+    );
+    let value = format!("{value} {unit}");
+    let name = measurement(name, words);
+    Some(format!("{name} {}, {limit}", value.trim_end()))
 }
 
 /// A measurement's name without what only scripts write.
@@ -116,12 +123,15 @@ pub fn event(code: i64, name: &str, words: &Words) -> String {
     text.map_or_else(by_name, str::to_owned)
 }
 
-/// A fault's code with its name and what it means, where that says more than the name.
+/// What a fault means, by its stored name.
+pub fn event_named(name: &str, words: &Words) -> String {
+    let code = Event::from_name(name).map(|event| event.definition().code);
+    event(code.unwrap_or_default().into(), name, words)
+}
+
+/// A fault's code with what it means.
 pub fn code(code: i64, name: &str, words: &Words) -> String {
-    match event(code, name, words) {
-        meaning if meaning == spoken(name) => format!("{code} {name}"),
-        meaning => format!("{code} {name}: {meaning}"),
-    }
+    format!("{code} {}", event(code, name, words))
 }
 
 #[cfg(test)]
@@ -138,6 +148,12 @@ mod tests {
         let proof = "atp/overspeed, FSB without effect is followed by EB: proof_time = 3400, allowed 2950 to 3050 ms";
         let expected = "FSB without effect is followed by EB: proof time 3400 ms, limit 2950…3050";
         assert_eq!(said(proof), expected);
+        let condition = "twc/exchange, over the loop: twc_ok = off came true; received = 7, allowed 10 to 10 frames";
+        let expected =
+            "over the loop: TWC ok = off came true; received = 7, allowed 10 to 10 frames";
+        assert_eq!(said(condition), expected);
+        let korean = what_failed(condition, Language::Korean.words());
+        assert!(korean.contains("TWC 통신 정상 = 꺼짐"), "{korean}");
         let event = "brake line at 3.0 km/h, limit 25.0 km/h";
         assert_eq!(said(event), event);
         let korean = what_failed(relay, Language::Korean.words());
@@ -161,8 +177,8 @@ mod tests {
         let [english, korean] = Language::ALL.map(Language::words);
         assert_eq!(event(9000, "check_failed", english), "check failed");
         assert_eq!(event(9000, "check_failed", korean), "점검 불합격");
-        assert_eq!(code(9000, "check_failed", english), "9000 check_failed");
-        let dead = "221 tacho1_dead: 속도센서 1 무신호";
+        assert_eq!(code(9000, "check_failed", english), "9000 check failed");
+        let dead = "221 속도센서 1 무신호";
         assert_eq!(code(221, "tacho1_dead", korean), dead);
     }
 }

@@ -27,8 +27,7 @@ pub struct GuiArguments {
     /// Language, en or ko [default: as it was left]
     #[arg(long, value_name = "LANG")]
     lang: Option<Language>,
-    /// Page to show first: bench, procedures, traces, faults, diagnosis or report
-    #[arg(long, value_name = "PAGE")]
+    #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
     page: Option<Page>,
     /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]

@@ -36,7 +36,7 @@ pub enum About {
 pub struct Message {
     /// In the language chosen when it happened.
     pub text: String,
-    /// Technical detail, not translated.
+    /// Technical detail, told as the window tells of trouble.
     pub detail: String,
     /// Whether it reports trouble.
     pub bad: bool,

@@ -59,6 +59,12 @@ impl Page {
         }
     }
 
+    /// The names of all on the command line, for who chooses one.
+    pub fn one_of() -> String {
+        let [pages @ .., last] = Self::ALL.map(Self::word);
+        format!("{} or {last}", pages.join(", "))
+    }
+
     /// Its name.
     pub fn name(self, words: &Words) -> &'static str {
         match self {
@@ -95,6 +101,6 @@ impl std::str::FromStr for Page {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|page| page.word() == text);
-        known.ok_or_else(|| format!("a page is one of {}", Self::ALL.map(Self::word).join(", ")))
+        known.ok_or_else(|| format!("a page is {}", Self::one_of()))
     }
 }

@@ -46,6 +46,8 @@ pub struct Settings {
     pub depot: String,
     /// The server synced with last.
     pub server: String,
+    /// File with readings of trains' odometers.
+    pub distances: String,
     /// The unit connected last.
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
@@ -104,6 +106,7 @@ impl Default for Settings {
             locked: false,
             depot: String::new(),
             server: String::new(),
+            distances: String::new(),
             unit: BenchChoice::default(),
             plotted: ["speed", "train_speed", "limit", "eb"]
                 .map(str::to_owned)

@@ -46,7 +46,7 @@ fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_awa
     window.wait_for("Overspeed alarm: on");
     window.wait_for("EB: applied");
     window.wait_for("EB cause: overspeed");
-    window.wait_for_part("overspeed_eb:");
+    window.wait_for_part("212 Overspeed: emergency brake");
     window.click("Stop all F12");
     window.wait_for("measured: 0.0 km/h");
     window.wait_for("Speed code: no code");
@@ -79,7 +79,7 @@ fn an_order_of_the_wayside_is_given_and_its_state_is_seen() {
     window.click("Wayside: good");
     window.wait_for("Order state: —");
     window.click("Order: turn back");
-    window.wait_for_part("order_refused:");
+    window.wait_for_part("413 Order refused");
     window.wait_for("Order state: none");
     window.click("not sent");
     window.wait_for("Order state: —");

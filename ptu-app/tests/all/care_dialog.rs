@@ -2,6 +2,7 @@
 
 use crate::common::window::{Window, settings};
 use crate::common::{Place, list, record_bad_unit, scripts};
+use crate::report::is_english;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::{Language, fill};
 
@@ -53,5 +54,82 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
         window.wait_for_part(sound);
         let chain = words.chain.split('{').next().unwrap_or_default();
         assert!(window.shows_part(chain), "{:#?}", window.shown());
+    }
+}
+
+/// Goal: Stop stops, and what was not done to its end is not there. Method: another program holds the file while an import is
+/// begun and stopped; when it lets go, nothing has come in.
+#[test]
+fn an_import_ends_when_it_is_stopped() {
+    let language = Language::Korean;
+    let words = language.words();
+    let other = Place::new();
+    record_bad_unit(&other);
+    let place = Place::new();
+    place.recorded_run();
+    let settings = Settings {
+        language,
+        ..settings(Page::Statistics)
+    };
+    let holder = rusqlite::Connection::open(place.path("history.db")).expect("the file");
+    let mut window = Window::with(place, scripts(), settings);
+    window.click(words.care.title);
+    window.wait_for(words.care.never_synced);
+    window.write(words.care.other_file, &other.text_path("history.db"));
+    holder.execute_batch("BEGIN IMMEDIATE").expect("held");
+    window.click(words.care.import);
+    window.click(words.memory.stop);
+    holder.execute_batch("ROLLBACK").expect("let go");
+    window.wait_for(words.care.nothing_done);
+    let runs = window.place.json(&["runs", "list", "--json"]);
+    assert_eq!(list(&runs).len(), 1, "{runs}");
+}
+
+/// Goal: who reads Korean is told what is wrong with a file, and is sent to no command. Method: a row is changed and one taken
+/// out, then the window's check; an import of what is no history.
+#[test]
+fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
+    for language in Language::ALL {
+        let words = language.words();
+        let place = Place::new();
+        record_bad_unit(&place);
+        let damage = rusqlite::Connection::open(place.path("history.db")).expect("the file");
+        let done = damage.execute_batch(
+            "PRAGMA foreign_keys = OFF;
+             DELETE FROM fault_event; UPDATE fault SET occurrences = 9; CREATE TABLE stray(x)",
+        );
+        done.expect("damaged");
+        drop(damage);
+        let no_history = place.write("list.txt", "no history at all, but a text of some length");
+        let settings = Settings {
+            language,
+            ..settings(Page::Statistics)
+        };
+        let mut window = Window::with(place, scripts(), settings);
+        window.click(words.care.title);
+        window.wait_for(words.care.never_synced);
+        window.write(words.care.other_file, &no_history);
+        window.click(words.care.import);
+        window.wait_for_part(words.care.failed);
+        if language == Language::Korean {
+            window.wait_for_part("이 프로그램의 것이 아님: 테이블");
+        }
+        window.click(words.care.check);
+        window.wait_for_part(words.care.damaged.split('{').next().unwrap_or_default());
+        let told = window.shown();
+        let commands = told
+            .iter()
+            .find(|text| text.contains("db ") && text.contains('`'));
+        assert_eq!(commands, None);
+        let of_seals: Vec<_> = told
+            .iter()
+            .filter(|text| text.contains(&*words.trouble("seal")))
+            .collect();
+        assert!(!of_seals.is_empty(), "{told:#?}");
+        let english = told.iter().find(|text| is_english(text));
+        assert!(
+            language == Language::English || english.is_none(),
+            "{english:?}"
+        );
     }
 }

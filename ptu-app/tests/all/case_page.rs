@@ -261,3 +261,19 @@ fn a_unit_seen_before_is_chosen_by_one_click() {
         window.wait_for(case.open_faults);
     }
 }
+
+/// Goal: a unit that comes for the first time waits for nothing. Method: the history knows another unit; this one is connected.
+#[test]
+fn a_unit_never_seen_has_no_history_and_says_so() {
+    let case = &Language::Korean.words().case;
+    let place = Place::new();
+    record_bad_unit(&place);
+    let settings = Settings {
+        language: Language::Korean,
+        ..settings(Page::Case)
+    };
+    let mut window = Window::with(place, scripts(), settings);
+    window.click_last(Language::Korean.words().frame.connect);
+    window.wait_for("SIM-0001");
+    window.wait_for(case.nothing_known);
+}

@@ -18,15 +18,20 @@ fn noon_us(month: u32, day: u32) -> i64 {
 
 /// A run that measured something, and found a fault if there is one.
 fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
+    record_in(store, "", at_us, fault)
+}
+
+/// The same of the unit in a train.
+fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Option<Id> {
     let record = RunRecord {
         unit: UnitRecord {
-            serial: "U-1".into(),
+            serial: format!("U-1{train}"),
             kind: "ATC".into(),
             config_name: "default".into(),
             sw_versions: std::collections::BTreeMap::new(),
         },
         line: "line8".into(),
-        train: String::new(),
+        train: train.to_owned(),
         seed: 1,
         operator: String::new(),
         source: "sim".into(),
@@ -233,4 +238,59 @@ fn a_fault_is_said_to_be_seen_once_or_so_many_times() {
         let shown = place.ptu(&["faults", "show", &fault.to_string()]).exits(0);
         assert!(shown.out.contains(said), "{}", shown.out);
     }
+}
+
+/// Goal: a month in which trains ran twice as far is not said to be twice as bad, and no distance counts that has no faults
+/// beside it. Method: two trains with two faults in March, odometer readings of one of them, which ran 31 × 100 km.
+#[test]
+fn faults_are_told_for_each_10_000_km_of_the_trains_whose_distance_is_known() {
+    within_a_day(told_for_each_10_000_km);
+}
+
+fn told_for_each_10_000_km() {
+    let place = Place::new();
+    let history = store(&place);
+    for (train, part) in [("612", "eb_relay"), ("613", "tra")] {
+        record_in(&history, train, noon_us(2, 15), None);
+        record_in(&history, train, noon_us(3, 5), Some(part));
+    }
+    drop(history);
+    let readings = "train,date,km\n612,2025-03-01,1000\n612,2025-04-01,4100\n999,2025-03-01,1\n999,2025-04-01,90001\n";
+    let file = place.write("odometers.csv", readings);
+    let stats = ["faults", "stats", "--by", "month", "--distances", &file];
+    let told = in_zone(&place, "UTC0", &[&stats[..], &["--json"]].concat()).out;
+    let told: Value = serde_json::from_str(&told).expect("a list");
+    let of = |month: &str| {
+        let rows = told.as_array().expect("rows").iter();
+        let mut rows = rows.filter(|row| row["key"] == month);
+        rows.next().expect("the month").clone()
+    };
+    let march = of("2025-03");
+    assert_eq!(number(&march["faults"]), 2.0, "of both trains");
+    assert_eq!(number(&march["distance_faults"]), 1.0, "of train 612");
+    assert_eq!(number(&march["distance_trains"]), 1.0, "999 was never here");
+    assert!(
+        (number(&march["distance_km"]) - 3100.0).abs() < 1e-6,
+        "{march}"
+    );
+    assert!(
+        (number(&march["per_10000_km"]) - 10_000.0 / 3100.0).abs() < 1e-6,
+        "{march}"
+    );
+    let february = of("2025-02");
+    assert_eq!(february["per_10000_km"], Value::Null);
+    assert_eq!(number(&february["distance_km"]), 0.0);
+    let table = in_zone(&place, "UTC0", &stats).out;
+    assert!(table.contains("3100") && table.contains("3.23"), "{table}");
+    assert!(table.contains("PER 10000 KM: faults first seen"), "{table}");
+
+    // What is wrong is told by its place, and nothing is computed of the rest.
+    place.write("odometers.csv", &readings.replace("4100", "410O"));
+    let refused = place.ptu(&stats).exits(2);
+    refused.explains(&["odometers.csv", "line 3", "column 3", "km", "410O"]);
+    let by_cause = ["faults", "stats", "--distances", &file];
+    place.ptu(&by_cause).exits(2).explains(&["--by month"]);
+    place
+        .ptu(&[&stats[..], &["--unit", "U-1"]].concat())
+        .exits(2);
 }

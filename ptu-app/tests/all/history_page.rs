@@ -149,7 +149,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
         if page == Page::Faults {
             window.click_part("비상제동 계전기 · ");
             window.wait_for(words.report.major);
-            window.wait_for("9000 check_failed: 점검 불합격");
+            window.wait_for("9000 점검 불합격");
         }
         for text in window.shown() {
             let is_in =

@@ -38,11 +38,23 @@ fn every_page_can_be_read_and_clicked_at_every_size() {
 
 fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
     let place = Place::new();
+    // In a train whose distance is known.
+    let in_train = [
+        "run",
+        "tcms/link",
+        "--serial-no",
+        "OLD-1",
+        "--train-no",
+        "612",
+    ];
+    place.ptu(&in_train).exits(0);
     record_bad_unit(&place);
     let words = language.words();
     let mut settings = settings(Page::Faults);
     settings.language = language;
     settings.unit.faults = vec!["eb_relay.slow".into()];
+    let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
+    settings.distances = place.write("odometers.csv", readings);
     let mut window = Window::sized(size, place, scripts(), settings);
     let relay = match language {
         Language::English => "EB relay · ",
@@ -260,5 +272,35 @@ fn texts(shape: &Shape, clip: Rect, bars: &[Rect], fields: &[Rect], wrong: &mut 
             "text {:?} is cut: {rect} in {clip}",
             text.galley.text()
         ));
+    }
+}
+
+/// Goal: the smallest display at 150 % still shows a page. Method: a window of 900 by 600 pixels at that scale, a unit connected;
+/// the bars above take a third of its height at most, and all pages are reached.
+#[test]
+fn bars_leave_room_for_the_page_in_the_smallest_window() {
+    for language in Language::ALL {
+        let words = language.words();
+        let mut settings = settings(Page::Case);
+        settings.language = language;
+        let mut window = Window::sized([600.0, 400.0], Place::new(), scripts(), settings);
+        window.click_last(words.frame.connect);
+        window.wait_for("SIM-0001");
+        window.wait_for(words.case.unknown);
+        let bottom = |window: &mut Window, label: &str| {
+            let harness = window.harness();
+            let mut named = harness.query_all_by_label(label);
+            named.next().expect("it is shown").rect().bottom()
+        };
+        for label in [words.frame.page, words.care.title] {
+            let bottom = bottom(&mut window, label);
+            assert!(bottom < 134.0, "{label} ends at {bottom}");
+        }
+        window.click(words.frame.page);
+        window.click(&format!("F8  {}", words.statistics.title));
+        // The unit was never here.
+        window.wait_for(words.statistics.nothing);
+        let wrong = complaints(&mut window);
+        assert!(wrong.is_empty(), "{language:?}: {wrong:#?}");
     }
 }

@@ -85,3 +85,31 @@ fn a_serial_number_tells_its_life_in_both_languages() {
     let unknown = place.ptu(&["faults", "life", "bad-1"]).exits(2);
     unknown.explains(&["bad-1", "did you mean", "BAD-1"]);
 }
+
+/// Goal: a repair that was taken back was not made: the part was never there. Method: a repair is recorded and undone.
+#[test]
+fn a_repair_that_was_taken_back_is_not_in_a_life() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let fault = text(&relay_fault(&place)["id"]).to_owned();
+    let repair = [
+        "faults", "repair", &fault, "--part", "eb_relay", "--old", "SN-1", "--new", "SN-2",
+        "--who", "Kim",
+    ];
+    place.ptu(&repair).exits(0);
+    let undo = [
+        "faults",
+        "undo",
+        &fault,
+        "--who",
+        "Kim",
+        "--note",
+        "wrong unit",
+    ];
+    place.ptu(&undo).exits(0);
+    place.ptu(&["faults", "life", "SN-2"]).exits(2);
+    let life = place.json(&["faults", "life", "BAD-1", "--json"]);
+    let events = list(&life[0]["events"]);
+    let repairs = events.iter().filter(|event| event["kind"] == "repair");
+    assert_eq!(repairs.count(), 0, "{life}");
+}

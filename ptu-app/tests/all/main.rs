@@ -27,6 +27,7 @@ mod faults;
 mod figures;
 mod history;
 mod history_page;
+mod internal_names;
 mod layout;
 mod life;
 mod lock_step;

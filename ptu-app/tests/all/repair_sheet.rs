@@ -211,7 +211,7 @@ fn a_repair_without_a_run_is_not_proved_on_its_sheet() {
         "SN-77",
         "not tested",
         "Symptom not stated",
-        "Found by atp/overspeed, code 25: alarm, FSB, EB: eb_reaction = 640",
+        "Found by atp/overspeed, code 25: alarm, FSB, EB: EB reaction = 640",
     ] {
         assert!(said.contains(word), "{word}: {said}");
     }

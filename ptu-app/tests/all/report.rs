@@ -30,7 +30,7 @@ fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
         "SIM-0001",
         "A. Tester",
         "code 25: alarm, FSB, EB",
-        "eb_reaction",
+        "EB reaction",
         "472",
         "eb_relay.slow",
         "replace the EB relay (eb_relay, ",

@@ -48,7 +48,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
         window.wait_for(&format!("Written: {}", window.place.text_path(name)));
         assert!(begins(&window, name, begin), "{name}");
     }
-    assert!(window.place.read("mine.html").contains("eb_reaction"));
+    assert!(window.place.read("mine.html").contains("EB reaction"));
     // Never over a file that is there.
     window.click("PDF");
     let beside = window.place.text_path("mine-2.pdf");

@@ -209,3 +209,70 @@ fn an_empty_history_says_so() {
     let mut window = window(Place::new(), Language::English);
     window.wait_for(Language::English.words().statistics.nothing);
 }
+
+/// Goal: a depot that keeps odometer readings sees faults for each 10 000 km, and what is wrong with its file. Method: a train
+/// with a fault and readings of it, named on the page; then the same file with a slip in it.
+#[test]
+fn faults_for_each_10_000_km_are_those_of_the_command_line() {
+    for language in Language::ALL {
+        let said = &language.words().statistics;
+        let place = Place::new();
+        let run = [
+            "run",
+            "atp/overspeed",
+            "--serial-no",
+            "A-1",
+            "--train-no",
+            "612",
+        ];
+        place
+            .ptu(&[&run[..], &["--inject", "eb_relay.slow"]].concat())
+            .exits(1);
+        let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
+        let file = place.write("odometers.csv", readings);
+        let stats = [
+            "faults",
+            "stats",
+            "--by",
+            "month",
+            "--distances",
+            &file,
+            "--json",
+        ];
+        let mut window = window(place, language);
+        window.wait_for(said.no_distances);
+        window.write(said.odometers, &file);
+        window.click(said.read_odometers);
+        window.wait_for(said.per_10000_km);
+        let month = window.place.json(&stats);
+        let month = list(&month).last().expect("this month").clone();
+        let faults = month["distance_faults"].as_u64().expect("a number");
+        assert_eq!(month["faults"], faults);
+        // The distance grows while the page is looked at.
+        let of_month = format!("{}: ", text(&month["key"]));
+        let numbers = [
+            ("n", &faults as &dyn std::fmt::Display),
+            ("km", &"@"),
+            ("trains", &1),
+        ];
+        let numbers = fill(said.rate_is, &numbers);
+        let (faults, trains) = numbers.split_once("@").expect("two parts");
+        let bar = window.shown().into_iter().find(|bar| {
+            bar.starts_with(&of_month) && bar.contains(faults) && bar.ends_with(trains)
+        });
+        assert!(bar.is_some(), "{:#?}", window.shown());
+        assert_eq!(window.app().settings().distances, file);
+
+        window
+            .place
+            .write("odometers.csv", &readings.replace("9000000", "many"));
+        window.click(said.read_odometers);
+        let wrong = match language {
+            Language::English => "line 3, column 3 (km): \"many\" is no number of kilometres",
+            Language::Korean => "3행 3 (km)열: \"many\"은(는) 거리(km) 값이 아닙니다",
+        };
+        window.wait_for_part(wrong);
+        // The rest of the page is as it was.
+        assert!(window.shows(said.mtbf_is));
+    }
+}

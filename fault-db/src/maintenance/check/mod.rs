@@ -142,6 +142,7 @@ impl Store {
             head: None,
         };
         match self.check_rows(conn, &mut report) {
+            Err(StoreError::Stopped) => return Err(StoreError::Stopped),
             // SQLite's findings are worth more than the place where reading failed.
             Err(error) if is_damaged => report.problems.push(Problem {
                 kind: "integrity",
@@ -175,6 +176,7 @@ impl Store {
                 Ok(_) => {}
                 // Another program may prune meanwhile.
                 Err(StoreError::NotFound { .. }) => report.traces -= 1,
+                Err(StoreError::Stopped) => return Err(StoreError::Stopped),
                 Err(error) => found.add(error.to_string()),
             }
         }

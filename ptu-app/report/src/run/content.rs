@@ -185,7 +185,11 @@ fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
     let id = trace.id.short();
     match &trace.samples {
         Ok(samples) => {
-            let faults = trace.faults.join(", ");
+            let names = trace
+                .faults
+                .iter()
+                .map(|name| naming::event_named(name, words));
+            let faults = names.collect::<Vec<_>>().join(", ");
             let mut head = match trace.faults.is_empty() {
                 true => fill(report.trace_of_passed, &[("id", &id)]),
                 false => fill(report.trace_of, &[("id", &id), ("faults", &faults)]),

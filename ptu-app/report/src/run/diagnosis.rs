@@ -86,7 +86,7 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
 }
 
 impl Sheet {
-    /// A part with the name people use for it.
+    /// A part by the name people use for it, with its identifier.
     pub(super) fn part(&self, lru: &str, words: &Words) -> String {
         let names = self.parts.get(lru);
         let name = names.map(|[english, korean]| match words.language {
@@ -94,7 +94,7 @@ impl Sheet {
             Language::Korean => korean,
         });
         match name {
-            Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{lru} ({name})"),
+            Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{name} ({lru})"),
             _ => lru.to_owned(),
         }
     }

@@ -4,6 +4,7 @@ use fault_db::{RepairRecord, SettledFault};
 
 use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table};
+use crate::naming;
 use crate::words::Words;
 
 /// The faults whose repair the run has proved.
@@ -22,7 +23,7 @@ pub fn settled(sheet: &Sheet, words: &Words) -> Vec<Block> {
         };
         let cells = [
             fault.id.short(),
-            format!("{} {}", fault.code, fault.code_name),
+            naming::code(fault.code, &fault.code_name, words),
             sheet.part(part, words),
             serial(|repair| &repair.serial_old),
             serial(|repair| &repair.serial_new),

@@ -4,6 +4,7 @@ use btu_rig::procedure::origin::{SEPARATOR, SourceKind};
 use fault_db::StepRecord;
 
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone};
+use crate::naming;
 use crate::words::{Words, fill};
 
 /// The sources of a run's limits in the order in which they come.
@@ -79,7 +80,11 @@ pub fn in_words(sources: &str, words: &Words) -> String {
             .filter(|_| kind == SourceKind::Measurement)
         {
             Some((step, name)) => {
-                format!("{}/{}", words.content(step), words.measurement(name))
+                format!(
+                    "{}/{}",
+                    words.content(step),
+                    naming::measurement(name, words)
+                )
             }
             None => words.content(key).into_owned(),
         };

@@ -8,6 +8,7 @@ use ptu_bench::stored::outside_of;
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use super::sources::Sources;
 use crate::limits::short;
+use crate::naming;
 use crate::words::Words;
 
 /// Columns of a value: value, unit, low, high.
@@ -103,7 +104,7 @@ fn measured(
     Row {
         kind: RowKind::Detail,
         cells: vec![
-            soft(words.measurement(name).into_owned()),
+            soft(naming::measurement(name, words)),
             (Cell::Text(tone, value_text), 1),
             soft(unit.clone()),
             limit(low),

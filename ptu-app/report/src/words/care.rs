@@ -22,6 +22,7 @@ wordings! {
         synced: "Sent: {runs} runs, {occurrences} occurrences, {events} events, {notes} notes, {traces} traces. Received: {received} events on {faults} faults", "보냄: 시험 {runs}건, 발생 {occurrences}건, 이벤트 {events}건, 메모 {notes}건, 신호 기록 {traces}건. 받음: 고장 {faults}건의 이벤트 {received}건";
         waiting: "{n} entries wait for the next sync", "{n}건은 다음 동기화 때 보냅니다";
         stopped: "Stopped. The next sync goes on from here", "중지됨. 다음 동기화 때 이어서 합니다";
+        nothing_done: "Stopped. Nothing was changed", "중지됨. 변경된 것이 없습니다";
         clocks_differ: "The clocks of this computer and of the server differ by {n} s: set this one", "이 컴퓨터와 서버의 시계가 {n}초 차이 납니다. 이 컴퓨터의 시계를 맞추십시오";
         different: "{what} {id} does not say the same on both sides; each side keeps its own. Check the history", "양쪽에서 내용이 다름: {what} {id}. 양쪽 모두 그대로 두었습니다. 이력을 검사하십시오";
         damaged_trace: "trace {id} is damaged and was not sent. Check the history", "신호 기록 {id}이(가) 손상되어 보내지 않았습니다. 이력을 검사하십시오";

@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 use protocol::event::Event;
 use serde::Deserialize;
 
-use super::condition;
+use super::{condition, names};
 
 /// The texts that are built in, as their file has them.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
@@ -58,11 +58,11 @@ struct Content {
 }
 
 /// A message with places for what differs.
-struct Pattern {
+pub(super) struct Pattern {
     /// What stands before, between and after the places; one more than there are places.
     between: Vec<String>,
-    places: Vec<String>,
-    korean: String,
+    pub(super) places: Vec<String>,
+    pub(super) korean: String,
 }
 
 impl Content {
@@ -88,6 +88,9 @@ impl Content {
         let (key, numbers) = without_numbers(text);
         if let Some(korean) = self.texts.get(&key) {
             return Some(with_numbers(korean, &numbers));
+        }
+        if let Some(event) = Event::from_name(text) {
+            return Some(event.definition().text_ko.to_owned());
         }
         let deeper = deepest.checked_sub(1)?;
         let or_same = |part: &str| self.say(part, deeper).unwrap_or_else(|| part.to_owned());
@@ -115,7 +118,7 @@ impl Content {
         let mut said = pattern.korean.clone();
         for (place, part) in pattern.places.iter().zip(found) {
             let named = self.measurement_in(place, part);
-            let named = named.or_else(|| in_place(place, part));
+            let named = named.or_else(|| in_place(place, part, &or_same));
             let part = named.unwrap_or_else(|| or_same(part));
             said = said.replace(&format!("{{{place}}}"), &part);
         }
@@ -126,6 +129,9 @@ impl Content {
     fn measurement(&self, name: &str) -> Option<String> {
         if let Some(korean) = self.measurements.get(name) {
             return Some(korean.clone());
+        }
+        if let Some(item) = super::KOREAN.bench.self_test_item(name) {
+            return Some(item);
         }
         let (key, numbers) = match name.rsplit_once('_') {
             Some((what, number)) if number_length(number) == number.len() => {
@@ -142,8 +148,8 @@ impl Content {
     }
 }
 
-/// What stands in a place that says what kind of thing it is.
-fn in_place(place: &str, part: &str) -> Option<String> {
+/// What stands in a place that says what kind of thing it is; `or_same` says what is no name.
+fn in_place(place: &str, part: &str, or_same: &dyn Fn(&str) -> String) -> Option<String> {
     match place {
         "condition" | "seen" => condition::korean(part),
         "expectation" => condition::expectation(part),
@@ -152,15 +158,42 @@ fn in_place(place: &str, part: &str) -> Option<String> {
         "event" => {
             let (name, rest) = part.split_at(part.find(' ').unwrap_or(part.len()));
             let event = Event::from_name(name)?.definition();
-            let alone = rest.is_empty() || rest.starts_with(" (") && rest.ends_with(')');
-            alone.then(|| format!("{}({name}){rest}", event.text_ko))
+            let inside = rest.strip_prefix(" (").map(|rest| rest.strip_suffix(')'));
+            let rest = match inside {
+                None if rest.is_empty() => String::new(),
+                None => return None,
+                Some(inside) => match inside?.split_once(", ") {
+                    Some((code, parameter)) => format!(" ({code}, {})", or_same(parameter)),
+                    None => rest.to_owned(),
+                },
+            };
+            Some(format!("{}{rest}", event.text_ko))
+        }
+        "happened" => {
+            let mut all = Event::ALL.iter().map(|event| event.definition());
+            let event = all.find(|event| event.text == part)?;
+            Some(event.text_ko.to_owned())
+        }
+        "fault" => {
+            let event = Event::from_name(part).map(|event| event.definition().text_ko.to_owned());
+            Some(event.unwrap_or_else(|| or_same(&part.replace('_', " "))))
+        }
+        // Behind it there may be more that name a part each.
+        "part" => {
+            let mut all = part.split(", ");
+            let mut said = names::korean_part(all.next()?).to_owned();
+            for (fault, part) in all.filter_map(|more| more.split_once(" names ")) {
+                let fault = in_place("fault", fault, or_same)?;
+                said += &format!("), {fault} (지목 부품: {}", names::korean_part(part));
+            }
+            Some(said)
         }
         _ => None,
     }
 }
 
 impl Pattern {
-    fn new(english: &str, korean: String) -> Self {
+    pub(super) fn new(english: &str, korean: String) -> Self {
         let (mut between, mut places) = (Vec::new(), Vec::new());
         let mut rest = english;
         while let Some((before, after)) = rest.split_once('{') {
@@ -180,7 +213,11 @@ impl Pattern {
     /// What stands in the places of a text of this pattern; `None` for another text, or one that leaves a place empty. A
     /// place ends where what comes after it begins first, or later where it is then a `known` text: names of steps have
     /// colons of their own.
-    fn places_in<'a>(&self, text: &'a str, known: impl Fn(&str) -> bool) -> Option<Vec<&'a str>> {
+    pub(super) fn places_in<'a>(
+        &self,
+        text: &'a str,
+        known: impl Fn(&str) -> bool,
+    ) -> Option<Vec<&'a str>> {
         let (first, between) = self.between.split_first()?;
         let mut rest = text.strip_prefix(first.as_str())?;
         let mut found = Vec::with_capacity(self.places.len());

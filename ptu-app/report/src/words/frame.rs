@@ -55,6 +55,7 @@ wordings! {
         clear: "Clear", "지우기";
         closing: "Stopping the run and making outputs safe …", "시험을 멈추고 출력을 안전하게 하는 중 …";
         other_port: "other: serial:PATH or tcp:HOST:PORT", "직접 입력: serial:PATH 또는 tcp:HOST:PORT";
+        page: "page", "화면";
         setup: "Setup", "설정";
         harness_auto: "found out", "자동 판별";
         as_btu: "BTU (bench)", "BTU (시험대)";

@@ -16,10 +16,12 @@ mod fill;
 mod frame;
 mod life;
 mod memory;
+mod names;
 mod procedures;
 mod report;
 mod statistics;
 mod traces;
+mod trouble;
 
 pub use bench::Bench;
 pub use care::Care;
@@ -153,7 +155,7 @@ impl Words {
     /// message. What nobody has put into this language is as it was written.
     pub fn content<'a>(&self, text: &'a str) -> Cow<'a, str> {
         match self.language {
-            Language::English => Cow::Borrowed(text),
+            Language::English => names::english(text),
             Language::Korean => content::korean(text),
         }
     }

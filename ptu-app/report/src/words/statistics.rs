@@ -22,6 +22,15 @@ wordings! {
         not_found_is: "closed without a repair; closed: {n}", "수리 없이 종결. 종결 {n}건 중";
         by_cause: "cases by cause, share and running total", "원인 부품별 고장 건, 비율과 누계";
         by_month: "faults first seen, by month", "월별 최초 발생 고장";
+        per_10000_km: "faults first seen for each 10 000 km, by month", "월별 10 000 km당 최초 발생 고장";
+        rate_is: "faults {n}, {km} km, trains {trains}", "고장 {n}건, {km} km, 열차 {trains}편성";
+        rate_of: "computed of the faults of runs in trains whose odometer readings cover the time, and of what these trains ran; between two readings a train runs evenly", "주행거리 기록이 있는 기간의 해당 열차 고장과 주행거리로 계산. 두 기록 사이의 주행거리는 균등한 것으로 봄";
+        no_distances: "Faults for each 10 000 km are told where distances are known: name a file with odometer readings.", "주행거리를 알면 10 000 km당 고장을 표시합니다. 주행거리 기록 파일을 지정하십시오.";
+        no_distance_known: "No odometer reading of a train of this history covers these months.", "이 이력의 열차 중 이 기간의 주행거리 기록이 있는 열차가 없습니다.";
+        distances_of_all: "Distances are of trains: choose all units to see faults for each 10 000 km.", "주행거리는 열차 단위입니다. 10 000 km당 고장을 보려면 모든 장치를 선택하십시오.";
+        odometers: "odometer readings", "주행거리 기록";
+        odometers_hint: "CSV file with the columns train, date, km: 612,2026-03-01,120345", "train, date, km 열이 있는 CSV 파일: 612,2026-03-01,120345";
+        read_odometers: "Read the file", "파일 읽기";
         others: "others", "기타";
         of_all: "{share} %, together {sum} %", "{share} %, 누계 {sum} %";
         days: "{n} days", "{n}일";

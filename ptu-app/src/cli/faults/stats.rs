@@ -1,5 +1,8 @@
 //! `ptu faults stats`: counts of faults by kind, and how effective repairs were.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 use fault_db::{FaultStat, StatKey, StatQuery, Store};
 use serde_json::{Value, json};
@@ -7,7 +10,8 @@ use serde_json::{Value, json};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
-use crate::fault_months::by_month;
+use crate::distances::Distances;
+use crate::fault_months::{OnTheWay, by_month, on_the_way};
 use crate::sparkline::sparkline;
 use ptu_bench::clock::{self, local_minute, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
@@ -38,6 +42,14 @@ const KEYS: [&str; 21] = [
     "rate_ratio_high",
 ];
 
+/// Keys of a month with distances, after the others.
+const DISTANCE_KEYS: [&str; 4] = [
+    "distance_km",
+    "distance_trains",
+    "distance_faults",
+    "per_10000_km",
+];
+
 /// A course over time is shown in so many bars at most: the last ones.
 const BARS: usize = 24;
 
@@ -58,6 +70,7 @@ const BARS: usize = 24;
 ///   ptu faults stats --by lru --when 2026
 ///   ptu faults stats --by unit --lru eb_relay --back-within 14
 ///   ptu faults stats --by month --line line8 --csv
+///   ptu faults stats --by month --distances odometers.csv
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct StatsArguments {
@@ -70,6 +83,13 @@ pub struct StatsArguments {
     /// At most so many rows in a table; of months the last
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
+    /// Readings of odometers, CSV with the columns train, date and km: with --by month, faults for each 10 000 km
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = ["unit", "serial", "line", "procedure", "run"]
+    )]
+    distances: Option<PathBuf>,
     #[command(flatten)]
     filter: FilterArguments,
     #[command(flatten)]
@@ -104,6 +124,12 @@ impl StatsArguments {
             GroupBy::Month if self.filter.cause.is_some() => StatKey::Cause,
             GroupBy::Month => StatKey::All,
         };
+        if self.distances.is_some() && self.by != GroupBy::Month {
+            return Err(Failure::usage(
+                "distances are told by month: add --by month",
+            ));
+        }
+        let distances = self.distances.as_deref().map(Distances::read).transpose()?;
         let query = StatQuery {
             by,
             filter: self.filter.filter(store)?,
@@ -121,6 +147,8 @@ impl StatsArguments {
                 (stats, Some(together))
             }
         };
+        let distances = distances.map(|known| on_the_way(store, &query, &known));
+        let distances = distances.transpose()?;
         self.output.save()?;
         if stats.is_empty() {
             let said = self.filter.nothing(store)?;
@@ -129,10 +157,24 @@ impl StatsArguments {
             }
         }
         let all: u64 = stats.iter().map(|stat| self.counted(stat)).sum();
-        let row = |stat| entry(stat, (self.counted(stat), all));
+        let row = |stat: &FaultStat| {
+            let mut row = entry(stat, (self.counted(stat), all));
+            if let Some(distances) = &distances {
+                let of_month = distances.get(&stat.key).cloned().unwrap_or_default();
+                row["distance_km"] = json!(of_month.km);
+                row["distance_trains"] = json!(of_month.trains);
+                row["distance_faults"] = json!(of_month.faults);
+                row["per_10000_km"] = json!(of_month.per_10000_km());
+            }
+            row
+        };
         let rows: Vec<_> = stats.iter().map(row).collect();
-        self.output
-            .print(&KEYS, &rows, || self.table(&stats, together.as_ref(), all))
+        let more = distances.iter().flat_map(|_| DISTANCE_KEYS);
+        let keys: Vec<_> = KEYS.into_iter().chain(more).collect();
+        self.output.print(&keys, &rows, || {
+            let distances = distances.as_ref();
+            self.table(&stats, (together.as_ref(), distances), all)
+        })
     }
 
     /// What shares are of: cases of a cause, else occurrences.
@@ -177,13 +219,25 @@ impl StatsArguments {
         if self.by != GroupBy::Month {
             headings.extend(["COURSE", "LATER/EARLIER"]);
         }
+        if self.distances.is_some() {
+            headings.extend(["KM", "TRAINS", "THEIR FAULTS", "PER 10000 KM"]);
+        }
         headings
     }
 
-    fn table(&self, stats: &[FaultStat], together: Option<&FaultStat>, all: u64) -> String {
+    fn table(
+        &self,
+        stats: &[FaultStat],
+        (together, distances): (Option<&FaultStat>, Option<&BTreeMap<String, OnTheWay>>),
+        all: u64,
+    ) -> String {
         let is_course = self.by != GroupBy::Month;
         let headings = self.headings();
-        let numbers = 1..headings.len() - 1 - 2 * usize::from(is_course);
+        let words_last = match distances {
+            Some(_) => 0,
+            None => 1 + 2 * usize::from(is_course),
+        };
+        let numbers = 1..headings.len() - words_last;
         let mut table = Table::new(&headings).right(numbers);
         let mut so_far = 0;
         let more = stats.len().saturating_sub(self.limit as usize);
@@ -226,6 +280,14 @@ impl StatsArguments {
                 row.push(sparkline(&stat.course[first..]));
                 row.push(RateRatio::of(&stat.course).map_or_else(dash, |ratio| ratio.text()));
             }
+            if let Some(distances) = distances {
+                let of_month = distances.get(&stat.key).cloned().unwrap_or_default();
+                let rate = of_month.per_10000_km();
+                row.push(rate.map_or_else(dash, |_| format!("{:.0}", of_month.km)));
+                row.push(rate.map_or_else(dash, |_| of_month.trains.to_string()));
+                row.push(rate.map_or_else(dash, |_| of_month.faults.to_string()));
+                row.push(rate.map_or_else(dash, |rate| format!("{rate:.2}")));
+            }
             table.row(row);
         }
         let (earlier, more) = match (more, self.by) {
@@ -260,8 +322,15 @@ impl StatsArguments {
                  above or below 1"
             }
         };
+        let distances = match self.distances {
+            Some(_) => {
+                "; PER 10000 KM: faults first seen in runs in trains whose odometer readings cover the time, over what \
+                 these trains ran; between two readings a train runs evenly"
+            }
+            None => "",
+        };
         format!(
-            "{span}; BACK: within {} days of the repair{course}",
+            "{span}; BACK: within {} days of the repair{course}{distances}",
             self.back_within
         )
     }

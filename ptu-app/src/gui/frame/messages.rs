@@ -11,7 +11,7 @@ use crate::gui::parts::ActionPlace;
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
 use ptu_bench::clock;
-use ptu_report::words::fill;
+use ptu_report::words::{Words, fill};
 
 /// A step that is being taken back.
 #[derive(Default)]
@@ -77,7 +77,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
                 for message in all.iter().rev() {
                     ui.horizontal_wrapped(|ui| {
                         ui.label(RichText::new(clock::local(message.at_us)).small());
-                        said(ui, message);
+                        said(ui, message, context.words);
                     });
                 }
             });
@@ -99,12 +99,12 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
             Some(told)
         });
         if let Some(trouble) = trouble {
-            said(ui, trouble);
+            said(ui, trouble, context.words);
         }
         // Trouble is shown until it was taken note of, and not again as the latest message.
         let told = told.unwrap_or(last);
         if !told.bad && !told.over {
-            said(ui, told);
+            said(ui, told, context.words);
         }
     });
     if let Some((written, what)) = taken_back {
@@ -118,7 +118,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
     }
 }
 
-fn said(ui: &mut Ui, message: &Message) {
+fn said(ui: &mut Ui, message: &Message, words: &Words) {
     let palette = Palette::of(ui);
     let (mark, colour) = match message.bad {
         true => ("⚠ ", palette.bad),
@@ -127,6 +127,6 @@ fn said(ui: &mut Ui, message: &Message) {
     let text = format!("{mark}{}", message.text);
     ui.label(RichText::new(text).color(colour).strong());
     if !message.detail.is_empty() {
-        ui.label(&message.detail);
+        ui.label(&*words.trouble(&message.detail));
     }
 }

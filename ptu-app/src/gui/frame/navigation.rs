@@ -13,6 +13,13 @@ use ptu_report::words::Language;
 const STEP: f32 = 0.1;
 /// A bar so wide has the pages and the rest in one line, points.
 const BESIDE: f32 = 1180.0;
+/// Least width of a choice, and most of that of the page, points.
+const LEAST: f32 = 64.0;
+const MOST: f32 = 140.0;
+/// Room for the names of all pages below each other, points.
+const ALL_PAGES: f32 = 400.0;
+/// A window narrower than this has no room for the names of all pages in a line or two, points.
+const NARROW: f32 = 720.0;
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut About, &mut Care)) {
     let ends = |ui: &mut Ui, context: &mut PageContext<'_>| {
@@ -20,7 +27,9 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut Abou
         care.button(ui, context);
         look(ui, context);
     };
-    if ui.available_width() < BESIDE {
+    if ui.ctx().content_rect().width() < NARROW {
+        both_ends(ui, context, ends, choose_page);
+    } else if ui.available_width() < BESIDE {
         // Beside the rest the pages would take three lines.
         ui.horizontal_wrapped(|ui| pages(ui, context));
         both_ends(ui, context, ends, |_, _| {});
@@ -38,6 +47,23 @@ fn pages(ui: &mut Ui, context: &mut PageContext<'_>) {
             context.settings.page = page;
         }
     }
+}
+
+fn choose_page(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = context.words;
+    let shown = context.settings.page.name(words);
+    let combo = ComboBox::from_id_salt("page")
+        .selected_text(shown)
+        .width(ui.available_width().clamp(LEAST, MOST))
+        .truncate()
+        .height(ALL_PAGES);
+    let combo = combo.show_ui(ui, |ui| {
+        for page in Page::ALL {
+            let name = format!("{}  {}", page.key().name(), page.name(words));
+            ui.selectable_value(&mut context.settings.page, page, name);
+        }
+    });
+    named_combo(&combo.response, words.frame.page, shown);
 }
 
 fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
@@ -69,7 +95,9 @@ fn look(ui: &mut Ui, context: &mut PageContext<'_>) {
     if place.clicked(&ui.button(density).on_hover_text(hint)) {
         settings.density = settings.density.other();
     }
-    let combo = ComboBox::from_id_salt("language").selected_text(settings.language.name());
+    let combo = ComboBox::from_id_salt("language")
+        .selected_text(settings.language.name())
+        .width(LEAST);
     let shown = combo.show_ui(ui, |ui| {
         for language in Language::ALL {
             ui.selectable_value(&mut settings.language, language, language.name());

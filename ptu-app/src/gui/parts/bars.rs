@@ -6,6 +6,7 @@ use eframe::egui::{
 
 use super::lane::cut_text;
 use crate::gui::Palette;
+use ptu_report::limits::short;
 
 const HEIGHT: f32 = 86.0;
 /// Rows of a low chart by name.
@@ -21,7 +22,8 @@ const MORE: f32 = 210.0;
 /// A bar.
 pub struct Bar {
     pub name: String,
-    pub count: u64,
+    /// What it counts, or a rate.
+    pub value: f64,
     /// Said behind the count.
     pub more: String,
 }
@@ -32,20 +34,22 @@ pub struct Chart<'a> {
     pub width: f32,
     /// Each bar can be clicked.
     pub leads: bool,
+    /// Its bars are counts, whose sum says something.
+    pub sums: bool,
 }
 
 impl Bar {
     pub fn new(name: impl Into<String>, count: u64) -> Self {
         Self {
             name: name.into(),
-            count,
+            value: count as f64,
             more: String::new(),
         }
     }
 
     fn said(&self) -> String {
         let more = if self.more.is_empty() { "" } else { " · " };
-        format!("{}{more}{}", self.count, self.more)
+        format!("{}{more}{}", short(self.value), self.more)
     }
 }
 
@@ -63,7 +67,7 @@ impl Chart<'_> {
             let left = plot.left() + step * place as f32;
             let right = left + (step - 1.0).clamp(1.0, 40.0);
             let column = Rect::from_x_y_ranges(left..=right, plot.y_range());
-            let top = plot.bottom() - plot.height() * bar.count as f32 / most;
+            let top = plot.bottom() - plot.height() * bar.value as f32 / most;
             let filled = Rect::from_x_y_ranges(left..=right, top..=plot.bottom());
             ui.painter().rect_filled(filled, 0.0, palette.accent);
             if self.is_clicked(ui, column, (place, bar)) {
@@ -83,7 +87,7 @@ impl Chart<'_> {
                 &name(bars.last()),
             );
         }
-        text(plot.right_top(), Align2::RIGHT_TOP, &format!("{most:.0}"));
+        text(plot.right_top(), Align2::RIGHT_TOP, &short(most.into()));
         clicked
     }
 
@@ -109,7 +113,7 @@ impl Chart<'_> {
             let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
             let of_name = Rect::from_x_y_ranges(rect.left()..=left - 4.0, line.y_range());
             cut_text(&painter, of_name, bar.name.clone(), font.clone(), ink);
-            let length = room.max(1.0) * (bar.count as f32 / most).min(1.0);
+            let length = room.max(1.0) * (bar.value as f32 / most).min(1.0);
             let size = vec2(length, row - 3.0);
             let filled = Rect::from_min_size(pos2(left, line.center().y - size.y / 2.0), size);
             painter.rect_filled(filled, 0.0, palette.accent);
@@ -139,8 +143,11 @@ impl Chart<'_> {
     fn frame(&self, ui: &mut Ui, height: f32, bars: &[Bar]) -> Option<Rect> {
         let size = vec2(self.width, height + 18.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-        let sum: u64 = bars.iter().map(|bar| bar.count).sum();
-        let name = format!("{}: {sum}", self.title);
+        let sum: f64 = bars.iter().map(|bar| bar.value).sum();
+        let name = match self.sums {
+            true => format!("{}: {sum}", self.title),
+            false => self.title.to_owned(),
+        };
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         if !ui.is_rect_visible(rect) || bars.is_empty() {
             return None;
@@ -170,5 +177,6 @@ impl Chart<'_> {
 }
 
 fn most(bars: &[Bar]) -> f32 {
-    bars.iter().map(|bar| bar.count).max().unwrap_or(1).max(1) as f32
+    let most = bars.iter().map(|bar| bar.value).fold(0.0, f64::max);
+    if most > 0.0 { most as f32 } else { 1.0 }
 }

@@ -99,12 +99,12 @@ impl Job {
         }
     }
 
-    /// How far it is, with the button that stops it.
-    pub fn progress(&self, ui: &mut Ui, words: &Words) {
+    /// How far it is, with the button that stops it, if it can be.
+    pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();
             // Before the text, which changes: the button stays where it is.
-            if ui.button(words.memory.stop).clicked() {
+            if stops && ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }
             let said = self.told.said.lock();

@@ -43,7 +43,7 @@ impl MemoryReader {
         let stored = self.job.poll(context, context.words.memory.failed);
         let words = context.words;
         if self.job.is_under_way() {
-            self.job.progress(ui, words);
+            self.job.progress(ui, words, true);
             return stored;
         }
         let asked = asked(context);

@@ -27,7 +27,7 @@ pub use chip::{chip, verdict_chip};
 pub use deliberate::ActionPlace;
 pub use edit::{field, go_on, name_edit, note_edit, typed};
 pub use file::usual_folder;
-pub use job::{Done, Job};
+pub use job::{Done, Job, Told};
 pub use limit_bar::{limit_bar, value_text};
 pub use link::link;
 pub use memory::{MemoryReader, Stored};

@@ -99,7 +99,7 @@ impl RunList {
         let runs = match self.runs.get() {
             Request::Ready(runs) => runs,
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
                 return None;
             }
             Request::Idle | Request::Pending(_) => {

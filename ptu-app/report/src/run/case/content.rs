@@ -107,7 +107,7 @@ impl CaseSheet {
         let row = |fault: &FaultSummary| {
             let cells = [
                 fault.id.short(),
-                format!("{} {}", fault.code, fault.code_name),
+                naming::code(fault.code, &fault.code_name, words),
                 self.before.part(&fault.lru, words),
                 report.severity(&fault.severity).to_owned(),
                 fault.occurrences.to_string(),

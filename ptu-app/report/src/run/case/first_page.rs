@@ -3,6 +3,7 @@
 use fault_db::is_practice;
 
 use super::{CaseSheet, Standing};
+use crate::naming;
 use crate::run::block::{Block, Tone, sentence};
 use crate::run::compare::{comparison, is_same, name_of};
 use crate::run::content::signatures;
@@ -180,7 +181,7 @@ impl CaseSheet {
             }
         };
         match said.trim() {
-            "" => self.fault.fault.code_name.clone(),
+            "" => naming::event_named(&self.fault.fault.code_name, words),
             said => clipped(said, MOST_LETTERS),
         }
     }

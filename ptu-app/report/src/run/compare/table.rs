@@ -5,6 +5,7 @@ use ptu_bench::stored::outside_of;
 
 use super::{Compared, StepPair};
 use crate::limits::short;
+use crate::naming;
 use crate::run::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use crate::run::steps::verdict;
 use crate::words::{Words, fill};
@@ -22,7 +23,7 @@ pub fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
             name = format!("{}: {name}", step.procedure);
         }
         if let Some(measured) = one.measured() {
-            name = format!("{name}\n{}", words.measurement(&measured.name));
+            name = format!("{name}\n{}", naming::measurement(&measured.name, words));
         }
         Some(row(RowKind::Head, cells(one, name, words)))
     });
@@ -57,8 +58,8 @@ pub(super) fn steps<'a>(pairs: impl Iterator<Item = &'a StepPair<'a>>, words: &W
         };
         with_change(RowKind::Head, &pair.step, name);
         for one in &pair.measurements {
-            let name = one.measured().map(|m| words.measurement(&m.name));
-            let name = name.unwrap_or_default().into_owned();
+            let name = one.measured().map(|m| naming::measurement(&m.name, words));
+            let name = name.unwrap_or_default();
             with_change(RowKind::Detail, one, name);
         }
     }

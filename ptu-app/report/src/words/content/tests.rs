@@ -64,7 +64,7 @@ fn a_condition_is_told_by_the_names_of_its_signals_and_their_states() {
     assert_eq!(say("no data for eb"), "비상제동(EB) 데이터 없음");
     assert_eq!(
         say("the unit logged marker_missing (301), which no step provoked"),
-        "장치 고장 기록: 마커 누락(marker_missing) (301) (어느 단계에서도 유발하지 않음)"
+        "장치 고장 기록: 마커 누락 (301) (어느 단계에서도 유발하지 않음)"
     );
     assert_eq!(
         say("(eb or nothing) came true"),

@@ -92,7 +92,9 @@ impl Care {
             ui.label(file);
         });
         if self.job.is_under_way() {
-            self.job.progress(ui, words);
+            // A server's check is short, and cannot be stopped.
+            let stops = context.only_reads().is_none();
+            self.job.progress(ui, words, stops);
         } else {
             self.job.result(ui);
         }
@@ -131,7 +133,8 @@ impl Care {
                 }
             }
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                let why = context.words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
             }
             Request::Idle | Request::Pending(_) => {
                 ui.label(context.words.common.loading);

@@ -6,7 +6,7 @@ use fault_db::{Address, Store, StoreError, SyncOptions};
 
 use crate::computer_name::computer_name;
 use crate::gui::PageContext;
-use crate::gui::parts::{Done, Job};
+use crate::gui::parts::{Done, Job, Told};
 use ptu_bench::failure::Failure;
 use ptu_bench::{clock, process_id};
 use ptu_report::care::{self, Said};
@@ -42,10 +42,14 @@ pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     let words = context.words;
     let shown = file.display().to_string();
     let said = fill(words.care.importing, &[("file", &shown)]);
-    job.begin(context, (said, words.care.failed), move |paths, _| {
-        let store = paths.open()?;
-        let counts = store.import(&file);
-        let counts = counts.map_err(|error| of_file(&file, error, words))?;
+    job.begin(context, (said, words.care.failed), move |paths, told| {
+        let store = stopped_by(told, paths.open()?)?;
+        let counts = match store.import(&file) {
+            Err(StoreError::Stopped) => return Ok(stopped(words)),
+            done => done.map_err(|error| of_file(&file, error, words))?,
+        };
+        // What was taken stays: nothing stops from here on.
+        store.stop_when(|| false)?;
         // What was known before needs no telling again; what came just now may be a rival of it.
         let conflicts = match counts.events {
             0 => Vec::new(),
@@ -61,9 +65,11 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     let words = context.words;
     let shown = file.display().to_string();
     let said = fill(words.care.backing_up, &[("file", &shown)]);
-    job.begin(context, (said, words.care.failed), move |paths, _| {
-        let copied = paths.read()?.backup(&file);
-        copied.map_err(|error| of_file(&file, error, words))?;
+    job.begin(context, (said, words.care.failed), move |paths, told| {
+        match stopped_by(told, paths.read()?)?.backup(&file) {
+            Err(StoreError::Stopped) => return Ok(stopped(words)),
+            done => done.map_err(|error| of_file(&file, error, words))?,
+        }
         // Of the copy: another program may have recorded more into the file meanwhile.
         let head = Store::open_read_only(&file)?.head()?;
         let text = fill(words.care.backed_up, &[("file", &shown)]);
@@ -79,9 +85,31 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
 pub fn check(job: &mut Job, context: &mut PageContext<'_>) {
     let words = context.words;
     let said = (words.care.checking.to_owned(), words.care.failed);
-    job.begin(context, said, move |paths, _| {
-        Ok(done(care::checked(&paths.read()?.check()?, words)))
+    job.begin(context, said, move |paths, told| {
+        let store = match paths.is_server() {
+            true => paths.read()?,
+            false => stopped_by(told, paths.read()?)?,
+        };
+        match store.check() {
+            Err(StoreError::Stopped) => Ok(stopped(words)),
+            report => Ok(done(care::checked(&report?, words))),
+        }
     });
+}
+
+/// The store, whose work ends when the person stops it.
+fn stopped_by(told: &Told, store: Store) -> Result<Store, StoreError> {
+    let stop = told.stop.clone();
+    store.stop_when(move || stop.presses() > 0)?;
+    Ok(store)
+}
+
+/// Work that was stopped before it had done anything that stays.
+fn stopped(words: &Words) -> Done {
+    done(Said {
+        text: words.care.nothing_done.to_owned(),
+        notes: Vec::new(),
+    })
 }
 
 /// An error about a file that was named here.

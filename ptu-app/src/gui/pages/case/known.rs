@@ -1,10 +1,10 @@
 //! What the history knows of a unit: open faults and earlier repairs.
 
 use eframe::egui::{RichText, Ui};
-use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord};
+use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
 
 use crate::gui::parts::{link, repair_line};
-use crate::gui::request::CachedResponse;
+use crate::gui::request::{CachedResponse, Request};
 use crate::gui::{DataPaths, Destination, PageContext, Palette, Sizes};
 use ptu_bench::clock;
 use ptu_bench::failure::Failure;
@@ -62,9 +62,17 @@ impl KnownUnit {
     }
 
     pub fn show(&self, ui: &mut Ui, words: &Words, go_to: &mut Vec<Destination>) {
-        let Some(history) = self.history.get().value() else {
-            ui.label(words.common.loading);
-            return;
+        let history = match self.history.get() {
+            Request::Ready(history) => history,
+            Request::Failed(why) => {
+                let why = words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
+                return;
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+                return;
+            }
         };
         if history.open.is_empty() && history.repairs.is_empty() {
             let quiet = Palette::of(ui).quiet;
@@ -115,7 +123,12 @@ fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
         limit: Some(MOST),
         ..FaultFilter::default()
     };
-    for fault in store.faults(&filter)? {
+    let faults = match store.faults(&filter) {
+        // A unit that was never here.
+        Err(StoreError::NotFound { .. }) => return Ok(history),
+        faults => faults?,
+    };
+    for fault in faults {
         let events = store.fault(fault.id)?.events.into_iter();
         let repairs = events.filter_map(|event| Some((event.at_us, event.repair?)));
         history.repairs.extend(repairs);

@@ -119,7 +119,7 @@ impl DiagnosisPage {
             }
             Request::Failed(why) => {
                 ui.label(RichText::new(words.no_answer).color(palette.bad).strong());
-                ui.label(why);
+                ui.label(&*context.words.trouble(why));
                 return;
             }
         };

@@ -67,7 +67,7 @@ impl DrivePage {
             }
         }
         if self.job.is_under_way() {
-            self.job.progress(ui, words);
+            self.job.progress(ui, words, true);
             return;
         }
         self.job.result(ui);

@@ -21,6 +21,7 @@ pub fn charts(ui: &mut Ui, words: &Words, counts: &[&DailyCount]) {
         title,
         width,
         leads: false,
+        sums: true,
     };
     ui.horizontal(|ui| {
         let bars = (0..).zip(&in_time.bars).map(|(place, count)| {

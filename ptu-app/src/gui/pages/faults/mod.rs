@@ -169,7 +169,7 @@ impl FaultsPage {
             Request::Failed(why) => {
                 let said = RichText::new(words.faults.not_read).color(Palette::of(ui).bad);
                 ui.label(said.strong());
-                ui.label(why);
+                ui.label(&*words.trouble(why));
                 if ui.button(words.common.refresh).clicked() {
                     self.asked = None;
                 }
@@ -198,7 +198,8 @@ impl FaultsPage {
                 detail::rest(ui, (context.words, parts), detail, context.go_to);
             }
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                let why = context.words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
             }
             Request::Idle => {
                 ui.label(context.words.faults.choose);

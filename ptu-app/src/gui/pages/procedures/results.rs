@@ -13,7 +13,7 @@ use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use ptu_bench::bench_worker::{Progress, outside_place};
 use ptu_bench::run::CHECK_FAILED;
-use ptu_report::naming::{PartNames, code, place};
+use ptu_report::naming::{self, PartNames, code, place};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 
@@ -205,8 +205,8 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     }
     Grid::new("measurements").num_columns(3).show(ui, |ui| {
         for measurement in measured {
-            let name = words.measurement(&measurement.name);
-            ui.label(&*name);
+            let name = naming::measurement(&measurement.name, words);
+            ui.label(&name);
             let bar = limit_bar(ui, &name, measurement);
             if let Some(source) = &measurement.limit_source {
                 bar.on_hover_text(source_in_words(source, words));

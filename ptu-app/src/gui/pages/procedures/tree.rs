@@ -28,7 +28,7 @@ impl ProceduresPage {
         let suite = match &self.suite {
             Request::Ready(suite) => suite,
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
                 return;
             }
             Request::Idle | Request::Pending(_) => {

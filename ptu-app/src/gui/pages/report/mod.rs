@@ -228,7 +228,7 @@ impl ReportPage {
         if let Request::Failed(why) = &self.asked {
             let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
             ui.label(said.strong());
-            ui.label(why);
+            ui.label(&*context.words.trouble(why));
             return;
         }
         if self.shown.is_none() {

@@ -5,7 +5,7 @@ use eframe::egui::{
 };
 use fault_db::{TrendQuery, TrendStep};
 
-use super::counted::Asked;
+use super::counted::{Asked, is_known};
 use crate::gui::parts::lane::{TEXT, y_at, y_axis};
 use crate::gui::parts::look_back::since_us;
 use crate::gui::parts::named_combo;
@@ -89,7 +89,7 @@ impl ControlChart {
                     None => drop(ui.label(said.not_measured)),
                 }
             }
-            Request::Failed(why) => drop(ui.label(why)),
+            Request::Failed(why) => drop(ui.label(&*words.trouble(why))),
             Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
         }
     }
@@ -105,6 +105,9 @@ fn read(paths: &DataPaths, of: Measured, asked: &Asked) -> Result<Known, Failure
         return Ok(known);
     }
     let store = paths.read()?;
+    if !is_known(&store, asked.unit.as_deref())? {
+        return Ok(known);
+    }
     known.names = store.measurement_names()?;
     let Some(measurement) = of.measurement.or_else(|| known.names.first().cloned()) else {
         return Ok(known);

@@ -1,8 +1,12 @@
 //! What the history says, as the query thread counts it.
 
-use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery};
+use std::collections::BTreeMap;
+use std::path::Path;
 
-use crate::fault_months::{Month, by_month};
+use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
+
+use crate::distances::Distances;
+use crate::fault_months::{Month, OnTheWay, by_month, on_the_way};
 use crate::gui::DataPaths;
 use crate::gui::parts::look_back::since_us;
 use ptu_bench::clock;
@@ -19,6 +23,8 @@ pub struct Asked {
     pub unit: Option<String>,
     /// Days to look back; none = all there is.
     pub days: Option<i64>,
+    /// File with readings of odometers; empty = none.
+    pub distances: String,
 }
 
 /// What was counted.
@@ -30,6 +36,8 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
+    /// What trains ran in the months, or why their distances cannot be read; of one unit nobody knows them.
+    pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, String>>,
     pub parts: PartNames,
 }
 
@@ -42,12 +50,16 @@ impl Counted {
             causes: Vec::new(),
             all: FaultStat::default(),
             months: Vec::new(),
+            on_the_way: None,
             parts,
         };
         if !paths.is_there() {
             return Ok(counted);
         }
         let store = paths.read()?;
+        if !is_known(&store, counted.asked.unit.as_deref())? {
+            return Ok(counted);
+        }
         let now_us = clock::now_us();
         let mut query = StatQuery {
             by: StatKey::Cause,
@@ -63,6 +75,19 @@ impl Counted {
         counted.causes.retain(|cause| cause.faults > 0);
         query.by = StatKey::All;
         counted.months = by_month(&store, &query)?;
+        let asked = &counted.asked;
+        if asked.unit.is_none() && !asked.distances.is_empty() {
+            counted.on_the_way = match Distances::read(Path::new(&asked.distances)) {
+                Ok(known) => Some(Ok(on_the_way(&store, &query, &known)?)),
+                Err(failure) => Some(Err(failure.message)),
+            };
+        }
         Ok(counted)
     }
+}
+
+/// Whether the history has this unit; one that comes for the first time has nothing to count.
+pub fn is_known(store: &Store, unit: Option<&str>) -> Result<bool, Failure> {
+    let Some(unit) = unit else { return Ok(true) };
+    Ok(store.known_units()?.iter().any(|known| known == unit))
 }

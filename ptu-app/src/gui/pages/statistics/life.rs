@@ -69,7 +69,7 @@ impl LifeView {
             Request::Failed(why) => {
                 let said = RichText::new(words.life.not_read).color(Palette::of(ui).bad);
                 ui.label(said.strong());
-                ui.label(why);
+                ui.label(&*words.trouble(why));
                 if ui.button(words.common.refresh).clicked() {
                     self.asked = None;
                 }

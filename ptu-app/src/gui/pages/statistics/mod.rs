@@ -3,11 +3,13 @@
 
 mod control;
 mod counted;
+mod distances;
 mod figures;
 mod life;
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
+use crate::fault_months::Month;
 use crate::gui::page_context::{Destination, FaultsOf};
 use crate::gui::parts::bars::{Bar, Chart};
 use crate::gui::parts::{SavedSaid, UnitFilter, look_back, saved_questions};
@@ -32,6 +34,7 @@ pub struct StatisticsPage {
     asked: Option<(Asked, (usize, u64))>,
     life: life::LifeView,
     control: control::ControlChart,
+    distances: distances::DistancesFile,
     /// Name for a question, as it is typed.
     question: String,
 }
@@ -54,6 +57,9 @@ impl StatisticsPage {
                 let mut to = None;
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                     to = content(ui, words, counted, &self.units);
+                    if self.distances.show(ui, (counted, &self.units), context) {
+                        self.asked = None;
+                    }
                     ui.separator();
                     self.control.show(ui, words);
                 });
@@ -62,7 +68,7 @@ impl StatisticsPage {
             Request::Failed(why) => {
                 let said = RichText::new(words.statistics.not_read).color(Palette::of(ui).bad);
                 ui.label(said.strong());
-                ui.label(why);
+                ui.label(&*words.trouble(why));
                 if ui.button(words.common.refresh).clicked() {
                     self.asked = None;
                 }
@@ -99,6 +105,7 @@ impl StatisticsPage {
         let asked = Asked {
             unit: self.units.taken().map(str::to_owned),
             days: self.days,
+            distances: context.settings.distances.clone(),
         };
         let wanted = (asked, context.data_version());
         if self.asked.as_ref() != Some(&wanted) {
@@ -136,6 +143,7 @@ fn content(ui: &mut Ui, words: &Words, counted: &Counted, units: &UnitFilter) ->
         title,
         width: ui.available_width(),
         leads: true,
+        sums: true,
     };
     let (by_cause, by_month) = (
         chart(words.statistics.by_cause),
@@ -143,8 +151,7 @@ fn content(ui: &mut Ui, words: &Words, counted: &Counted, units: &UnitFilter) ->
     );
     let cause = by_cause.by_name(ui, &cause_bars(words, counted));
     ui.separator();
-    let months = counted.months.len().saturating_sub(MOST_MONTHS);
-    let months = &counted.months[months..];
+    let months = shown_months(counted);
     let bars = months
         .iter()
         .map(|month| Bar::new(&month.name, u64::from(month.stat.faults)));
@@ -159,13 +166,22 @@ fn content(ui: &mut Ui, words: &Words, counted: &Counted, units: &UnitFilter) ->
         });
     let month = month
         .and_then(|place| months.get(place))
-        .map(|month| FaultsOf {
-            first_seen_us: Some(month.span_us.clone()),
-            month: month.name.clone(),
-            units: units.clone(),
-            ..FaultsOf::default()
-        });
+        .map(|month| of_month(month, units));
     cause.or(month)
+}
+
+fn shown_months(counted: &Counted) -> &[Month] {
+    let earlier = counted.months.len().saturating_sub(MOST_MONTHS);
+    &counted.months[earlier..]
+}
+
+fn of_month(month: &Month, units: &UnitFilter) -> FaultsOf {
+    FaultsOf {
+        first_seen_us: Some(month.span_us.clone()),
+        month: month.name.clone(),
+        units: units.clone(),
+        ..FaultsOf::default()
+    }
 }
 
 /// The causes with most cases, and all others together.

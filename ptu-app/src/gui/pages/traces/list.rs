@@ -63,7 +63,7 @@ impl TraceList {
         let runs = match self.runs.get() {
             Request::Ready(runs) => runs,
             Request::Failed(why) => {
-                let text = format!("{}: {why}", words.traces.cannot_list);
+                let text = format!("{}: {}", words.traces.cannot_list, words.trouble(why));
                 ui.label(RichText::new(text).color(Palette::of(ui).bad));
                 return None;
             }

@@ -274,7 +274,9 @@ impl Sheet<'_> {
         let layout = Layout::top_down(Align::Min);
         let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
         ui.set_clip_rect(ui.clip_rect().intersect(area));
-        let text = RichText::new(&lane.signal).color(colour).strong();
+        let text = RichText::new(&*self.words.signal(&lane.signal))
+            .color(colour)
+            .strong();
         ui.add(Label::new(text).truncate().selectable(false));
         if rect.height() >= QUANTITY / 2.0 && !unit.is_empty() {
             let text = RichText::new(unit)

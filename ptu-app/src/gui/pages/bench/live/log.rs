@@ -8,7 +8,7 @@ use super::View;
 use super::card::{card, named, write};
 use crate::gui::Palette;
 use crate::gui::pages::bench::text::since_start;
-use ptu_report::words::Language;
+use ptu_report::words::{Language, Words};
 
 const LINE: f32 = 18.0;
 /// Width of the time.
@@ -48,7 +48,7 @@ fn line(ui: &mut Ui, place: usize, entry: &UnitEvent, view: &View<'_>, palette: 
         eframe::egui::Sense::hover(),
     );
     let time = since_start(&view.words.bench, entry.at_ms);
-    let (said, colour) = told(entry, view.words.language, palette);
+    let (said, colour) = told(entry, view.words, palette);
     let middle = area.center().y;
     let quiet = RichText::new(&time).size(12.0).color(palette.quiet);
     write(ui, pos2(area.left(), middle), TIME - 4.0, quiet);
@@ -63,8 +63,8 @@ fn line(ui: &mut Ui, place: usize, entry: &UnitEvent, view: &View<'_>, palette: 
     named(ui, area, ("event", place), || format!("{time} {said}"));
 }
 
-/// An entry in words, and the colour of what is a fault.
-fn told(entry: &UnitEvent, language: Language, palette: &Palette) -> (String, Option<Color32>) {
+/// An entry by its number and in words, and the colour of what is a fault.
+fn told(entry: &UnitEvent, words: &Words, palette: &Palette) -> (String, Option<Color32>) {
     let source = match entry.source {
         EventSource::Unit => "",
         EventSource::Tcms => "TCMS ",
@@ -76,7 +76,7 @@ fn told(entry: &UnitEvent, language: Language, palette: &Palette) -> (String, Op
         );
     };
     let definition = event.definition();
-    let text = match language {
+    let text = match words.language {
         Language::English => definition.text,
         Language::Korean => definition.text_ko,
     };
@@ -87,10 +87,7 @@ fn told(entry: &UnitEvent, language: Language, palette: &Palette) -> (String, Op
     };
     let detail = match entry.said() {
         said if said.is_empty() => said,
-        said => format!(" ({said})"),
+        said => format!(" ({})", words.content(&said)),
     };
-    (
-        format!("{source}{}: {text}{detail}", definition.name),
-        colour,
-    )
+    (format!("{source}{} {text}{detail}", entry.code), colour)
 }
