@@ -121,18 +121,6 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.shown.get(&place)
     }
 
-    /// Logarithm of the likelihood of whom the failed checks suspect under one cause at several parts.
-    pub(super) fn ln_suspicion(&self, parts: &[usize]) -> f64 {
-        let settings = self.model.settings;
-        settings.suspect * self.model.suspects.ln_of_several(&self.suspicion, parts)
-    }
-
-    /// Whether something that was seen names the part: a failed check that suspects it, or a sign.
-    pub(super) fn is_named(&self, part: &LruId) -> bool {
-        let mut signs = self.signs.in_steps.iter().chain(&self.signs.in_log);
-        self.suspicion.names(part) || signs.any(|sign| sign.lru.as_ref() == Some(part))
-    }
-
     /// The signs that showed.
     pub(super) fn signs(&self) -> &SignsSeen {
         &self.signs

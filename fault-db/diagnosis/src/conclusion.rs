@@ -4,8 +4,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use serde::Serialize;
 
-use super::common::Shared;
-use super::groups::Group;
+use super::groups::{Group, Shared};
 use super::next_check::NextCheck;
 use super::verdict::PartProbability;
 
@@ -120,34 +119,20 @@ impl Sentence {
         )
     }
 
-    /// One cause at several parts, a fault of each, or one of a part `alone`, and what tells.
+    /// One cause at two parts that share something, or a fault of each, and what tells.
     pub(crate) fn common(
-        (shared, reached): (&Shared, &[LruId]),
-        alone: Option<&LruId>,
+        shared: &Shared,
+        parts: [&LruId; 2],
         probability: f64,
         names: &[Lru],
     ) -> Self {
         let sure = percent(probability);
-        let places: Vec<_> = reached
-            .iter()
-            .map(|part| named(part, None, names))
-            .collect();
-        let [places, places_ko] = joined(&places, [" and ", ", "]);
+        let [places, places_ko] =
+            joined(&parts.map(|part| named(part, None, names)), [" and ", ", "]);
         let [part, part_ko] = named(&shared.part, None, names);
-        let [or_alone, or_alone_ko] = alone.map_or_else(Default::default, |alone| {
-            let [alone, alone_ko] = named(alone, None, names);
-            [
-                format!(", or {alone} alone"),
-                format!(". {alone_ko} 단독 고장일 수도 있습니다"),
-            ]
-        });
         Self::new(
-            format!(
-                "one cause at {places} ({sure}): {part}, its wiring, or a fault of each{or_alone}"
-            ),
-            format!(
-                "{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장{or_alone_ko}"
-            ),
+            format!("one cause at {places} ({sure}): {part}, its wiring, or a fault of each"),
+            format!("{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장"),
         )
         .and(
             &format!("to tell which, {}", shared.measure.english),

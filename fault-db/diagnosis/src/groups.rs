@@ -11,11 +11,9 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
-use super::common::Shared;
 use super::conclusion::Sentence;
 use super::model::{Hypothesis, Model};
 use super::observation::Sign;
-use super::pairs::Several;
 use super::weights::Weights;
 
 /// A sign tells a part from the others of its group if so many modes of the part show it, and none of theirs.
@@ -26,6 +24,17 @@ const MODES_WITH_SIGN: usize = 2;
 pub struct Group {
     /// The parts.
     pub parts: Vec<LruId>,
+    /// What to measure, and where.
+    pub measure: Sentence,
+}
+
+/// What several parts share: a supply, a ground, a link or an air pipe.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Shared {
+    /// Part to replace where it has failed.
+    pub part: LruId,
+    /// Parts that it reaches.
+    pub reaches: Vec<LruId>,
     /// What to measure, and where.
     pub measure: Sentence,
 }
@@ -44,6 +53,15 @@ pub static NO_RELATIONS: Relations = Relations {
     groups: Vec::new(),
     shared: Vec::new(),
 };
+
+impl Relations {
+    /// What two parts share; of several the one that reaches the fewest parts.
+    pub fn shared_by(&self, parts: [&LruId; 2]) -> Option<&Shared> {
+        let all = self.shared.iter();
+        let of_both = all.filter(|shared| parts.iter().all(|part| shared.reaches.contains(part)));
+        of_both.min_by_key(|shared| shared.reaches.len())
+    }
+}
 
 impl Group {
     fn has(&self, part: &LruId) -> bool {
@@ -64,68 +82,34 @@ pub struct Answer {
 }
 
 /// Several parts that are the answer; `None` if they can be told apart, or if it is not certain that one of them has failed.
-pub fn answer(belief: &Belief<'_, '_>, weights: &Weights, several: &Several<'_>) -> Option<Answer> {
-    common_cause(belief, weights, several).or_else(|| group(belief, weights))
+pub fn answer(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
+    common_cause(belief.model, weights).or_else(|| group(belief, weights))
 }
 
-/// A cause that parts share, with the parts that it reaches: where it is likelier than not, and where two parts that share
-/// something are found to have failed. Several effects explain more than one, of whatever is in no dictionary, too: so the
-/// part that alone explains the run best is named with them.
-fn common_cause(
-    belief: &Belief<'_, '_>,
-    weights: &Weights,
-    several: &Several<'_>,
-) -> Option<Answer> {
-    let model = belief.model;
-    let likely = several.common.first();
-    let likely = likely.filter(|cause| cause.probability > 0.5);
-    let (shared, reached, alone) = match likely {
-        Some(cause) => {
-            let alone = alone(model, &several.single);
-            (cause.shared, cause.parts.clone(), alone)
-        }
-        None => {
-            let (shared, reached) = shared_by_found(model, weights)?;
-            (shared, reached, None)
-        }
+/// Two parts that are found to have failed and share something: one cause of both is likelier than two faults, and nothing
+/// on the bench parts the two.
+fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Answer> {
+    let found = weights.failed(model.settings.found_at).into_iter();
+    let mut found: Vec<&LruId> = found.map(|(part, _)| part).collect();
+    found.sort();
+    let [one, other] = found[..] else {
+        return None;
     };
-    let of_cause = |part: &LruId| *part == shared.part || reached.contains(part);
-    let alone = alone.filter(|part| !of_cause(part));
+    let shared = model.relations.shared_by([one, other])?;
     let mut parts = vec![shared.part.clone()];
-    parts.extend(reached.iter().filter(|part| **part != shared.part).cloned());
-    parts.extend(alone.cloned());
-    let probability = weights.any_failed(&parts);
-    (probability >= model.settings.found_at).then(|| Answer {
-        said: Sentence::common((shared, &reached), alone, probability, model.names),
+    parts.extend([one, other].map(LruId::clone));
+    Some(Answer {
+        said: Sentence::common(
+            shared,
+            [one, other],
+            weights.both_failed(one, other),
+            model.names,
+        ),
         group: Group {
             parts,
             measure: shared.measure.clone(),
         },
     })
-}
-
-/// What two parts share that are found to have failed, of several the one that reaches the fewest.
-fn shared_by_found<'m>(model: &Model<'m>, weights: &Weights) -> Option<(&'m Shared, Vec<LruId>)> {
-    let found = weights.failed(model.settings.found_at).into_iter();
-    let mut found: Vec<LruId> = found.map(|(part, _)| part.clone()).collect();
-    found.sort();
-    let all = model.relations.shared.iter();
-    let reaching = all.filter(|shared| found.iter().all(|part| shared.reaches.contains(part)));
-    let shared = reaching.min_by_key(|shared| shared.reaches.len())?;
-    (found.len() > 1).then_some((shared, found))
-}
-
-/// The part that alone explains a run best.
-fn alone<'d>(model: &Model<'d>, single: &[f64]) -> Option<&'d LruId> {
-    let mut of_parts = vec![0.0; model.parts().len()];
-    for (hypothesis, probability) in model.hypotheses.iter().zip(single) {
-        if let Some(part) = model.part(*hypothesis) {
-            of_parts[part] += probability;
-        }
-    }
-    let parts = model.parts().iter().zip(of_parts);
-    let best = parts.max_by(|a, b| a.1.total_cmp(&b.1));
-    best.map(|(part, _)| *part)
 }
 
 fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {

@@ -13,7 +13,6 @@
 
 mod belief;
 mod cell;
-mod common;
 mod conclusion;
 mod dictionary;
 mod explained;
@@ -40,11 +39,10 @@ mod weights;
 
 pub use belief::{Belief, Settled};
 pub use cell::{Cell, StepOutcome, Values};
-pub use common::Shared;
 pub use conclusion::Sentence;
 pub use dictionary::{Basis, Column, Dictionary, Mode, ModeName};
 pub use explained::Cause;
-pub use groups::{Group, Relations};
+pub use groups::{Group, Relations, Shared};
 pub use model::{Hypothesis, Model};
 pub use next_check::NextCheck;
 pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, is_observed};

@@ -196,11 +196,6 @@ impl<'a> Model<'a> {
         &self.resemblance[part]
     }
 
-    /// Effects of a part.
-    pub fn effects_of(&self, part: usize) -> &[usize] {
-        &self.effects_of_parts[part]
-    }
-
     /// Place of a mode's level among the effects.
     pub fn effect(&self, hypothesis: Hypothesis) -> Option<usize> {
         self.effects().binary_search(&hypothesis).ok()

@@ -1,4 +1,4 @@
-//! Two effects at once: of two faults, or of one that was not seen yet.
+//! Two effects at once: of two faults, or of one cause at two parts that share something.
 //!
 //! A check passes under two effects only if it passes under each, and fails if either makes it fail. So a passed check
 //! has the lesser of the two likelihoods; any other result is that of one of them.
@@ -6,10 +6,8 @@
 use protocol::Verdict;
 
 use super::belief::{Belief, normalised};
-use super::common::{CommonCause, common_causes};
-use super::model::{FIRST_EFFECT, Hypothesis, Model, StepLikelihoods};
+use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::{Observation, ObservedStep};
-use super::spells::AS_COUNTED;
 
 /// Number of best explaining modes, each of which is combined with all others.
 const MOST_EXPLAINING: usize = 12;
@@ -24,22 +22,11 @@ pub struct Pair {
     pub probability: f64,
 }
 
-/// Faults of several parts, and the probabilities of the single hypotheses beside them.
-#[derive(Default)]
-pub struct Several<'m> {
-    /// The pairs worth reporting, the likeliest first.
-    pub pairs: Vec<Pair>,
-    /// What several parts share.
-    pub common: Vec<CommonCause<'m>>,
-    /// Of the model's hypotheses.
-    pub single: Vec<f64>,
-}
-
-/// Faults of several parts that explain a run.
-pub fn several<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> Several<'m> {
+/// The pairs worth reporting, the likeliest first, and the probabilities of the single hypotheses beside them.
+pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64>) {
     let model = belief.model;
     let effects = model.effects();
-    let counted = Steps::new(belief, seen, |ln| &ln.effects);
+    let counted = Steps::new(belief, seen);
     let mut ln = belief.ln();
     let mut found = Vec::new();
     let best = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -52,44 +39,39 @@ pub fn several<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> Several<'m> {
             if both.iter().all(|mode| model.is_intermittent(*mode)) {
                 continue;
             }
-            if model.lru(both[0]) == model.lru(both[1]) {
+            let [Some(one), Some(other)] = both.map(|mode| model.lru(mode)) else {
+                continue;
+            };
+            if one == other {
                 continue;
             }
+            let beside = match model.relations.shared_by([one, other]) {
+                Some(_) => model.settings.common_cause,
+                None => model.settings.second_fault,
+            };
             let prior = model.ln_priors[FIRST_EFFECT + first]
                 + model.ln_priors[FIRST_EFFECT + second]
-                + model.settings.second_fault.ln();
-            let ln = prior + counted.ln_of_all(&[*first, *second]);
+                + beside.ln();
+            let ln = prior + counted.ln_of_both(*first, *second);
             // Signs make nothing likelier.
             if ln > worth_a_look {
                 found.push((both, ln + belief.signs().ln_under(model, &both)));
             }
         }
     }
-    let loosely = Steps::new(belief, seen, |ln| &ln.like_effects[AS_COUNTED]);
-    let mut common = common_causes(belief, &loosely, &loosely.explaining(model));
     let singles = ln.len();
     ln.extend(found.iter().map(|(_, ln)| ln));
-    ln.extend(common.iter().map(|cause| cause.probability));
     let mut single = normalised(&ln);
-    let mut of_pairs = single.split_off(singles);
-    let of_common = of_pairs.split_off(found.len());
-    for (cause, probability) in common.iter_mut().zip(of_common) {
-        cause.probability = probability;
-    }
-    common.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let of_pairs = single.split_off(singles);
     let found = found.into_iter().zip(of_pairs);
     let pair = |((both, _), probability)| Pair { both, probability };
-    let mut pairs: Vec<Pair> = found.map(pair).collect();
-    pairs.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    Several {
-        pairs,
-        common,
-        single,
-    }
+    let mut found: Vec<Pair> = found.map(pair).collect();
+    found.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    (found, single)
 }
 
-/// What the steps tell of effects at once.
-pub struct Steps<'b> {
+/// What the steps tell of each two effects.
+struct Steps<'b> {
     /// Logarithms of the likelihood of each passed step under each effect.
     passed: Vec<&'b [f64]>,
     strange: Vec<StrangeStep<'b>>,
@@ -105,17 +87,12 @@ struct StrangeStep<'b> {
 }
 
 impl<'b> Steps<'b> {
-    /// `of_effects` takes from a step's likelihoods those under each effect.
-    pub fn new(
-        belief: &'b Belief<'_, '_>,
-        seen: &Observation,
-        of_effects: fn(&StepLikelihoods) -> &[f64],
-    ) -> Self {
+    fn new(belief: &'b Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;
         let (mut passed, mut strange) = (Vec::new(), Vec::new());
         for weighed in belief.steps() {
             let step = &seen.steps[weighed.seen];
-            let ln = of_effects(&weighed.ln);
+            let ln = &*weighed.ln.effects;
             if !is_strange(step) {
                 passed.push(ln);
                 continue;
@@ -136,7 +113,7 @@ impl<'b> Steps<'b> {
 
     /// Modes that explain the failures better than a healthy unit, with their best level, the best first; by the
     /// index of the effect.
-    pub fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
+    fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
         let explained = |effect: usize| -> f64 {
             let strange = self.strange.iter();
             let gains = strange.map(|step| (step.ln[effect] - step.ln_healthy).max(0.0));
@@ -159,20 +136,16 @@ impl<'b> Steps<'b> {
         best.into_iter().map(|(effect, ..)| effect).collect()
     }
 
-    /// Logarithm of the likelihood of all steps under effects at once.
-    pub fn ln_of_all(&self, effects: &[usize]) -> f64 {
-        let least = |ln: &&[f64]| {
-            let of_each = effects.iter().map(|effect| ln[*effect]);
-            of_each.fold(f64::INFINITY, f64::min)
-        };
+    /// Logarithm of the likelihood of all steps under two effects.
+    fn ln_of_both(&self, first: usize, second: usize) -> f64 {
+        let passed = self.passed.iter().map(|ln| ln[first].min(ln[second]));
         // Whose the effect is, is not known: as likely each one's as it is its own.
         let strange = self.strange.iter().map(|step| {
-            let of_each = effects.iter().map(|effect| step.weighted[*effect]);
-            let (result, weighted) =
-                of_each.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-            (weighted / result).ln()
+            let (result, weighted) = step.weighted[first];
+            let (other_result, other_weighted) = step.weighted[second];
+            ((weighted + other_weighted) / (result + other_result)).ln()
         });
-        self.passed.iter().map(least).sum::<f64>() + strange.sum::<f64>()
+        passed.sum::<f64>() + strange.sum::<f64>()
     }
 }
 

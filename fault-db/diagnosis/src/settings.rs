@@ -10,6 +10,8 @@ pub struct Settings {
     pub no_fault: f64,
     /// Probability of a second fault given a first, relative to its own prior.
     pub second_fault: f64,
+    /// The same of a second part that shares something with the first, such as the supply: one cause may act at both.
+    pub common_cause: f64,
     /// A part is found at this probability.
     pub found_at: f64,
     /// A unit counts as healthy at this probability of no fault.
@@ -26,8 +28,6 @@ pub struct Settings {
     pub anything: f64,
     /// Share of a part's faults that act in a way which is not in the dictionary.
     pub unseen_mode: f64,
-    /// Share of faults that are one cause at several parts, such as their supply.
-    pub common_cause: f64,
     /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
     /// of any part.
     pub other_part: f64,
@@ -218,7 +218,7 @@ impl Default for Settings {
             otherwise_unseen: 0.1,
             anything: 0.1,
             unseen_mode: 0.045,
-            common_cause: 0.001,
+            common_cause: 0.1,
             other_part: 0.02,
             other_spells: 0.8,
             spell_rate: 5.0,

@@ -29,19 +29,24 @@ impl SignsSeen {
                     + self.in_log.len() as f64 * log.stray.ln()
             }
             Hypothesis::Mode { .. } => self.ln_under(model, &[hypothesis]),
-            Hypothesis::Unseen { part } => ln_of_any(&[&self.chances(model, part)]),
+            Hypothesis::Unseen { .. } => {
+                let named = model.lru(hypothesis);
+                let settings = &model.settings.signs;
+                let signs = self
+                    .in_steps
+                    .iter()
+                    .chain(self.in_log.difference(&self.in_steps));
+                let of_sign = |sign: &Sign| {
+                    let chance = match (&sign.lru, named) {
+                        (Some(lru), Some(part)) if lru == part => settings.of_part,
+                        _ if sign.is_measured() => settings.measured,
+                        _ => settings.of_other_part,
+                    };
+                    chance.ln()
+                };
+                signs.map(of_sign).sum()
+            }
         }
-    }
-
-    /// Probability that an unseen fault of a part shows each of them.
-    pub fn chances(&self, model: &Model<'_>, part: usize) -> Vec<f64> {
-        let settings = &model.settings.signs;
-        let chance = |sign: &Sign| match &sign.lru {
-            Some(named) if named == model.parts()[part] => settings.of_part,
-            _ if sign.is_measured() => settings.measured,
-            _ => settings.of_other_part,
-        };
-        self.in_steps.union(&self.in_log).map(chance).collect()
     }
 
     /// The same under modes at once, each of which shows its own: as often as counted. One that did not show speaks against them if a check was made that should
@@ -84,16 +89,6 @@ impl SignsSeen {
         });
         in_steps.chain(in_log).chain(silent).sum()
     }
-}
-
-/// Logarithm of the probability that signs show, each under any of several faults with these chances of it.
-pub fn ln_of_any(chances: &[&[f64]]) -> f64 {
-    let signs = chances.first().map_or(0, |of_fault| of_fault.len());
-    let of_sign = |sign: usize| {
-        let silent = chances.iter().map(|of_fault| 1.0 - of_fault[sign]);
-        (1.0 - silent.product::<f64>()).ln()
-    };
-    (0..signs).map(of_sign).sum()
 }
 
 /// A sign of a mode at one level.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use protocol::{LruId, Verdict};
 
-use super::belief::ln_sum;
+use super::belief::normalised;
 use super::dictionary::{Column, Dictionary};
 use super::observation::ObservedStep;
 
@@ -46,11 +46,6 @@ impl Suspicion {
             let suspect = dictionary.suspects.get(place).cloned().flatten();
             *self.failed.entry(suspect).or_default() += count;
         }
-    }
-
-    /// Whether a failed check suspects the part.
-    pub fn names(&self, part: &LruId) -> bool {
-        self.failed.keys().flatten().any(|suspect| suspect == part)
     }
 
     fn shares(&self) -> impl Iterator<Item = (&Suspect, f64)> {
@@ -102,33 +97,19 @@ impl Suspects {
     /// For each part, logarithm of the likelihood of what failed under an unseen mode of it, beside the mean over the
     /// parts. What failed in a run depends on each other: all of it counts as one check.
     pub fn ln(&self, seen: &Suspicion) -> Vec<f64> {
-        let mean = self.ln_mean(seen);
-        let parts = 0..self.of_parts.len();
-        parts
-            .map(|part| self.ln_under(seen, &[part]) - mean)
+        let of_part = |table: &BTreeMap<Suspect, f64>| {
+            let of_each = seen.shares().map(|(suspect, share)| {
+                let chance = table.get(suspect).copied().unwrap_or(0.0);
+                share * chance.max(LEAST).ln()
+            });
+            of_each.sum()
+        };
+        let shares = normalised(&self.of_parts.iter().map(of_part).collect::<Vec<f64>>());
+        let parts = shares.len() as f64;
+        shares
+            .into_iter()
+            .map(|share| (share * parts).ln())
             .collect()
-    }
-
-    /// The same under one cause at several parts, which points where each of them does.
-    pub fn ln_of_several(&self, seen: &Suspicion, parts: &[usize]) -> f64 {
-        self.ln_under(seen, parts) - self.ln_mean(seen)
-    }
-
-    /// Logarithm of the mean over the parts of the likelihood of what failed.
-    fn ln_mean(&self, seen: &Suspicion) -> f64 {
-        let parts = 0..self.of_parts.len();
-        ln_sum(parts.map(|part| self.ln_under(seen, &[part]))) - (self.of_parts.len() as f64).ln()
-    }
-
-    fn ln_under(&self, seen: &Suspicion, parts: &[usize]) -> f64 {
-        let of_each = seen.shares().map(|(suspect, share)| {
-            let chances = parts
-                .iter()
-                .filter_map(|part| self.of_parts[*part].get(suspect));
-            let chance = chances.sum::<f64>() / parts.len() as f64;
-            share * chance.max(LEAST).ln()
-        });
-        of_each.sum()
     }
 }
 

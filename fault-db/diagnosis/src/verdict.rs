@@ -13,7 +13,7 @@ use super::groups::{self, Answer, Group};
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
-use super::pairs::{Pair, Several, several};
+use super::pairs::{Pair, pairs};
 use super::reasons::{Reason, reasons};
 use super::settings::ConclusionSettings;
 use super::weights::{Fault, Weights, name};
@@ -98,7 +98,7 @@ pub struct Assessment<'m, 'd, 's> {
     belief: Belief<'m, 'd>,
     seen: &'s Observation,
     weights: Weights,
-    several: Several<'m>,
+    pairs: Vec<Pair>,
     /// Several parts that are the answer.
     group: Option<Answer>,
 }
@@ -107,20 +107,13 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
     /// Of all that was seen.
     pub fn of(model: &'m Model<'d>, seen: &'s Observation) -> Self {
         let belief = Belief::after(model, seen);
-        let several = match seen.shows_a_fault() {
-            true => several(&belief, seen),
-            false => Several {
-                single: belief.probabilities(),
-                ..Several::default()
-            },
-        };
-        let weights = Weights::new(model, &several);
+        let (weights, pairs) = Weights::after(&belief, seen);
         Self {
-            group: groups::answer(&belief, &weights, &several),
+            group: groups::answer(&belief, &weights),
             belief,
             seen,
             weights,
-            several,
+            pairs,
         }
     }
 
@@ -141,9 +134,9 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
         };
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
-        let shown = self.several.pairs.iter().filter(is_shown);
+        let shown = self.pairs.iter().filter(is_shown);
         Diagnosis {
-            candidates: self.candidates(),
+            candidates: weights.candidates(belief, self.seen),
             next_check,
             conclusion,
             finding,
@@ -157,46 +150,6 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             no_fault: weights.no_fault,
             lrus: weights.lrus.clone(),
         }
-    }
-
-    /// The faults that may be it, those of the likeliest part first; that part's likeliest however unlikely.
-    fn candidates(&self) -> Vec<Candidate> {
-        let model = self.belief.model;
-        let ConclusionSettings {
-            least_shown,
-            most_shown,
-            ..
-        } = model.settings.conclusion;
-        let rank = |lru: Option<&LruId>| {
-            let parts = &self.weights.lrus;
-            parts.iter().position(|part| Some(&part.lru) == lru)
-        };
-        let common = self.several.common.iter();
-        let common = common.filter(|cause| cause.probability >= least_shown);
-        let mut all: Vec<Candidate> = common
-            .map(|cause| cause.candidate(&self.belief, self.seen))
-            .collect();
-        let mut faults: Vec<&Fault> = self.weights.faults.iter().collect();
-        faults.sort_by(|a, b| {
-            let by_part = rank(model.lru(a.hypothesis)).cmp(&rank(model.lru(b.hypothesis)));
-            by_part.then(b.probability.total_cmp(&a.probability))
-        });
-        let is_first = all.iter().all(|common| rank(Some(&common.lru)) != Some(0));
-        let likely = |(place, fault): &(usize, &Fault)| {
-            (*place == 0 && is_first) || fault.probability >= least_shown
-        };
-        let likely = faults
-            .into_iter()
-            .enumerate()
-            .filter(likely)
-            .take(most_shown);
-        all.extend(likely.filter_map(|(_, fault)| candidate(&self.belief, self.seen, fault)));
-        all.sort_by(|a, b| {
-            let by_part = rank(Some(&a.lru)).cmp(&rank(Some(&b.lru)));
-            by_part.then(b.probability.total_cmp(&a.probability))
-        });
-        all.truncate(most_shown);
-        all
     }
 
     /// The parts that are found, each with what it explains.
@@ -249,6 +202,44 @@ fn candidate(belief: &Belief<'_, '_>, seen: &Observation, fault: &Fault) -> Opti
 }
 
 impl Weights {
+    /// Of all evidence, with the pairs of faults that explain it.
+    fn after(belief: &Belief<'_, '_>, seen: &Observation) -> (Self, Vec<Pair>) {
+        let (pairs, single) = if seen.shows_a_fault() {
+            pairs(belief, seen)
+        } else {
+            (Vec::new(), belief.probabilities())
+        };
+        (Self::new(belief.model, &pairs, &single), pairs)
+    }
+
+    fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
+        let model = belief.model;
+        let ConclusionSettings {
+            least_shown,
+            most_shown,
+            ..
+        } = model.settings.conclusion;
+        let rank = |fault: &Fault| {
+            let lru = model.lru(fault.hypothesis);
+            self.lrus.iter().position(|part| Some(&part.lru) == lru)
+        };
+        let mut faults: Vec<&Fault> = self.faults.iter().collect();
+        faults.sort_by(|a, b| {
+            let by_part = rank(a).cmp(&rank(b));
+            by_part.then(b.probability.total_cmp(&a.probability))
+        });
+        let likely =
+            |(shown, fault): &(usize, &Fault)| *shown == 0 || fault.probability >= least_shown;
+        let shown = faults
+            .into_iter()
+            .enumerate()
+            .filter(likely)
+            .take(most_shown);
+        shown
+            .filter_map(|(_, fault)| candidate(belief, seen, fault))
+            .collect()
+    }
+
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
         if !self.failed(settings.found_at).is_empty() || self.no_fault >= settings.healthy_at {

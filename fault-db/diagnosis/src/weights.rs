@@ -6,7 +6,7 @@ use protocol::LruId;
 
 use super::belief::Belief;
 use super::model::{Hypothesis, Model};
-use super::pairs::Several;
+use super::pairs::Pair;
 use super::verdict::PartProbability;
 
 /// Word for a fault of a part that is not in the dictionary, in place of a mode's.
@@ -77,13 +77,8 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Of the probabilities of single hypotheses, in the model's order, and of faults of several parts beside them.
-    pub fn new(model: &Model<'_>, several: &Several<'_>) -> Self {
-        let Several {
-            pairs,
-            common,
-            single,
-        } = several;
+    /// Of the probabilities of single hypotheses, in the model's order, and of the pairs beside them.
+    pub fn new(model: &Model<'_>, pairs: &[Pair], single: &[f64]) -> Self {
         let mut faults: Vec<Fault> = Vec::new();
         let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
         let mut no_fault = 0.0;
@@ -131,9 +126,6 @@ impl Weights {
             if let [Some(one), Some(other)] = pair.both.map(|hypothesis| model.lru(hypothesis)) {
                 *both.entry([one.min(other), one.max(other)]).or_default() += pair.probability;
             }
-        }
-        for cause in common {
-            *parts.entry(&cause.shared.part).or_default() += cause.probability;
         }
         let mut lrus: Vec<_> = parts
             .into_iter()

@@ -354,15 +354,17 @@ fn what_the_manuals_have_in_bold_is_in_the_window() {
 
 #[test]
 fn both_manuals_have_the_same_sections_tables_and_pictures() {
-    let [english, korean] = ["docs/manual.md", "docs/manual.ko.md"].map(|file| {
-        let document = Document::read(root().join(file));
-        let parts = ["#", "|", "!["];
-        parts.map(|part| {
-            let lines = document.prose().into_iter();
-            lines.filter(|(_, line)| line.starts_with(part)).count()
-        })
-    });
-    assert_eq!(english, korean);
+    for name in ["manual", "checks"] {
+        let [english, korean] = ["md", "ko.md"].map(|language| {
+            let document = Document::read(root().join(format!("docs/{name}.{language}")));
+            let parts = ["#", "|", "!["];
+            parts.map(|part| {
+                let lines = document.prose().into_iter();
+                lines.filter(|(_, line)| line.starts_with(part)).count()
+            })
+        });
+        assert_eq!(english, korean, "{name}");
+    }
 }
 
 #[test]
