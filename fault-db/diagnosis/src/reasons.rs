@@ -64,12 +64,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         let best_rival = rival.fold(healthy, f64::max);
         let step = &seen.steps[weighed.seen];
         let reason = || Reason {
-            said: format!(
-                "{}, {}: {}",
-                step.check.procedure,
-                step.check.step,
-                step.result.label()
-            ),
+            said: format!("{} — {}", step.check, step.result.label()),
             detail: Some(text(model, model.effects()[own], weighed.place, step)),
             step: Some(step.check.clone()),
         };

@@ -218,7 +218,7 @@ impl Default for Settings {
             otherwise_unseen: 0.1,
             anything: 0.1,
             unseen_mode: 0.045,
-            common_cause: 0.1,
+            common_cause: 0.001,
             other_part: 0.02,
             other_spells: 0.8,
             spell_rate: 5.0,

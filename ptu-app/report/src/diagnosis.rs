@@ -142,6 +142,7 @@ fn candidate_text(text: &mut String, c: &Candidate, all: bool) {
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
         let reasons = if all { details(reasons) } else { said(reasons) };
         for reason in reasons {
+            let reason = Language::English.words().content(reason);
             let _ = writeln!(text, "         {sign} {reason}");
         }
     }

@@ -124,7 +124,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     // What was said when the unit was brought, beside the check that found the part; a small screen shows less at once.
     if language == Language::English && size[0] >= 1280.0 {
         for said in [DEPOT, "Brakes late or not at all", "Found by"] {
-            counted.window.wait_for(said);
+            counted.window.scroll_to(said);
         }
     }
     counted.click(case.sign);

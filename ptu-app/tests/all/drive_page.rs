@@ -2,7 +2,6 @@
 
 use crate::common::window::{Window, settings};
 use crate::common::{Place, number, scripts};
-use eframe::egui::Key;
 use ptu_app::gui::{Page, Settings};
 use ptu_report::words::Language;
 
@@ -35,29 +34,15 @@ fn a_run_from_the_window_is_that_of_the_command_line() {
         let error_cm = error_cm.trim_start_matches('-');
         assert!(window.shows_part(error_cm), "{error_cm}");
         for (key, decimals) in [("run_time_s", 1), ("rms_jerk_m_s3", 3), ("energy_kwh", 2)] {
-            scroll_to(&mut window, &format!("{:.decimals$}", number(&run[key])));
+            window.scroll_to(&format!("{:.decimals$}", number(&run[key])));
         }
         for plot in ["Speed over time", "Position over time", "The last metres"] {
-            scroll_to(&mut window, &words.content(plot));
+            window.scroll_to(&words.content(plot));
         }
-        scroll_to(&mut window, &words.content("stop curve takes over"));
+        window.scroll_to(&words.content("stop curve takes over"));
         // Nothing of it is in the history.
         assert!(!window.place.path("history.db").exists());
     }
-}
-
-/// Turns pages until this is in view.
-fn scroll_to(window: &mut Window, label: &str) {
-    for _ in 0..20 {
-        if window.shows(label) {
-            return;
-        }
-        window.key(Key::PageDown);
-        for _ in 0..10 {
-            window.step();
-        }
-    }
-    panic!("no {label}: {:#?}", window.shown());
 }
 
 /// Goal: a long order is stopped, and how far it came is told. Method: all sections under all controllers, and Stop.

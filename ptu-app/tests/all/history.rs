@@ -147,7 +147,7 @@ fn a_fault_is_shown_with_its_occurrences_and_freeze_frame() {
         .exits(0)
         .out;
     assert!(
-        shown.contains("eb_reaction") && shown.contains("freeze frame"),
+        shown.contains("EB reaction = ") && shown.contains("freeze frame"),
         "{shown}"
     );
 }

@@ -114,6 +114,20 @@ impl Window {
         self.until(part, |window| window.shows_part(part));
     }
 
+    /// Turns the pages of a sheet until something of this name is in view.
+    pub fn scroll_to(&mut self, label: &str) {
+        for _ in 0..20 {
+            if self.shows(label) {
+                return;
+            }
+            self.key(eframe::egui::Key::PageDown);
+            for _ in 0..10 {
+                self.step();
+            }
+        }
+        panic!("no {label}: {:#?}", self.shown());
+    }
+
     /// Something of this name is shown.
     pub fn shows(&self, label: &str) -> bool {
         self.harness.query_all_by_label(label).next().is_some()

@@ -191,7 +191,7 @@ fn tell_messages(candidate: &mut Candidate, run: &RunDetail) {
         let parts: Vec<_> = parts.filter(|part| !part.is_empty()).collect();
         let measured = parts.iter().find(|part| part.contains(" = "));
         if let Some(message) = measured.or(parts.first()) {
-            reason.said = format!("{}, {}: {message}", check.procedure, check.step);
+            reason.said = format!("{check} — {message}");
         }
     }
 }

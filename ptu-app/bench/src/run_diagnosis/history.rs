@@ -15,7 +15,7 @@ use crate::symptoms::Symptom;
 const MOST_RUNS: u32 = 4;
 const DAY_US: i64 = 86_400_000_000;
 /// What the history tells comes after so many reasons.
-const AFTER: usize = 2;
+const AFTER: usize = 1;
 
 /// What a unit's history says of its parts.
 #[derive(Clone, Debug, Default, PartialEq)]

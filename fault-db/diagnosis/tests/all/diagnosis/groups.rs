@@ -122,6 +122,7 @@ fn one_cause_at_two_parts_is_told_with_what_they_share() {
     };
     let settings = Settings {
         found_at: 0.7,
+        common_cause: 0.1,
         ..settings()
     };
     let mut seen = run(&["a.s1", "b.s1", "c.s1"], Some(640.0));

@@ -216,7 +216,7 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
 /// A reason without the path of the script that it begins with.
 fn without_path(reason: &str) -> &str {
     let is_path = |text: &str| text.contains('/') && !text.contains(' ');
-    match reason.split_once(", ") {
+    match reason.split_once(": ") {
         Some((path, rest)) if is_path(path) => rest,
         _ => reason,
     }
@@ -228,12 +228,12 @@ mod tests {
 
     #[test]
     fn a_reason_loses_the_path_of_its_script_and_nothing_else() {
-        let reason = "atp/overspeed, code 55: alarm, FSB, EB: eb_reaction = 640";
+        let reason = "atp/overspeed: code 55: alarm, FSB, EB — eb_reaction = 640";
         assert_eq!(
             without_path(reason),
-            "code 55: alarm, FSB, EB: eb_reaction = 640"
+            "code 55: alarm, FSB, EB — eb_reaction = 640"
         );
-        for other in ["a brake and/or door, late", "logged, eb/fsb", "no path"] {
+        for other in ["a brake and/or door: late", "logged: eb/fsb", "no path"] {
             assert_eq!(without_path(other), other);
         }
     }
