@@ -204,7 +204,7 @@ fn common(modes: &[&FaultMode], shared: &[Shared], seed: u64) -> Option<Sample> 
         if faults.len() < places && new && cause.reaches.contains(&mode.lru) {
             let mut fault = mode.at_level(random.below(1 + mode.levels.len()))?;
             if let Some(first) = faults.first() {
-                fault.occurs = first.occurs.clone();
+                fault.occurs = first.occurs;
             }
             faults.push(fault);
         }
