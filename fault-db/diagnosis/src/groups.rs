@@ -73,7 +73,7 @@ impl Group {
     }
 }
 
-/// Several parts, one of which has failed, and what tells which.
+/// Several parts, of which at least one has failed or what they share, and what tells which.
 pub struct Answer {
     /// The parts.
     pub group: Group,
@@ -112,6 +112,7 @@ fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Answer> {
     })
 }
 
+/// A group of which one part has failed for certain, unless something tells which.
 fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
     let model = belief.model;
     let found_at = model.settings.found_at;
