@@ -62,15 +62,10 @@ impl Distances {
             }
             let at_us = day_us(&date)
                 .ok_or_else(|| wrong(1, format!("\"{date}\" is no date like 2026-03-21")))?;
-            let km = km.parse::<f64>().ok();
-            let km = km
-                .filter(|km| (0.0..=FARTHEST_KM).contains(km))
-                .ok_or_else(|| {
-                    wrong(
-                        2,
-                        format!("\"{}\" is no number of kilometres", line_end(line)),
-                    )
-                })?;
+            let read = km.parse::<f64>().ok();
+            let read = read.filter(|km| (0.0..=FARTHEST_KM).contains(km));
+            let km =
+                read.ok_or_else(|| wrong(2, format!("\"{km}\" is no number of kilometres")))?;
             let of_train = all.0.entry(train).or_default();
             let place = of_train.partition_point(|known| known.at_us < at_us);
             let after = of_train.get(place);
@@ -115,10 +110,6 @@ impl Distances {
 fn cells(line: &str) -> Vec<String> {
     let cell = |cell: &str| cell.trim().trim_matches('"').to_owned();
     line.split(',').map(cell).collect()
-}
-
-fn line_end(line: &str) -> String {
-    cells(line).pop().unwrap_or_default()
 }
 
 /// When a local day begins.

@@ -113,9 +113,15 @@ impl Sentence {
             .map(|part| named(part, None, names))
             .collect();
         let [parts, parts_ko] = one_or_other(&parts);
-        Self::new(format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")).and(
-            &format!("to tell which, {}", group.measure.english),
-            &format!("판별 방법: {}", group.measure.korean),
+        Self::new(format!("{parts} ({sure})"), format!("{parts_ko} ({sure})"))
+            .told_by(&group.measure)
+    }
+
+    /// With the measurement that tells which.
+    fn told_by(self, measure: &Self) -> Self {
+        self.and(
+            &format!("to tell which, {}", measure.english),
+            &format!("판별 방법: {}", measure.korean),
         )
     }
 
@@ -134,10 +140,7 @@ impl Sentence {
             format!("one cause at {places} ({sure}): {part}, its wiring, or a fault of each"),
             format!("{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장"),
         )
-        .and(
-            &format!("to tell which, {}", shared.measure.english),
-            &format!("판별 방법: {}", shared.measure.korean),
-        )
+        .told_by(&shared.measure)
     }
 
     /// Nothing is wrong.

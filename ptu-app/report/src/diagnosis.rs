@@ -12,7 +12,7 @@ use crate::words::Language;
 use ptu_bench::run_diagnosis::Answer;
 
 /// Parts that are shown at once.
-const MOST_PARTS: usize = 3;
+pub const MOST_PARTS: usize = 3;
 /// Reasons that are shown of each.
 pub const MOST_REASONS: usize = 3;
 
@@ -26,7 +26,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     let candidate = |c: &Candidate| {
         json!({
             "lru": c.lru, "fault": c.fault, "probability": c.probability,
-            "for": said(&c.for_it), "against": said(&c.against),
+            "for": shown_reasons(&c.for_it), "against": shown_reasons(&c.against),
             "details": { "for": details(&c.for_it), "against": details(&c.against) },
             "text": c.text, "traces": traces(c.lru.as_str()),
         })
@@ -51,7 +51,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
 }
 
 /// The first reasons, which differ.
-fn said(reasons: &[Reason]) -> Vec<&str> {
+pub fn shown_reasons(reasons: &[Reason]) -> Vec<&str> {
     let said = reasons.iter().take(MOST_REASONS);
     said.map(|reason| &*reason.said).collect()
 }
@@ -124,9 +124,7 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
 /// The likeliest fault of each of the likeliest parts.
 pub fn first_of_parts(candidates: &[Candidate]) -> impl Iterator<Item = &Candidate> {
     let mut parts = BTreeSet::new();
-    let first = candidates
-        .iter()
-        .filter(move |c| parts.insert(c.lru.clone()));
+    let first = candidates.iter().filter(move |c| parts.insert(&c.lru));
     first.take(MOST_PARTS)
 }
 
@@ -140,7 +138,11 @@ fn candidate_text(text: &mut String, c: &Candidate, all: bool) {
         c.text
     );
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
-        let reasons = if all { details(reasons) } else { said(reasons) };
+        let reasons = if all {
+            details(reasons)
+        } else {
+            shown_reasons(reasons)
+        };
         for reason in reasons {
             let reason = Language::English.words().content(reason);
             let _ = writeln!(text, "         {sign} {reason}");

@@ -8,7 +8,7 @@ use btu_rig::rig::Random;
 use super::evaluate::Assessment;
 use crate::drive::monte_carlo::percentile;
 
-/// Drawn so many times.
+/// Number of draws.
 const DRAWS: usize = 2000;
 /// The interval has 95 % of the draws, percentiles.
 const ENDS: [f64; 2] = [2.5, 97.5];

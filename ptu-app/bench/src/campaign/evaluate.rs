@@ -165,11 +165,6 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
 
 fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
     let mode = sample.faults.first()?;
-    let ids: Vec<_> = sample
-        .faults
-        .iter()
-        .map(|fault| fault.id.as_str())
-        .collect();
     let assessed = diagnosis::Assessment::of(model, &run.seen);
     let diagnosis = assessed.diagnosis();
     let parts: Vec<_> = match diagnosis.finding {
@@ -185,7 +180,7 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         _ => assessed.credible_parts(SURE),
     };
     Some(Assessment {
-        fault: ids.join(" and "),
+        fault: sample.modes(),
         lru: sample.cause.as_ref().unwrap_or(&mode.lru).clone(),
         kind: mode.kind().word(),
         unsafe_: mode.unsafe_,

@@ -53,14 +53,8 @@ impl PairFigures {
             figures.one.count(found > 0);
             figures.wrong.count(sound);
             if found < 2 {
-                let faults: Vec<_> = sample
-                    .faults
-                    .iter()
-                    .map(|fault| fault.id.as_str())
-                    .collect();
-                figures
-                    .not_both
-                    .push((faults.join(" and "), diagnosis.conclusion.english));
+                let answer = diagnosis.conclusion.english;
+                figures.not_both.push((sample.modes(), answer));
             }
         }
         figures

@@ -71,6 +71,12 @@ impl Sample {
         }
     }
 
+    /// Names of the modes of all of its faults.
+    pub fn modes(&self) -> String {
+        let names: Vec<_> = self.faults.iter().map(|fault| fault.id.as_str()).collect();
+        names.join(" and ")
+    }
+
     /// Name of that fault's mode.
     pub fn mode(&self) -> Option<&str> {
         self.fault().map(|fault| fault.id.as_str())

@@ -2,7 +2,7 @@
 
 use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
-use crate::diagnosis::{MOST_REASONS, first_of_parts};
+use crate::diagnosis::{first_of_parts, shown_reasons};
 use crate::words::{Language, Words, fill};
 use ptu_bench::run_diagnosis::Answer;
 
@@ -67,8 +67,8 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
             format!("{:.1} %", 100.0 * candidate.probability),
             sheet.part(candidate.lru.as_str(), words),
             format!("{}: {}", candidate.fault, words.content(&candidate.text)),
-            (candidate.for_it.iter().take(MOST_REASONS))
-                .map(|reason| words.content(&reason.said))
+            (shown_reasons(&candidate.for_it).into_iter())
+                .map(|reason| words.content(reason))
                 .collect::<Vec<_>>()
                 .join("\n"),
         ];

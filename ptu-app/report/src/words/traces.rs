@@ -86,7 +86,7 @@ wordings! {
         no_overlay: "nothing", "없음";
         good_twin: "good twin", "정상 비교 장치";
         making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 장치에 다시 주는 중 …";
-        drop_here: "Let go: the file is laid behind this trace", "놓으면 이 신호 기록 뒤에 파일이 겹쳐집니다";
+        drop_here: "Drop the file: it is laid behind this trace", "놓으면 이 신호 기록 뒤에 파일이 겹쳐집니다";
         open_first: "Open a trace first: a file is laid behind it", "먼저 신호 기록을 여십시오. 파일은 그 뒤에 겹쳐집니다";
         not_importable: "Only .csv, .parquet and .mcap files can be laid behind a trace", ".csv, .parquet, .mcap 파일만 신호 기록과 비교할 수 있습니다";
         cannot_overlay: "There is nothing to compare with", "비교할 수 없습니다";

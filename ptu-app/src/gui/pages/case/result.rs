@@ -15,7 +15,7 @@ use crate::gui::{Density, Destination, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Progress;
 use ptu_bench::failure::Exit;
 use ptu_bench::run::Outcome;
-use ptu_report::diagnosis::MOST_REASONS;
+use ptu_report::diagnosis::shown_reasons;
 use ptu_report::words::{Words, fill};
 
 /// What was found in a run.
@@ -66,11 +66,10 @@ impl Found {
             verdict: outcome.verdict,
             headline: said.map(|said| said.text.clone()).unwrap_or_default(),
             reasons: first
-                .map(|first| &*first.for_it)
+                .map(|first| shown_reasons(&first.for_it))
                 .unwrap_or_default()
-                .iter()
-                .take(MOST_REASONS)
-                .map(|reason| reason.said.clone())
+                .into_iter()
+                .map(str::to_owned)
                 .collect(),
             shown_by: shown_by(run),
             evidence: part.map(shown),

@@ -6,11 +6,8 @@ use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 use super::NamedAnswer;
 use crate::gui::parts::{link, share_bar};
 use crate::gui::{Destination, PageContext, Palette};
-use ptu_report::diagnosis::first_of_parts;
+use ptu_report::diagnosis::{MOST_PARTS, MOST_REASONS, first_of_parts};
 use ptu_report::words::{Diagnosis, fill};
-
-/// Candidates, and reasons of each, that are shown at once; the others are behind "more".
-const AT_ONCE: usize = 3;
 
 /// Candidates, two faults at once, and the rest.
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
@@ -27,7 +24,7 @@ pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
             show(ui, context, named, candidate, false);
         }
     });
-    for two in diagnosis.two_faults.iter().take(AT_ONCE) {
+    for two in diagnosis.two_faults.iter().take(MOST_PARTS) {
         let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
         likely(ui, two.probability, &said);
     }
@@ -35,7 +32,7 @@ pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
 }
 
 fn at_once<T>(all: &[T]) -> (&[T], &[T]) {
-    all.split_at(all.len().min(AT_ONCE))
+    all.split_at(all.len().min(MOST_REASONS))
 }
 
 /// What is shown when it is asked for.

@@ -1,4 +1,4 @@
-//! A file that is dragged over the page and let go: what can be read is laid behind the open trace.
+//! A file that is dropped on the page: what can be read is laid behind the open trace.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use ptu_report::trace_io::is_importable;
 /// Size of what is said while a file is over the page, points.
 const TEXT: f32 = 22.0;
 
-/// The file that was let go here and can be read; what cannot is told.
+/// The file that was dropped here and can be read; what cannot is told.
 pub fn file(ui: &Ui, context: &mut PageContext<'_>) -> Option<PathBuf> {
     let words = &context.words.traces;
     let (over, mut dropped) = ui.input(|input| {
