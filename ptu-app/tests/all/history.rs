@@ -1,15 +1,9 @@
 //! The history: what runs and faults left behind is listed, shown, counted, kept and carried along.
 
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
 
 use crate::common::{Place, has_shape, list, number, record_bad_unit, relay_fault, text};
 use serde_json::Value;
-
-/// Far above what a small database takes; the bench measures that.
-const LISTS_WITHIN: Duration = Duration::from_millis(200);
-/// A busy machine is slow at times: one list of so many tells what it takes.
-const LISTS: usize = 20;
 
 const FAULT: [(&str, &str); 10] = [
     ("id", "text"),
@@ -215,22 +209,6 @@ fn a_measurement_is_shown_over_time() {
     let slower = mean("BAD-1") - mean("GOOD-1");
     assert!((350.0..=450.0).contains(&slower), "{slower} ms slower");
     place.ptu(&["faults", "trend", "eb_reaction"]).exits(0);
-}
-
-/// Goal: nobody waits for a list. From process start, on a small database, debug build included.
-#[test]
-fn faults_are_listed_at_once() {
-    let place = history();
-    let mut least = Duration::MAX;
-    for _ in 0..LISTS {
-        let began = Instant::now();
-        place.ptu(&["faults", "list"]).exits(0);
-        least = least.min(began.elapsed());
-        if least < LISTS_WITHIN {
-            return;
-        }
-    }
-    panic!("{least:?} at least");
 }
 
 #[test]
