@@ -26,6 +26,7 @@ mod fault_months;
 mod faults;
 mod figures;
 mod history;
+mod history_files;
 mod history_page;
 mod internal_names;
 mod layout;
