@@ -22,6 +22,7 @@ mod documents;
 mod drive;
 mod drive_by_hand;
 mod drive_page;
+mod event_lines;
 mod fault_months;
 mod faults;
 mod figures;
