@@ -93,7 +93,7 @@ pub use run_notes::RunNote;
 pub use run_writer::{FaultStored, RunWriter};
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
-pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
+pub use server::{Address, Claim, MOST_TRIES, Queue, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::Store;
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};

@@ -35,7 +35,7 @@ macro_rules! figures {
         }
     ) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct $figures { $( $(#[$of])+ pub $key: $kind, )+ }
 
         impl $figures {

@@ -27,6 +27,7 @@ mod watch;
 use protocol::message::{EbCause, Mode, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
@@ -62,7 +63,8 @@ const COASTS: Duration = Duration::from_ms(60_000);
 const LOOP_LEFT_M: f64 = 50.0;
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Ending {
     /// The train stands and powers no more.
     #[error("stopped")]

@@ -6,10 +6,12 @@ mod bounded;
 mod connect;
 pub(crate) mod derived_columns;
 mod password;
+mod queue;
 pub(crate) mod schema;
 mod setup;
 mod tls;
 
 pub use address::Address;
+pub use queue::{Claim, MOST_TRIES, Queue};
 pub use schema::SERVER_SCHEMA_VERSION;
 pub use setup::ServerSetup;

@@ -240,7 +240,8 @@ macro_rules! wire_enum {
         $( $(#[doc = $vdoc:literal])+ $variant:ident = $value:literal $label:literal ),* $(,)?
     }) => {
         $(#[doc = $doc])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+        #[serde(from = "u8", into = "u8")]
         pub enum $name {
             $( $(#[doc = $vdoc])+ $variant, )*
             /// A value this version does not know: kept and shown, never acted on.
@@ -281,6 +282,14 @@ macro_rules! wire_enum {
 
         impl Default for $name {
             fn default() -> Self { Self::from_code(0) }
+        }
+
+        impl From<u8> for $name {
+            fn from(code: u8) -> Self { Self::from_code(code) }
+        }
+
+        impl From<$name> for u8 {
+            fn from(value: $name) -> Self { value.code() }
         }
 
         impl $crate::message::Field for $name {

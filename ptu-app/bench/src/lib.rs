@@ -11,6 +11,7 @@
 //! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
+//! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person is told;
 //!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal.
@@ -25,6 +26,7 @@ pub mod drive;
 pub mod failure;
 pub mod field;
 mod fleet;
+pub mod kept;
 pub mod link;
 pub mod new_file;
 pub mod owner_only;

@@ -1,15 +1,19 @@
 //! `ptu campaign`: the suite against every fault mode.
 
+mod merge;
+mod missing;
+
 use std::path::PathBuf;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::rig::Harness;
-use clap::Args;
+use clap::{Args, Subcommand};
 use fault_db::DictionaryRecord;
 use glob::Pattern;
 
+use super::keep::KeepOptions;
 use super::{Database, ScriptsOption, print_json, print_out};
-use ptu_bench::campaign::{self, Request, Suite, figures, redundancy};
+use ptu_bench::campaign::{self, Ran, Request, Suite, figures, redundancy};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::pool::cores;
@@ -34,9 +38,13 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 ///   ptu campaign --common-causes 100         what it is worth for one cause at several parts
 ///   ptu campaign --other-spells              what it is worth for faults that come more or less often
 ///   ptu campaign --runs runs.zst             goes on where it was stopped
+///   ptu campaign --shard 3/64 --runs shard-3.zst
+///   ptu campaign merge shard-*.zst --out runs.zst
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment)]
+#[command(verbatim_doc_comment, args_conflicts_with_subcommands = true)]
 pub struct CampaignArguments {
+    #[command(subcommand)]
+    verb: Option<Verb>,
     /// With `none`, as a laptop alone on a train: only procedures that need no bench harness
     #[arg(long, value_name = "WHICH", default_value = "bench")]
     harness: Harness,
@@ -68,9 +76,8 @@ pub struct CampaignArguments {
     /// Other units: another number means other seeds for all of them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     units: u32,
-    /// Keep the runs in a file; those that it holds are not made again
-    #[arg(long, value_name = "FILE")]
-    runs: Option<PathBuf>,
+    #[command(flatten)]
+    keep: KeepOptions,
     /// Embedded units to test side by side [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: Option<u32>,
@@ -86,9 +93,24 @@ pub struct CampaignArguments {
     scripts: ScriptsOption,
 }
 
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Merge(merge::MergeArguments),
+    Missing(missing::MissingArguments),
+}
+
 impl CampaignArguments {
-    /// Runs, keeps the dictionary and says what it is worth.
-    pub fn run(self) -> Result<Exit, Failure> {
+    /// Runs, keeps the dictionary and says what it is worth; or puts shards together.
+    pub fn run(mut self) -> Result<Exit, Failure> {
+        match self.verb.take() {
+            None => self.run_suite(),
+            Some(Verb::Merge(arguments)) => arguments.run(),
+            Some(Verb::Missing(arguments)) => arguments.run(),
+        }
+    }
+
+    fn run_suite(self) -> Result<Exit, Failure> {
+        self.keep.check(true)?;
         let directory = self.scripts.find()?;
         let connection = match self.harness {
             Harness::None => Connection::Ptu,
@@ -106,27 +128,39 @@ impl CampaignArguments {
             common: self.common_causes,
             other_spells: self.other_spells,
             units: self.units,
-            kept: self.runs.clone(),
+            keep: self.keep.keep()?,
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
-        for file in self.save.iter().chain(&self.runs) {
+        let count = self.keep.share(count);
+        if let Some(file) = &self.save {
             ptu_bench::data::check_writable(file)?;
         }
-        self.database.check_named()?;
-        let store = self.database.open_file()?;
+        // A shard makes no dictionary: nodes of a cluster need no database.
+        let store = match self.keep.is_part() {
+            true => None,
+            false => {
+                self.database.check_named()?;
+                Some(self.database.open_file()?)
+            }
+        };
         let stop = Stop::default();
         stop.listen();
         let mut progress = Progress::new(count, format!("{} fault modes", modes.len()));
-        let outcome = campaign::run(&directory, &suite, &asked, &settings, &stop, &mut |done| {
+        let ran = campaign::run(&directory, &suite, &asked, &settings, &stop, &mut |done| {
             progress.tell(done);
         })?;
         drop(progress);
-        let Some(outcome) = outcome else {
-            stdio::note("stopped; no dictionary was made");
-            return Ok(Exit::Aborted);
+        let outcome = match (ran, store) {
+            (Ran::All(outcome), Some(store)) => (outcome, store),
+            (Ran::Part(runs), _) => return self.keep.told(runs),
+            (Ran::All(_), None) | (Ran::Stopped, _) => {
+                stdio::note("stopped; no dictionary was made");
+                return Ok(Exit::Aborted);
+            }
         };
+        let (outcome, store) = outcome;
         let dictionary = &outcome.dictionary;
         let data = dictionary.to_bytes().map_err(Failure::bench)?;
         if let Some(file) = &self.save {

@@ -7,6 +7,7 @@ use btu_rig::drive::{Ending, Load, Scatter, manual};
 use clap::Args;
 use protocol::config::ControllerKind;
 
+use super::keep::KeepOptions;
 use super::{ScriptsOption, answered, print_json, print_out};
 use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
@@ -31,6 +32,7 @@ use ptu_report::drive::{self as report, Outcomes, Results, Target};
 ///   ptu drive --compare servo,fuzzy,pi,pss --report compare.html
 ///   ptu drive --train ideal --mass 432000 --disturbance s1 --controller fuzzy
 ///   ptu drive --monte-carlo 10000 --json
+///   ptu drive --monte-carlo 10000 --shard 3/64 --runs shard-3.zst
 ///   ptu drive --set ato.servo.s_curve_s=12 --set 'ato.controller="pss"'
 ///   ptu drive --manual figure7 --report figure7.html
 ///   ptu drive --manual keys --load full --save mine.toml
@@ -107,6 +109,8 @@ pub struct DriveArguments {
     /// Runs side by side [default: the cores of this machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     jobs: Option<u32>,
+    #[command(flatten)]
+    keep: KeepOptions,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -124,6 +128,7 @@ impl DriveArguments {
         for target in &self.report {
             target.check()?;
         }
+        self.keep.check(self.monte_carlo.is_some())?;
         if let Some(source) = &self.manual {
             return self.by_hand(&directory, source);
         }
@@ -134,8 +139,12 @@ impl DriveArguments {
         let outcomes = match self.monte_carlo {
             Some(count) => {
                 let scatter = scatter(&directory)?;
-                let many = |case| monte_carlo::run(case, count as usize, &scatter, jobs, &stop);
-                Outcomes::Many(cases.into_iter().map(many).collect())
+                let count = count as usize;
+                let keep = self.keep.keep()?;
+                match monte_carlo::run(cases, count, &scatter, &keep, (jobs, &stop))? {
+                    monte_carlo::Ran::All(many) => Outcomes::Many(many),
+                    monte_carlo::Ran::Part(runs) => return self.keep.told(runs),
+                }
             }
             None => {
                 if self.scattered {

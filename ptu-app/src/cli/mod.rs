@@ -14,6 +14,7 @@ mod gui;
 #[path = "no_window.rs"]
 mod gui;
 mod help;
+mod keep;
 mod output;
 mod ports;
 mod record;

@@ -42,6 +42,7 @@ mod resume;
 mod saved_questions;
 mod scatter;
 mod server;
+mod shards;
 mod statistics_page;
 mod suite;
 mod symptoms;

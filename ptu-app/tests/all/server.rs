@@ -2,7 +2,7 @@
 
 #[path = "../../../fault-db/tests/server/private.rs"]
 #[allow(dead_code, reason = "the tests of fault-db use the rest of it")]
-mod owner_only;
+pub(crate) mod owner_only;
 
 use self::owner_only::{free_port, shared};
 use crate::common::scripts;

@@ -151,6 +151,15 @@ impl Said {
         self
     }
 
+    /// Holds the program to words on stdout.
+    #[track_caller]
+    pub fn prints(self, words: &[&str]) -> Self {
+        for word in words {
+            assert!(self.out.contains(word), "no \"{word}\"\n{}", self.all());
+        }
+        self
+    }
+
     /// Holds the program to words on stderr: the thing that is wrong, and the next move.
     #[track_caller]
     pub fn explains(self, words: &[&str]) -> Self {

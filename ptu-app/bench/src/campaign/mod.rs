@@ -9,7 +9,6 @@
 mod adaptive;
 mod by_mode;
 mod evaluate;
-mod kept_runs;
 mod left_out;
 mod pairs;
 mod redundant;
@@ -18,15 +17,12 @@ mod suite;
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
-
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
 use protocol::injection::FaultMode;
 
 pub use adaptive::{AdaptiveFigures, Effort};
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
-use kept_runs::{KeptRuns, RunsFile};
 use left_out::Evidence;
 pub use left_out::{LeftOut, OtherFaults, UnseenFigures};
 pub use pairs::PairFigures;
@@ -36,7 +32,7 @@ pub use suite::{Suite, SuiteRun};
 
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
-use crate::pool;
+use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::run_diagnosis::basis;
 use crate::stop::Stop;
 use crate::structure::OffWay;
@@ -64,8 +60,30 @@ pub struct Request {
     pub units: u32,
     /// Embedded units to test side by side.
     pub jobs: usize,
-    /// File that keeps the runs: those in it are not made again.
-    pub kept: Option<PathBuf>,
+    /// Where the runs are kept, and which of them are made here.
+    pub keep: Keep,
+}
+
+impl Request {
+    /// The runs that are asked for, for people.
+    fn what(&self) -> String {
+        let mut what = format!(
+            "ptu campaign --seeds {} --held-out {} --good {} --units {}",
+            self.seeds, self.held_out, self.good, self.units
+        );
+        if let Some(faults) = &self.faults {
+            what += &format!(" --faults '{faults}'");
+        }
+        for (option, count) in [("--pairs", self.pairs), ("--common-causes", self.common)] {
+            if count > 0 {
+                what += &format!(" {option} {count}");
+            }
+        }
+        if self.other_spells {
+            what += " --other-spells";
+        }
+        what
+    }
 }
 
 /// The result of a campaign.
@@ -115,7 +133,17 @@ pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode
     Ok(chosen)
 }
 
-/// Runs the campaign; `tell` hears how many of all runs are done. A stop gives none.
+/// What came of a campaign.
+pub enum Ran {
+    /// All of it.
+    All(Box<Outcome>),
+    /// The runs of its shard are kept, or those of a queue, so many here; a dictionary is made of all.
+    Part(usize),
+    /// It was stopped.
+    Stopped,
+}
+
+/// Runs the campaign; `tell` hears how many of its runs are done.
 ///
 /// # Errors
 /// Scripts or data files are wrong.
@@ -126,48 +154,23 @@ pub fn run(
     settings: &Settings,
     stop: &Stop,
     tell: &mut dyn FnMut(usize),
-) -> Result<Option<Outcome>, Failure> {
+) -> Result<Ran, Failure> {
     let modes = chosen(suite, asked)?;
     let samples = samples(&modes, &suite.structure.relations.shared, asked);
     let basis = basis(directory, suite.connection())?;
-    let kept = asked.kept.as_deref();
-    let mut known = kept.map_or_else(
-        || Ok(KeptRuns::default()),
-        |file| KeptRuns::open(file, &basis),
-    )?;
-    let missing: Vec<&Sample> = samples.iter().filter(|sample| !known.has(sample)).collect();
-    let before = samples.len() - missing.len();
-    let run_one = |i: usize| {
-        let run = suite.run(missing[i], stop)?;
-        if let Some(file) = known.file()
-            && !file.append(missing[i], &run)
-        {
-            // What could not be kept is not gone on with.
-            stop.press();
-        }
-        Some(run)
+    let plan = Plan {
+        what: asked.what(),
+        names: samples.iter().map(Sample::name).collect(),
+        seeds: None,
     };
-    let made = pool::run(
-        missing.len(),
-        asked.jobs,
-        stop,
-        &mut |done| tell(before + done),
-        run_one,
-    );
-    if let Some(failure) = known.file().and_then(RunsFile::take_failure) {
-        return Err(failure);
-    }
-    for (i, run) in made {
-        if let Some(run) = run {
-            known.put(missing[i], run);
-        }
-    }
-    let Some(runs) = samples
-        .iter()
-        .map(|sample| known.take(sample))
-        .collect::<Option<Vec<SuiteRun>>>()
-    else {
-        return Ok(None);
+    let head = Head::new(&basis.sha256, plan);
+    let made = kept::make(&asked.keep, head, (asked.jobs, stop), tell, |i| {
+        suite.run(&samples[i], stop)
+    })?;
+    let runs = match made {
+        Made::All(runs) => runs,
+        Made::Part(runs) => return Ok(Ran::Part(runs)),
+        Made::Stopped(_) => return Ok(Ran::Stopped),
     };
     let evidence = Evidence {
         basis: &basis,
@@ -178,7 +181,7 @@ pub fn run(
         runs: &runs,
         jobs: asked.jobs,
     };
-    Ok(Some(conclude(&evidence, asked.leave_out)))
+    Ok(Ran::All(Box::new(conclude(&evidence, asked.leave_out))))
 }
 
 /// Makes the dictionary of the runs that are for it, and assesses it by the others.

@@ -6,7 +6,10 @@ use diagnosis::Shared;
 use protocol::LruId;
 use protocol::injection::{Effect, FaultKind, FaultMode, Occurrence};
 
+use serde_json::json;
+
 use super::Request;
+use crate::data::sha256;
 
 /// Good runs behind a dictionary for each seed of a mode: at five seeds enough that what one in twenty of
 /// them does is seen.
@@ -63,6 +66,19 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Name of its run: SHA-256 of all that decides it beside program and scripts.
+    pub fn name(&self) -> String {
+        let Self {
+            faults,
+            sets_in_s,
+            seed,
+            purpose: _,
+            cause: _,
+            level: _,
+        } = self;
+        sha256(&json!({ "faults": faults, "sets_in_s": sets_in_s, "seed": seed }).to_string())
+    }
+
     /// Its fault, if there is one alone.
     pub fn fault(&self) -> Option<&FaultMode> {
         match &self.faults[..] {

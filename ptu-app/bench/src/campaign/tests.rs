@@ -4,7 +4,7 @@ use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Settings};
 use protocol::injection::FaultMode;
 
-use super::{Evidence, Purpose, Request, Sample, Suite, SuiteRun, conclude, samples};
+use super::{Evidence, Keep, Purpose, Request, Sample, Suite, SuiteRun, conclude, samples};
 use crate::pool;
 use crate::stop::Stop;
 use crate::test_support::scripts;
@@ -28,7 +28,7 @@ fn asked() -> Request {
         other_spells: false,
         units: 0,
         jobs: 2,
-        kept: None,
+        keep: Keep::default(),
     }
 }
 
@@ -127,5 +127,34 @@ fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
             unknown < known,
             "{unknown} of {detected} found, {known} when known"
         );
+    }
+}
+
+/// Goal: a name decides its run, so that runs kept by name are those that are meant. Method: all runs of a campaign, and
+/// those of other units.
+#[test]
+fn every_run_of_a_campaign_has_its_own_name_and_two_faults_are_of_two_parts() {
+    let modes = scripts().faults().expect("fault modes").faults;
+    let modes: Vec<_> = modes.iter().collect();
+    let drawn = |units| {
+        let asked = Request {
+            seeds: 1,
+            held_out: 1,
+            good: 2,
+            pairs: 40,
+            other_spells: true,
+            units,
+            ..asked()
+        };
+        samples(&modes, &[], &asked)
+    };
+    let all: Vec<_> = [drawn(0), drawn(1)].concat();
+    let names: std::collections::BTreeSet<_> = all.iter().map(Sample::name).collect();
+    assert_eq!(names.len(), all.len());
+    let pairs: Vec<_> = all.iter().filter(|s| s.faults.len() == 2).collect();
+    assert_eq!(pairs.len(), 80);
+    for pair in pairs {
+        assert_eq!(pair.purpose, Purpose::Assessment);
+        assert_ne!(pair.faults[0].lru, pair.faults[1].lru);
     }
 }

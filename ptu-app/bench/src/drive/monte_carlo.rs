@@ -2,8 +2,11 @@
 
 use btu_rig::drive::{Ending, Metrics, Scatter, ScatterDraw};
 
+use serde::{Deserialize, Serialize};
+
 use super::Case;
-use crate::pool;
+use crate::failure::Failure;
+use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::progress::Progress;
 use crate::stop::Stop;
 
@@ -39,37 +42,119 @@ pub struct MonteCarlo {
     pub trials: Vec<Trial>,
 }
 
-/// Drives `case` `count` times with seeds from its own on. The tester is silent, which changes
+/// What of a trial is kept: the rest is drawn by its seed again.
+#[derive(Serialize, Deserialize)]
+struct KeptTrial {
+    ending: Ending,
+    stop_error_m: Option<f64>,
+    metrics: Option<Metrics>,
+}
+
+/// What came of many runs.
+pub enum Ran {
+    /// The results of each case; fewer than were asked for after a stop.
+    All(Vec<MonteCarlo>),
+    /// The runs of a shard are kept, or those of a queue, so many here; the results are of all.
+    Part(usize),
+}
+
+/// Drives each case `count` times with seeds from its own on, or those of a shard. The tester is silent, which changes
 /// nothing but the time it takes.
-pub fn run(case: Case, count: usize, scatter: &Scatter, jobs: usize, stop: &Stop) -> MonteCarlo {
-    let mut quiet = case.clone();
-    quiet.plan.tester = false;
+///
+/// # Errors
+/// The file that keeps the runs cannot be used.
+pub fn run(
+    cases: Vec<Case>,
+    count: usize,
+    scatter: &Scatter,
+    keep: &Keep,
+    (jobs, stop): (usize, &Stop),
+) -> Result<Ran, Failure> {
+    let quiet: Vec<Case> = cases
+        .iter()
+        .map(|case| {
+            let mut quiet = case.clone();
+            quiet.plan.tester = false;
+            quiet
+        })
+        .collect();
+    let head = head(&quiet, count, scatter);
+    let plan = head.plan.clone();
+    let drawn = |i: usize| {
+        let (case, seed) = plan.place(i);
+        quiet[case].drawn(scatter, seed.unwrap_or_default())
+    };
     let one = |i: usize| {
-        let drawn = quiet.drawn(scatter, case.seed.wrapping_add(i as u64));
-        let outcome = drawn.drive();
-        Trial {
+        let outcome = drawn(i).drive();
+        Some(KeptTrial {
+            ending: outcome.ending,
+            stop_error_m: outcome.stop_error_m,
+            metrics: outcome.metrics,
+        })
+    };
+    let ours = keep.shard.map_or(plan.len(), |shard| {
+        (0..plan.len()).filter(|i| shard.has(*i)).count()
+    });
+    let mut progress = Progress::new(ours, plan.names.join(", "));
+    let made = kept::make(
+        keep,
+        head,
+        (jobs, stop),
+        &mut |done| progress.tell(done),
+        one,
+    )?;
+    let trials: Vec<Option<KeptTrial>> = match made {
+        Made::All(trials) => trials.into_iter().map(Some).collect(),
+        Made::Part(runs) => return Ok(Ran::Part(runs)),
+        Made::Stopped(trials) => trials,
+    };
+    let trial = |(i, trial): (usize, Option<KeptTrial>)| {
+        let (trial, drawn) = (trial?, drawn(i));
+        Some(Trial {
             seed: drawn.seed,
             drawn: ScatterDraw {
                 load_kg: drawn.plan.load_kg,
                 conditions: drawn.plan.conditions,
             },
-            ending: outcome.ending,
-            stop_error_m: outcome.stop_error_m,
-            metrics: outcome.metrics,
-        }
+            ending: trial.ending,
+            stop_error_m: trial.stop_error_m,
+            metrics: trial.metrics,
+        })
     };
-    let what = format!(
-        "section {} {}",
-        case.plan.section.section,
-        case.controller.name()
-    );
-    let mut progress = Progress::new(count, what);
-    let trials = pool::run(count, jobs, stop, &mut |done| progress.tell(done), one);
-    MonteCarlo {
-        asked: count,
-        trials: trials.into_iter().map(|(_, trial)| trial).collect(),
+    let mut trials = trials.into_iter().enumerate();
+    let of_case = |case| MonteCarlo {
         case,
+        asked: count,
+        trials: trials.by_ref().take(count).filter_map(trial).collect(),
+    };
+    Ok(Ran::All(cases.into_iter().map(of_case).collect()))
+}
+
+/// What decides these runs, and their names.
+fn head(cases: &[Case], count: usize, scatter: &Scatter) -> Head {
+    let mut made_by = format!("{scatter:?}\n");
+    for case in cases {
+        let bench = &case.bench;
+        made_by += &format!(
+            "{} {:?} {} {:?} {:?}\n",
+            bench.config.sha256, bench.settings, bench.line.sha256, case.plan, case.fixed
+        );
     }
+    let name = |case: &Case| {
+        let section = case.plan.section.section;
+        format!("section {section} {}", case.controller.name())
+    };
+    let names: Vec<_> = cases.iter().map(name).collect();
+    let first = cases.first().map_or(0, |case| case.seed);
+    let plan = Plan {
+        what: format!(
+            "ptu drive --monte-carlo {count} --seed {first}, {}",
+            names.join(", ")
+        ),
+        names,
+        seeds: Some((first, count as u64)),
+    };
+    Head::new(&made_by, plan)
 }
 
 impl Trial {

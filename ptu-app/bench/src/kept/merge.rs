@@ -1,0 +1,203 @@
+//! Shards put together, and what they lack.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use fault_db::read_regular_file;
+use serde::Serialize;
+use serde::de::IgnoredAny;
+
+use super::file::MOST_BYTES;
+use super::record::{Found, in_order};
+use super::{Head, Shard};
+use crate::failure::Failure;
+
+/// The runs of several files as one file.
+pub struct Merged {
+    /// The file's bytes: those of one process that made these runs alone.
+    pub bytes: Vec<u8>,
+    /// Runs in it.
+    pub runs: usize,
+    /// Runs of the plan.
+    pub all: usize,
+}
+
+/// What files lack.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct Missing {
+    /// What the runs are of.
+    pub what: String,
+    /// Runs of the plan.
+    pub runs: usize,
+    /// Runs that no file has.
+    pub missing: usize,
+    /// Number of shards.
+    pub shards: u32,
+    /// The shards that lack runs.
+    pub of_shards: Vec<ShardMissing>,
+    /// Damage that was found.
+    pub damage: Vec<String>,
+}
+
+/// What one shard lacks.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct ShardMissing {
+    /// Its number, from 1.
+    pub shard: u32,
+    /// Its runs.
+    pub runs: usize,
+    /// Those that no file has.
+    pub missing: usize,
+}
+
+/// One file that was read.
+struct Read {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    found: Found<IgnoredAny>,
+}
+
+impl Read {
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let bytes = read_regular_file(path, MOST_BYTES)
+            .map_err(|error| Failure::usage(format!("cannot read {}: {error}", path.display())))?;
+        let found = Found::read(&bytes).map_err(|why| {
+            refused(
+                path,
+                &why,
+                "make its runs again with another file, or leave it out",
+            )
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            bytes,
+            found,
+        })
+    }
+
+    /// Refuses a file whose runs are of other ones than the first file's.
+    fn check(&self, first: &Path, head: &Head) -> Result<(), Failure> {
+        let own = &self.found.head;
+        let why = match head.other_maker(own) {
+            Some(why) => why,
+            None if own.plan == head.plan => return Ok(()),
+            None => format!(
+                "its {} runs are of another campaign ({})",
+                own.plan.len(),
+                own.plan.what
+            ),
+        };
+        let why = format!(
+            "{why}, unlike those of {} ({})",
+            first.display(),
+            head.plan.what
+        );
+        Err(refused(&self.path, &why, "leave one of the two out"))
+    }
+}
+
+fn refused(path: &Path, why: &dyn Display, to_do: &str) -> Failure {
+    Failure::usage(format!("{}: {why}; {to_do}", path.display()))
+}
+
+/// Reads all files, whose runs have to be of one plan and made by the same.
+fn read_all(files: &[PathBuf]) -> Result<(Head, Vec<Read>), Failure> {
+    let mut all: Vec<Read> = Vec::with_capacity(files.len());
+    for path in files {
+        let read = Read::of(path)?;
+        if let Some(first) = all.first() {
+            read.check(&first.path, &first.found.head)?;
+        }
+        all.push(read);
+    }
+    let head = all
+        .first()
+        .map(|read| read.found.head.of_all())
+        .ok_or_else(|| Failure::usage("no file is named"))?;
+    Ok((head, all))
+}
+
+/// Puts the runs of several files together. The order of the files, and files named twice, make no difference.
+///
+/// # Errors
+/// A file cannot be read, is damaged, is of other runs than the first, or has another result for a run.
+pub fn merge(files: &[PathBuf]) -> Result<Merged, Failure> {
+    let (head, all) = read_all(files)?;
+    let mut of_plan = BTreeMap::<String, Option<(&Path, &[u8])>>::new();
+    for i in 0..head.plan.len() {
+        of_plan.insert(head.plan.name(i), None);
+    }
+    for read in &all {
+        if let Some(told) = read.found.told.first() {
+            return Err(refused(
+                &read.path,
+                told,
+                "give its own command once more, with this file, and then merge",
+            ));
+        }
+        for (name, (_, at)) in &read.found.runs {
+            let record = &read.bytes[at.clone()];
+            match of_plan.get_mut(name) {
+                Some(place @ None) => *place = Some((&read.path, record)),
+                Some(Some((other, same))) if *same != record => {
+                    let why = format!(
+                        "its run {name} has another result than in {}",
+                        other.display()
+                    );
+                    let to_do = "one of them was changed, or made by another build of the program: make both again";
+                    return Err(refused(&read.path, &why, to_do));
+                }
+                _ => {}
+            }
+        }
+    }
+    let there = of_plan.iter();
+    let there = there.filter_map(|(name, found)| found.map(|(_, record)| (name, record)));
+    Ok(Merged {
+        runs: there.clone().count(),
+        bytes: in_order(&head, there),
+        all: head.plan.len(),
+    })
+}
+
+/// What files lack, by shards: `shards` of them, or as many as the files were made with.
+///
+/// # Errors
+/// A file cannot be read, or is of other runs than the first.
+pub fn missing(files: &[PathBuf], shards: Option<u32>) -> Result<Missing, Failure> {
+    let (head, all) = read_all(files)?;
+    let made_with = |read: &Read| read.found.head.shard.map(|shard| shard.of);
+    let shards = shards
+        .or_else(|| all.iter().find_map(made_with))
+        .unwrap_or(1);
+    let mut of_shards = BTreeMap::<u32, (usize, usize)>::new();
+    for i in 0..head.plan.len() {
+        let name = head.plan.name(i);
+        let is_there = all.iter().any(|read| read.found.runs.contains_key(&name));
+        let shard = Shard::of_run(i, shards).number;
+        let (runs, missing) = of_shards.entry(shard).or_default();
+        *runs += 1;
+        *missing += usize::from(!is_there);
+    }
+    let damage = all.iter().flat_map(|read| {
+        let told = |told: &String| format!("{}: {told}", read.path.display());
+        read.found.told.iter().map(told)
+    });
+    Ok(Missing {
+        what: head.plan.what.clone(),
+        runs: head.plan.len(),
+        missing: of_shards.values().map(|(_, missing)| missing).sum(),
+        shards,
+        damage: damage.collect(),
+        of_shards: of_shards
+            .into_iter()
+            .filter(|(_, (_, missing))| *missing > 0)
+            .map(|(shard, (runs, missing))| ShardMissing {
+                shard,
+                runs,
+                missing,
+            })
+            .collect(),
+    })
+}

@@ -1,0 +1,129 @@
+//! Many runs, each decided by its name alone, that are made in pieces: kept in a file and gone on with after a stop,
+//! divided among machines (shards), and put together again.
+//!
+//! * [`Head`]: what decides a run beside its name, the plan of all runs, and the shard;
+//! * [`Keep`]: where the runs are kept, and which of them are to be made here;
+//! * [`make`]: makes those that are not kept yet;
+//! * [`merge`] and [`missing`]: shards put together, and what they lack.
+
+mod file;
+mod merge;
+mod plan;
+mod queue;
+mod record;
+mod shard;
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use file::{KeptRuns, RunsFile};
+pub use merge::{Merged, Missing, ShardMissing, merge, missing};
+pub use plan::{Head, Plan};
+pub use queue::QueueAt;
+pub use shard::Shard;
+
+use crate::failure::Failure;
+use crate::pool;
+use crate::stop::Stop;
+
+/// Where runs are kept, and which are made here.
+#[derive(Clone, Debug, Default)]
+pub struct Keep {
+    /// File that keeps the runs: those in it are not made again.
+    pub file: Option<PathBuf>,
+    /// The part of all runs that is made here; none = all.
+    pub shard: Option<Shard>,
+    /// Queue on a server that the runs are taken from, beside other workers.
+    pub queue: Option<QueueAt>,
+}
+
+/// What was made.
+pub enum Made<R> {
+    /// All runs, in the plan's order.
+    All(Vec<R>),
+    /// All runs of the shard, those of before with them; or all of the queue, so many of them here.
+    Part(usize),
+    /// It was stopped; the runs there are, in the plan's order.
+    Stopped(Vec<Option<R>>),
+}
+
+/// Makes the runs of a plan that are not kept yet; `run` makes the one of this number, or none after a stop. `tell` hears
+/// how many there are.
+///
+/// # Errors
+/// The file cannot be used.
+pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
+    keep: &Keep,
+    mut head: Head,
+    (jobs, stop): (usize, &Stop),
+    tell: &mut dyn FnMut(usize),
+    run: impl Fn(usize) -> Option<R> + Sync,
+) -> Result<Made<R>, Failure> {
+    head.shard = keep.shard;
+    let mut known = match &keep.file {
+        Some(file) => KeptRuns::open(file, &head)?,
+        None => KeptRuns::default(),
+    };
+    if let Some(queue) = &keep.queue {
+        let worked = queue::work(queue, &head, (jobs, stop), tell, &run)?;
+        let Some(records) = worked.records else {
+            return Ok(Made::Stopped(Vec::new()));
+        };
+        if keep.file.is_none() {
+            return Ok(Made::Part(worked.made));
+        }
+        // Then nothing is left to make here.
+        known.take_in(&records);
+    }
+    let plan = &head.plan;
+    let ours: Vec<usize> = (0..plan.len())
+        .filter(|i| keep.shard.is_none_or(|shard| shard.has(*i)))
+        .collect();
+    let missing: Vec<usize> = ours
+        .iter()
+        .copied()
+        .filter(|i| !known.has(&plan.name(*i)))
+        .collect();
+    let before = ours.len() - missing.len();
+    let run_one = |i: usize| {
+        let run = run(missing[i])?;
+        if let Some(file) = known.file()
+            && !file.append(&record::of_run(plan.name(missing[i]), &run))
+        {
+            // What could not be kept is not gone on with.
+            stop.press();
+        }
+        Some(run)
+    };
+    let made = pool::run(
+        missing.len(),
+        jobs,
+        stop,
+        &mut |done| tell(before + done),
+        run_one,
+    );
+    if let Some(failure) = known.file().and_then(RunsFile::take_failure) {
+        return Err(failure);
+    }
+    for (i, run) in made {
+        if let Some(run) = run {
+            known.put(plan.name(missing[i]), run);
+        }
+    }
+    let is_whole = ours.iter().all(|i| known.has(&plan.name(*i)));
+    if is_whole && let Some(file) = known.file() {
+        file.put_in_order(&head)?;
+    }
+    if is_whole && keep.shard.is_some() {
+        return Ok(Made::Part(ours.len()));
+    }
+    let runs: Vec<Option<R>> = (0..plan.len()).map(|i| known.take(&plan.name(i))).collect();
+    if !is_whole {
+        return Ok(Made::Stopped(runs));
+    }
+    Ok(Made::All(runs.into_iter().flatten().collect()))
+}

@@ -1,0 +1,99 @@
+//! What the runs of a file are: made by what, of which plan, and which part of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::Shard;
+use crate::data::sha256;
+
+/// All that is to be known of a file of runs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Head {
+    /// Version of the program.
+    pub app_version: String,
+    /// SHA-256 of program, scripts and data: of all that decides a run beside its name.
+    pub made_by: String,
+    /// All runs.
+    pub plan: Plan,
+    /// The part of them that the file is for; none = all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
+}
+
+/// All runs by their names, in order. A name decides its run, whichever process makes it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Plan {
+    /// What it is, for people.
+    pub what: String,
+    /// A name for each run or, with seeds, for as many runs as there are seeds.
+    pub names: Vec<String>,
+    /// The first seed, and how many.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seeds: Option<(u64, u64)>,
+}
+
+impl Head {
+    /// Of this version of the program, for all runs of the plan; `made_by` is all that decides them beside their names.
+    pub fn new(made_by: &str, plan: Plan) -> Self {
+        Self {
+            app_version: env!("CARGO_PKG_VERSION").into(),
+            made_by: sha256(made_by),
+            plan,
+            shard: None,
+        }
+    }
+
+    /// The same for all of them.
+    pub fn of_all(&self) -> Self {
+        Self {
+            shard: None,
+            ..self.clone()
+        }
+    }
+
+    /// Why runs of the other are none for this, if so.
+    pub fn other_maker(&self, other: &Self) -> Option<String> {
+        if self.app_version != other.app_version {
+            return Some(format!(
+                "its runs were made by version {}, not {}",
+                other.app_version, self.app_version
+            ));
+        }
+        (self.made_by != other.made_by)
+            .then(|| "its runs were made by another program or with other scripts".into())
+    }
+}
+
+impl Plan {
+    /// Number of runs.
+    pub fn len(&self) -> usize {
+        let seeds = self.seeds.map_or(1, |(_, count)| count);
+        (self.names.len()).saturating_mul(usize::try_from(seeds).unwrap_or(usize::MAX))
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Place of a run's name in the list, and its seed, if the plan has seeds.
+    pub fn place(&self, number: usize) -> (usize, Option<u64>) {
+        match self.seeds {
+            None => (number, None),
+            Some((first, count)) => {
+                let count = usize::try_from(count).unwrap_or(usize::MAX).max(1);
+                let seed = first.wrapping_add((number % count) as u64);
+                (number / count, Some(seed))
+            }
+        }
+    }
+
+    /// The name of the run with this number.
+    pub fn name(&self, number: usize) -> String {
+        let (place, seed) = self.place(number);
+        let name = self.names.get(place).map_or("", String::as_str);
+        match seed {
+            None => name.to_owned(),
+            Some(seed) => format!("{name} seed {seed}"),
+        }
+    }
+}
