@@ -55,6 +55,7 @@ mod statistics;
 mod store;
 mod text_enum;
 pub mod trace;
+mod trace_place;
 mod transaction;
 mod units;
 mod verify;
@@ -96,6 +97,7 @@ pub use server::{Address, Claim, MOST_TRIES, Queue, SERVER_SCHEMA_VERSION, Serve
 pub use store::Store;
 pub use text_enum::UnknownWord;
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
+pub use trace_place::TracePlace;
 pub use verify::{RepairToProve, SettledFault};
 pub use views::VIEWS_PAGE;
 pub use withdrawal::{Correction, ToWithdraw, WithdrawalError, Withdrawn};

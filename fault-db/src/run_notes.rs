@@ -9,6 +9,7 @@ use crate::limits;
 use crate::seal;
 use crate::server::derived_columns;
 use crate::store::Store;
+use crate::trace_place::TracePlace;
 
 /// A note on a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -17,6 +18,8 @@ pub struct RunNote {
     pub at_us: i64,
     /// Who wrote it.
     pub who: String,
+    /// The place in a trace of the run that it is about.
+    pub place: Option<TracePlace>,
     /// What it says.
     pub text: String,
 }
@@ -62,16 +65,66 @@ impl Store {
         })
     }
 
+    /// Adds a note to a place in a trace; it is a note on the run of the trace.
+    ///
+    /// # Errors
+    /// There is no such trace, or the note cannot be written.
+    pub fn add_trace_note(
+        &self,
+        place: TracePlace,
+        who: &str,
+        text: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        let run = self.run_of_trace(place.trace)?;
+        self.add_run_note(run, who, &place.before(text), at_us)
+    }
+
+    /// Notes at places in a trace, by their places.
+    ///
+    /// # Errors
+    /// There is no such trace, or the notes cannot be read.
+    pub fn trace_notes(&self, trace: Id) -> Result<Vec<RunNote>, StoreError> {
+        const DOING: &str = "reading the notes on a trace";
+        let run = self.run_of_trace(trace)?;
+        let notes = self
+            .backend()
+            .first("SELECT seq FROM run WHERE id = ?1", &values![run], |row| {
+                row.get(0)
+            })
+            .and_then(|seq| seq.map_or(Ok(Vec::new()), |seq| self.run_notes(seq)));
+        let mut notes = notes.map_err(|error| self.failed(DOING, error))?;
+        notes.retain(|note| note.place.is_some_and(|place| place.trace == trace));
+        notes.sort_by_key(|note| note.place.map(|place| place.at_us));
+        Ok(notes)
+    }
+
+    fn run_of_trace(&self, trace: Id) -> Result<Id, StoreError> {
+        let run = self.first(
+            "looking for the run of a trace",
+            "SELECT r.id FROM trace t JOIN run r ON r.seq = t.run WHERE t.id = ?1",
+            &values![trace],
+            |row| row.get(0),
+        )?;
+        run.ok_or_else(|| StoreError::not_found("trace", trace))
+    }
+
     /// Notes on the run with this row number, oldest first.
     pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
         self.backend().select(
             "SELECT at_us, who, text FROM run_note WHERE run = ?1 ORDER BY at_us, id",
             &values![run],
             |row| {
+                let stored: String = row.get(2)?;
+                let (place, text) = match TracePlace::split(&stored) {
+                    Some((place, text)) => (Some(place), text.to_owned()),
+                    None => (None, stored),
+                };
                 Ok(RunNote {
                     at_us: row.get(0)?,
                     who: row.get(1)?,
-                    text: row.get(2)?,
+                    place,
+                    text,
                 })
             },
         )

@@ -199,11 +199,6 @@ impl<'m, 'd> Belief<'m, 'd> {
             .position(|part| *part >= model.settings.found_at)?;
         Some(Settled::Part(model.parts()[found]))
     }
-
-    /// Whether one part is found, or the unit is healthy.
-    pub fn is_settled(&self) -> bool {
-        self.answer().is_some()
-    }
 }
 
 /// Normalises weights given by their logarithms.

@@ -143,6 +143,36 @@ impl Sentence {
         .told_by(&shared.measure)
     }
 
+    /// A part is found, or something that it shares with another that a sign names, and what tells.
+    pub(crate) fn one_or_common(
+        shared: &Shared,
+        one: (&LruId, f64),
+        other: &LruId,
+        names: &[Lru],
+    ) -> Self {
+        let [found, found_ko] = named(one.0, Some(one.1), names);
+        let [cause, cause_ko] = named(&shared.part, None, names);
+        let [one, one_ko] = called(one.0, names);
+        let [other, other_ko] = named(other, None, names);
+        Self::new(
+            format!("{found}, or one cause at {one} and {other}: {cause} or its wiring"),
+            format!("{found_ko} 또는 {one_ko}, {other_ko}에 공통된 원인: {cause_ko} 또는 배선"),
+        )
+        .told_by(&shared.measure)
+    }
+
+    /// A part is found, and a sign that none of its faults shows names another, with which it shares nothing.
+    pub(crate) fn not_alone(one: (&LruId, f64), other: &LruId, names: &[Lru]) -> Self {
+        let [found, found_ko] = named(one.0, Some(one.1), names);
+        let [other, other_ko] = named(other, None, names);
+        Self::new(
+            format!("not certain yet: {found}; a sign of a fault in {other} does not come from it"),
+            format!(
+                "아직 확실하지 않습니다: {found_ko}; {other_ko} 고장 징후는 이 고장으로 설명되지 않습니다"
+            ),
+        )
+    }
+
     /// Nothing is wrong.
     pub(crate) fn no_fault(probability: f64) -> Self {
         let sure = percent(probability);

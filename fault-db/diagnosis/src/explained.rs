@@ -72,6 +72,29 @@ pub fn causes(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) ->
     causes
 }
 
+/// Other parts that signs name, where no fault of these parts shows the signs.
+pub fn named_beside(belief: &Belief<'_, '_>, weights: &Weights, parts: &[&LruId]) -> Vec<LruId> {
+    let model = belief.model;
+    let effects: Vec<_> = parts
+        .iter()
+        .map(|part| effects_of(belief, weights, part))
+        .collect();
+    let is_shown = |sign: &Sign| {
+        effects.iter().any(|effects| {
+            let shares = effects
+                .iter()
+                .map(|(effect, weight)| weight * model.share_of_sign(*effect, sign));
+            shares.sum::<f64>() >= model.settings.conclusion.explained_at
+        })
+    };
+    let shown = belief.signs().in_steps.union(&belief.signs().in_log);
+    let others = shown.filter(|sign| !is_shown(sign)).filter_map(|sign| {
+        let part = sign.lru.as_ref()?;
+        (!parts.contains(&part)).then(|| part.clone())
+    });
+    others.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
 /// The parts that were found, without what they explain.
 fn found(weights: &Weights, found_at: f64) -> Vec<Cause> {
     let failed = weights.failed(found_at).into_iter();

@@ -12,12 +12,11 @@ use serde::Serialize;
 
 use super::belief::Belief;
 use super::conclusion::Sentence;
+use super::explained::named_beside;
 use super::model::{Hypothesis, Model};
 use super::observation::Sign;
+use super::verdict::Finding;
 use super::weights::Weights;
-
-/// A sign tells a part from the others of its group if so many modes of the part show it, and none of theirs.
-const MODES_WITH_SIGN: usize = 2;
 
 /// Parts that are not always told apart, and what tells which has failed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -73,17 +72,61 @@ impl Group {
     }
 }
 
-/// Several parts, of which at least one has failed or what they share, and what tells which.
+/// An answer that names no part for certain.
 pub struct Answer {
-    /// The parts.
-    pub group: Group,
+    /// In a word.
+    pub finding: Finding,
+    /// Parts, of which at least one has failed or what they share, and what tells which.
+    pub group: Option<Group>,
     /// In words, without what to run next.
     pub said: Sentence,
 }
 
+impl Answer {
+    /// Two parts, or what they share.
+    fn of_shared(shared: &Shared, parts: [&LruId; 2], said: Sentence) -> Self {
+        let all = [&shared.part].into_iter().chain(parts);
+        Self {
+            finding: Finding::OneOf,
+            group: Some(Group {
+                parts: all.cloned().collect(),
+                measure: shared.measure.clone(),
+            }),
+            said,
+        }
+    }
+}
+
 /// Several parts that are the answer; `None` if they can be told apart, or if it is not certain that one of them has failed.
 pub fn answer(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
-    common_cause(belief.model, weights).or_else(|| group(belief, weights))
+    common_cause(belief.model, weights)
+        .or_else(|| group(belief, weights))
+        .or_else(|| not_alone(belief, weights))
+}
+
+/// A part that is found, where a sign names another part and no fault of the first shows that sign: something that both
+/// share may be the cause; and if they share nothing, it is not certain.
+fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
+    let model = belief.model;
+    let failed = weights.failed(model.settings.found_at);
+    let [(one, probability)] = failed[..] else {
+        return None;
+    };
+    let others = named_beside(belief, weights, &[one]);
+    let other = others.first()?;
+    let sharing = others.iter().find_map(|other| {
+        let shared = model.relations.shared_by([one, other])?;
+        Some((other, shared))
+    });
+    let Some((other, shared)) = sharing else {
+        return Some(Answer {
+            finding: Finding::CannotTell,
+            group: None,
+            said: Sentence::not_alone((one, probability), other, model.names),
+        });
+    };
+    let said = Sentence::one_or_common(shared, (one, probability), other, model.names);
+    Some(Answer::of_shared(shared, [one, other], said))
 }
 
 /// Two parts that are found to have failed and share something: one cause of both is likelier than two faults, and nothing
@@ -96,20 +139,9 @@ fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Answer> {
         return None;
     };
     let shared = model.relations.shared_by([one, other])?;
-    let mut parts = vec![shared.part.clone()];
-    parts.extend([one, other].map(LruId::clone));
-    Some(Answer {
-        said: Sentence::common(
-            shared,
-            [one, other],
-            weights.both_failed(one, other),
-            model.names,
-        ),
-        group: Group {
-            parts,
-            measure: shared.measure.clone(),
-        },
-    })
+    let both = weights.both_failed(one, other);
+    let said = Sentence::common(shared, [one, other], both, model.names);
+    Some(Answer::of_shared(shared, [one, other], said))
 }
 
 /// A group of which one part has failed for certain, unless something tells which.
@@ -133,8 +165,9 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
     })?;
     let is_one = found.len() == 1 && tells_apart(belief, first, group);
     (probability >= found_at && !is_one).then(|| Answer {
+        finding: Finding::OneOf,
         said: Sentence::one_of(group, probability, model.names),
-        group: group.clone(),
+        group: Some(group.clone()),
     })
 }
 
@@ -146,7 +179,7 @@ fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
         || shown.any(|sign| {
             let modes = |part| modes_with(belief.model, sign, part);
             sign.lru.as_ref() == Some(part)
-                && modes(part) >= MODES_WITH_SIGN
+                && modes(part) >= belief.model.settings.conclusion.modes_with_sign
                 && group.others(part).all(|other| modes(other) == 0)
         })
 }

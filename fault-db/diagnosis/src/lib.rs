@@ -49,5 +49,5 @@ pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, i
 pub use proof::Proof;
 pub use reasons::Reason;
 pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
-pub use strategy::{Effort, Strategy, fixed_order, replayed};
+pub use strategy::{Strategy, suite_s};
 pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability, TwoFaults};

@@ -131,6 +131,8 @@ pub struct ConclusionSettings {
     pub most_shown: usize,
     /// A sign or failed check is a consequence of a fault that shows it in this share of runs.
     pub explained_at: f64,
+    /// A sign tells a part from the others of its group if so many modes of the part show it, and none of theirs.
+    pub modes_with_sign: usize,
 }
 
 impl Settings {
@@ -185,6 +187,10 @@ impl Settings {
         let positive = [
             ("likelihood.most_runs", likelihood.most_runs),
             ("conclusion.most_shown", conclusion.most_shown as f64),
+            (
+                "conclusion.modes_with_sign",
+                conclusion.modes_with_sign as f64,
+            ),
             ("least_gain_bits", self.least_gain_bits),
             ("spell_rate", self.spell_rate),
             ("doubt_runs", self.doubt_runs),
@@ -282,6 +288,7 @@ impl Default for ConclusionSettings {
             least_shown: 0.005,
             most_shown: 10,
             explained_at: 0.1,
+            modes_with_sign: 2,
         }
     }
 }

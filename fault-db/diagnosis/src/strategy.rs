@@ -25,8 +25,10 @@ pub struct Strategy<'m, 'd> {
     allowed: Option<BTreeSet<String>>,
     target: Option<CheckName>,
     seen: Observation,
-    /// Time that is left, s.
-    left_s: f64,
+    /// Time that it may take, s.
+    most_s: f64,
+    /// Time that it took, s.
+    time_s: f64,
 }
 
 impl<'m, 'd> Strategy<'m, 'd> {
@@ -38,7 +40,8 @@ impl<'m, 'd> Strategy<'m, 'd> {
             done: BTreeSet::new(),
             target: None,
             seen: Observation::default(),
-            left_s: suite_s(model, allowed.as_ref()),
+            most_s: suite_s(model, allowed.as_ref()),
+            time_s: 0.0,
             allowed,
         }
     }
@@ -48,14 +51,14 @@ impl<'m, 'd> Strategy<'m, 'd> {
     pub fn begin(&mut self) -> Option<CheckName> {
         self.aim(None);
         if self.target.is_some() {
-            self.left_s -= self.belief.model.settings.bring_up_s;
+            self.time_s += self.belief.model.settings.bring_up_s;
         }
         self.target.clone()
     }
 
     /// Adds the result of a step; whether its procedure is to go on.
     pub fn saw(&mut self, step: &ObservedStep) -> bool {
-        self.left_s -= step.time_s;
+        self.time_s += step.time_s;
         let new = self.done.insert(step.check.clone());
         if new {
             self.belief.see(self.seen.steps.len(), step);
@@ -83,9 +86,18 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.done.extend(of_procedure.cloned());
     }
 
-    /// The evidence and the posterior.
-    pub fn finish(self) -> (Observation, Belief<'m, 'd>) {
-        (self.seen, self.belief)
+    /// Bench time so far, with bringing the unit up for each procedure, s.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// The evidence.
+    pub fn finish(self) -> Observation {
+        self.seen
+    }
+
+    fn has_time_for(&self, cost_s: f64) -> bool {
+        self.time_s + cost_s <= self.most_s
     }
 
     fn aim(&mut self, under_way: Option<&str>) {
@@ -96,7 +108,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
                 let may = self.allowed.as_ref();
                 let next = self.belief.next_check(&self.done, under_way, may);
                 let next = next.map(|next| (next.check, next.cost_s));
-                next.filter(|(_, cost_s)| *cost_s <= self.left_s)
+                next.filter(|(_, cost_s)| self.has_time_for(*cost_s))
                     .map(|(check, _)| check)
                     .or_else(|| self.hidden_check(under_way))
             }
@@ -110,7 +122,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
         }
         let model = self.belief.model;
         let costs = costs(model, &self.done, under_way, self.allowed.as_ref(), false);
-        let within = costs.filter(|(_, cost_s)| *cost_s <= self.left_s);
+        let within = costs.filter(|(_, cost_s)| self.has_time_for(*cost_s));
         let showing = within.filter_map(|(place, cost_s)| {
             let worth = self.hidden.worth(place)?;
             Some((place, cost_s, worth))
@@ -120,8 +132,8 @@ impl<'m, 'd> Strategy<'m, 'd> {
     }
 }
 
-/// Time of all procedures in `allowed`, each once, s.
-fn suite_s(model: &Model<'_>, allowed: Option<&BTreeSet<String>>) -> f64 {
+/// Bench time of all procedures in `allowed`, each once, with bringing the unit up for each, on a good unit, s.
+pub fn suite_s(model: &Model<'_>, allowed: Option<&BTreeSet<String>>) -> f64 {
     let checks = model.dictionary.checks.iter().enumerate();
     let allowed = checks
         .filter(|(_, check)| allowed.is_none_or(|allowed| allowed.contains(&check.procedure)));
@@ -133,68 +145,4 @@ fn suite_s(model: &Model<'_>, allowed: Option<&BTreeSet<String>>) -> f64 {
         })
         .sum();
     steps_s + procedures.len() as f64 * model.settings.bring_up_s
-}
-
-/// Effort until the question was answered, or all was done.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Effort {
-    /// Steps run.
-    pub steps: u32,
-    /// Bench time, including the set-up for each procedure, s.
-    pub time_s: f64,
-    /// Whether one part was found, or the unit is healthy.
-    pub settled: bool,
-}
-
-/// Effort of the fixed order on a complete run: until the answer that does not change any more. Nobody can
-/// stop a fixed order earlier, since only its end shows that.
-pub fn fixed_order(model: &Model<'_>, run: &Observation) -> Effort {
-    let mut belief = Belief::new(model);
-    let mut effort = Effort::default();
-    let mut procedure = "";
-    let mut answers = Vec::new();
-    for (number, step) in run.steps.iter().enumerate() {
-        if step.check.procedure != procedure {
-            procedure = &step.check.procedure;
-            effort.time_s += model.settings.bring_up_s;
-        }
-        effort.steps += 1;
-        effort.time_s += step.time_s;
-        belief.see(number, step);
-        answers.push((belief.answer(), effort));
-    }
-    let Some((Some(last), _)) = answers.last().copied() else {
-        return effort;
-    };
-    let stays = answers
-        .iter()
-        .rev()
-        .take_while(|(answer, _)| *answer == Some(last));
-    stays.last().map_or(effort, |(_, effort)| Effort {
-        settled: true,
-        ..*effort
-    })
-}
-
-/// What the strategy would have done, and what it would have seen, on a run that was made in full: each
-/// procedure works on a unit brought up for it, so that it shows the same in any order.
-pub fn replayed(model: &Model<'_>, run: &Observation) -> (Effort, Observation) {
-    let mut strategy = Strategy::new(model, None);
-    let mut effort = Effort::default();
-    while let Some(next) = strategy.begin() {
-        let procedure = &next.procedure;
-        effort.time_s += model.settings.bring_up_s;
-        let mut steps = run.steps.iter().filter(|s| s.check.procedure == *procedure);
-        let left = steps.any(|step| {
-            effort.steps += 1;
-            effort.time_s += step.time_s;
-            !strategy.saw(step)
-        });
-        if !left {
-            strategy.ended(procedure);
-        }
-    }
-    let (seen, belief) = strategy.finish();
-    effort.settled = belief.is_settled();
-    (effort, seen)
 }

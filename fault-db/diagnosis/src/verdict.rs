@@ -99,8 +99,8 @@ pub struct Assessment<'m, 'd, 's> {
     seen: &'s Observation,
     weights: Weights,
     pairs: Vec<Pair>,
-    /// Several parts that are the answer.
-    group: Option<Answer>,
+    /// The answer, where it names no part for certain.
+    answer: Option<Answer>,
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
@@ -109,7 +109,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let belief = Belief::after(model, seen);
         let (weights, pairs) = Weights::after(&belief, seen);
         Self {
-            group: groups::answer(&belief, &weights),
+            answer: groups::answer(&belief, &weights),
             belief,
             seen,
             weights,
@@ -122,14 +122,14 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let (finding, conclusion) = match &self.group {
+        let (finding, conclusion) = match &self.answer {
             Some(answer) => {
                 let said = answer.said.clone();
                 let said = match next_check.as_ref() {
                     None => said,
                     next => said.then(next),
                 };
-                (Finding::OneOf, said)
+                (answer.finding, said)
             }
             None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
         };
@@ -140,7 +140,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
             next_check,
             conclusion,
             finding,
-            group: self.group.as_ref().map(|answer| answer.group.clone()),
+            group: self.answer.as_ref().and_then(|answer| answer.group.clone()),
             two_faults: shown
                 .map(|pair| TwoFaults {
                     faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
@@ -154,7 +154,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
 
     /// The parts that are found, each with what it explains.
     pub fn causes(&self) -> Vec<Cause> {
-        match self.group {
+        match self.answer {
             Some(_) => Vec::new(),
             None => causes(&self.belief, &self.weights, self.seen),
         }

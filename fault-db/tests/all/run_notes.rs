@@ -1,7 +1,9 @@
 //! Notes on runs: in their order, merged once, untouched by pruning, found when damaged.
 
 use crate::common::{T0_US, end, ids, open, realistic_trace, run_record};
-use fault_db::{Id, OpenOptions, PruneRule, RunNote, RunWriter, Store, StoreError, Verdict};
+use fault_db::{
+    Id, OpenOptions, PruneRule, RunNote, RunWriter, Store, StoreError, TracePlace, Verdict,
+};
 use rusqlite::Connection;
 use tempfile::tempdir;
 
@@ -79,4 +81,40 @@ fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
     let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
     assert_eq!(kinds, ["foreign_key", "seal"], "{problems:?}");
     assert!(problems[0].detail.contains("run_note"), "{problems:?}");
+}
+
+/// Goal: what somebody saw in a trace is found there by others. Method: notes at two places, given in the wrong order, and one
+/// on the run alone; the file's check, and another file that takes them along.
+#[test]
+fn a_note_at_a_place_in_a_trace_is_found_there_and_on_its_run() {
+    let dir = tempdir().expect("a directory");
+    let ours = open(&dir.path().join("a.db"));
+    let run = one_run(&ours);
+    let trace = ours.traces(run).expect("traces")[0].id;
+    let place = |at_us| TracePlace { trace, at_us };
+    for (at_us, text) in [(200_000, "then the brake"), (-350_000, "the wheel slips")] {
+        ours.add_trace_note(place(at_us), "kim", text, T0_US)
+            .expect("noted");
+    }
+    note(&ours, run, "on the run", T0_US + 1);
+    assert!(ours.check().expect("checked").problems.is_empty());
+    let theirs = Store::open(&dir.path().join("b.db"), OpenOptions::new(ids(2))).expect("opens");
+    theirs.merge_from(&ours).expect("merged");
+    for store in [&ours, &theirs] {
+        let found = store.trace_notes(trace).expect("read").into_iter();
+        let found: Vec<_> = found.map(|note| (note.place, note.text)).collect();
+        let told = [
+            (Some(place(-350_000)), "the wheel slips".to_owned()),
+            (Some(place(200_000)), "then the brake".to_owned()),
+        ];
+        assert_eq!(found, told);
+        assert_eq!(notes(store, run).len(), 3);
+    }
+    let nowhere = TracePlace {
+        trace: run,
+        at_us: 0,
+    };
+    let error = ours.add_trace_note(nowhere, "kim", "x", T0_US);
+    let error = error.expect_err("no such trace");
+    assert!(matches!(error, StoreError::NotFound { .. }), "{error}");
 }

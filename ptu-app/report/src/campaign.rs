@@ -8,7 +8,9 @@ use serde_json::{Value, json};
 use crate::left_out::{
     left_out_json, left_out_text, other_faults_json, other_faults_text, pairs_json, pairs_text,
 };
-use ptu_bench::campaign::{Figures, Outcome, Redundancy, Share, Shortfall};
+use ptu_bench::campaign::{
+    AdaptiveFigures, Effort, Figures, Outcome, Redundancy, Share, Shortfall,
+};
 
 /// The connection of a laptop alone, as a dictionary names it.
 const ALONE: &str = "ptu";
@@ -40,12 +42,10 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
             "isolated_3": share_json(figures.isolated[2]),
             "named": share_json(figures.named),
             "wrong": share_json(figures.wrong),
-            "adaptive_right": share_json(figures.adaptive_right),
         },
         "not_isolated": figures.not_isolated.iter().map(shortfall).collect::<Vec<_>>(),
         "missed": figures.undetected.iter().map(shortfall).collect::<Vec<_>>(),
-        "fixed_order": { "median_steps": figures.fixed.0, "median_time_s": figures.fixed.1 },
-        "adaptive": { "median_steps": figures.adaptive.0, "median_time_s": figures.adaptive.1 },
+        "adaptive": outcome.adaptive.as_ref().map(adaptive_json),
         "steps": {
             "needed": texts(&steps.needed),
             "redundant": texts(&steps.redundant),
@@ -105,16 +105,7 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         dictionary.lrus().len(),
         dictionary.checks.len()
     );
-    let mut line = |what: &str, s: Share| {
-        let _ = writeln!(
-            text,
-            "{what:34} {:>8}  ({} of {} runs)",
-            s.value()
-                .map_or_else(|| "-".into(), |value| format!("{:.2} %", 100.0 * value)),
-            s.of,
-            s.all
-        );
-    };
+    let mut line = |what: &str, share: Share| text += &share_text(what, share);
     for (kind, s) in &figures.detected {
         line(&format!("detected, {kind}"), *s);
     }
@@ -130,23 +121,15 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     }
     line("right part named, or its group", figures.named);
     line("wrong part or group named", figures.wrong);
-    line("found by the adaptive order", figures.adaptive_right);
     let _ = writeln!(
         text,
         "{:34} {} of {} good runs",
         "false alarms", figures.false_alarms, figures.good_runs
     );
-    let _ = writeln!(
-        text,
-        "{:34} {:.0} steps, {:.0} s; adaptive {:.0} steps, {:.0} s ({:.0} %, {:.0} %)\n",
-        "median effort, fixed order",
-        figures.fixed.0,
-        figures.fixed.1,
-        figures.adaptive.0,
-        figures.adaptive.1,
-        percent(figures.adaptive.0, figures.fixed.0),
-        percent(figures.adaptive.1, figures.fixed.1),
-    );
+    if let Some(adaptive) = &outcome.adaptive {
+        text += &adaptive_text(adaptive);
+    }
+    text.push('\n');
     if dictionary.basis.connection == ALONE && figures.modes > 0 {
         let bench = need_bench(outcome);
         let Share { of, all } = figures.reachable_detected;
@@ -206,6 +189,61 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         text += &other_faults_text("one cause at several parts", common);
     }
     text.trim_end().to_owned()
+}
+
+fn share_text(what: &str, Share { of, all }: Share) -> String {
+    let value = (Share { of, all }).value();
+    let value = value.map_or_else(|| "-".into(), |value| format!("{:.2} %", 100.0 * value));
+    format!("{what:34} {value:>8}  ({of} of {all} runs)\n")
+}
+
+fn adaptive_json(adaptive: &AdaptiveFigures) -> Value {
+    let effort =
+        |Effort { mean, median, p90 }| json!({ "mean": mean, "median": median, "p90": p90 });
+    json!({
+        "suite_steps": adaptive.suite_steps,
+        "suite_s": adaptive.suite_s,
+        "steps": effort(adaptive.steps),
+        "time_s": effort(adaptive.time_s),
+        "detected": share_json(adaptive.detected),
+        "unsafe_detected": share_json(adaptive.unsafe_detected),
+        "named": share_json(adaptive.named),
+        "wrong": share_json(adaptive.wrong),
+        "missed": adaptive.missed,
+    })
+}
+
+fn adaptive_text(adaptive: &AdaptiveFigures) -> String {
+    let steps = adaptive.suite_steps as f64;
+    let mut text = format!(
+        "\nadaptive runs of these units, of {steps} steps and {:.0} s of the suite\n",
+        adaptive.suite_s
+    );
+    let (all, all_s) = (adaptive.steps, adaptive.time_s);
+    for (name, made, took_s) in [
+        ("effort, median", all.median, all_s.median),
+        ("effort, mean", all.mean, all_s.mean),
+        ("nine in ten runs take at most", all.p90, all_s.p90),
+    ] {
+        let _ = writeln!(
+            text,
+            "{name:34} {made:.0} steps ({:.1} %), {took_s:.0} s ({:.1} %)",
+            percent(made, steps),
+            percent(took_s, adaptive.suite_s)
+        );
+    }
+    for (what, share) in [
+        ("detected", adaptive.detected),
+        ("detected, unsafe", adaptive.unsafe_detected),
+        ("right part named, or its group", adaptive.named),
+        ("wrong part or group named", adaptive.wrong),
+    ] {
+        text += &share_text(what, share);
+    }
+    if !adaptive.missed.is_empty() {
+        let _ = writeln!(text, "unsafe and missed: {}", adaptive.missed.join(", "));
+    }
+    text
 }
 
 fn list_shortfalls(text: &mut String, figures: &Figures) {

@@ -9,6 +9,7 @@ use protocol::display_text;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::trace_notes::note_json;
 use ptu_bench::clock::rfc3339;
 use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
@@ -28,9 +29,7 @@ pub fn run_json(run: &RunDetail) -> Value {
             "id": fault.id.to_string(), "code": fault.code, "name": fault.code_name, "lru": fault.lru,
             "repair": fault.repair,
         })).collect::<Vec<_>>(),
-        "notes": run.notes.iter().map(|note| json!({
-            "at": rfc3339(note.at_us), "who": note.who, "text": note.text,
-        })).collect::<Vec<_>>(),
+        "notes": run.notes.iter().map(note_json).collect::<Vec<_>>(),
         "seal": run.seal,
     })
 }

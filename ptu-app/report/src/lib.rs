@@ -31,6 +31,7 @@ pub mod run;
 mod target;
 pub mod ticks;
 pub mod trace_io;
+pub mod trace_notes;
 pub mod trace_view;
 mod without_korean;
 pub mod words;

@@ -13,6 +13,7 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_bench::table::Table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
+use ptu_report::trace_notes::note_text;
 use ptu_report::words::Language;
 use ptu_report::{Target, run_json, run_summary_json, write_comparison};
 
@@ -214,7 +215,7 @@ fn notes(notes: &[RunNote]) -> String {
         table.row([
             clock::local(note.at_us),
             note.who.clone(),
-            note.text.clone(),
+            note_text(note, Language::English.words()),
         ]);
     }
     format!("\n\n{}", table.render())

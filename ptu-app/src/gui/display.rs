@@ -37,6 +37,8 @@ pub fn open(options: Options) -> Result<(), Failure> {
             .with_inner_size(size)
             .with_min_inner_size(SMALLEST),
         renderer: eframe::Renderer::Glow,
+        // There are no gradients, and where the processor draws, it is paid for at each pixel.
+        dithering: false,
         ..Default::default()
     };
     eframe::run_native(

@@ -2,7 +2,7 @@
 //! beside it.
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{Color32, Context, TextStyle, Theme, Ui};
+use eframe::egui::{Color32, Context, TextStyle, Theme, Ui, Visuals};
 
 use ptu_bench::stored::from_stored;
 
@@ -73,6 +73,8 @@ pub fn set(context: &Context) {
         let mut visuals = theme.default_visuals();
         let ink = if theme == Theme::Dark { 208 } else { 40 };
         visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(ink);
+        // The window is cleared with its ground: painted again under each panel, it would be a third of a frame.
+        visuals.panel_fill = Color32::TRANSPARENT;
         context.set_visuals_of(theme, visuals);
     }
     context.all_styles_mut(|style| {
@@ -94,6 +96,16 @@ pub fn set(context: &Context) {
         // What cannot be seen moving need not be painted again and again.
         style.animation_time = 0.0;
     });
+}
+
+/// The window's ground, below all that is drawn.
+pub fn ground(visuals: &Visuals) -> Color32 {
+    let theme = if visuals.dark_mode {
+        Theme::Dark
+    } else {
+        Theme::Light
+    };
+    theme.default_visuals().panel_fill
 }
 
 impl Palette {

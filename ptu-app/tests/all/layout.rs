@@ -8,7 +8,7 @@ use eframe::egui::accessibility::is_input;
 use eframe::egui::epaint::ClippedShape;
 use eframe::egui::{Rect, Role, Shape, WidgetRect};
 use egui_kittest::kittest::{NodeT, Queryable};
-use ptu_app::gui::Page;
+use ptu_app::gui::{Density, Page};
 use ptu_report::words::{Language, Words};
 
 /// The usual window, the smallest, and the usual one at 150 %, points.
@@ -34,6 +34,28 @@ fn every_page_can_be_read_and_clicked_at_every_size() {
         }
     }
     assert!(wrong.is_empty(), "{}: {wrong:#?}", wrong.len());
+}
+
+/// Goal: the pages are in one line in the window as it first opens. Method: the places of their names in the operator's view, in
+/// both languages.
+#[test]
+fn an_operator_has_the_pages_in_one_line_in_the_usual_window() {
+    for language in Language::ALL {
+        let mut settings = settings(Page::Bench);
+        settings.language = language;
+        settings.density = Density::Operator;
+        let mut window = Window::sized(SIZES[0], Place::new(), scripts(), settings);
+        let words = language.words();
+        window.wait_for(Page::Drive.name(words));
+        let harness = window.harness();
+        let lines: Vec<_> = Page::ALL
+            .iter()
+            .map(|page| harness.get_all_by_label(page.name(words)).next())
+            .map(|name| name.expect("its name").rect().center().y)
+            .collect();
+        let same = |line: &f32| (line - lines[0]).abs() < SLACK;
+        assert!(lines.iter().all(same), "{language:?}: {lines:?}");
+    }
 }
 
 fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
@@ -79,6 +101,12 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
             window.wait_for(words.traces.save_layout);
             look(&mut window, "signals of a trace");
             window.click_last(words.traces.signals);
+            window.click(words.traces.cursor_a);
+            window.write(words.common.operator, "kim");
+            window.write(words.traces.note_field, &"a note of many words ".repeat(12));
+            window.click(words.report.note_save);
+            window.wait_for_part(" s a note of many words");
+            look(&mut window, "note on a trace");
             let hovered = eframe::egui::HoveredFile::default();
             window.harness().input_mut().hovered_files.push(hovered);
             look(&mut window, "file over the traces");

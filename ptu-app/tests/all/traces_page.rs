@@ -341,3 +341,51 @@ fn a_dropped_file_is_laid_behind_the_trace() {
         window.wait_for_part(told);
     }
 }
+
+/// Goal: what a technician saw in a trace is found by whoever looks at it next. Method: a note at cursor A, read back in the
+/// window, by the commands, in an exported file and on the run's sheet.
+#[test]
+fn a_note_at_the_cursor_is_kept_with_its_place() {
+    let mut window = window(Settings::default());
+    window.wait_for("0.00 s trigger");
+    assert!(!window.shows("note at cursor A"));
+    window.click("Cursor A");
+    let at_s = told_place(&window, "A");
+    window.write("operator", "kim");
+    window.write("note at cursor A", "the wheel slips");
+    window.click("Save note");
+    window.wait_for_part("s the wheel slips");
+    let told = window.shown().into_iter();
+    let told: Vec<_> = told
+        .filter(|text| text.ends_with("s the wheel slips"))
+        .collect();
+    let place = format!("{at_s:.2} s").replace('-', "−");
+    assert_eq!(told, [format!("1  {place} the wheel slips")]);
+
+    let store = fault_db::Store::open_read_only(&window.place.path("history.db")).expect("read");
+    let run = store.resolve_run("latest").expect("a run");
+    let open = store.traces(run).expect("traces")[0].id.to_string();
+    let place_of = &window.place;
+    let json = place_of.json(&["trace", "show", &open, "--json"]);
+    let note = &json["notes"][0];
+    assert_eq!(
+        (&note["who"], &note["text"]),
+        (&"kim".into(), &"the wheel slips".into())
+    );
+    let time_s = note["time_s"].as_f64().expect("a time");
+    assert!((time_s - at_s).abs() < 0.006, "{time_s} {at_s}");
+    for command in [&["trace", "show", &open][..], &["runs", "show", "latest"]] {
+        let said = place_of.ptu(command).out;
+        assert!(
+            said.contains("the wheel slips") && said.contains(&place),
+            "{said}"
+        );
+    }
+    let to = place_of.text_path("noted.csv");
+    place_of
+        .ptu(&["trace", "export", &open, "--to", &to])
+        .exits(0);
+    let beside = place_of.path("noted.csv-metadata.json");
+    let beside = std::fs::read_to_string(beside).expect("written");
+    assert!(beside.contains("the wheel slips"), "{beside}");
+}

@@ -10,51 +10,15 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::recorder::{Ring, Row, rows_of};
 use btu_rig::rig::Rig;
 use protocol::message::{Identity, SelfTestItem};
-use protocol::signal::{Sample, Signal};
+use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
+use super::waking::{Waking, Watched};
 use super::{LinkQuality, Wake};
 use crate::run::RunControl;
 
 /// Rows are kept for this long.
 pub const HISTORY: Duration = Duration::from_ms(120_000);
-/// The window is woken at most this often …
-const OFTEN: time::Duration = time::Duration::from_millis(33);
-/// … or this often, where only curves over half a minute and more are seen …
-const FOR_CURVES: time::Duration = time::Duration::from_millis(125);
-/// … and at least this often while nothing changes but the time and counts.
-const SELDOM: time::Duration = time::Duration::from_secs(1);
-/// … or this often, when only the connection bar shows the unit.
-const RARELY: time::Duration = time::Duration::from_secs(5);
-/// Counts that run on while a unit does nothing: not worth waking anybody.
-const COUNTS: [Signal; 2] = [Signal::TwcReceived, Signal::TwcAnswers];
-/// What the connection bar shows, whatever page is in front.
-const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
-
-/// What the window shows of the signals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Watched {
-    /// What the connection bar does.
-    Bar,
-    /// Curves.
-    Curves,
-    /// All of them as in the cab.
-    #[default]
-    All,
-}
-
-impl Watched {
-    const ALL: [Self; 3] = [Self::Bar, Self::Curves, Self::All];
-
-    /// The window is woken at most, and at least, this often.
-    fn often(self) -> (time::Duration, time::Duration) {
-        match self {
-            Self::Bar => (OFTEN, RARELY),
-            Self::Curves => (FOR_CURVES, SELDOM),
-            Self::All => (OFTEN, SELDOM),
-        }
-    }
-}
 
 /// What the bench thread does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,14 +76,15 @@ pub struct LiveState {
     pending: Mutex<Pending>,
     /// What the window shows, by its place among [`Watched::ALL`].
     watched: AtomicUsize,
+    began: time::Instant,
     wake: Wake,
 }
 
-/// Used by the bench thread only: rows that could not be published yet, and when the window was last woken.
+/// Used by the bench thread only: rows that could not be published yet, and what the window was last woken for.
+#[derive(Default)]
 struct Pending {
     rows: Vec<Row>,
-    woken: time::Instant,
-    shown: [u64; Signal::COUNT],
+    waking: Waking,
 }
 
 impl LiveState {
@@ -128,11 +93,8 @@ impl LiveState {
         Self {
             live: Mutex::default(),
             requests: Mutex::default(),
-            pending: Mutex::new(Pending {
-                rows: Vec::new(),
-                woken: time::Instant::now(),
-                shown: [0; Signal::COUNT],
-            }),
+            pending: Mutex::default(),
+            began: time::Instant::now(),
             watched: AtomicUsize::new(Watched::All as usize),
             wake,
         }
@@ -216,18 +178,6 @@ impl LiveState {
     }
 }
 
-impl LiveState {
-    fn is_worth_a_look(&self, before: &[u64; Signal::COUNT], now: &[u64; Signal::COUNT]) -> bool {
-        let differs = |signal: &Signal| before[signal.index()] != now[signal.index()];
-        if self.watched() != Watched::Bar {
-            let mut signals = Signal::ALL.iter();
-            signals.any(|signal| differs(signal) && !COUNTS.contains(signal))
-        } else {
-            ALWAYS_SHOWN.iter().any(differs)
-        }
-    }
-}
-
 impl RunControl for LiveState {
     fn after_cycle(&self, now: Instant, rig: &Rig) {
         let mut pending = held(&self.pending);
@@ -251,12 +201,8 @@ impl RunControl for LiveState {
         live.self_test.extend(rig.self_test_items());
         live.restarts = rig.unit_restarts();
         drop(live);
-        let shown = rig.sample().values().map(f64::to_bits);
-        let since = pending.woken.elapsed();
-        let (at_most, at_least) = self.watched().often();
-        if since >= at_least || (since >= at_most && self.is_worth_a_look(&pending.shown, &shown)) {
-            pending.woken = time::Instant::now();
-            pending.shown = shown;
+        let at = self.began.elapsed();
+        if pending.waking.is_due(at, self.watched(), rig.sample()) {
             (self.wake)();
         }
     }

@@ -14,6 +14,7 @@ mod link_quality;
 mod live_state;
 mod permit;
 mod progress;
+mod waking;
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -23,9 +24,10 @@ use btu_rig::stimulus::Stimulus;
 
 pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
-pub use live_state::{HISTORY, LiveData, LiveState, Phase, Watched};
+pub use live_state::{HISTORY, LiveData, LiveState, Phase};
 pub use permit::{Refused, permit};
 pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting, outside_place};
+pub use waking::Watched;
 
 use crate::failure::Failure;
 use crate::run::{BenchSetup, RunPlan};

@@ -2,16 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{
-    Diagnosis, Dictionary, Effort, Finding, Model, PartProbability, Relations, Settings,
-    fixed_order, replayed,
-};
-
+use diagnosis::{Dictionary, Finding, Model, PartProbability, Relations, Settings};
 use protocol::LruId;
 
 use super::samples::Sample;
 use super::suite::SuiteRun;
-use crate::drive::monte_carlo::percentile;
 use crate::pool;
 use crate::stop::Stop;
 
@@ -45,45 +40,11 @@ pub struct Assessment {
     pub finding: Finding,
     /// In words.
     pub conclusion: String,
-    /// What it takes to find the part in either order of the suite, if that was asked for.
-    pub orders: Option<Orders>,
     /// All parts, the likeliest first.
     pub ranked: Vec<PartProbability>,
 }
 
-/// Effort until a part is found.
-#[derive(Clone, Debug)]
-pub struct Orders {
-    /// Steps and time of the suite in its fixed order.
-    pub fixed: Effort,
-    /// The same, step after step as diagnosis asks for them.
-    pub adaptive: Effort,
-    /// Part the adaptive run finds.
-    pub adaptive_part: Option<LruId>,
-}
-
-impl Orders {
-    fn of(model: &Model<'_>, run: &SuiteRun) -> Self {
-        let (adaptive, seen) = replayed(model, &run.seen);
-        let after = Diagnosis::of(model, &seen);
-        let first = after.lrus.into_iter().next();
-        Self {
-            fixed: fixed_order(model, &run.seen),
-            adaptive,
-            adaptive_part: first
-                .filter(|_| after.finding == Finding::Found)
-                .map(|part| part.lru),
-        }
-    }
-}
-
 impl Assessment {
-    /// The orders, if the adaptive one finds the right part.
-    fn orders_that_find(&self) -> Option<&Orders> {
-        let found = |orders: &&Orders| orders.adaptive_part.as_ref() == Some(&self.lru);
-        self.orders.as_ref().filter(found)
-    }
-
     /// Whether it is isolated to at most `parts` parts, the right one among them.
     pub fn isolated(&self, parts: usize) -> bool {
         self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
@@ -134,20 +95,17 @@ impl Assessment {
     }
 }
 
-/// Diagnoses these runs with a fault, in both orders of the suite `with_orders`.
+/// Diagnoses these runs with a fault.
 pub fn assess(
     dictionary: &Dictionary,
     (settings, relations): (&Settings, &Relations),
     faulty: &[(&Sample, &SuiteRun)],
-    with_orders: bool,
     jobs: usize,
 ) -> Vec<Assessment> {
     let model = Model::new(dictionary, settings, &BTreeMap::new()).with_relations(relations);
     let one = |i: usize| {
         let (sample, run) = faulty[i];
-        let mut assessment = assess_one(&model, sample, run)?;
-        assessment.orders = with_orders.then(|| Orders::of(&model, run));
-        Some(assessment)
+        assess_one(&model, sample, run)
     };
     let assessed = pool::run(faulty.len(), jobs, &Stop::default(), &mut |_| {}, one);
     let assessed = assessed.into_iter();
@@ -163,7 +121,8 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
     good.collect()
 }
 
-fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
+/// Diagnoses a run with a fault; none of a good unit.
+pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
     let mode = sample.faults.first()?;
     let assessed = diagnosis::Assessment::of(model, &run.seen);
     let diagnosis = assessed.diagnosis();
@@ -189,7 +148,6 @@ fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Asse
         seed: sample.seed,
         detected: !run.passed,
         parts: parts.into_iter().cloned().collect(),
-        orders: None,
         finding: diagnosis.finding,
         conclusion: diagnosis.conclusion.english,
         ranked: diagnosis.lrus,
@@ -272,12 +230,6 @@ pub struct Figures {
     pub good_runs: usize,
     /// Good runs that did not pass.
     pub false_alarms: usize,
-    /// Median steps and time of the fixed order, over runs in which both orders isolate the part.
-    pub fixed: (f64, f64),
-    /// Median steps and time of the adaptive order.
-    pub adaptive: (f64, f64),
-    /// Adaptive runs that find the right part.
-    pub adaptive_right: Share,
 }
 
 /// The figures over all held-out runs.
@@ -288,15 +240,6 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
     }
     let kinds: BTreeSet<_> = assessments.iter().map(|one| one.kind).collect();
     let all = || assessments.iter();
-    let median_of = |of: &dyn Fn(&Orders) -> Effort| {
-        let isolating = assessments.iter().filter(|run| run.isolated(1));
-        let orders = isolating.filter_map(Assessment::orders_that_find);
-        let efforts: Vec<_> = orders.filter(|both| both.fixed.settled).map(of).collect();
-        (
-            median(efforts.iter().map(|e| f64::from(e.steps)).collect()),
-            median(efforts.iter().map(|e| e.time_s).collect()),
-        )
-    };
     let every = |has: &dyn Fn(&Assessment) -> bool| {
         by_mode
             .values()
@@ -338,9 +281,6 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         ambiguous: ambiguous(assessments),
         good_runs: good.len(),
         false_alarms: good.iter().filter(|said| !said.is_empty()).count(),
-        fixed: median_of(&|orders| orders.fixed),
-        adaptive: median_of(&|orders| orders.adaptive),
-        adaptive_right: Share::over(all(), |run| run.orders_that_find().is_some()),
     }
 }
 
@@ -388,9 +328,4 @@ fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
         .into_iter()
         .map(|group| group.into_iter().collect())
         .collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    percentile(&values, 50.0).unwrap_or(0.0)
 }

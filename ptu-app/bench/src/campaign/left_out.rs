@@ -207,7 +207,6 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
         &dictionary,
         (settings, &suite.structure.relations),
         &of_these.collect::<Vec<_>>(),
-        false,
         jobs,
     )
 }

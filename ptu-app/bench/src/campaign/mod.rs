@@ -6,6 +6,7 @@
 //!                       held-out samples → suite runs → diagnosis → figures
 //! ```
 
+mod adaptive;
 mod by_mode;
 mod evaluate;
 mod left_out;
@@ -21,6 +22,7 @@ use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
 use protocol::injection::FaultMode;
 
+pub use adaptive::{AdaptiveFigures, Effort};
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
 use left_out::Evidence;
 pub use left_out::{LeftOut, OtherFaults, UnseenFigures};
@@ -95,6 +97,8 @@ pub struct Outcome {
     pub dictionary: Dictionary,
     /// Held-out runs with a fault, each with its diagnosis.
     pub assessments: Vec<Assessment>,
+    /// What adaptive runs of those units come to; none where there are no such units.
+    pub adaptive: Option<AdaptiveFigures>,
     /// What it is worth for two faults at once, if that was asked for.
     pub pairs: Option<PairFigures>,
     /// What it is worth for faults that come and go less or more often than counted, if that was asked for.
@@ -204,23 +208,22 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
             |(sample, _): &(&Sample, _)| sample.purpose == purpose && sample.faults.len() == faults;
         held_out.clone().filter(is_of).collect()
     };
+    let single = of(Purpose::Assessment, 1);
     let pairs = of(Purpose::Assessment, 2);
     let otherwise = |purpose: Purpose| {
         let runs: Vec<_> = held_out
             .clone()
             .filter(|(sample, _)| sample.purpose == purpose)
             .collect();
-        let assessed = || evaluate::assess(&dictionary, judged_by, &runs, false, jobs);
+        let assessed = || evaluate::assess(&dictionary, judged_by, &runs, jobs);
         (!runs.is_empty()).then(|| OtherFaults::of(&assessed()))
     };
     Outcome {
-        assessments: evaluate::assess(
-            &dictionary,
-            judged_by,
-            &of(Purpose::Assessment, 1),
-            true,
-            jobs,
-        ),
+        adaptive: (!single.is_empty()).then(|| {
+            let units: Vec<_> = single.iter().map(|(sample, _)| *sample).collect();
+            AdaptiveFigures::of(&dictionary, judged_by, suite, &units, jobs)
+        }),
+        assessments: evaluate::assess(&dictionary, judged_by, &single, jobs),
         pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, judged_by, &pairs)),
         other_spells: otherwise(Purpose::OtherSpells),
         common: otherwise(Purpose::CommonCause),

@@ -3,7 +3,7 @@
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 use btu_rig::rig::Harness;
-use diagnosis::{CheckName, Dictionary, Observation};
+use diagnosis::{CheckName, Dictionary, Model, Observation};
 use protocol::LruId;
 use protocol::injection::FaultCatalogue;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,8 @@ use super::samples::Sample;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::run::{
-    BenchChoice, BenchSetup, ObservationBuilder, SessionEvent, Task, loading, run_here,
+    BenchChoice, BenchSetup, ObservationBuilder, SessionEvent, TO_THE_END, Task, isolate, loading,
+    run_on_fresh,
 };
 use crate::run_diagnosis::{LINE, TRAIN, UNIT_CONFIG};
 use crate::stop::Stop;
@@ -125,44 +126,92 @@ impl Suite {
 
     /// Runs it on units of one kind, each procedure on one that is powered up for it; none if it was stopped.
     pub fn run(&self, sample: &Sample, stop: &Stop) -> Option<SuiteRun> {
+        let mut unit = UnitUnderTest::new(self, sample, stop);
+        for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
+            unit.perform(task, &mut |_| {}, &TO_THE_END);
+        }
+        (stop.presses() == 0).then_some(unit.run)
+    }
+
+    /// The same in an adaptive run by this model, with the bench time that it took, s.
+    pub fn run_adaptively(
+        &self,
+        sample: &Sample,
+        model: &Model<'_>,
+        stop: &Stop,
+    ) -> Option<(SuiteRun, f64)> {
+        let mut unit = UnitUnderTest::new(self, sample, stop);
+        let time_s = isolate(model, &self.tasks, &mut |task, saw, go_on| {
+            unit.perform(task, saw, go_on);
+            stop.may_begin()
+        });
+        (stop.presses() == 0).then_some((unit.run, time_s))
+    }
+}
+
+/// A unit with its faults, tested one procedure after the other, and what came of it.
+struct UnitUnderTest<'a> {
+    setup: BenchSetup,
+    /// When each fault sets in at the next power-up, s.
+    own_onset_s: Vec<f64>,
+    stop: &'a Stop,
+    run: SuiteRun,
+}
+
+impl<'a> UnitUnderTest<'a> {
+    fn new(suite: &Suite, sample: &Sample, stop: &'a Stop) -> Self {
         let mut setup = BenchSetup {
             faults: sample.faults.clone(),
             seed: sample.seed,
-            ..self.setup.clone()
+            ..suite.setup.clone()
         };
-        let own_onset: Vec<_> = setup.faults.iter().map(|fault| fault.onset_s).collect();
+        let own_onset_s = setup.faults.iter().map(|fault| fault.onset_s).collect();
         for fault in &mut setup.faults {
             fault.onset_s += sample.sets_in_s;
         }
-        let mut run = SuiteRun {
+        let run = SuiteRun {
             passed: true,
             ..SuiteRun::default()
         };
-        for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
-            let mut observation = ObservationBuilder::new(&task.procedure.id);
-            run_here(&setup, task, stop, &mut |event| {
-                observation.take(&event);
-                match event {
-                    SessionEvent::Fault(fault) => {
-                        run.passed = false;
-                        run.not_passed
-                            .push(format!("{}: {}", task.procedure.id, fault.message));
-                    }
-                    SessionEvent::Run(RunEvent::ProcedureFinished {
-                        verdict, message, ..
-                    }) if !matches!(verdict, Verdict::Passed | Verdict::Skipped) => {
-                        run.passed = false;
-                        run.not_passed
-                            .push(format!("{}: {verdict} {message}", task.procedure.id));
-                    }
-                    _ => {}
-                }
-            });
-            run.seen.steps.extend(observation.finish());
-            for (fault, onset_s) in setup.faults.iter_mut().zip(&own_onset) {
-                fault.onset_s = *onset_s;
-            }
+        Self {
+            setup,
+            own_onset_s,
+            stop,
+            run,
         }
-        (stop.presses() == 0).then_some(run)
+    }
+
+    /// Powers it up and runs a procedure.
+    fn perform(
+        &mut self,
+        task: &Task,
+        saw: &mut dyn FnMut(&SessionEvent),
+        go_on: &dyn Fn() -> bool,
+    ) {
+        let Self {
+            setup, stop, run, ..
+        } = self;
+        let procedure = &task.procedure.id;
+        let mut observation = ObservationBuilder::new(procedure);
+        let mut sink = |event| {
+            observation.take(&event);
+            saw(&event);
+            let wrong = match event {
+                SessionEvent::Fault(fault) => fault.message,
+                SessionEvent::Run(RunEvent::ProcedureFinished {
+                    verdict, message, ..
+                }) if !matches!(verdict, Verdict::Passed | Verdict::Skipped) => {
+                    format!("{verdict} {message}")
+                }
+                _ => return,
+            };
+            run.passed = false;
+            run.not_passed.push(format!("{procedure}: {wrong}"));
+        };
+        run_on_fresh(setup, task, stop, &mut sink, go_on);
+        run.seen.steps.extend(observation.finish());
+        for (fault, onset_s) in self.setup.faults.iter_mut().zip(&self.own_onset_s) {
+            fault.onset_s = *onset_s;
+        }
     }
 }

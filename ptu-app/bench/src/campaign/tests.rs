@@ -80,7 +80,8 @@ fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
 }
 
 /// Goal: each mode is diagnosed once by a dictionary that has other modes of its part and not this one, and once by one
-/// that has none of its part. Method: two parts with few modes, one seed.
+/// that has none of its part. An adaptive run with it finds most parts in half of the steps. Method: two parts with few
+/// modes, one seed.
 #[test]
 fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
     let suite = Suite::load(&scripts(), Connection::Ptu).unwrap();
@@ -109,6 +110,10 @@ fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
         jobs: 2,
     };
     let outcome = conclude(&evidence, asked.leave_out);
+    let adaptive = outcome.adaptive.unwrap();
+    assert!(adaptive.named.of > detected / 2, "{adaptive:?}");
+    let steps = suite.checks().len();
+    assert!(adaptive.steps.median < steps as f64 / 2.0, "{adaptive:?}");
     let known = outcome.assessments.iter().filter(|run| run.is_found());
     let known = known.count();
     let left_out = outcome.left_out.unwrap();

@@ -13,7 +13,7 @@ use protocol::LruId;
 use super::bench_setup::Connected;
 use super::observe::ObservationBuilder;
 use super::workers::Worker;
-use super::{ProcedureStream, RunPlan, Task, stream};
+use super::{ProcedureStream, RunPlan, SessionEvent, Task, stream};
 use crate::stop::Stop;
 
 /// What an adaptive run decides by.
@@ -37,43 +37,59 @@ pub fn start<'scope>(
     let (procedures, receiver) = mpsc::channel();
     scope.spawn(move || {
         let mut worker = Worker::new(connected, stop);
-        isolate(plan, adaptive, &mut worker, stop, &procedures);
+        run_adaptively(plan, adaptive, &mut worker, stop, &procedures);
     });
     receiver
 }
 
-fn isolate(
+fn run_adaptively(
     plan: &RunPlan,
     adaptive: &Adaptive,
     worker: &mut Worker<'_>,
     stop: &Stop,
     procedures: &Sender<ProcedureStream>,
 ) {
-    let tasks = plan
-        .tasks
-        .iter()
-        .map(|task| (task.procedure.id.as_str(), task));
-    let tasks: BTreeMap<&str, &Task> = tasks.collect();
-    let may: BTreeSet<String> = tasks.keys().map(|id| (*id).to_owned()).collect();
     let Adaptive {
         dictionary,
         settings,
         lru_factors,
     } = adaptive;
     let model = Model::new(dictionary, settings, lru_factors);
-    let mut strategy = Strategy::new(&model, Some(may));
-    while let Some(next) = strategy.begin() {
-        let Some(task) = tasks.get(next.procedure.as_str()) else {
-            return;
-        };
+    isolate(&model, &plan.tasks, &mut |task, saw, go_on| {
         let (sender, events) = stream();
         if procedures.send((task.procedure.clone(), events)).is_err() {
-            return;
+            return false;
         }
         if !stop.may_begin() {
             // Its stream ends without a word: it was due.
-            return;
+            return false;
         }
+        let mut sink = |event| {
+            saw(&event);
+            // The collector listens until the stream ends, so that sending cannot fail.
+            drop(sender.send(event));
+        };
+        worker.run(task, &mut sink, go_on);
+        true
+    });
+}
+
+/// Runs a task: each event goes to the first function, and after each step the second says whether to go on. False where the
+/// whole search is over.
+pub type Perform<'a> =
+    dyn FnMut(&Task, &mut dyn FnMut(&SessionEvent), &dyn Fn() -> bool) -> bool + 'a;
+
+/// Has `perform` run the tasks that tell most, each as far as it tells something, until the question is answered. Bench time
+/// that it took, s.
+pub fn isolate(model: &Model<'_>, tasks: &[Task], perform: &mut Perform<'_>) -> f64 {
+    let named = tasks.iter().map(|task| (task.procedure.id.as_str(), task));
+    let named: BTreeMap<&str, &Task> = named.collect();
+    let may: BTreeSet<String> = named.keys().map(|id| (*id).to_owned()).collect();
+    let mut strategy = Strategy::new(model, Some(may));
+    while let Some(next) = strategy.begin() {
+        let Some(task) = named.get(next.procedure.as_str()) else {
+            break;
+        };
         // A step waits until the strategy has judged the one before.
         let task = Task {
             procedure: task.procedure.clone(),
@@ -84,18 +100,19 @@ fn isolate(
         };
         let mut observation = ObservationBuilder::new(&task.procedure.id);
         let enough = Cell::new(false);
-        let mut sink = |event| {
-            if let Some(step) = observation.take(&event)
+        let mut saw = |event: &SessionEvent| {
+            if let Some(step) = observation.take(event)
                 && !strategy.saw(step)
             {
                 enough.set(true);
             }
-            // The collector listens until the stream ends, so that sending cannot fail.
-            drop(sender.send(event));
         };
-        worker.run(&task, &mut sink, &|| !enough.get());
+        if !perform(&task, &mut saw, &|| !enough.get()) {
+            break;
+        }
         if !enough.get() {
             strategy.ended(&next.procedure);
         }
     }
+    strategy.time_s()
 }

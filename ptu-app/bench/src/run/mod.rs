@@ -53,6 +53,7 @@ use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 use protocol::Instant;
 
 pub use adaptive::Adaptive;
+pub(crate) use adaptive::isolate;
 pub use bench_contents::{BenchContents, BenchFile, Stimuli};
 pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_serial, software_version};
@@ -69,7 +70,7 @@ pub(crate) use trace_data::channel;
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;
 pub use unfinished::{Unfinished, unfinished};
-pub use workers::run_here;
+pub(crate) use workers::{TO_THE_END, run_on_fresh};
 
 use crate::clock;
 use crate::failure::{Exit, Failure};

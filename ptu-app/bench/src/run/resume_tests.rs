@@ -7,7 +7,7 @@ use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Runner, Verdict};
 use btu_rig::rig::Rig;
 use protocol::{Duration, Instant};
 
-use super::workers::run_here;
+use super::workers::{TO_THE_END, run_on_fresh};
 use super::{BenchSetup, RunControl, SessionEvent, Task};
 use crate::stop::Stop;
 use crate::test_support::{procedures, setup};
@@ -67,7 +67,7 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
         options: RunOptions::default(),
     };
     let mut said = Vec::new();
-    run_here(setup, &task, &Stop::default(), &mut |event| match event {
+    let mut sink = |event| match event {
         SessionEvent::Run(event) => {
             stands_still.take(&event);
             match event {
@@ -87,7 +87,8 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
         }
         SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.message)),
         _ => {}
-    });
+    };
+    run_on_fresh(setup, &task, &Stop::default(), &mut sink, &TO_THE_END);
     said
 }
 

@@ -117,14 +117,10 @@ impl<'a> Worker<'a> {
 }
 
 /// Every step is run.
-const TO_THE_END: fn() -> bool = || true;
+pub const TO_THE_END: fn() -> bool = || true;
 
-/// Runs a task on an embedded unit made for it, telling `sink` what happens.
-pub fn run_here(setup: &BenchSetup, task: &Task, stop: &Stop, sink: &mut dyn FnMut(SessionEvent)) {
-    run_on_fresh(setup, task, stop, sink, &TO_THE_END);
-}
-
-fn run_on_fresh(
+/// Runs a task on an embedded unit made for it as long as `go_on` says so after a step, telling `sink` what happens.
+pub fn run_on_fresh(
     setup: &BenchSetup,
     task: &Task,
     stop: &Stop,

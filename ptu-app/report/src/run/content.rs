@@ -12,6 +12,7 @@ use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::coverage_text;
 use crate::naming;
+use crate::trace_notes::note_text;
 use crate::words::{Words, fill};
 use ptu_bench::clock::{local, local_zoned};
 use ptu_bench::coverage::Coverage;
@@ -254,7 +255,7 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
         return Vec::new();
     }
     let rows = sheet.run.notes.iter().map(|note| {
-        let cells = [local(note.at_us), note.who.clone(), note.text.clone()];
+        let cells = [local(note.at_us), note.who.clone(), note_text(note, words)];
         Row::words(RowKind::Head, cells)
     });
     vec![

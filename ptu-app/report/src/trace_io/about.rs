@@ -3,6 +3,7 @@
 use fault_db::{Channel, TraceHead};
 use serde::{Deserialize, Serialize};
 
+use crate::trace_notes::TraceNote;
 use ptu_bench::clock::rfc3339;
 
 /// The name it is kept under in files that have named metadata.
@@ -35,6 +36,9 @@ pub struct TraceInfo {
     pub gaps: bool,
     /// Name, unit and kind of each signal; kinds with smallest step or words.
     pub channels: Vec<Channel>,
+    /// Notes at places in it; a file of an earlier version has none.
+    #[serde(default)]
+    pub notes: Vec<TraceNote>,
 }
 
 impl TraceInfo {
@@ -55,6 +59,7 @@ impl TraceInfo {
             partial: head.partial,
             gaps: head.gaps,
             channels,
+            notes: Vec::new(),
         }
     }
 

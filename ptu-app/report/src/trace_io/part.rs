@@ -6,6 +6,7 @@ use std::str::FromStr;
 use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 
 use super::about::TraceInfo;
+use crate::trace_notes::TraceNote;
 use ptu_bench::failure::Failure;
 
 /// Rows that are in memory at once, of all signals.
@@ -96,7 +97,10 @@ impl<'s> TracePart<'s> {
         let head = store.trace_head(id)?;
         let rows = span.rows(&head)?;
         let channels = chosen(&head, signals)?;
-        let about = TraceInfo::part(&head, channels, rows.start, rows.len());
+        let mut about = TraceInfo::part(&head, channels, rows.start, rows.len());
+        let times_us = about.time_us(0)..about.time_us(rows.len());
+        about.notes = TraceNote::all(store, id)?;
+        about.notes.retain(|note| times_us.contains(&note.time_us));
         Ok(Self {
             store,
             id,

@@ -44,6 +44,8 @@ wordings! {
         close_axes_hint: "axes of quantities as long as what is in view needs, or as the whole trace needs", "세로축을 보이는 구간에 맞추거나 전체 신호 기록에 맞춤";
         trigger: "trigger", "트리거";
         events: "events", "이벤트";
+        note_field: "note at cursor A", "커서 A 위치의 메모";
+        note_at: "trace {trace}, {time}: {text}", "신호 기록 {trace}, {time}: {text}";
         lanes: "lanes", "신호 칸";
         keys: "wheel or + and −: zoom; drag or arrows: pan; right drag: zoom to a stretch; Backspace: zoom back; F: all; click or A: cursor A; Shift+click or B: cursor B; , and .: move A by a row (with Shift: B); Esc: no cursors", "휠 또는 + −: 확대/축소, 끌기 또는 화살표: 이동, 오른쪽 단추로 끌기: 구간 확대, Backspace: 이전 구간, F: 전체, 클릭 또는 A: 커서 A, Shift+클릭 또는 B: 커서 B, , 와 .: 커서 A를 한 행씩 이동 (Shift와 함께 B), Esc: 커서 지우기";
 

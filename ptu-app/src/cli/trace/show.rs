@@ -11,6 +11,8 @@ use crate::cli::{ScriptsOption, print_json, print_out};
 use ptu_bench::clock::rfc3339;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Explanation, explain};
+use ptu_bench::table::Table;
+use ptu_report::trace_notes::TraceNote;
 
 #[derive(Debug, Args)]
 pub struct ShowArguments {
@@ -32,7 +34,7 @@ impl ShowArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         let (id, trace) = read(store, &self.id, &self.part.signals, self.part.window)?;
         if self.json {
-            let mut document = trace_json(id, &trace);
+            let mut document = trace_json(id, &trace, &TraceNote::all(store, id)?);
             if self.twin {
                 add(&mut document, explanation_json(&self.explained(store, id)?));
             }
@@ -47,7 +49,7 @@ impl ShowArguments {
             Ok(explanation) => (explanation_text(explanation), Some(explanation)),
             Err(failure) => (format!("what was expected is not known: {failure}"), None),
         };
-        let mut text = plot(id, &trace);
+        let mut text = plot(id, &trace) + &notes(&TraceNote::all(store, id)?);
         if let Some(explanation) = twin.filter(|_| self.twin) {
             let came = store.trace(id)?;
             let names: Vec<_> = explanation
@@ -83,7 +85,19 @@ fn add(document: &mut Value, more: Value) {
     }
 }
 
-fn trace_json(id: Id, trace: &TraceData) -> Value {
+/// What was noted at its places, below the trace.
+fn notes(notes: &[TraceNote]) -> String {
+    if notes.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&["TIME", "BY", "NOTE"]);
+    for note in notes {
+        table.row([note.time(), note.who.clone(), note.text.clone()]);
+    }
+    format!("\n\n{}", table.render())
+}
+
+fn trace_json(id: Id, trace: &TraceData, notes: &[TraceNote]) -> Value {
     let channel = |(channel, column): (&Channel, &Vec<f64>)| {
         let samples: Vec<_> = column.iter().map(|v| (!v.is_nan()).then_some(*v)).collect();
         json!({
@@ -98,6 +112,9 @@ fn trace_json(id: Id, trace: &TraceData) -> Value {
         "rows": trace.rows(),
         "trigger_row": trace.trigger_row,
         "partial": trace.partial,
+        "notes": notes.iter().map(|note| json!({
+            "time_s": note.time_us as f64 / 1e6, "at": note.at, "who": note.who, "text": note.text,
+        })).collect::<Vec<_>>(),
         "channels": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
     })
 }

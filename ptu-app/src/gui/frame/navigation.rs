@@ -1,6 +1,6 @@
 //! Selects the page, the language, light or dark, and the zoom.
 
-use eframe::egui::{ComboBox, RichText, Ui};
+use eframe::egui::{Color32, ComboBox, FontId, RichText, Ui};
 
 use super::about::About;
 use super::care::Care;
@@ -8,9 +8,11 @@ use super::connection::both_ends;
 use crate::gui::parts::{ActionPlace, named_combo};
 use crate::gui::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::gui::{Density, Page, PageContext, Sizes};
-use ptu_report::words::Language;
+use ptu_report::words::{Language, Words};
 
 const STEP: f32 = 0.1;
+/// Least share of the usual spaces in which the names of pages can be told apart.
+const LEAST_SPACES: f32 = 0.5;
 /// A bar so wide has the pages and the rest in one line, points.
 const BESIDE: f32 = 1180.0;
 /// Least width of a choice, and most of that of the page, points.
@@ -39,13 +41,36 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, (about, care): (&mut Abou
 }
 
 fn pages(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let size = Sizes::of(ui).body.max(16.0);
+    narrow_spaces(ui, context.words, size);
     for page in Page::ALL {
         let chosen = context.settings.page == page;
-        let text = RichText::new(page.name(context.words)).size(Sizes::of(ui).body.max(16.0));
+        let text = RichText::new(page.name(context.words)).size(size);
         let button = ui.selectable_label(chosen, text);
         if button.on_hover_text(page.key().name()).clicked() {
             context.settings.page = page;
         }
+    }
+}
+
+/// Narrows the spaces in and between the names of pages where that leaves them in one line.
+fn narrow_spaces(ui: &mut Ui, words: &Words, size: f32) {
+    let font = FontId::proportional(size);
+    let width = |page: Page| {
+        let name = page.name(words).to_owned();
+        let laid_out = ui
+            .painter()
+            .layout_no_wrap(name, font.clone(), Color32::WHITE);
+        // On whole points, as widgets are.
+        laid_out.size().x.ceil()
+    };
+    let left = ui.available_width() - Page::ALL.into_iter().map(width).sum::<f32>();
+    let spacing = ui.spacing_mut();
+    let usual = 2.0 * spacing.button_padding.x + spacing.item_spacing.x;
+    let share = left / (usual * Page::ALL.len() as f32);
+    if (LEAST_SPACES..1.0).contains(&share) {
+        spacing.button_padding.x *= share;
+        spacing.item_spacing.x *= share;
     }
 }
 

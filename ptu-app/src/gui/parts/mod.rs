@@ -35,7 +35,7 @@ pub use named::named_combo;
 pub use open_file::open_file;
 pub use rows::rows;
 pub use run_list::RunList;
-pub use run_note::RunNoteForm;
+pub use run_note::{NoteOn, RunNoteForm};
 pub use saved_questions::{SavedQuestion, SavedSaid, saved_questions};
 pub use serial_link::{repair_line, serial_link};
 pub use share_bar::share_bar;

@@ -1,7 +1,7 @@
-//! A form for a note on a run.
+//! A form for a note on a run, or at a place in a trace of it.
 
 use eframe::egui::{Button, Ui};
-use fault_db::Id;
+use fault_db::{Id, TracePlace};
 
 use crate::gui::messages::Messages;
 use crate::gui::parts::note_edit;
@@ -13,18 +13,37 @@ use ptu_report::words::Words;
 /// Room for the button, points.
 const BUTTON: f32 = 130.0;
 
+/// What a note is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoteOn {
+    Run(Id),
+    /// A place in a trace.
+    Place(TracePlace),
+}
+
+impl NoteOn {
+    /// The run or the trace, wherever in it.
+    fn id(self) -> Id {
+        match self {
+            Self::Run(run) => run,
+            Self::Place(place) => place.trace,
+        }
+    }
+}
+
 /// The field and what becomes of it.
 #[derive(Default)]
 pub struct RunNoteForm {
     text: String,
-    run: Option<Id>,
-    /// Answers with the run that was noted on.
-    under_way: Request<Id>,
+    /// The run or the trace it is meant for.
+    on: Option<Id>,
+    /// Answers with what was noted on.
+    under_way: Request<NoteOn>,
 }
 
 impl RunNoteForm {
-    /// The run on which a note has just been stored.
-    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<Id> {
+    /// What a note has just been stored on.
+    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<NoteOn> {
         if !self.under_way.poll() {
             return None;
         }
@@ -35,7 +54,7 @@ impl RunNoteForm {
             }
             Request::Ready(noted) => {
                 messages.note(words.report.note_saved);
-                if self.run == Some(noted) {
+                if self.on == Some(noted.id()) {
                     self.text.clear();
                 }
                 Some(noted)
@@ -44,14 +63,24 @@ impl RunNoteForm {
         }
     }
 
-    /// The field with its button, for this run.
-    pub fn show(&mut self, ui: &mut Ui, words: &Words, queries: &QueryWorker, who: &str, run: Id) {
-        if self.run != Some(run) {
-            // What was begun on another run is not meant for this one.
-            self.run = Some(run);
+    /// The field with its button, for a note on this.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        words: &Words,
+        queries: &QueryWorker,
+        who: &str,
+        on: NoteOn,
+    ) {
+        if self.on != Some(on.id()) {
+            // What was begun on another run or trace is not meant for this one.
+            self.on = Some(on.id());
             self.text.clear();
         }
-        let label = ui.label(words.report.note_field);
+        let label = ui.label(match on {
+            NoteOn::Run(_) => words.report.note_field,
+            NoteOn::Place(_) => words.traces.note_field,
+        });
         let left = ui.available_size_before_wrap().x;
         let wide = (left - BUTTON).max(BUTTON);
         ui.add(note_edit(&mut self.text, wide))
@@ -66,8 +95,12 @@ impl RunNoteForm {
         let save = ui.add_enabled(may, Button::new(words.report.note_save));
         if save.on_disabled_hover_text(why).clicked() {
             self.under_way = Request::Pending(queries.run(move |paths| {
-                paths.open()?.add_run_note(run, &who, &text, now_us())?;
-                Ok(run)
+                let store = paths.open()?;
+                match on {
+                    NoteOn::Run(run) => store.add_run_note(run, &who, &text, now_us())?,
+                    NoteOn::Place(place) => store.add_trace_note(place, &who, &text, now_us())?,
+                }
+                Ok(on)
             }));
         }
     }

@@ -152,3 +152,54 @@ fn one_cause_at_two_parts_is_told_with_what_they_share() {
     );
     assert!(said.korean.contains("공통된 원인"), "{said:?}");
 }
+
+/// Goal: a part is not named for certain where a sign names another that its fault does not show: what both share may be
+/// the cause, or it is not certain. Method: the relay as counted, beside a sign of a part that shares a link with it; of one
+/// that does not; and of the relay itself.
+#[test]
+fn a_sign_of_another_part_keeps_a_part_from_being_named_for_certain() {
+    let dictionary = dictionary();
+    let part = |name: &str| name.parse().expect("a part");
+    let relations = Relations {
+        shared: vec![Shared {
+            part: part("link"),
+            reaches: ["sensor", "relay"].map(part).into(),
+            measure: Sentence {
+                english: "record the frames".into(),
+                korean: "전문을 기록합니다".into(),
+            },
+        }],
+        ..Relations::default()
+    };
+    let mut settings = settings();
+    settings.signs.of_other_part = 0.3;
+    settings.found_at = 0.9;
+    let model = Model::new(&dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
+    let with_sign_of = |lru: &str| {
+        let mut seen = run(&["a.s1"], Some(640.0));
+        seen.steps[4].signs.insert(diagnosis::Sign {
+            fault: "silent".into(),
+            lru: protocol::lru::from_stored(lru),
+        });
+        Diagnosis::of(&model, &seen)
+    };
+    let shared = with_sign_of("sensor");
+    let said = &shared.conclusion.english;
+    assert_eq!(shared.finding, Finding::OneOf, "{said}");
+    let group = shared.group.expect("a group");
+    assert_eq!(group.parts, ["link", "relay", "sensor"].map(part));
+    let words =
+        "or one cause at relay and sensor: link or its wiring; to tell which, record the frames";
+    assert!(
+        said.starts_with("relay (") && said.ends_with(words),
+        "{said}"
+    );
+    let apart = with_sign_of("antenna");
+    let said = &apart.conclusion;
+    assert_eq!(apart.finding, Finding::CannotTell, "{said:?}");
+    assert_eq!(apart.lrus[0].lru, "relay");
+    let words = "; a sign of a fault in antenna does not come from it";
+    assert!(said.english.contains(words), "{said:?}");
+    assert!(said.korean.contains("antenna 고장 징후"), "{said:?}");
+    assert_eq!(with_sign_of("relay").finding, Finding::Found);
+}

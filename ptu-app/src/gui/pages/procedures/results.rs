@@ -8,7 +8,7 @@ use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, Ui, UiBuilder};
 use protocol::lru;
 
-use crate::gui::parts::{RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
+use crate::gui::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::gui::query_worker::QueryWorker;
 use crate::gui::{Destination, Palette};
 use ptu_bench::bench_worker::{Progress, outside_place};
@@ -48,7 +48,7 @@ pub fn after_run(
         if ui.button(words.procedures.to_report).clicked() {
             go_to.push(Destination::Report(id));
         }
-        note.show(ui, words, queries, who, id);
+        note.show(ui, words, queries, who, NoteOn::Run(id));
     };
     ui.scope_builder(named, |ui| ui.horizontal_wrapped(row));
 }

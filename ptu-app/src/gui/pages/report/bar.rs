@@ -4,7 +4,7 @@ use eframe::egui::{Align2, Button, ComboBox, Label, RichText, TextEdit, Ui};
 
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::gui::data_paths::DataPaths;
-use crate::gui::parts::{name_edit, named_combo, open_file};
+use crate::gui::parts::{NoteOn, name_edit, named_combo, open_file};
 use crate::gui::request::Request;
 use crate::gui::{Destination, PageContext, Palette, Sizes};
 use ptu_report::words::{Language, Words, fill};
@@ -41,7 +41,8 @@ impl ReportPage {
             ui.add(name_edit(&mut context.settings.operator, NAME))
                 .labelled_by(label.id);
             let who = &context.settings.operator;
-            self.note.show(ui, words, context.queries, who, of.run());
+            self.note
+                .show(ui, words, context.queries, who, NoteOn::Run(of.run()));
         });
     }
 

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use eframe::egui::{CentralPanel, RichText, Ui};
 use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
 
-use crate::gui::parts::{FirstHalf, RunList, RunNoteForm, show_sheet};
+use crate::gui::parts::{FirstHalf, NoteOn, RunList, RunNoteForm, show_sheet};
 use crate::gui::request::Request;
 use crate::gui::{Density, PageContext, Palette, Sizes};
 use compare::ComparedWith;
@@ -215,7 +215,7 @@ impl ReportPage {
             }
         }
         if let Some(noted) = self.note.poll(context.words, context.messages)
-            && self.run() == Some(noted)
+            && self.run().map(NoteOn::Run) == Some(noted)
             && let Some(asked) = &self.asked_for
         {
             self.ask(asked.of, context);

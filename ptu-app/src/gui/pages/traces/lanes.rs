@@ -9,6 +9,7 @@ use super::bar;
 use super::compared_trace::file_name;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
+use super::notes::TraceNotes;
 use super::row::{self, GAP, Scratch, Sheet};
 use crate::gui::Palette;
 use crate::gui::parts::lane::{self, AXIS_HEIGHT};
@@ -77,7 +78,7 @@ impl LaneColumns {
 
 impl LaneCache {
     /// Shows them in all the room there is.
-    pub fn lanes(&mut self, ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
+    pub fn lanes(&mut self, ui: &mut Ui, scene: &mut TracePlot, notes: &TraceNotes, words: &Words) {
         let palette = Palette::of(ui);
         let all = ui.available_rect_before_wrap();
         self.rect = all;
@@ -125,6 +126,7 @@ impl LaneCache {
         title(&painter, &sheet, strip);
         self.stack(ui, &sheet, middle);
         events::flags(&painter, strip, middle, &sheet);
+        notes.flags(ui, strip, middle, &sheet);
         if let (Drag::Stretch(from), Some(at)) = (self.drag, response.interact_pointer_pos()) {
             let from = lane::x_at(middle, scene.window(), from);
             let (left, right) = (from.min(at.x), from.max(at.x));

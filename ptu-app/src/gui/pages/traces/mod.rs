@@ -8,6 +8,7 @@ mod export;
 mod input;
 mod lanes;
 mod list;
+mod notes;
 mod record_comparison;
 mod row;
 mod signals;
@@ -26,6 +27,7 @@ use compared_trace::OverlayRequest;
 use export::Export;
 use lanes::LaneCache;
 use list::TraceList;
+use notes::TraceNotes;
 use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
@@ -50,6 +52,7 @@ pub struct TracesPage {
     behind: OverlayRequest,
     export: Export,
     record: RecordComparison,
+    notes: TraceNotes,
     painted: LaneCache,
     find_signal: String,
     /// Name for a layout, as it is typed.
@@ -115,6 +118,7 @@ impl TracesPage {
         }
         if let Some(scene) = &mut self.scene {
             self.behind.poll(scene, context);
+            self.notes.poll(scene.opened().id, context);
         }
         self.export.poll(context);
     }
@@ -150,6 +154,7 @@ impl TracesPage {
             ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, context));
         }
         events::links(ui, scene, words);
+        self.notes.bar(ui, scene, context);
         if self.choosing {
             Panel::right("signals of the trace")
                 .default_size(260.0)
@@ -168,7 +173,7 @@ impl TracesPage {
         }
         CentralPanel::default()
             .frame(Frame::NONE)
-            .show(ui, |ui| self.painted.lanes(ui, scene, words));
+            .show(ui, |ui| self.painted.lanes(ui, scene, &self.notes, words));
     }
 }
 
