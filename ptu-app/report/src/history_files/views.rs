@@ -239,3 +239,36 @@ pub(super) const VIEWS: &[View] = &[
         ],
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// Goal: a column or view that comes to the page of the views comes to the files, too.
+    #[test]
+    fn all_views_and_columns_of_the_page_are_exported() {
+        let mut told = BTreeSet::new();
+        let mut view = "";
+        for line in fault_db::VIEWS_PAGE.lines() {
+            if let Some((name, _)) = line.strip_prefix("## ").and_then(|h| h.split_once(':')) {
+                view = name;
+            } else if let Some((names, _)) =
+                line.strip_prefix("| ").and_then(|row| row.split_once(" |"))
+                && names != "column"
+            {
+                told.extend(names.split(", ").map(|name| format!("{view}.{name}")));
+            }
+        }
+        let columns = |view: &View| {
+            let name = view.name;
+            let columns = view.columns.iter();
+            columns
+                .map(|(column, _)| format!("{name}.{column}"))
+                .collect::<Vec<_>>()
+        };
+        let exported: BTreeSet<_> = VIEWS.iter().flat_map(columns).collect();
+        assert_eq!(exported, told);
+    }
+}
