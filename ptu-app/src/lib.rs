@@ -10,6 +10,7 @@ pub mod cli;
 mod computer_name;
 mod console;
 mod distances;
+mod event_stream;
 mod fault_months;
 #[cfg(feature = "window")]
 pub mod gui;

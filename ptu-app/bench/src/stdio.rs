@@ -61,9 +61,9 @@ fn readable(text: &str) -> String {
     lines.join("\n")
 }
 
-/// Standard output, for this file.
+/// Standard output, for this file and for a stream of lines that is its only content.
 #[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
-fn stdout() -> io::Stdout {
+pub fn stdout() -> io::Stdout {
     io::stdout()
 }
 

@@ -5,6 +5,7 @@
 //!   [`run`]: the test sheet;
 //! * [`drive`], [`campaign`], [`diagnosis`]: reports of those;
 //! * [`trace_view`]: prepares traces for drawing, independent of the window; [`trace_io`]: trace files;
+//! * [`event_lines`]: the stream of a run for other programs; [`history_files`]: the history as Parquet partitions;
 //! * [`words`]: the texts in two languages; [`fonts`]: the font for them; [`limits`]: values and limits.
 
 pub mod campaign;
@@ -13,8 +14,10 @@ mod coverage;
 pub mod csv;
 pub mod diagnosis;
 pub mod drive;
+pub mod event_lines;
 pub mod event_text;
 pub mod fonts;
+pub mod history_files;
 mod json;
 mod junit;
 mod left_out;

@@ -13,8 +13,9 @@ use clap::Args;
 use fault_db::Store;
 
 use super::reports::ReportOption;
-use super::{Database, ScriptsOption, print_out, run_list};
+use super::{Database, ScriptsOption, answered, print_out, run_list};
 use crate::console::{Console, verdict_table};
+use crate::event_stream::{EventStream, is_stdout};
 use crate::operator::Operator;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::drive::Setting;
@@ -48,6 +49,7 @@ const SEED: u64 = 1;
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
 ///   ptu run --report out.json --report out.junit.xml
+///   ptu run --events -                           each event as a JSON line, for other programs
 ///   ptu run --resume latest                     what the latest run left without a verdict
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -137,6 +139,9 @@ pub struct RunArguments {
     adaptive: bool,
     #[command(flatten)]
     resume: resume::ResumeOption,
+    /// Write each event of the run as a JSON line (docs/events.md); - for standard output, which then has nothing else
+    #[arg(long, value_name = "FILE|-", conflicts_with_all = ["check", "list"])]
+    events: Option<PathBuf>,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -321,7 +326,7 @@ impl RunArguments {
         }
         let stop = Stop::default();
         stop.listen();
-        let mut console = Console::new(plan)?;
+        let mut console = EventStream::begin(Console::new(plan)?, self.events.as_deref())?;
         let result = match self.adaptive {
             false => run::run(plan, setup, store, &stop, &mut console),
             true => {
@@ -340,6 +345,8 @@ impl RunArguments {
                 run::search(plan, setup, store, &stop, &mut console, prepare)
             }
         };
+        let outcome = result.as_ref().ok().map(|(_, outcome)| outcome);
+        let (console, streamed) = console.finish(outcome);
         console.finish();
         let (store, outcome) = result?;
         let answer = self.diagnosis(&store, directory, &outcome);
@@ -355,14 +362,17 @@ impl RunArguments {
         }
         let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
         // The database and the reports have it: what a terminal does not take changes no verdict.
-        let said = print_out(&verdict_table(&detail))
-            .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
-            .and_then(|()| conclusion::say_proofs(&proofs?));
+        let said = match self.events.as_deref().is_some_and(is_stdout) {
+            true => Ok(()),
+            false => print_out(&verdict_table(&detail))
+                .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
+                .and_then(|()| conclusion::say_proofs(&proofs?)),
+        };
         if let Err(failure) = said {
             failure.tell();
         }
         self.reports.write(&store, Some(directory), &detail)?;
         store.close()?;
-        Ok(outcome.exit)
+        answered(streamed.map(|()| outcome.exit), outcome.exit)
     }
 }

@@ -10,14 +10,14 @@ use fault_db::{
 use serde_json::Value;
 
 /// Noon of a day of 2025, UTC.
-fn noon_us(month: u32, day: u32) -> i64 {
+pub fn noon_us(month: u32, day: u32) -> i64 {
     let date = NaiveDate::from_ymd_opt(2025, month, day).expect("a day");
     let noon = date.and_hms_opt(12, 0, 0).expect("noon");
     noon.and_utc().timestamp_micros()
 }
 
 /// A run that measured something, and found a fault if there is one.
-fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
+pub fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
     record_in(store, "", at_us, fault)
 }
 
@@ -98,7 +98,7 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
 }
 
 /// The history of a place, to write to.
-fn store(place: &Place) -> Store {
+pub fn store(place: &Place) -> Store {
     let options = ptu_bench::clock::open_options();
     Store::open(&place.path("history.db"), options).expect("a history")
 }

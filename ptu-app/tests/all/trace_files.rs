@@ -21,7 +21,7 @@ const T0_US: i64 = 1_772_323_200_000_000;
 const PERIOD_US: i64 = 50_000;
 
 /// The Python that has the readers. Without them nothing would be tested, so that fails.
-fn python() -> PathBuf {
+pub fn python() -> PathBuf {
     if let Some(python) = std::env::var_os("PTU_TEST_PYTHON") {
         return python.into();
     }
@@ -31,8 +31,8 @@ fn python() -> PathBuf {
     let python = target.join(READERS).join("bin/python");
     assert!(
         python.exists(),
-        "{} is missing: run scripts/test once, it installs the readers, or name a Python that has pyarrow \
-         and mcap in PTU_TEST_PYTHON",
+        "{} is missing: run scripts/test once, it installs the readers, or name a Python that has pyarrow, \
+         mcap, duckdb and polars in PTU_TEST_PYTHON",
         python.display()
     );
     python

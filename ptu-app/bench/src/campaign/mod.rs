@@ -17,6 +17,7 @@ mod suite;
 #[cfg(test)]
 mod tests;
 
+use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
 use protocol::injection::FaultMode;
@@ -66,9 +67,13 @@ pub struct Request {
 
 impl Request {
     /// The runs that are asked for, for people.
-    fn what(&self) -> String {
+    fn what(&self, connection: Connection) -> String {
+        let alone = match connection {
+            Connection::Ptu => " --harness none",
+            Connection::Btu => "",
+        };
         let mut what = format!(
-            "ptu campaign --seeds {} --held-out {} --good {} --units {}",
+            "ptu campaign{alone} --seeds {} --held-out {} --good {} --units {}",
             self.seeds, self.held_out, self.good, self.units
         );
         if let Some(faults) = &self.faults {
@@ -159,7 +164,7 @@ pub fn run(
     let samples = samples(&modes, &suite.structure.relations.shared, asked);
     let basis = basis(directory, suite.connection())?;
     let plan = Plan {
-        what: asked.what(),
+        what: asked.what(suite.connection()),
         names: samples.iter().map(Sample::name).collect(),
         seeds: None,
     };

@@ -14,6 +14,7 @@ use crate::cli::{Database, answered, print_json, print_out, since_argument};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stdio;
+use ptu_report::history_files::{Exported, export_history};
 
 /// Which traces may go; those of faults that are not closed never do.
 #[derive(Debug, Args)]
@@ -68,6 +69,22 @@ impl Database {
         let counts = store.export(to, clock::open_options());
         let counts = counts.map_err(|error| of_named_file(to, error))?;
         tell_merged(&counts, &[], json)
+    }
+
+    pub(super) fn export_parquet(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
+        let done = export_history(&self.open_read_only()?, to)?;
+        if json {
+            return print_json(&done);
+        }
+        let Exported {
+            written,
+            unchanged,
+            removed,
+        } = done;
+        print_out(&format!(
+            "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
+            to.display()
+        ))
     }
 
     pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {

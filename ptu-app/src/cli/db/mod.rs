@@ -50,13 +50,18 @@ enum Verb {
         #[arg(long)]
         json: bool,
     },
-    /// Add everything that is here to another database
+    /// Add everything that is here to another database, or write it as Parquet files
     ///
     /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3.
+    /// code is 3. With --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
+    /// each month; a month that has not changed is left as it is.
     Export {
         /// The other file, made if need be
-        to: PathBuf,
+        #[arg(required_unless_present = "parquet", conflicts_with = "parquet")]
+        to: Option<PathBuf>,
+        /// Folder for Parquet files, made if need be
+        #[arg(long, value_name = "DIR")]
+        parquet: Option<PathBuf>,
         /// Print JSON
         #[arg(long)]
         json: bool,
@@ -79,7 +84,12 @@ impl DbArguments {
             Verb::Rebuild => self.database.rebuild(),
             Verb::Backup { to } => self.database.backup(&to),
             Verb::Import { from, json } => self.database.import(&from, json),
-            Verb::Export { to, json } => self.database.export(&to, json),
+            Verb::Export { to, parquet, json } => match (to, parquet) {
+                (Some(to), _) => self.database.export(&to, json),
+                (None, folder) => self
+                    .database
+                    .export_parquet(&folder.unwrap_or_default(), json),
+            },
             Verb::Prune(arguments) => self.database.prune(&arguments),
             Verb::Sync(arguments) => arguments.run(&self.database),
             Verb::Server(arguments) => arguments.run(),

@@ -1,0 +1,453 @@
+//! The stream of a run as JSON lines, for other programs: `docs/events.md`.
+//!
+//! What a line has is in one table, [`EVENTS`], of which the schema in `docs/` is made. A key is never given another
+//! meaning and never left out within a version; new keys and new events may come, and a reader passes over those that it
+//! does not know.
+
+use btu_rig::procedure::{EventSource, Measurement, Procedure, RunEvent, StepResult, UnitEvent};
+use protocol::lru;
+use serde_json::{Map, Value, json};
+
+use ptu_bench::run::{Outcome, SessionEvent};
+
+/// Version of the stream.
+pub const VERSION: u32 = 1;
+
+/// Type of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Text.
+    Text,
+    /// Text, or null.
+    TextOrNull,
+    /// A whole number.
+    Whole,
+    /// A whole number, or null.
+    WholeOrNull,
+    /// A number, or null.
+    Number,
+    /// True or false.
+    Bit,
+    /// A list.
+    List,
+}
+
+use Kind::{Bit, List, Number, Text, TextOrNull, Whole, WholeOrNull};
+
+/// An event: its name, what it is, and its keys, each with its type and meaning.
+pub type EventKeys = (
+    &'static str,
+    &'static str,
+    &'static [(&'static str, Kind, &'static str)],
+);
+
+const AT: (&str, Kind, &str) = (
+    "at_us",
+    Whole,
+    "bench time, µs since the unit was started for this procedure",
+);
+const MESSAGE: (&str, Kind, &str) = (
+    "message",
+    Text,
+    "why, or a note; empty if there is nothing to say",
+);
+const VERDICT: (&str, Kind, &str) = (
+    "verdict",
+    Text,
+    "passed, failed, error, skipped, inconclusive or aborted",
+);
+const INDEX: (&str, Kind, &str) = ("index", Whole, "place of the step in the procedure, from 0");
+const LOG: &[(&str, Kind, &str)] = &[
+    (
+        "source",
+        Text,
+        "unit or tcms: whose log the event stands in",
+    ),
+    ("code", Whole, "its number, as in the dictionary of events"),
+    ("parameter", Whole, "its parameter"),
+    (
+        "unit_ms",
+        Whole,
+        "time of whoever logged it, ms since its start",
+    ),
+];
+
+/// Keys that every line has.
+pub const COMMON: &[(&str, Kind, &str)] = &[
+    ("seq", Whole, "number of the line, from 0"),
+    ("event", Text, "which event it is"),
+    (
+        "procedure",
+        TextOrNull,
+        "procedure that it belongs to, as atp/overspeed; null of the run",
+    ),
+];
+
+/// All events.
+pub const EVENTS: &[EventKeys] = &[
+    (
+        "stream_started",
+        "the first line",
+        &[
+            ("version", Whole, "version of the stream"),
+            ("app_version", Text, "version of the program"),
+        ],
+    ),
+    (
+        "procedure_started",
+        "a procedure begins with its set-up",
+        &[AT, ("steps", Whole, "steps to be run, repetitions counted")],
+    ),
+    (
+        "step_started",
+        "a step begins",
+        &[
+            AT,
+            INDEX,
+            ("name", Text, "its name, with (2/3) where it is repeated"),
+        ],
+    ),
+    (
+        "paused",
+        "the run is paused, and the next step waits",
+        &[AT, ("next", Text, "name of that step")],
+    ),
+    (
+        "waiting",
+        "something is waited for; told twice a second",
+        &[
+            ("what", Text, "what is waited for"),
+            ("left_us", Whole, "how long it may still take"),
+        ],
+    ),
+    (
+        "prompt",
+        "the operator is asked",
+        &[
+            ("text", Text, "the question"),
+            ("left_us", Whole, "how long the answer may take"),
+        ],
+    ),
+    (
+        "measured",
+        "a measurement is done",
+        &[
+            INDEX,
+            ("name", Text, "its name"),
+            (
+                "value",
+                Number,
+                "what was measured; null if nothing could be",
+            ),
+            (
+                "unit",
+                Text,
+                "unit of value and limits; empty of counts and states",
+            ),
+            ("low", Number, "least value allowed; null if there is none"),
+            (
+                "high",
+                Number,
+                "greatest value allowed; null if there is none",
+            ),
+            ("limit_source", TextOrNull, "where the limits come from"),
+            VERDICT,
+        ],
+    ),
+    (
+        "step_finished",
+        "a step is done",
+        &[
+            INDEX,
+            ("name", Text, "its name, with (2/3) where it is repeated"),
+            VERDICT,
+            MESSAGE,
+            (
+                "repeated",
+                Bit,
+                "it was not tested and is begun again; another line follows",
+            ),
+            ("suspect", TextOrNull, "part to suspect if it failed"),
+            ("started_us", Whole, "bench time at which it began, µs"),
+            ("bench_time_us", Whole, "how long it took on the bench"),
+            ("script_line", Whole, "line of its call in the script"),
+        ],
+    ),
+    (
+        "unsolicited_event",
+        "unit or TCMS logged an event that no step provoked",
+        LOG,
+    ),
+    (
+        "unsolicited_brake",
+        "the emergency brake was applied in a step that did not ask for it",
+        &[AT],
+    ),
+    (
+        "unit_clock_wrong",
+        "the unit's clock goes wrong, as the bench's tells",
+        &[
+            AT,
+            (
+                "by_permille",
+                Whole,
+                "by how much it is faster, thousandths",
+            ),
+        ],
+    ),
+    (
+        "outside_step",
+        "something failed that belongs to no step",
+        &[
+            AT,
+            ("place", Text, "where, such as bring-up or clean-up"),
+            VERDICT,
+            MESSAGE,
+        ],
+    ),
+    (
+        "procedure_finished",
+        "a procedure is over, and outputs are safe or an error is told",
+        &[AT, VERDICT, MESSAGE],
+    ),
+    (
+        "fault",
+        "a fault was found",
+        &[
+            AT,
+            ("code", Whole, "its number"),
+            ("name", Text, "its name"),
+            ("lru", TextOrNull, "part that it points at"),
+            ("severity", Text, "critical, major, minor or info"),
+            (
+                "step",
+                WholeOrNull,
+                "step under way, by its turn in the procedure",
+            ),
+            MESSAGE,
+            (
+                "freeze",
+                List,
+                "all signals at that moment: name, value, unit, label",
+            ),
+        ],
+    ),
+    (
+        "trace",
+        "the signals around faults are recorded",
+        &[
+            (
+                "faults",
+                List,
+                "faults that it shows, by their number in the procedure, from 0",
+            ),
+            ("rows", Whole, "rows, one for each 50 ms"),
+            ("trigger_row", Whole, "row at which it was triggered"),
+            ("partial", Bit, "it ends before its time was over"),
+            ("began_us", WholeOrNull, "bench time of its first row, µs"),
+        ],
+    ),
+    (
+        "recording",
+        "what was done to the bench in the procedure is recorded",
+        &[("began_us", Whole, "bench time at which it begins, µs")],
+    ),
+    (
+        "link_lost",
+        "nothing can be judged any more",
+        &[("reason", Text, "why")],
+    ),
+    (
+        "ended",
+        "nothing more comes of the procedure",
+        &[(
+            "bench_time_us",
+            Whole,
+            "bench time that it took, bring-up included",
+        )],
+    ),
+    (
+        "run_finished",
+        "the last line of a run that ended; without it the run was broken off, or the stream was",
+        &[
+            ("run", Text, "id of the run in the database"),
+            VERDICT,
+            ("bench_time_us", Whole, "bench time of all procedures"),
+            ("exit", Whole, "exit code of the run"),
+        ],
+    ),
+];
+
+/// Turns events into lines.
+#[derive(Debug, Default)]
+pub struct EventLines {
+    seq: u64,
+}
+
+impl EventLines {
+    /// The first line.
+    pub fn started(&mut self) -> String {
+        self.line(
+            None,
+            "stream_started",
+            json!({ "version": VERSION, "app_version": env!("CARGO_PKG_VERSION") }),
+        )
+    }
+
+    /// The line of an event.
+    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> String {
+        let (name, keys) = match event {
+            SessionEvent::Run(event) => of_runner(event),
+            SessionEvent::Fault(fault) => (
+                "fault",
+                json!({
+                    "at_us": fault.at.as_us(), "code": fault.code, "name": fault.name,
+                    "lru": fault.lru.as_ref().map(|part| lru::stored(Some(part))),
+                    "severity": fault.severity.label(), "step": fault.step,
+                    "message": fault.message, "freeze": fault.freeze,
+                }),
+            ),
+            SessionEvent::Trace(trace) => (
+                "trace",
+                json!({
+                    "faults": trace.faults, "rows": trace.rows.len(),
+                    "trigger_row": trace.trigger_row, "partial": trace.partial,
+                    "began_us": trace.rows.first().map(|row| row.at.as_us()),
+                }),
+            ),
+            SessionEvent::Recording(recording) => {
+                ("recording", json!({ "began_us": recording.began.as_us() }))
+            }
+            SessionEvent::LinkLost(reason) => ("link_lost", json!({ "reason": reason })),
+            SessionEvent::Ended { bench_time } => {
+                ("ended", json!({ "bench_time_us": bench_time.as_us() }))
+            }
+        };
+        self.line(Some(&procedure.id), name, keys)
+    }
+
+    /// The last line.
+    pub fn finished(&mut self, outcome: &Outcome) -> String {
+        let keys = json!({
+            "run": outcome.id.to_string(), "verdict": outcome.verdict.label(),
+            "bench_time_us": outcome.bench_time.as_us(), "exit": outcome.exit.code(),
+        });
+        self.line(None, "run_finished", keys)
+    }
+
+    fn line(&mut self, procedure: Option<&str>, event: &str, keys: Value) -> String {
+        let mut line = Map::new();
+        line.insert("seq".into(), json!(self.seq));
+        line.insert("event".into(), json!(event));
+        line.insert("procedure".into(), json!(procedure));
+        if let Value::Object(keys) = keys {
+            line.extend(keys);
+        }
+        self.seq += 1;
+        Value::Object(line).to_string()
+    }
+}
+
+fn of_runner(event: &RunEvent) -> (&'static str, Value) {
+    match event {
+        RunEvent::ProcedureStarted { steps, at } => (
+            "procedure_started",
+            json!({ "at_us": at.as_us(), "steps": steps }),
+        ),
+        RunEvent::StepStarted { index, name, at } => (
+            "step_started",
+            json!({ "at_us": at.as_us(), "index": index, "name": name }),
+        ),
+        RunEvent::Paused { next, at } => ("paused", json!({ "at_us": at.as_us(), "next": next })),
+        RunEvent::Waiting { what, left } => {
+            ("waiting", json!({ "what": what, "left_us": left.as_us() }))
+        }
+        RunEvent::Prompt { text, left } => {
+            ("prompt", json!({ "text": text, "left_us": left.as_us() }))
+        }
+        RunEvent::Measured { index, measurement } => ("measured", measured(*index, measurement)),
+        RunEvent::StepFinished(result) => ("step_finished", of_step(result)),
+        RunEvent::UnsolicitedEvent(event) => ("unsolicited_event", of_log(event)),
+        RunEvent::UnsolicitedBrake { at } => ("unsolicited_brake", json!({ "at_us": at.as_us() })),
+        RunEvent::UnitClockWrong { by_permille, at } => (
+            "unit_clock_wrong",
+            json!({ "at_us": at.as_us(), "by_permille": by_permille }),
+        ),
+        RunEvent::OutsideStep(outside) => (
+            "outside_step",
+            json!({
+                "at_us": outside.at.as_us(), "place": outside.place.name(),
+                "verdict": outside.verdict.label(), "message": outside.message,
+            }),
+        ),
+        RunEvent::ProcedureFinished {
+            verdict,
+            message,
+            at,
+        } => (
+            "procedure_finished",
+            json!({ "at_us": at.as_us(), "verdict": verdict.label(), "message": message }),
+        ),
+    }
+}
+
+fn measured(index: usize, measurement: &Measurement) -> Value {
+    json!({
+        "index": index, "name": measurement.name, "value": measurement.value,
+        "unit": measurement.unit, "low": measurement.low, "high": measurement.high,
+        "limit_source": measurement.limit_source, "verdict": measurement.verdict.label(),
+    })
+}
+
+fn of_step(result: &StepResult) -> Value {
+    json!({
+        "index": result.index, "name": result.name, "verdict": result.verdict.label(),
+        "message": result.message, "repeated": result.repeated,
+        "suspect": result.suspect.as_ref().map(|part| lru::stored(Some(part))),
+        "started_us": result.started.as_us(), "bench_time_us": result.bench_time.as_us(),
+        "script_line": result.line,
+    })
+}
+
+fn of_log(event: &UnitEvent) -> Value {
+    let source = match event.source {
+        EventSource::Unit => "unit",
+        EventSource::Tcms => "tcms",
+    };
+    json!({
+        "source": source, "code": event.code, "parameter": event.parameter, "unit_ms": event.at_ms,
+    })
+}
+
+/// The schema of a line (JSON Schema 2020-12), made of the table.
+pub fn schema() -> Value {
+    let types = |kind: Kind| match kind {
+        Text => json!("string"),
+        TextOrNull => json!(["string", "null"]),
+        Whole => json!("integer"),
+        WholeOrNull => json!(["integer", "null"]),
+        Number => json!(["number", "null"]),
+        Bit => json!("boolean"),
+        List => json!("array"),
+    };
+    let of_event = |(name, doc, keys): &EventKeys| {
+        let mut properties = Map::new();
+        for (key, kind, doc) in COMMON.iter().chain(*keys) {
+            properties.insert(
+                (*key).into(),
+                json!({ "type": types(*kind), "description": doc }),
+            );
+        }
+        properties.insert("event".into(), json!({ "const": name }));
+        let required: Vec<_> = properties.keys().cloned().collect();
+        json!({
+            "title": name, "description": doc, "type": "object",
+            "properties": properties, "required": required,
+        })
+    };
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": format!("A line of `ptu run --events`, version {VERSION}"),
+        "oneOf": EVENTS.iter().map(of_event).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,213 @@
+//! The history as Parquet partitions, for DuckDB, Polars and Spark: the documented views, a folder each, a file for each
+//! month. A month that has not changed is not written again.
+//!
+//! ```text
+//! DIR/views.sql                        the views for DuckDB
+//! DIR/steps/month=2026-03/part.parquet
+//! DIR/units/part.parquet
+//! ```
+
+mod partition;
+mod views;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::Path;
+
+use fault_db::{QueryBounds, QueryResult, SqlValue, Store};
+use serde::{Deserialize, Serialize};
+
+use partition::Partition;
+use ptu_bench::data;
+use ptu_bench::failure::Failure;
+use views::{VIEWS, View};
+
+/// What is in a folder's partitions, so that the next export need not read them.
+const KNOWN: &str = "export.json";
+/// Name of each partition's file.
+const PART: &str = "part.parquet";
+/// Folder of the partition of a month.
+const MONTH: &str = "month=";
+/// The month of a view without rows, whose file has its columns.
+const NO_MONTH: &str = "none";
+/// Rows asked for at once.
+const ROWS: usize = 50_000;
+/// Months are counted so far.
+const MOST_MONTHS: usize = 10_000;
+
+/// What an export did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Exported {
+    /// Partitions written.
+    pub written: usize,
+    /// Partitions that were so already.
+    pub unchanged: usize,
+    /// Partitions that have no rows any more.
+    pub removed: usize,
+}
+
+/// Rows of views that never change once they are there, by view and month.
+#[derive(Default, Deserialize, PartialEq, Serialize)]
+struct Known(BTreeMap<String, BTreeMap<String, String>>);
+
+/// Writes all views below a folder, which is made if need be.
+///
+/// # Errors
+/// The history cannot be read, or the folder not be written.
+pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
+    let cannot =
+        |error: std::io::Error| Failure::usage(format!("cannot write {}: {error}", to.display()));
+    std::fs::create_dir_all(to).map_err(cannot)?;
+    let mut known: Known = (std::fs::read(to.join(KNOWN)).ok())
+        .and_then(|text| serde_json::from_slice(&text).ok())
+        .unwrap_or_default();
+    let mut done = Exported::default();
+    for view in VIEWS {
+        let folder = to.join(view.name);
+        let months = months(store, view)?;
+        let known = known.0.entry(view.name.to_owned()).or_default();
+        for (month, rows) in &months {
+            let file = match view.time {
+                Some(_) => folder.join(format!("{MONTH}{month}")).join(PART),
+                None => folder.join(PART),
+            };
+            if view.is_final && known.get(month) == Some(rows) && file.is_file() {
+                done.unchanged += 1;
+                continue;
+            }
+            let bytes = partition(store, view, month)?;
+            if std::fs::read(&file).is_ok_and(|there| there == bytes) {
+                done.unchanged += 1;
+            } else {
+                if let Some(folder) = file.parent() {
+                    std::fs::create_dir_all(folder).map_err(cannot)?;
+                }
+                data::write(&file, bytes)?;
+                done.written += 1;
+            }
+            if view.is_final {
+                known.insert(month.clone(), rows.clone());
+            }
+        }
+        let there: BTreeSet<_> = months.keys().cloned().collect();
+        known.retain(|month, _| there.contains(month));
+        done.removed += remove_others(&folder, &there).map_err(cannot)?;
+    }
+    data::write(&to.join("views.sql"), views_sql())?;
+    let known = serde_json::to_string_pretty(&known).unwrap_or_default();
+    data::write(&to.join(KNOWN), known)?;
+    Ok(done)
+}
+
+/// Months that have rows of a view, each with what tells other rows; one month of any time if it has no time.
+fn months(store: &Store, view: &View) -> Result<BTreeMap<String, String>, Failure> {
+    let Some(time) = view.time else {
+        return Ok(BTreeMap::from([(String::new(), String::new())]));
+    };
+    let key = view.order.split(',').next().unwrap_or(time);
+    let months = format!(
+        "SELECT substr({label}, 1, 7), count(*), min({key}), max({key}) FROM {name} GROUP BY substr({label}, 1, 7)",
+        label = view.label,
+        name = view.name
+    );
+    let found = ask(store, &months, MOST_MONTHS)?;
+    let row = |row: Vec<SqlValue>| {
+        let words: Vec<_> = row.iter().map(word).collect();
+        let (month, rows) = words.split_first()?;
+        Some((month.clone(), rows.join(" ")))
+    };
+    let mut months: BTreeMap<_, _> = found.rows.into_iter().filter_map(row).collect();
+    if months.is_empty() {
+        months.insert(NO_MONTH.to_owned(), String::new());
+    }
+    Ok(months)
+}
+
+fn word(value: &SqlValue) -> String {
+    match value {
+        SqlValue::Null => String::new(),
+        SqlValue::Integer(number) => number.to_string(),
+        SqlValue::Real(number) => number.to_string(),
+        SqlValue::Text(text) => text.clone(),
+    }
+}
+
+/// The bytes of a month's file.
+fn partition(store: &Store, view: &View, month: &str) -> Result<Vec<u8>, Failure> {
+    let names: Vec<_> = view.columns.iter().map(|(name, _)| *name).collect();
+    let of_month = match view.time {
+        Some(_) => format!("WHERE substr({}, 1, 7) = '{month}'", view.label),
+        None => String::new(),
+    };
+    let question = format!(
+        "SELECT {} FROM {} {of_month} ORDER BY {}",
+        names.join(", "),
+        view.name,
+        view.order
+    );
+    let mut file = Partition::begin(view)?;
+    let mut from = 0;
+    loop {
+        let page = format!("{question} LIMIT {ROWS} OFFSET {from}");
+        let found = ask(store, &page, ROWS)?;
+        from += found.rows.len();
+        let is_last = found.rows.len() < ROWS && !found.truncated;
+        if found.rows.is_empty() && found.truncated {
+            return Err(Failure::bench(format!(
+                "a row of {} is too long to be exported",
+                view.name
+            )));
+        }
+        file.put(&found.rows)?;
+        if is_last {
+            return file.finish();
+        }
+    }
+}
+
+fn ask(store: &Store, sql: &str, rows: usize) -> Result<QueryResult, Failure> {
+    let bounds = QueryBounds {
+        rows,
+        ..QueryBounds::default()
+    };
+    Ok(store.query_within(sql, bounds, || true)?)
+}
+
+/// Removes the partitions of months that are none any more.
+fn remove_others(folder: &Path, months: &BTreeSet<String>) -> std::io::Result<usize> {
+    let mut removed = 0;
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let month = name.to_str().and_then(|name| name.strip_prefix(MONTH));
+        if month.is_some_and(|month| !months.contains(month)) {
+            let file = entry.path().join(PART);
+            if file.is_file() {
+                std::fs::remove_file(file)?;
+                removed += 1;
+            }
+            // What else lies there is not ours.
+            let _ = std::fs::remove_dir(entry.path());
+        }
+    }
+    Ok(removed)
+}
+
+/// The views for DuckDB, started in the folder.
+fn views_sql() -> String {
+    let mut sql = String::from("-- In this folder: duckdb -init views.sql\n");
+    for view in VIEWS {
+        let names: Vec<_> = view.columns.iter().map(|(name, _)| *name).collect();
+        let place = match view.time {
+            Some(_) => format!("{}/*/{PART}", view.name),
+            None => format!("{}/{PART}", view.name),
+        };
+        let _ = writeln!(
+            sql,
+            "CREATE VIEW {} AS SELECT {} FROM read_parquet('{place}');",
+            view.name,
+            names.join(", ")
+        );
+    }
+    sql
+}

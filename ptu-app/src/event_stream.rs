@@ -1,0 +1,157 @@
+//! `ptu run --events`: each event of a run as a JSON line, in a file or on standard output.
+
+use std::fs::File;
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
+use std::thread::JoinHandle;
+
+use btu_rig::procedure::Procedure;
+
+use ptu_bench::failure::Failure;
+use ptu_bench::run::{LinePrinter, Listener, Outcome, SessionEvent};
+use ptu_bench::stdio;
+use ptu_report::event_lines::EventLines;
+
+/// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
+const WAITING: usize = 65_536;
+/// Standard output in place of a file.
+const STDOUT: &str = "-";
+
+/// A listener that writes the stream and passes every event on.
+pub struct EventStream<L> {
+    pub listener: L,
+    stream: Option<Stream>,
+}
+
+struct Stream {
+    lines: EventLines,
+    to: Option<SyncSender<String>>,
+    thread: JoinHandle<std::io::Result<()>>,
+    place: PathBuf,
+    /// It took no more.
+    is_cut: bool,
+}
+
+/// Whether the stream goes to standard output, which then has nothing else.
+pub fn is_stdout(place: &Path) -> bool {
+    place.as_os_str() == STDOUT
+}
+
+impl<L: Listener> EventStream<L> {
+    /// Begins the stream, if one is asked for.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn begin(listener: L, place: Option<&Path>) -> Result<Self, Failure> {
+        let stream = place.map(Stream::begin).transpose()?;
+        Ok(Self { listener, stream })
+    }
+
+    /// Ends the stream: with the run's last line, if it ended.
+    ///
+    /// # Errors
+    /// Some of it could not be written.
+    pub fn finish(self, outcome: Option<&Outcome>) -> (L, Result<(), Failure>) {
+        let ended = self.stream.map_or(Ok(()), |stream| stream.finish(outcome));
+        (self.listener, ended)
+    }
+}
+
+impl Stream {
+    fn begin(place: &Path) -> Result<Self, Failure> {
+        let cannot = |error: &dyn std::fmt::Display| {
+            Failure::usage(format!(
+                "--events: cannot write {}: {error}",
+                place.display()
+            ))
+        };
+        let out: Box<dyn Write + Send> = match is_stdout(place) {
+            true => Box::new(stdio::stdout()),
+            // Not beside its place until it is whole: others read while it grows.
+            false => Box::new(File::create(place).map_err(|error| cannot(&error))?),
+        };
+        let (to, lines) = mpsc::sync_channel(WAITING);
+        let thread = std::thread::Builder::new()
+            .name("events".into())
+            .spawn(move || match write(&lines, out) {
+                // A reader that has gone away has read enough.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+                written => written,
+            });
+        let mut stream = Self {
+            lines: EventLines::default(),
+            to: Some(to),
+            thread: thread.map_err(|error| cannot(&error))?,
+            place: place.to_owned(),
+            is_cut: false,
+        };
+        let first = stream.lines.started();
+        stream.put(first);
+        Ok(stream)
+    }
+
+    fn put(&mut self, line: String) {
+        let sent = self.to.as_ref().map(|to| to.try_send(line));
+        if let Some(Err(error)) = sent {
+            // Nothing comes after a line that is left out, so that none is missed unseen. Why the thread has ended it
+            // tells itself.
+            self.is_cut = matches!(error, TrySendError::Full(_));
+            self.to = None;
+        }
+    }
+
+    fn finish(mut self, outcome: Option<&Outcome>) -> Result<(), Failure> {
+        if let Some(outcome) = outcome {
+            let last = self.lines.finished(outcome);
+            self.put(last);
+        }
+        drop(self.to.take());
+        let written = self.thread.join();
+        let failed = |why: &str| {
+            Failure::bench(format!(
+                "--events: {} has not all events: {why}; `ptu runs show latest` has the run",
+                self.place.display()
+            ))
+        };
+        match written {
+            Ok(Ok(())) if self.is_cut => Err(failed("whoever reads it takes too few")),
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(error)) => Err(failed(&error.to_string())),
+            Err(_) => Err(failed("its thread broke off")),
+        }
+    }
+}
+
+/// Writes lines as they come, and empties its buffer where none waits.
+fn write(lines: &Receiver<String>, out: impl Write) -> std::io::Result<()> {
+    let mut out = BufWriter::new(out);
+    while let Ok(line) = lines.recv() {
+        writeln!(out, "{line}")?;
+        while let Ok(line) = lines.try_recv() {
+            writeln!(out, "{line}")?;
+        }
+        out.flush()?;
+    }
+    Ok(())
+}
+
+impl<L: Listener> Listener for EventStream<L> {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        if let Some(stream) = &mut self.stream
+            && stream.to.is_some()
+        {
+            let line = stream.lines.event(procedure, event);
+            stream.put(line);
+        }
+        self.listener.on_event(procedure, event);
+    }
+
+    fn line(&self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
+        self.listener.line(procedure, event)
+    }
+
+    fn line_printer(&self) -> Option<LinePrinter> {
+        self.listener.line_printer()
+    }
+}
