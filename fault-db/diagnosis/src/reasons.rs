@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::belief::Belief;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
-use super::observation::{CheckName, Observation, ObservedStep};
+use super::observation::{CheckName, Observation, ObservedStep, Sign};
 use super::signs::SignsSeen;
 
 /// Most reasons in each direction.
@@ -105,7 +105,7 @@ impl Reasons {
                 ..SignsSeen::default()
             };
             let gain = alone.ln(model, hypothesis) - alone.ln(model, Hypothesis::NoFault);
-            let text = format!("the unit's log: {} names {}", sign.fault, sign.part());
+            let text = format!("the unit's log has {}{}", sign.fault, points_at(sign));
             if gain > SPEAKS_AT {
                 self.for_it.push(Reason::told(text));
             } else if gain < -SPEAKS_AT {
@@ -130,6 +130,14 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<usize> {
     rivals
 }
 
+/// The part that a fault is a sign of.
+fn points_at(sign: &Sign) -> String {
+    match &sign.lru {
+        Some(part) => format!(", which points at the {part}"),
+        None => ", which points at no part".to_owned(),
+    }
+}
+
 /// A step, its result, and its expected result under the mode and on a healthy unit.
 fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &ObservedStep) -> String {
     let own = model.expected(hypothesis, place);
@@ -148,8 +156,16 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &Observed
         share(own),
         share(healthy)
     );
-    for sign in &step.signs {
-        text += &format!(", {} names {}", sign.fault, sign.part());
+    // That the check failed is said already.
+    let (failed, others): (Vec<_>, Vec<_>) = step
+        .signs
+        .iter()
+        .partition(|sign| sign.fault == "check_failed");
+    for sign in failed {
+        text += &points_at(sign);
+    }
+    for sign in others {
+        text += &format!(", with {}{}", sign.fault, points_at(sign));
     }
     for (name, value) in &step.values {
         let (Some(of_own), Some(of_healthy)) =

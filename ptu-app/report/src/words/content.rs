@@ -180,15 +180,33 @@ fn in_place(place: &str, part: &str, or_same: &dyn Fn(&str) -> String) -> Option
         }
         // Behind it there may be more that name a part each.
         "part" => {
-            let mut all = part.split(", ");
-            let mut said = names::korean_part(all.next()?).to_owned();
-            for (fault, part) in all.filter_map(|more| more.split_once(" names ")) {
-                let fault = in_place("fault", fault, or_same)?;
-                said += &format!("), {fault} (지목 부품: {}", names::korean_part(part));
+            let part_and_fault = |text: &'_ str| match text.split_once(", with ") {
+                Some((part, fault)) => (pointed_at(part), Some(fault.to_owned())),
+                None => (pointed_at(text), None),
+            };
+            let mut all = part.split(", which points at ").map(part_and_fault);
+            let (mut said, mut fault) = all.next()?;
+            for (part, next) in all {
+                said += &match fault {
+                    Some(fault) => {
+                        let fault = in_place("fault", &fault, or_same)?;
+                        format!("), {fault} (지목 부품: {part}")
+                    }
+                    None => format!(", {part}"),
+                };
+                fault = next;
             }
             Some(said)
         }
         _ => None,
+    }
+}
+
+/// A part that a fault is a sign of.
+fn pointed_at(part: &str) -> String {
+    match part.strip_prefix("the ") {
+        Some(part) => names::korean_part(part).to_owned(),
+        None => "없음".to_owned(),
     }
 }
 

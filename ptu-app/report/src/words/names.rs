@@ -26,7 +26,7 @@ pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
 }
 
-/// An English text with names of several words as people say them: "check failed names EB relay". Names within the path
+/// An English text with names of several words as people say them: "check failed, which points at the EB relay". Names within the path
 /// of a script or of a file stay, and so does what is no name that is known here: a step may be called as its script likes.
 pub(super) fn english(text: &str) -> Cow<'_, str> {
     if !text.contains('_') {
@@ -61,12 +61,27 @@ fn english_name(name: &str, after: &str, is_state: bool) -> Option<String> {
     if let Some(item) = super::ENGLISH.bench.self_test_item(name) {
         return Some(item);
     }
+    let is_sign = after.starts_with(", which points at ");
+    if let Some(event) = Event::from_name(name).filter(|_| is_sign) {
+        return Some(within_a_sentence(event.definition().text));
+    }
     let is_measured = [" = ", ": no value", ": no data"];
     let is_known = Event::from_name(name).is_some()
         || Signal::from_name(name).is_some()
         || is_measured.iter().any(|sign| after.starts_with(sign));
-    let is_spoken = is_known || is_state || after.starts_with(" names ");
+    let is_spoken = is_known || is_state || is_sign;
     (is_spoken && !name.contains(['/', '.'])).then(|| spoken(name))
+}
+
+/// A text without the capital it begins with, unless that is of a word in capitals.
+fn within_a_sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    match (letters.next(), letters.clone().next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(letters).collect()
+        }
+        _ => text.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -77,8 +92,12 @@ mod tests {
     fn names_are_said_and_paths_and_names_of_steps_stay() {
         for (text, said) in [
             (
-                "atp/power_up: no_code: at rest failed (under this fault 100 %, healthy 0 %), check_failed names eb_relay",
-                "atp/power_up: no_code: at rest failed (under this fault 100 %, healthy 0 %), check failed names EB relay",
+                "atp/power_up: no_code: at rest failed (under this fault 100 %, healthy 0 %), with brake_applied, which points at the eb_relay",
+                "atp/power_up: no_code: at rest failed (under this fault 100 %, healthy 0 %), with brake applied, which points at the EB relay",
+            ),
+            (
+                "the unit's log has self_test_failed, which points at the eb_relay",
+                "the unit's log has self-test failed, which points at the EB relay",
             ),
             (
                 "eb_reaction = 640, allowed at most 472 ms; self_test.eb_relay = 410",
