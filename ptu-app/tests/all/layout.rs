@@ -106,6 +106,8 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
             window.write(words.traces.note_field, &"a note of many words ".repeat(12));
             window.click(words.report.note_save);
             window.wait_for_part(" s a note of many words");
+            // The bar of messages, which says that it is stored, takes some frames to open.
+            window.harness().run_steps(30);
             look(&mut window, "note on a trace");
             let hovered = eframe::egui::HoveredFile::default();
             window.harness().input_mut().hovered_files.push(hovered);
