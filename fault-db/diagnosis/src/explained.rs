@@ -37,12 +37,7 @@ pub fn causes(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) ->
     let model = belief.model;
     // The part whose fault shows it most often, if it is often enough.
     let explaining = |share: &dyn Fn(usize) -> f64| {
-        let of_part = |effects: &Vec<(usize, f64)>| {
-            let shares = effects
-                .iter()
-                .map(|(effect, weight)| weight * share(*effect));
-            shares.sum::<f64>()
-        };
+        let of_part = |effects: &Vec<(usize, f64)>| share_under(effects, share);
         let shares = effects.iter().map(of_part).enumerate();
         let (place, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (share >= model.settings.conclusion.explained_at).then_some(place)
@@ -72,27 +67,20 @@ pub fn causes(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) ->
     causes
 }
 
-/// Other parts that signs name, where no fault of these parts shows the signs.
-pub fn named_beside(belief: &Belief<'_, '_>, weights: &Weights, parts: &[&LruId]) -> Vec<LruId> {
+/// Other parts that signs name, where no fault of this part shows the signs.
+pub fn named_beside(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId) -> BTreeSet<LruId> {
     let model = belief.model;
-    let effects: Vec<_> = parts
-        .iter()
-        .map(|part| effects_of(belief, weights, part))
-        .collect();
+    let effects = effects_of(belief, weights, part);
     let is_shown = |sign: &Sign| {
-        effects.iter().any(|effects| {
-            let shares = effects
-                .iter()
-                .map(|(effect, weight)| weight * model.share_of_sign(*effect, sign));
-            shares.sum::<f64>() >= model.settings.conclusion.explained_at
-        })
+        let share = share_under(&effects, |effect| model.share_of_sign(effect, sign));
+        share >= model.settings.conclusion.explained_at
     };
     let shown = belief.signs().in_steps.union(&belief.signs().in_log);
     let others = shown.filter(|sign| !is_shown(sign)).filter_map(|sign| {
-        let part = sign.lru.as_ref()?;
-        (!parts.contains(&part)).then(|| part.clone())
+        let other = sign.lru.as_ref()?;
+        (other != part).then(|| other.clone())
     });
-    others.collect::<BTreeSet<_>>().into_iter().collect()
+    others.collect()
 }
 
 /// The parts that were found, without what they explain.
@@ -123,4 +111,12 @@ fn effects_of(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId) -> Vec<(
     let all: f64 = effects.iter().map(|(_, p)| p).sum();
     let share = |(effect, p): (usize, f64)| (effect, p / all.max(f64::MIN_POSITIVE));
     effects.into_iter().map(share).collect()
+}
+
+/// Share of the runs that show something, under effects with their weights, where `share` is that of one effect.
+fn share_under(effects: &[(usize, f64)], share: impl Fn(usize) -> f64) -> f64 {
+    let shares = effects
+        .iter()
+        .map(|(effect, weight)| weight * share(*effect));
+    shares.sum()
 }

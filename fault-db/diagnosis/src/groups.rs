@@ -15,7 +15,6 @@ use super::conclusion::Sentence;
 use super::explained::named_beside;
 use super::model::{Hypothesis, Model};
 use super::observation::Sign;
-use super::verdict::Finding;
 use super::weights::Weights;
 
 /// Parts that are not always told apart, and what tells which has failed.
@@ -74,9 +73,8 @@ impl Group {
 
 /// An answer that names no part for certain.
 pub struct Answer {
-    /// In a word.
-    pub finding: Finding,
-    /// Parts, of which at least one has failed or what they share, and what tells which.
+    /// Parts, of which at least one has failed or what they share, and what tells which; none where it is not certain that one
+    /// has.
     pub group: Option<Group>,
     /// In words, without what to run next.
     pub said: Sentence,
@@ -87,7 +85,6 @@ impl Answer {
     fn of_shared(shared: &Shared, parts: [&LruId; 2], said: Sentence) -> Self {
         let all = [&shared.part].into_iter().chain(parts);
         Self {
-            finding: Finding::OneOf,
             group: Some(Group {
                 parts: all.cloned().collect(),
                 measure: shared.measure.clone(),
@@ -112,7 +109,7 @@ fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
     let [(one, probability)] = failed[..] else {
         return None;
     };
-    let others = named_beside(belief, weights, &[one]);
+    let others = named_beside(belief, weights, one);
     let other = others.first()?;
     let sharing = others.iter().find_map(|other| {
         let shared = model.relations.shared_by([one, other])?;
@@ -120,7 +117,6 @@ fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
     });
     let Some((other, shared)) = sharing else {
         return Some(Answer {
-            finding: Finding::CannotTell,
             group: None,
             said: Sentence::not_alone((one, probability), other, model.names),
         });
@@ -165,7 +161,6 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
     })?;
     let is_one = found.len() == 1 && tells_apart(belief, first, group);
     (probability >= found_at && !is_one).then(|| Answer {
-        finding: Finding::OneOf,
         said: Sentence::one_of(group, probability, model.names),
         group: Some(group.clone()),
     })

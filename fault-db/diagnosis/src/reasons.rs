@@ -156,15 +156,7 @@ fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &Observed
         share(own),
         share(healthy)
     );
-    // That the check failed is said already.
-    let (failed, others): (Vec<_>, Vec<_>) = step
-        .signs
-        .iter()
-        .partition(|sign| sign.fault == "check_failed");
-    for sign in failed {
-        text += &points_at(sign);
-    }
-    for sign in others {
+    for sign in &step.signs {
         text += &format!(", with {}{}", sign.fault, points_at(sign));
     }
     for (name, value) in &step.values {

@@ -91,11 +91,6 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.time_s
     }
 
-    /// The evidence.
-    pub fn finish(self) -> Observation {
-        self.seen
-    }
-
     fn has_time_for(&self, cost_s: f64) -> bool {
         self.time_s + cost_s <= self.most_s
     }

@@ -129,7 +129,11 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
                     None => said,
                     next => said.then(next),
                 };
-                (answer.finding, said)
+                let finding = match answer.group {
+                    Some(_) => Finding::OneOf,
+                    None => Finding::CannotTell,
+                };
+                (finding, said)
             }
             None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
         };

@@ -11,7 +11,7 @@ use crate::error::StoreError;
 
 const DOING: &str = "working on the queue";
 
-/// A run that was lent so many times and never came back is lent no more.
+/// A run that was lent this often and never came back is not lent again.
 pub const MOST_TRIES: u32 = 5;
 
 const TABLES: &str = "

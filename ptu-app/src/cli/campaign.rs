@@ -133,7 +133,7 @@ impl CampaignArguments {
         };
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
-        let count = self.keep.share(count);
+        let count = asked.keep.ours(count).count();
         if let Some(file) = &self.save {
             ptu_bench::data::check_writable(file)?;
         }

@@ -57,14 +57,6 @@ impl KeepOptions {
         self.shard.is_some() || (self.queue.is_some() && self.runs.is_none())
     }
 
-    /// How many of so many runs are made here.
-    pub fn share(&self, runs: usize) -> usize {
-        let shard = self.keep().ok().and_then(|keep| keep.shard);
-        shard.map_or(runs, |shard| {
-            (0..runs).filter(|run| shard.has(*run)).count()
-        })
-    }
-
     /// Says that the runs of a shard are kept, or that a queue is empty.
     pub fn told(&self, runs: usize) -> Result<Exit, Failure> {
         let keep = self.keep()?;

@@ -73,7 +73,7 @@ pub fn set(context: &Context) {
         let mut visuals = theme.default_visuals();
         let ink = if theme == Theme::Dark { 208 } else { 40 };
         visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(ink);
-        // The window is cleared with its ground: painted again under each panel, it would be a third of a frame.
+        // The window is cleared with its ground: painted again under each panel it would cost time at each pixel.
         visuals.panel_fill = Color32::TRANSPARENT;
         context.set_visuals_of(theme, visuals);
     }

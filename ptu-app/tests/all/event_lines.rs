@@ -122,7 +122,7 @@ fn a_stream_that_cannot_be_written_is_told() {
     assert_eq!(run.wait().expect("over").code(), Some(0));
 }
 
-/// Goal: a change of the stream is seen: the file in `docs/` is what the program writes. `PTU_WRITE_SCHEMA=1` writes it anew.
+/// Goal: a change of the stream is seen: the file in `docs/` is what the program writes. `PTU_WRITE_SCHEMA=1` writes it again.
 #[test]
 fn the_schema_in_docs_is_that_of_the_program() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/events.schema.json");
@@ -132,6 +132,6 @@ fn the_schema_in_docs_is_that_of_the_program() {
     }
     assert!(
         std::fs::read_to_string(file).expect("a schema") == made,
-        "PTU_WRITE_SCHEMA=1 writes it anew"
+        "PTU_WRITE_SCHEMA=1 writes it again"
     );
 }

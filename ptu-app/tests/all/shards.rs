@@ -108,7 +108,7 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
         .ptu(&["drive", "--runs", "a.zst"])
         .exits(2)
         .explains(&["go with --monte-carlo"]);
-    // A file of drives is none of a campaign's.
+    // A file of drives does not belong to a campaign.
     let one = ["--shard", "1/12", "--runs"];
     said(&place, &DRIVE, &[&one[..], &["drives.zst"]].concat()).exits(0);
     said(&place, &CAMPAIGN, &[&one[..], &["drives.zst"]].concat())

@@ -92,9 +92,7 @@ pub fn run(
             metrics: outcome.metrics,
         })
     };
-    let ours = keep.shard.map_or(plan.len(), |shard| {
-        (0..plan.len()).filter(|i| shard.has(*i)).count()
-    });
+    let ours = keep.ours(plan.len()).count();
     let mut progress = Progress::new(ours, plan.names.join(", "));
     let made = kept::make(
         keep,

@@ -41,11 +41,18 @@ pub struct Keep {
     pub queue: Option<QueueAt>,
 }
 
+impl Keep {
+    /// Of so many runs, the numbers of those that are made here.
+    pub fn ours(&self, runs: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..runs).filter(|run| self.shard.is_none_or(|shard| shard.has(*run)))
+    }
+}
+
 /// What was made.
 pub enum Made<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),
-    /// All runs of the shard, those of before with them; or all of the queue, so many of them here.
+    /// So many runs: those of the shard, made now or before; or those of the queue that were made here.
     Part(usize),
     /// It was stopped; the runs there are, in the plan's order.
     Stopped(Vec<Option<R>>),
@@ -80,9 +87,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         known.take_in(&records);
     }
     let plan = &head.plan;
-    let ours: Vec<usize> = (0..plan.len())
-        .filter(|i| keep.shard.is_none_or(|shard| shard.has(*i)))
-        .collect();
+    let ours: Vec<usize> = keep.ours(plan.len()).collect();
     let missing: Vec<usize> = ours
         .iter()
         .copied()

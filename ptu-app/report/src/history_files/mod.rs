@@ -173,7 +173,7 @@ fn ask(store: &Store, sql: &str, rows: usize) -> Result<QueryResult, Failure> {
     Ok(store.query_within(sql, bounds, || true)?)
 }
 
-/// Removes the partitions of months that are none any more.
+/// Removes the partitions of months that have no rows any more.
 fn remove_others(folder: &Path, months: &BTreeSet<String>) -> std::io::Result<usize> {
     let mut removed = 0;
     for entry in std::fs::read_dir(folder)? {

@@ -11,7 +11,7 @@ pub(super) enum Kind {
 /// A view.
 pub(super) struct View {
     pub name: &'static str,
-    /// Its time, µs since 1970; none of a view whose rows have no time.
+    /// Its time, µs since 1970; absent where its rows have no time.
     pub time: Option<&'static str>,
     /// The same time as text, of which the month is taken.
     pub label: &'static str,

@@ -26,8 +26,9 @@ pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
 }
 
-/// An English text with names of several words as people say them: "check failed, which points at the EB relay". Names within the path
-/// of a script or of a file stay, and so does what is no name that is known here: a step may be called as its script likes.
+/// An English text with names of several words as people say them: "self-test failed, which points at the EB relay". Names
+/// within the path of a script or of a file stay, and so does what is no name that is known here: a step may be called as
+/// its script likes.
 pub(super) fn english(text: &str) -> Cow<'_, str> {
     if !text.contains('_') {
         return Cow::Borrowed(text);

@@ -10,14 +10,23 @@ use super::{dictionary, mode, run, settings};
 /// What the strategy would do, and what it would see, on a run that was made in full; with the time that it takes, s.
 fn replayed(model: &Model<'_>, run: &Observation) -> (f64, Observation) {
     let mut strategy = Strategy::new(model, None);
+    let mut seen = Observation::default();
     while let Some(next) = strategy.begin() {
         let mut steps = run.steps.iter();
-        let left = steps.any(|step| step.check.procedure == next.procedure && !strategy.saw(step));
+        let left = steps.any(|step| {
+            if step.check.procedure != next.procedure {
+                return false;
+            }
+            if !seen.steps.contains(step) {
+                seen.steps.push(step.clone());
+            }
+            !strategy.saw(step)
+        });
         if !left {
             strategy.ended(&next.procedure);
         }
     }
-    (strategy.time_s(), strategy.finish())
+    (strategy.time_s(), seen)
 }
 
 #[test]

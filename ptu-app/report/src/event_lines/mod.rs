@@ -1,0 +1,155 @@
+//! The stream of a run as JSON lines, for other programs: `docs/events.md`.
+//!
+//! What a line has is in one table, [`EVENTS`], of which the schema in `docs/` is made. A key is never given another
+//! meaning and never left out within a version; new keys and new events may come, and a reader passes over those that it
+//! does not know.
+
+mod table;
+
+use btu_rig::procedure::{EventSource, Measurement, Procedure, RunEvent, StepResult, UnitEvent};
+use protocol::lru;
+use serde_json::{Map, Value, json};
+
+use ptu_bench::run::{Outcome, SessionEvent};
+pub use table::{COMMON, EVENTS, EventKeys, Kind, VERSION, schema};
+
+/// Turns events into lines.
+#[derive(Debug, Default)]
+pub struct EventLines {
+    seq: u64,
+}
+
+impl EventLines {
+    /// The first line.
+    pub fn started(&mut self) -> String {
+        self.line(
+            None,
+            "stream_started",
+            json!({ "version": VERSION, "app_version": env!("CARGO_PKG_VERSION") }),
+        )
+    }
+
+    /// The line of an event.
+    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> String {
+        let (name, keys) = match event {
+            SessionEvent::Run(event) => of_runner(event),
+            SessionEvent::Fault(fault) => (
+                "fault",
+                json!({
+                    "at_us": fault.at.as_us(), "code": fault.code, "name": fault.name,
+                    "lru": fault.lru.as_ref().map(|part| lru::stored(Some(part))),
+                    "severity": fault.severity.label(), "step": fault.step,
+                    "message": fault.message, "freeze": fault.freeze,
+                }),
+            ),
+            SessionEvent::Trace(trace) => (
+                "trace",
+                json!({
+                    "faults": trace.faults, "rows": trace.rows.len(),
+                    "trigger_row": trace.trigger_row, "partial": trace.partial,
+                    "began_us": trace.rows.first().map(|row| row.at.as_us()),
+                }),
+            ),
+            SessionEvent::Recording(recording) => {
+                ("recording", json!({ "began_us": recording.began.as_us() }))
+            }
+            SessionEvent::LinkLost(reason) => ("link_lost", json!({ "reason": reason })),
+            SessionEvent::Ended { bench_time } => {
+                ("ended", json!({ "bench_time_us": bench_time.as_us() }))
+            }
+        };
+        self.line(Some(&procedure.id), name, keys)
+    }
+
+    /// The last line.
+    pub fn finished(&mut self, outcome: &Outcome) -> String {
+        let keys = json!({
+            "run": outcome.id.to_string(), "verdict": outcome.verdict.label(),
+            "bench_time_us": outcome.bench_time.as_us(), "exit": outcome.exit.code(),
+        });
+        self.line(None, "run_finished", keys)
+    }
+
+    fn line(&mut self, procedure: Option<&str>, event: &str, keys: Value) -> String {
+        let mut line = Map::new();
+        line.insert("seq".into(), json!(self.seq));
+        line.insert("event".into(), json!(event));
+        line.insert("procedure".into(), json!(procedure));
+        if let Value::Object(keys) = keys {
+            line.extend(keys);
+        }
+        self.seq += 1;
+        Value::Object(line).to_string()
+    }
+}
+
+fn of_runner(event: &RunEvent) -> (&'static str, Value) {
+    match event {
+        RunEvent::ProcedureStarted { steps, at } => (
+            "procedure_started",
+            json!({ "at_us": at.as_us(), "steps": steps }),
+        ),
+        RunEvent::StepStarted { index, name, at } => (
+            "step_started",
+            json!({ "at_us": at.as_us(), "index": index, "name": name }),
+        ),
+        RunEvent::Paused { next, at } => ("paused", json!({ "at_us": at.as_us(), "next": next })),
+        RunEvent::Waiting { what, left } => {
+            ("waiting", json!({ "what": what, "left_us": left.as_us() }))
+        }
+        RunEvent::Prompt { text, left } => {
+            ("prompt", json!({ "text": text, "left_us": left.as_us() }))
+        }
+        RunEvent::Measured { index, measurement } => ("measured", measured(*index, measurement)),
+        RunEvent::StepFinished(result) => ("step_finished", of_step(result)),
+        RunEvent::UnsolicitedEvent(event) => ("unsolicited_event", of_log(event)),
+        RunEvent::UnsolicitedBrake { at } => ("unsolicited_brake", json!({ "at_us": at.as_us() })),
+        RunEvent::UnitClockWrong { by_permille, at } => (
+            "unit_clock_wrong",
+            json!({ "at_us": at.as_us(), "by_permille": by_permille }),
+        ),
+        RunEvent::OutsideStep(outside) => (
+            "outside_step",
+            json!({
+                "at_us": outside.at.as_us(), "place": outside.place.name(),
+                "verdict": outside.verdict.label(), "message": outside.message,
+            }),
+        ),
+        RunEvent::ProcedureFinished {
+            verdict,
+            message,
+            at,
+        } => (
+            "procedure_finished",
+            json!({ "at_us": at.as_us(), "verdict": verdict.label(), "message": message }),
+        ),
+    }
+}
+
+fn measured(index: usize, measurement: &Measurement) -> Value {
+    json!({
+        "index": index, "name": measurement.name, "value": measurement.value,
+        "unit": measurement.unit, "low": measurement.low, "high": measurement.high,
+        "limit_source": measurement.limit_source, "verdict": measurement.verdict.label(),
+    })
+}
+
+fn of_step(result: &StepResult) -> Value {
+    json!({
+        "index": result.index, "name": result.name, "verdict": result.verdict.label(),
+        "message": result.message, "repeated": result.repeated,
+        "suspect": result.suspect.as_ref().map(|part| lru::stored(Some(part))),
+        "started_us": result.started.as_us(), "bench_time_us": result.bench_time.as_us(),
+        "script_line": result.line,
+    })
+}
+
+fn of_log(event: &UnitEvent) -> Value {
+    let source = match event.source {
+        EventSource::Unit => "unit",
+        EventSource::Tcms => "tcms",
+    };
+    json!({
+        "source": source, "code": event.code, "parameter": event.parameter, "unit_ms": event.at_ms,
+    })
+}
