@@ -1,7 +1,7 @@
 //! Reads configuration, track database and fault modes from the scripts directory.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Result;
 use ato_under_test::Setup;
@@ -9,6 +9,7 @@ use ato_under_test::flash::{BlockDevice, FileFlash};
 use protocol::config::UnitConfig;
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::Line;
+use script_files::{Found, ScriptFiles};
 
 use super::Arguments;
 
@@ -29,16 +30,17 @@ impl std::error::Error for UsageError {}
 
 /// The unit the arguments describe.
 pub fn setup(arguments: &Arguments) -> Result<Setup> {
-    let scripts = scripts_directory(arguments.scripts.as_deref())?;
-    let unit_file = scripts.join(format!("units/{}.toml", arguments.unit_config));
-    let line_file = scripts.join(format!("lines/{}.toml", arguments.line));
-    let unit_text = read(&unit_file)?;
-    let line_text = read(&line_file)?;
+    let scripts = ScriptFiles::find(arguments.scripts.as_deref())
+        .map_err(|error| UsageError(error.to_string()))?;
+    let unit_file = format!("units/{}.toml", arguments.unit_config);
+    let line_file = format!("lines/{}.toml", arguments.line);
+    let unit_text = read(&scripts, &unit_file)?;
+    let line_text = read(&scripts, &line_file)?;
     Ok(Setup {
         serial: arguments.serial_no.clone(),
-        config: UnitConfig::from_toml(&unit_text).map_err(|e| wrong(&unit_file, &e))?,
+        config: UnitConfig::from_toml(&unit_text).map_err(|e| wrong(&scripts, &unit_file, &e))?,
         config_crc: protocol::config::checksum(&unit_text),
-        line: Line::from_toml(&line_text).map_err(|e| wrong(&line_file, &e))?,
+        line: Line::from_toml(&line_text).map_err(|e| wrong(&scripts, &line_file, &e))?,
         tdb_crc: protocol::line::checksum(&line_text),
         seed: arguments.seed,
         faults: faults(&scripts, &arguments.inject)?,
@@ -53,29 +55,13 @@ pub fn flash(file: &Path) -> Result<Box<dyn BlockDevice>> {
     }
 }
 
-fn scripts_directory(given: Option<&Path>) -> Result<PathBuf> {
-    if let Some(directory) = given {
-        return Ok(directory.to_owned());
-    }
-    let program = std::env::current_exe().unwrap_or_default();
-    std::iter::once(Path::new("."))
-        .chain(program.ancestors())
-        .map(|place| place.join("scripts"))
-        .find(|directory| directory.join("units").is_dir())
-        .ok_or_else(|| {
-            UsageError(
-                "no scripts directory here or above the program; name it with --scripts".into(),
-            )
-            .into()
-        })
-}
-
-fn faults(scripts: &Path, names: &[String]) -> Result<Vec<FaultMode>> {
+fn faults(scripts: &ScriptFiles, names: &[String]) -> Result<Vec<FaultMode>> {
     if names.is_empty() {
         return Ok(Vec::new());
     }
-    let file = scripts.join("units/faults.toml");
-    let catalogue = FaultCatalogue::from_toml(&read(&file)?).map_err(|e| wrong(&file, &e))?;
+    let file = "units/faults.toml";
+    let catalogue =
+        FaultCatalogue::from_toml(&read(scripts, file)?).map_err(|e| wrong(scripts, file, &e))?;
     let find = |name: &String| {
         let fault = catalogue.fault(name).cloned().ok_or_else(|| {
             UsageError(format!("no fault {name}; `ptu catalog faults` lists them"))
@@ -89,10 +75,20 @@ fn faults(scripts: &Path, names: &[String]) -> Result<Vec<FaultMode>> {
     names.iter().map(find).collect()
 }
 
-fn read(file: &Path) -> Result<String, UsageError> {
+fn read(scripts: &ScriptFiles, name: &str) -> Result<String, UsageError> {
+    let file = match scripts.file(name) {
+        Some(Found::File(file)) => file,
+        Some(Found::Embedded(_, bytes)) => return Ok(String::from_utf8_lossy(bytes).into_owned()),
+        None => {
+            return Err(UsageError(format!(
+                "there is no file {}",
+                scripts.shown(name)
+            )));
+        }
+    };
     let cannot =
         |why: &dyn fmt::Display| UsageError(format!("cannot read {}: {why}", file.display()));
-    let about = std::fs::metadata(file).map_err(|error| cannot(&error))?;
+    let about = std::fs::metadata(&file).map_err(|error| cannot(&error))?;
     // A pipe would be waited for, a device may never end.
     if !about.is_file() {
         return Err(cannot(&"it is no regular file"));
@@ -100,9 +96,9 @@ fn read(file: &Path) -> Result<String, UsageError> {
     if about.len() > LONGEST_FILE {
         return Err(cannot(&format!("it is longer than {LONGEST_FILE} bytes")));
     }
-    std::fs::read_to_string(file).map_err(|error| cannot(&error))
+    std::fs::read_to_string(&file).map_err(|error| cannot(&error))
 }
 
-fn wrong(file: &Path, error: &dyn fmt::Display) -> UsageError {
-    UsageError(format!("{}: {error}", file.display()))
+fn wrong(scripts: &ScriptFiles, name: &str, error: &dyn fmt::Display) -> UsageError {
+    UsageError(format!("{}: {error}", scripts.shown(name)))
 }

@@ -1,15 +1,17 @@
-//! The scripts directory: procedures, unit configurations, lines and the fault catalogue.
+//! The scripts directory: procedures, unit configurations, lines and the fault catalogue, from the places that
+//! `script_files` looks in.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use btu_rig::bench_scatter::BenchScatter;
 use fault_db::read_regular_file;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
+use script_files::{Found, Place, ScriptFiles};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, did_you_mean};
@@ -26,16 +28,12 @@ const STRUCTURE: &str = "structure";
 pub const LONGEST_FILE: u64 = 4 << 20;
 /// Longest all scripts together, bytes.
 const LONGEST_SCRIPTS: usize = 64 << 20;
-/// Most files and folders in the scripts directory.
-const MOST_ENTRIES: usize = 100_000;
-/// Folders within folders that are looked into.
-const DEEPEST_FOLDER: usize = 16;
 /// How good units, trains and benches differ, in the scripts directory.
 pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
-/// Where all data files are.
+/// Where all data files are; those that are meant by their name, `units/sg100.toml`.
 #[derive(Clone, Debug)]
-pub struct ScriptsDirectory(PathBuf);
+pub struct ScriptsDirectory(ScriptFiles);
 
 /// A data file's content and checksums.
 #[derive(Clone, Debug)]
@@ -53,52 +51,97 @@ pub struct DataFile<T> {
 }
 
 impl ScriptsDirectory {
-    /// The directory given, `PTU_SCRIPTS`, `./scripts`, or `scripts` above the program.
+    /// The directory given, alone; else what [`ScriptFiles::find`] finds.
     ///
     /// # Errors
-    /// None of them is there.
+    /// What is given is no directory.
     pub fn find(given: Option<&Path>) -> Result<Self, Failure> {
-        if let Some(directory) = given {
-            return if directory.is_dir() {
-                Ok(Self(directory.to_owned()))
-            } else {
-                Err(Failure::usage(format!(
-                    "{} is not a directory",
-                    directory.display()
-                )))
-            };
+        Ok(Self(ScriptFiles::find(given)?))
+    }
+
+    /// The places it is found in, the first of which wins.
+    pub fn places(&self) -> &[Place] {
+        self.0.places()
+    }
+
+    /// The file is there.
+    pub fn has(&self, name: &str) -> bool {
+        self.0.file(name).is_some()
+    }
+
+    /// How the file is shown to a person.
+    pub fn shown(&self, name: &str) -> String {
+        self.0.shown(name)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// It is missing, cannot be read, is too long or not UTF-8.
+    pub fn text(&self, name: &str) -> Result<String, Failure> {
+        match self.0.file(name) {
+            Some(found) => text(&found),
+            None => read(Path::new(&self.shown(name))),
         }
-        let program = std::env::current_exe().unwrap_or_default();
-        std::iter::once(Path::new("."))
-            .chain(program.ancestors())
-            .map(|place| place.join("scripts"))
-            .find(|directory| directory.join("units").is_dir())
-            .map(Self)
-            .ok_or_else(|| {
-                Failure::usage(
-                    "no scripts directory here or above the program; name it with --scripts",
-                )
-            })
     }
 
-    /// Its path.
-    pub fn path(&self) -> &Path {
-        &self.0
+    /// The file's bytes, at most `most` of them.
+    ///
+    /// # Errors
+    /// It is missing or cannot be read.
+    pub fn bytes(&self, name: &str, most: u64) -> Result<Vec<u8>, Failure> {
+        let file = match self.0.file(name) {
+            Some(Found::Embedded(_, bytes)) => return Ok(bytes.to_vec()),
+            Some(Found::File(file)) => file,
+            None => self.shown(name).into(),
+        };
+        read_regular_file(&file, most).map_err(|error| cannot_read(&file, &error))
     }
 
-    /// Text of every `.star` file by its path under this directory.
+    /// Text of every `.star` file by its path under its place.
     ///
     /// # Errors
     /// A file or folder cannot be read.
     pub fn procedures(&self) -> Result<BTreeMap<String, String>, Failure> {
-        let mut collecting = Collecting {
-            root: &self.0,
-            texts: BTreeMap::new(),
-            bytes: 0,
-            entries: 0,
-        };
-        collecting.collect(&self.0, 0)?;
-        Ok(collecting.texts)
+        let mut texts = BTreeMap::new();
+        let mut bytes = 0;
+        for (name, found) in self.0.all()? {
+            if !name.ends_with(".star") {
+                continue;
+            }
+            let text = text(&found)?;
+            bytes += text.len();
+            if bytes > LONGEST_SCRIPTS {
+                return Err(Failure::usage(format!(
+                    "the scripts in {} are longer than {LONGEST_SCRIPTS} bytes together",
+                    self.0.places()[0]
+                )));
+            }
+            texts.insert(name, text);
+        }
+        Ok(texts)
+    }
+
+    /// Own files that stand in place of other ones further down, as they are shown.
+    ///
+    /// # Errors
+    /// A file or folder cannot be read.
+    pub fn replacing(&self) -> Result<Vec<String>, Failure> {
+        let mut replacing = Vec::new();
+        for (name, found) in self.0.all()? {
+            let content = self.bytes(&name, LONGEST_FILE)?;
+            // The system's copy of what the program carries replaces nothing.
+            let differs = |other: &Found| match other {
+                Found::Embedded(_, bytes) => *bytes != content,
+                Found::File(file) => {
+                    read_regular_file(file, LONGEST_FILE).is_ok_and(|bytes| bytes != content)
+                }
+            };
+            if self.0.files(&name).skip(1).any(|other| differs(&other)) {
+                replacing.push(found.shown());
+            }
+        }
+        Ok(replacing)
     }
 
     /// The unit configuration `units/NAME.toml`.
@@ -140,9 +183,11 @@ impl ScriptsDirectory {
     /// # Errors
     /// The file is missing or wrong.
     pub fn bench_scatter(&self, given: Option<&Path>) -> Result<BenchScatter, Failure> {
-        let file = given.map_or_else(|| self.0.join(BENCH_SCATTER), Path::to_path_buf);
-        BenchScatter::from_toml(&read(&file)?)
-            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+        let (text, shown) = match given {
+            Some(file) => (read(file)?, file.display().to_string()),
+            None => (self.text(BENCH_SCATTER)?, self.shown(BENCH_SCATTER)),
+        };
+        BenchScatter::from_toml(&text).map_err(|error| Failure::usage(format!("{shown}: {error}")))
     }
 
     /// The fault modes of these names.
@@ -183,17 +228,10 @@ impl ScriptsDirectory {
 
     /// Names of what `folder` holds; fault catalogue and structure, among unit configurations, are none of them.
     fn names(&self, folder: &str) -> Vec<String> {
-        let entries = std::fs::read_dir(self.0.join(folder))
-            .into_iter()
-            .flatten()
-            .flatten();
-        let mut names: Vec<_> = entries
-            .filter_map(|entry| entry.file_name().into_string().ok())
-            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
-            .filter(|name| folder != UNITS || ![FAULTS, STRUCTURE].contains(&name.as_str()))
-            .collect();
-        names.sort();
+        let names = self.0.names(folder, "toml").into_iter();
         names
+            .filter(|name| folder != UNITS || ![FAULTS, STRUCTURE].contains(&name.as_str()))
+            .collect()
     }
 
     /// The file `FOLDER/NAME.toml` as `parse` reads it; `what` it is called.
@@ -207,8 +245,8 @@ impl ScriptsDirectory {
         what: &str,
         parse: impl FnOnce(&str) -> Result<T, E>,
     ) -> Result<DataFile<T>, Failure> {
-        let file = self.0.join(folder).join(format!("{name}.toml"));
-        if !file.exists() {
+        let file = format!("{folder}/{name}.toml");
+        if !self.has(&file) {
             let known = self.names(folder);
             return Err(Failure::usage(format!(
                 "no {what} \"{name}\"{}; known: {}",
@@ -216,9 +254,9 @@ impl ScriptsDirectory {
                 known.join(", ")
             )));
         }
-        let text = read(&file)?;
-        let content =
-            parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", file.display())))?;
+        let text = self.text(&file)?;
+        let wrong = |e: E| Failure::usage(format!("{}: {e}", self.shown(&file)));
+        let content = parse(&text).map_err(wrong)?;
         Ok(DataFile {
             name: name.to_owned(),
             settings: Vec::new(),
@@ -250,10 +288,19 @@ pub fn read(file: &Path) -> Result<String, Failure> {
 /// # Errors
 /// As [`read`].
 pub fn read_within(file: &Path, most: u64) -> Result<String, Failure> {
-    let cannot =
-        |why: &dyn Display| Failure::usage(format!("cannot read {}: {why}", file.display()));
-    let bytes = read_regular_file(file, most).map_err(|error| cannot(&error))?;
-    String::from_utf8(bytes).map_err(|_| cannot(&"it is not UTF-8"))
+    let bytes = read_regular_file(file, most).map_err(|error| cannot_read(file, &error))?;
+    String::from_utf8(bytes).map_err(|_| cannot_read(file, &"it is not UTF-8"))
+}
+
+fn text(found: &Found) -> Result<String, Failure> {
+    match found {
+        Found::File(file) => read(file),
+        Found::Embedded(_, bytes) => Ok(String::from_utf8_lossy(bytes).into_owned()),
+    }
+}
+
+fn cannot_read(file: &Path, why: &dyn Display) -> Failure {
+    Failure::usage(format!("cannot read {}: {why}", file.display()))
 }
 
 /// Finds out whether a file can be written, leaving what is there as it is.
@@ -289,54 +336,4 @@ pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
     new.keep_to_owner()?;
     new.write_all(&content).map_err(|error| failed(&error))?;
     new.finish()
-}
-
-/// The scripts under a directory.
-struct Collecting<'a> {
-    root: &'a Path,
-    texts: BTreeMap<String, String>,
-    bytes: usize,
-    entries: usize,
-}
-
-impl Collecting<'_> {
-    fn collect(&mut self, folder: &Path, depth: usize) -> Result<(), Failure> {
-        let cannot =
-            |why: &dyn Display| Failure::usage(format!("cannot read {}: {why}", folder.display()));
-        if depth > DEEPEST_FOLDER {
-            return Err(cannot(
-                &"too many folders within folders; does a link lead back?",
-            ));
-        }
-        for entry in std::fs::read_dir(folder).map_err(|error| cannot(&error))? {
-            let path = entry.map_err(|error| cannot(&error))?.path();
-            self.entries += 1;
-            if self.entries > MOST_ENTRIES {
-                return Err(cannot(&format!(
-                    "the scripts directory holds more than {MOST_ENTRIES} files and folders"
-                )));
-            }
-            if path.is_dir() {
-                self.collect(&path, depth + 1)?;
-            } else if path.extension().is_some_and(|ending| ending == "star") {
-                self.take(&path)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn take(&mut self, path: &Path) -> Result<(), Failure> {
-        let text = read(path)?;
-        self.bytes += text.len();
-        if self.bytes > LONGEST_SCRIPTS {
-            return Err(Failure::usage(format!(
-                "the scripts in {} are longer than {LONGEST_SCRIPTS} bytes together",
-                self.root.display()
-            )));
-        }
-        let name = path.strip_prefix(self.root).unwrap_or(path);
-        let name = name.to_string_lossy().replace('\\', "/");
-        self.texts.insert(name, text);
-        Ok(())
-    }
 }

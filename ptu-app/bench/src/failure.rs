@@ -3,6 +3,7 @@
 use std::fmt;
 
 use fault_db::{StoreError, TraceError};
+use script_files::ScriptsError;
 
 use crate::stdio;
 
@@ -75,6 +76,12 @@ impl fmt::Display for Failure {
 }
 
 impl std::error::Error for Failure {}
+
+impl From<ScriptsError> for Failure {
+    fn from(error: ScriptsError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {

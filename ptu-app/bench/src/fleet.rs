@@ -6,7 +6,7 @@ use std::sync::Arc;
 use btu_rig::rig::UnitRecord;
 use serde::Deserialize;
 
-use crate::data::{self, ScriptsDirectory};
+use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 use crate::run::{check_serial, software_version};
 
@@ -35,13 +35,12 @@ struct Train {
 /// # Errors
 /// The file is wrong, a train or a unit stands in it twice, or a file that it names is missing or wrong.
 pub fn unit_records(directory: &ScriptsDirectory) -> Result<Arc<[UnitRecord]>, Failure> {
-    let file = directory.path().join(FLEET);
-    if !file.exists() {
+    if !directory.has(FLEET) {
         return Ok(Arc::new([]));
     }
-    let wrong = |why: &str| Failure::usage(format!("{}: {why}", file.display()));
+    let wrong = |why: &str| Failure::usage(format!("{}: {why}", directory.shown(FLEET)));
     let fleet: FleetFile =
-        toml::from_str(&data::read(&file)?).map_err(|error| wrong(&error.to_string()))?;
+        toml::from_str(&directory.text(FLEET)?).map_err(|error| wrong(&error.to_string()))?;
     let mut files = Files::default();
     let mut records: Vec<UnitRecord> = Vec::with_capacity(fleet.trains.len());
     for train in fleet.trains {
@@ -128,7 +127,8 @@ mod tests {
             std::fs::create_dir(folder.path().join(part)).expect("a folder");
         }
         for file in ["units/sg100.toml", "lines/line8.toml"] {
-            std::fs::copy(scripts().path().join(file), folder.path().join(file)).expect("copied");
+            let text = scripts().text(file).expect("read");
+            std::fs::write(folder.path().join(file), text).expect("written");
         }
         std::fs::write(folder.path().join(FLEET), fleet).expect("written");
         let directory = ScriptsDirectory::find(Some(folder.path()))?;

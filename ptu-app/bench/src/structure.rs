@@ -19,7 +19,7 @@ use protocol::signal::{Origin, Signal};
 use protocol::{LruId, Verdict};
 use serde::Deserialize;
 
-use crate::data::{ScriptsDirectory, read};
+use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 pub use chain::{Chain, Link, Made};
 
@@ -124,9 +124,8 @@ impl Structure {
     /// The file is missing or wrong.
     pub fn load(directory: &ScriptsDirectory, catalogue: &FaultCatalogue) -> Result<Self, Failure> {
         let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
-        let file = directory.path().join(FILE);
-        Self::from_toml(&read(&file)?, &parts)
-            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+        Self::from_toml(&directory.text(FILE)?, &parts)
+            .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(FILE))))
     }
 
     /// Reads and checks the file; `parts` are those that can be replaced.
@@ -337,7 +336,7 @@ mod tests {
     }
 
     fn dictionary() -> Dictionary {
-        let packed = std::fs::read(scripts().path().join("dictionary.zst")).unwrap();
+        let packed = scripts().bytes("dictionary.zst", u64::MAX - 1).unwrap();
         Dictionary::from_bytes(&packed).unwrap()
     }
 
@@ -363,7 +362,7 @@ mod tests {
     /// Goal: a way that leads past a part is noticed. Method: the speed without its first sensor.
     #[test]
     fn a_part_that_is_missing_on_a_way_is_a_finding() {
-        let text = read(&scripts().path().join(FILE)).unwrap();
+        let text = scripts().text(FILE).unwrap();
         let sensor = "parts = [\"speed_sensor_1\", \"atp_cpu\"]";
         assert!(text.contains(sensor));
         let catalogue = scripts().faults().unwrap();
@@ -377,7 +376,7 @@ mod tests {
 
     #[test]
     fn names_that_there_are_not_and_signals_without_a_way_are_refused() {
-        let text = read(&scripts().path().join(FILE)).unwrap();
+        let text = scripts().text(FILE).unwrap();
         let catalogue = scripts().faults().unwrap();
         let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
         let refused = |from: &str, to: &str| {

@@ -4,7 +4,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use serde::Deserialize;
 
-use crate::data::{ScriptsDirectory, read};
+use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
 
 /// Where it stands in the scripts directory.
@@ -33,9 +33,8 @@ struct Written {
 /// # Errors
 /// The file cannot be read, or is wrong: a name given twice, a part that is not among `parts`.
 pub fn load(directory: &ScriptsDirectory, parts: &[Lru]) -> Result<Vec<Symptom>, Failure> {
-    let file = directory.path().join(FILE);
-    of_toml(&read(&file)?, parts)
-        .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+    of_toml(&directory.text(FILE)?, parts)
+        .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(FILE))))
 }
 
 fn of_toml(text: &str, parts: &[Lru]) -> Result<Vec<Symptom>, String> {

@@ -74,15 +74,14 @@ impl Target {
     }
 }
 
-/// Writes reports of a run. What only test sheets say is gathered when one is asked for; without a
-/// scripts directory they have no diagnosis.
+/// Writes reports of a run. What only test sheets say is gathered when one is asked for.
 ///
 /// # Errors
 /// A file cannot be written, or the database not be read.
 pub fn write(
     targets: &[Target],
     store: &Store,
-    directory: Option<&ScriptsDirectory>,
+    directory: &ScriptsDirectory,
     run: &RunDetail,
     language: Language,
 ) -> Result<(), Failure> {
@@ -171,7 +170,7 @@ pub fn run_content(
     run: &RunDetail,
     language: Language,
 ) -> Result<Vec<u8>, Failure> {
-    let gather = || Sheet::gather(store, Some(directory), run.run.id);
+    let gather = || Sheet::gather(store, directory, run.run.id);
     let sheet = target.is_sheet().then(gather).transpose()?;
     content(target, run, sheet.as_ref(), language)
 }

@@ -1,6 +1,6 @@
 //! `ptu drive`: station-to-station automatic runs, and runs by hand.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use btu_rig::conditions::Disturbance;
 use btu_rig::drive::{Ending, Load, Scatter, manual};
@@ -9,7 +9,7 @@ use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
 use super::{ScriptsOption, answered, print_json, print_out};
-use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
+use ptu_bench::data::{ScriptsDirectory, check_writable, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use ptu_bench::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
@@ -274,9 +274,9 @@ fn no_bench_failure(ending: Option<&impl ToString>) -> Result<(), Failure> {
 }
 
 fn scatter(directory: &ScriptsDirectory) -> Result<Scatter, Failure> {
-    let file = directory.path().join("scatter.toml");
-    Scatter::from_toml(&read(Path::new(&file))?)
-        .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))
+    let file = "scatter.toml";
+    Scatter::from_toml(&directory.text(file)?)
+        .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(file))))
 }
 
 fn controller(name: &str) -> Result<ControllerKind, String> {

@@ -76,14 +76,8 @@ impl FaultsArguments {
                 lang,
                 scripts,
             } => {
-                let names = scripts.find_if_there()?;
-                let names = names.map(|scripts| PartNames::of(&scripts));
-                show::show(
-                    &store,
-                    &id,
-                    json,
-                    (lang.words(), &names.unwrap_or_default()),
-                )
+                let names = PartNames::of(&scripts.find()?);
+                show::show(&store, &id, json, (lang.words(), &names))
             }
             Verb::Life(arguments) => arguments.tell(&store),
             Verb::Stats(arguments) => arguments.stats(&store),

@@ -166,7 +166,8 @@ fn told(error: &clap::Error) -> Exit {
 /// Where procedures and data files are.
 #[derive(Debug, Args)]
 pub struct ScriptsOption {
-    /// Directory with procedures, units/ and lines/ [default: ./scripts, or above the program]
+    /// Directory with procedures, units/ and lines/, alone [default: ./scripts, or above the program; else the user's and
+    /// the system's own files over those in the program]
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
 }
@@ -174,14 +175,6 @@ pub struct ScriptsOption {
 impl ScriptsOption {
     fn find(&self) -> Result<ScriptsDirectory, Failure> {
         ScriptsDirectory::find(self.scripts.as_deref())
-    }
-
-    /// None where there is none: a report without diagnosis is better than none. A wrong --scripts is told.
-    fn find_if_there(&self) -> Result<Option<ScriptsDirectory>, Failure> {
-        match self.find() {
-            Err(failure) if self.scripts.is_some() => Err(failure),
-            found => Ok(found.ok()),
-        }
     }
 }
 

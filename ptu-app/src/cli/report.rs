@@ -60,7 +60,7 @@ impl ReportArguments {
         self.out.iter().try_for_each(Target::check)?;
         let store = self.database.open_read_only()?;
         let told = self.told(&store)?;
-        let directory = self.scripts.find_if_there()?;
+        let directory = self.scripts.find()?;
         match told {
             Told::Run(_) if self.annex => {
                 return Err(Failure::usage(
@@ -69,11 +69,11 @@ impl ReportArguments {
             }
             Told::Run(id) => {
                 let run = store.run(id, &process_id::is_alive)?;
-                ptu_report::write(&self.out, &store, directory.as_ref(), &run, self.lang)?;
+                ptu_report::write(&self.out, &store, &directory, &run, self.lang)?;
             }
             Told::Case(id) => {
                 let (depot, annex) = (&self.depot, self.annex);
-                let case = CaseSheet::gather(&store, directory.as_ref(), id, depot, annex)?;
+                let case = CaseSheet::gather(&store, &directory, id, depot, annex)?;
                 write_case(&self.out, &case, self.lang)?;
             }
         }

@@ -34,7 +34,7 @@ impl ReportOption {
     pub fn write(
         &self,
         store: &Store,
-        directory: Option<&ScriptsDirectory>,
+        directory: &ScriptsDirectory,
         run: &RunDetail,
     ) -> Result<(), Failure> {
         ptu_report::write(&self.report, store, directory, run, self.lang)

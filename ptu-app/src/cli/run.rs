@@ -371,7 +371,7 @@ impl RunArguments {
         if let Err(failure) = said {
             failure.tell();
         }
-        self.reports.write(&store, Some(directory), &detail)?;
+        self.reports.write(&store, directory, &detail)?;
         store.close()?;
         answered(streamed.map(|()| outcome.exit), outcome.exit)
     }

@@ -167,8 +167,8 @@ impl RunsArguments {
                 reports.check()?;
                 let run = store.run(store.resolve_run(&id)?, &process_id::is_alive)?;
                 if !reports.is_empty() {
-                    let directory = scripts.find_if_there()?;
-                    reports.write(&store, directory.as_ref(), &run)?;
+                    let directory = scripts.find()?;
+                    reports.write(&store, &directory, &run)?;
                 }
                 if json {
                     print_json(&run_json(&run))

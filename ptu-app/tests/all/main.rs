@@ -36,6 +36,7 @@ mod lock_step;
 mod locked_window;
 mod no_unit;
 mod on_ports;
+mod own_scripts;
 mod questions;
 mod repair_sheet;
 mod report;

@@ -100,7 +100,8 @@ fn the_sheet_of_a_proved_case_has_part_values_runs_and_verdict_on_its_first_page
 
     let store = Store::open_read_only(&place.path("history.db")).expect("the database");
     let id = store.resolve_fault(&fault).expect("the fault");
-    let sheet = CaseSheet::gather(&store, None, id, "군자차량기지", false).expect("a sheet");
+    let sheet =
+        CaseSheet::gather(&store, &place.no_scripts(), id, "군자차량기지", false).expect("a sheet");
     let laid_out = pages(&sheet, Language::Korean.words()).expect("pages");
     assert_eq!(laid_out.len(), count);
     let first: String = laid_out[0].iter().map(words_of).collect();

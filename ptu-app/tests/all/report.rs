@@ -252,14 +252,14 @@ fn what_cannot_be_written_or_found_is_named() {
 }
 
 #[test]
-fn a_sheet_without_scripts_says_why_it_has_no_diagnosis() {
+fn a_sheet_without_a_dictionary_says_why_it_has_no_diagnosis() {
     let place = Place::new();
     place.recorded_run();
     let store = Store::open_read_only(&place.path("history.db")).expect("the test's database");
     let run = store.resolve_run("latest").expect("the run");
-    let sheet = Sheet::gather(&store, None, run).expect("a sheet");
+    let sheet = Sheet::gather(&store, &place.no_scripts(), run).expect("a sheet");
     let page = html(&sheet, Language::English.words());
-    assert!(page.contains("No diagnosis: no scripts directory"));
+    assert!(page.contains("No diagnosis: cannot read "));
 }
 
 /// Goal: the verdict of a part of the suite says first what it stands for, the same in every report. Method: a laptop

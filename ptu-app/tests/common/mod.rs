@@ -11,6 +11,7 @@ pub mod window;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use ptu_bench::data::ScriptsDirectory;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -55,6 +56,13 @@ impl Place {
     /// The same as text.
     pub fn text_path(&self, name: &str) -> String {
         self.path(name).display().to_string()
+    }
+
+    /// A scripts directory that holds no procedure and no data: sheets have no diagnosis.
+    pub fn no_scripts(&self) -> ScriptsDirectory {
+        let empty = self.path("empty");
+        std::fs::create_dir(&empty).expect("a folder");
+        ScriptsDirectory::find(Some(&empty)).expect("a folder")
     }
 
     /// Writes a file and gives its path.

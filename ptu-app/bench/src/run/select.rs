@@ -8,6 +8,8 @@ use btu_rig::procedure::Procedure;
 use btu_rig::rig::Random;
 use glob::Pattern;
 
+use script_files::Place;
+
 use crate::data::{self, ScriptsDirectory};
 use crate::failure::{Failure, did_you_mean};
 
@@ -73,7 +75,7 @@ fn matching(
     all: &BTreeMap<String, String>,
     name: &str,
 ) -> Result<BTreeMap<String, String>, Failure> {
-    let wanted = under(directory.path(), name);
+    let wanted = under(directory, name);
     let pattern = Pattern::new(&wanted)
         .map_err(|error| Failure::usage(format!("\"{name}\" is not a glob: {error}")))?;
     let matches = |path: &String| {
@@ -89,11 +91,15 @@ fn matching(
 }
 
 /// The name without the scripts directory before it and `.star` behind it.
-fn under(root: &Path, name: &str) -> String {
+fn under(directory: &ScriptsDirectory, name: &str) -> String {
     let path = Path::new(name);
-    let path = path
-        .strip_prefix(root)
-        .or_else(|_| path.strip_prefix("scripts"))
+    let folders = directory.places().iter().filter_map(|place| match place {
+        Place::Folder(folder) => Some(folder.as_path()),
+        Place::Embedded => None,
+    });
+    let path = folders
+        .chain([Path::new("scripts")])
+        .find_map(|folder| path.strip_prefix(folder).ok())
         .unwrap_or(path);
     let text = path.to_string_lossy().replace('\\', "/");
     let text = text.trim_start_matches("./").trim_end_matches('/');

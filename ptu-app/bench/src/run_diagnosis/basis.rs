@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Settings};
 
-use crate::data::{BENCH_SCATTER, ScriptsDirectory, read, sha256};
+use crate::data::{BENCH_SCATTER, ScriptsDirectory, sha256};
 use crate::failure::Failure;
 
 /// The bench that dictionaries are made on.
@@ -29,33 +29,70 @@ const FILES: [&str; 5] = [
 /// # Errors
 /// A file cannot be read.
 pub fn basis(directory: &ScriptsDirectory, connection: Connection) -> Result<Basis, Failure> {
-    let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
-    if connection == Connection::Ptu {
-        all += "maintenance port alone\n";
+    Ok(Contents::read(directory)?.basis(connection, |_| true))
+}
+
+/// Checksums of what the scripts directory holds now.
+pub struct Contents {
+    procedures: BTreeMap<String, String>,
+    files: [String; FILES.len()],
+}
+
+impl Contents {
+    /// Reads all.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub fn read(directory: &ScriptsDirectory) -> Result<Self, Failure> {
+        let mut procedures = BTreeMap::new();
+        for (path, text) in directory.procedures()? {
+            procedures.insert(path, sha256(&text));
+        }
+        let mut files = [const { String::new() }; FILES.len()];
+        for (sum, name) in files.iter_mut().zip(FILES) {
+            *sum = sha256(&directory.text(name)?);
+        }
+        Ok(Self { procedures, files })
     }
-    let mut procedures = BTreeMap::new();
-    for (path, text) in directory.procedures()? {
-        let sum = sha256(&text);
-        all += &format!("{path} {sum}\n");
-        procedures.insert(path.trim_end_matches(".star").to_owned(), sum);
+
+    /// The dictionary was made of what there is now. A procedure that came later does not change what those before it
+    /// show.
+    pub fn hold(&self, dictionary: &Basis, connection: Connection) -> bool {
+        let known = |name: &str| dictionary.procedures.contains_key(name);
+        self.basis(connection, known).sha256 == dictionary.sha256
     }
-    let mut unit_config_sha256 = String::new();
-    for name in FILES {
-        let sum = sha256(&read(&directory.path().join(name))?);
-        all += &format!("{name} {sum}\n");
-        if name.contains(UNIT_CONFIG) {
-            unit_config_sha256 = sum;
+
+    /// What a dictionary of the procedures that count would be made of.
+    pub fn basis(&self, connection: Connection, is_counted: impl Fn(&str) -> bool) -> Basis {
+        let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
+        if connection == Connection::Ptu {
+            all += "maintenance port alone\n";
+        }
+        let mut procedures = BTreeMap::new();
+        for (path, sum) in &self.procedures {
+            let name = path.trim_end_matches(".star");
+            if is_counted(name) {
+                all += &format!("{path} {sum}\n");
+                procedures.insert(name.to_owned(), sum.clone());
+            }
+        }
+        let mut unit_config_sha256 = String::new();
+        for (name, sum) in FILES.iter().zip(&self.files) {
+            all += &format!("{name} {sum}\n");
+            if name.contains(UNIT_CONFIG) {
+                unit_config_sha256.clone_from(sum);
+            }
+        }
+        Basis {
+            sha256: sha256(&all),
+            unit_config_sha256,
+            procedures,
+            line: LINE.into(),
+            train: TRAIN.into(),
+            connection: connection.word().into(),
+            app_version: env!("CARGO_PKG_VERSION").into(),
         }
     }
-    Ok(Basis {
-        sha256: sha256(&all),
-        unit_config_sha256,
-        procedures,
-        line: LINE.into(),
-        train: TRAIN.into(),
-        connection: connection.word().into(),
-        app_version: env!("CARGO_PKG_VERSION").into(),
-    })
 }
 
 /// Priors and thresholds, `diagnosis.toml` in the scripts directory.
@@ -63,10 +100,10 @@ pub fn basis(directory: &ScriptsDirectory, connection: Connection) -> Result<Bas
 /// # Errors
 /// It cannot be read, or is wrong.
 pub fn settings(directory: &ScriptsDirectory) -> Result<Settings, Failure> {
-    let file = directory.path().join("diagnosis.toml");
-    let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
+    let file = "diagnosis.toml";
+    let wrong = |what: String| Failure::usage(format!("{}: {what}", directory.shown(file)));
     let settings: Settings =
-        toml::from_str(&read(&file)?).map_err(|error| wrong(error.to_string()))?;
+        toml::from_str(&directory.text(file)?).map_err(|error| wrong(error.to_string()))?;
     settings.check().map_err(wrong)?;
     Ok(settings)
 }

@@ -3,9 +3,9 @@
 
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Dictionary};
-use fault_db::{Store, read_regular_file};
+use fault_db::Store;
 
-use super::basis;
+use super::basis::Contents;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 
@@ -47,7 +47,9 @@ pub fn choose(
     directory: &ScriptsDirectory,
     connection: Connection,
 ) -> Result<Chosen, Failure> {
-    let now = basis(directory, connection)?;
+    let contents = Contents::read(directory)?;
+    let now = contents.basis(connection, |_| true);
+    let is_current = |basis: &Basis| contents.hold(basis, connection);
     let own = match store {
         Some(store) => store
             .dictionary(&now.sha256)?
@@ -61,7 +63,7 @@ pub fn choose(
     };
     let modes = |dictionary: &Dictionary| {
         let same_connection = dictionary.basis.connection == now.connection;
-        let current = dictionary.basis.sha256 == now.sha256;
+        let current = is_current(&dictionary.basis);
         let size = dictionary.modes.len();
         (same_connection, current, size, dictionary.healthy.runs)
     };
@@ -88,7 +90,7 @@ pub fn choose(
         ));
     };
     let mut warnings = Vec::new();
-    let current = dictionary.basis.sha256 == now.sha256;
+    let current = is_current(&dictionary.basis);
     let same_connection = dictionary.basis.connection == now.connection;
     let how = match connection {
         Connection::Ptu => " --harness none",
@@ -120,22 +122,22 @@ pub fn choose(
 }
 
 fn shipped(directory: &ScriptsDirectory, name: &str) -> Result<Option<Dictionary>, Failure> {
-    let file = directory.path().join(name);
-    if !file.exists() {
+    if !directory.has(name) {
         return Ok(None);
     }
-    let wrong = |what: String| Failure::usage(format!("{}: {what}", file.display()));
-    let packed =
-        read_regular_file(&file, LONGEST_PACKED).map_err(|error| wrong(error.to_string()))?;
+    let wrong = |what: String| Failure::usage(format!("{}: {what}", directory.shown(name)));
+    let packed = directory.bytes(name, LONGEST_PACKED)?;
     Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
 }
 
 /// What differs, in a few words.
 fn differences(made_of: &Basis, now: &Basis) -> String {
-    let changed = now
-        .procedures
-        .iter()
-        .filter(|(name, sum)| made_of.procedures.get(*name) != Some(sum));
+    let is_changed = |(name, sum): &(&String, &String)| {
+        now.procedures
+            .get(*name)
+            .is_some_and(|there| there != *sum)
+    };
+    let changed = made_of.procedures.iter().filter(is_changed);
     let changed: Vec<_> = changed.map(|(name, _)| name.as_str()).collect();
     let gone = made_of
         .procedures

@@ -12,16 +12,12 @@ use ptu_bench::process_id;
 use ptu_bench::run_diagnosis::diagnose_run;
 
 impl Sheet {
-    /// Reads all a run's sheet says. Without a scripts directory, or without a fault dictionary in it,
-    /// there is no diagnosis, and the sheet says why.
+    /// Reads all a run's sheet says. Without a fault dictionary there is no diagnosis, and the sheet
+    /// says why.
     ///
     /// # Errors
     /// There is no such run, or the database cannot be read.
-    pub fn gather(
-        store: &Store,
-        directory: Option<&ScriptsDirectory>,
-        id: Id,
-    ) -> Result<Self, Failure> {
+    pub fn gather(store: &Store, directory: &ScriptsDirectory, id: Id) -> Result<Self, Failure> {
         let run = store.run(id, &process_id::is_alive)?;
         let occurrences = store.run_occurrences(id)?;
         let mut all = traces(&run, &occurrences);
@@ -36,14 +32,8 @@ impl Sheet {
             steps,
             faults,
         };
-        let diagnosis = match directory {
-            Some(directory) => {
-                diagnose_run(store, directory, id).map_err(|failure| failure.message)
-            }
-            None => Err("no scripts directory".into()),
-        };
-        let catalogue = directory.and_then(|directory| directory.faults().ok());
-        let parts = catalogue
+        let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.message);
+        let parts = (directory.faults().ok())
             .map(|catalogue| catalogue.lrus)
             .unwrap_or_default();
         Ok(Self {

@@ -6,6 +6,7 @@ use fault_db::{
 };
 
 use protocol::display_text;
+use ptu_bench::data::ScriptsDirectory;
 
 use super::page::font::FontMetrics;
 use super::page::{self, HEIGHT, Item, WIDTH};
@@ -19,7 +20,14 @@ const LIMIT_SOURCE: &str = "configuration overspeed.eb_delay_ms; default: two sc
 /// A store and the folder it is in.
 pub(super) struct Stored {
     pub(super) store: Store,
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
+}
+
+impl Stored {
+    /// A scripts directory that holds no procedure and no data: sheets have no diagnosis.
+    pub(super) fn no_scripts(&self) -> ScriptsDirectory {
+        ScriptsDirectory::find(Some(self.folder.path())).expect("a folder")
+    }
 }
 
 /// A store with one run of `steps` steps, every third failed with a fault and a trace.
@@ -67,7 +75,7 @@ pub(super) fn stored(steps: u32, ended: bool) -> (Stored, Id) {
     drop(writer);
     let stored = Stored {
         store,
-        _folder: folder,
+        folder: folder,
     };
     (stored, id)
 }
@@ -172,7 +180,7 @@ fn trace() -> TraceData {
 }
 
 fn sheet(stored: &Stored, id: Id) -> Sheet {
-    Sheet::gather(&stored.store, None, id).expect("a sheet")
+    Sheet::gather(&stored.store, &stored.no_scripts(), id).expect("a sheet")
 }
 
 fn laid_out(sheet: &Sheet, words: &Words) -> Vec<page::Page> {

@@ -216,5 +216,5 @@ fn is_part(name: &str) -> bool {
 
 /// Whether the scripts have this file.
 fn has_script(path: &str) -> bool {
-    ScriptsDirectory::find(None).is_ok_and(|directory| directory.path().join(path).is_file())
+    ScriptsDirectory::find(None).is_ok_and(|directory| directory.has(path))
 }

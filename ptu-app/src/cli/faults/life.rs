@@ -44,10 +44,7 @@ impl LifeArguments {
         if self.json {
             return print_json(&lives.iter().map(life::json).collect::<Vec<_>>());
         }
-        let names = self.scripts.find_if_there()?;
-        let names = names
-            .map(|scripts| PartNames::of(&scripts))
-            .unwrap_or_default();
+        let names = PartNames::of(&self.scripts.find()?);
         let told = lives.iter().map(|life| self.told(life, &names));
         print_out(told.collect::<Vec<_>>().join("\n").trim_end())
     }

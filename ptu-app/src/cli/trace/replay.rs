@@ -80,7 +80,7 @@ impl ReplayArguments {
             true => print_json(&rerun_json(&original, &rerun)),
             false => print_out(&text(&original, &rerun)),
         };
-        self.reports.write(&store, Some(&directory), &detail)?;
+        self.reports.write(&store, &directory, &detail)?;
         store.close()?;
         answered(told, rerun.exit)
     }

@@ -52,7 +52,10 @@ fn contents(ui: &mut Ui, context: &PageContext<'_>) {
         row(
             ui,
             words.frame.scripts,
-            paths.scripts.path().display().to_string(),
+            (paths.scripts.places().iter())
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("\n"),
         );
         for page in Page::ALL {
             row(ui, page.key().name(), page.name(words).into());

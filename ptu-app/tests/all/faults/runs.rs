@@ -108,7 +108,14 @@ impl TestBench {
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         let junit = place.text_path("r.junit.xml");
         let target = junit.parse().expect("a report");
-        ptu_report::write(&[target], &store, None, &detail, Language::English).expect("written");
+        ptu_report::write(
+            &[target],
+            &store,
+            &self.directory,
+            &detail,
+            Language::English,
+        )
+        .expect("written");
         FaultRun {
             exit: outcome.exit.code(),
             junit: place.read("r.junit.xml"),

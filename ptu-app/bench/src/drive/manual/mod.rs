@@ -148,8 +148,8 @@ impl Source {
         } else {
             let parse = |text: &str| Ok::<_, Infallible>(Sequence::from_toml(text));
             let loaded = directory.load(FOLDER, asked, "sequence", parse)?;
-            let file = directory.path().join(FOLDER).join(format!("{asked}.toml"));
-            (asked.to_owned(), file.display().to_string(), loaded.content)
+            let file = directory.shown(&format!("{FOLDER}/{asked}.toml"));
+            (asked.to_owned(), file, loaded.content)
         };
         let wrong = |error: SequenceError| located(&file, &error);
         let sequence = parsed.map_err(wrong)?;

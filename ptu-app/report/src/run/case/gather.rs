@@ -19,7 +19,7 @@ impl CaseSheet {
     /// There is no such fault, no run saw it, or the database cannot be read.
     pub fn gather(
         store: &Store,
-        directory: Option<&ScriptsDirectory>,
+        directory: &ScriptsDirectory,
         fault: Id,
         depot: &str,
         with_annex: bool,
@@ -106,7 +106,7 @@ fn leading(store: &Store, asked: FaultDetail) -> Result<FaultDetail, Failure> {
 /// last settled. One that the scripts directory no longer has goes by its identifier.
 fn symptom(
     store: &Store,
-    directory: Option<&ScriptsDirectory>,
+    directory: &ScriptsDirectory,
     before: &Sheet,
     fault: &FaultDetail,
 ) -> Result<Option<Symptom>, StoreError> {
@@ -128,10 +128,8 @@ fn symptom(
         let Some(id) = store.run(run, &process_id::is_alive)?.run.symptom else {
             continue;
         };
-        let known = directory.and_then(|scripts| {
-            let parts = scripts.faults().ok()?.lrus;
-            symptoms::find(scripts, &parts, &id).ok()
-        });
+        let known = (directory.faults().ok())
+            .and_then(|catalogue| symptoms::find(directory, &catalogue.lrus, &id).ok());
         return Ok(Some(known.unwrap_or_else(|| Symptom {
             name: spoken(&id),
             id,

@@ -13,7 +13,7 @@ const LONG: &str = "contacts burnt, wiring of the cabinet checked and cleaned, ì
 fn case(stored: &Stored, with_annex: bool) -> CaseSheet {
     let store = &stored.store;
     let fault = store.resolve_fault("latest").expect("a fault");
-    CaseSheet::gather(store, None, fault, "", with_annex).expect("a sheet")
+    CaseSheet::gather(store, &stored.no_scripts(), fault, "", with_annex).expect("a sheet")
 }
 
 fn repair(stored: &Stored) {

@@ -53,7 +53,7 @@ pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<P
             ptu_report::run_content(&target, &store, scripts, &run, language)?
         }
         SheetOf::Case { fault, .. } => {
-            let case = CaseSheet::gather(&store, Some(scripts), fault, &asked.depot, false)?;
+            let case = CaseSheet::gather(&store, scripts, fault, &asked.depot, false)?;
             ptu_report::case_content(&target, &case, language)?
         }
         SheetOf::Compared { before, after, all } => {

@@ -140,11 +140,11 @@ impl ReportPage {
         self.version = context.data_version();
         self.asked = Request::Pending(context.queries.run(move |paths| {
             let store = paths.read()?;
-            let scripts = Some(&paths.scripts);
+            let scripts = &paths.scripts;
             let words = wanted.language.words();
             let shown = |pages, run: &RunDetail, traces: Option<&[SheetTrace]>| {
                 let seen = store.run_occurrences(run.run.id)?;
-                let parts = PartNames::of(&paths.scripts);
+                let parts = PartNames::of(scripts);
                 let traces = traces.unwrap_or_default().iter().map(|trace| trace.id);
                 let traces = traces.collect();
                 Ok(Shown::new(

@@ -1,0 +1,133 @@
+//! The procedures and data files of the program: where they are looked for, and which file counts.
+//!
+//! A folder that is given, or stands beside the program, is taken alone. Without one the places are laid over each
+//! other, file by file: the user's own, the system's, and what the program carries with it. Files on the disk are found
+//! here and read by the caller.
+
+mod place;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+pub use place::{Found, Place, own_folder};
+
+/// Most files and folders in the places together.
+const MOST_ENTRIES: usize = 100_000;
+/// Folders within folders that are looked into.
+const DEEPEST_FOLDER: usize = 16;
+
+/// A place or a file that cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ScriptsError {
+    /// What was given is no folder.
+    #[error("{} is not a directory", .0.display())]
+    NotADirectory(PathBuf),
+    /// A file or folder, by its path or name, and why.
+    #[error("cannot read {what}: {why}")]
+    Unreadable {
+        /// Its path, or its name and "(embedded)".
+        what: String,
+        /// The system's word, or ours.
+        why: String,
+    },
+}
+
+impl ScriptsError {
+    fn unreadable(what: impl ToString, why: impl ToString) -> Self {
+        Self::Unreadable {
+            what: what.to_string(),
+            why: why.to_string(),
+        }
+    }
+}
+
+/// Where all procedures and data files are: a file is taken from the first place that has it.
+#[derive(Clone, Debug)]
+pub struct ScriptFiles(Vec<Place>);
+
+impl ScriptFiles {
+    /// The folder given, alone; else `./scripts` or `scripts` above the program, alone; else the user's own files over
+    /// the system's over the embedded ones.
+    ///
+    /// # Errors
+    /// What is given is no folder.
+    pub fn find(given: Option<&Path>) -> Result<Self, ScriptsError> {
+        if let Some(folder) = given {
+            return match folder.is_dir() {
+                true => Ok(Self(vec![Place::Folder(folder.to_owned())])),
+                false => Err(ScriptsError::NotADirectory(folder.to_owned())),
+            };
+        }
+        let program = std::env::current_exe().unwrap_or_default();
+        let beside = std::iter::once(Path::new("."))
+            .chain(program.ancestors())
+            .map(|place| place.join("scripts"))
+            .find(|folder| folder.join("units").is_dir());
+        Ok(match beside {
+            Some(folder) => Self(vec![Place::Folder(folder)]),
+            None => Self::layered(own_folder().into_iter().chain(place::system_folders())),
+        })
+    }
+
+    /// These folders, those of them that are there, over the embedded files.
+    pub fn layered(folders: impl IntoIterator<Item = PathBuf>) -> Self {
+        let folders = folders.into_iter().filter(|folder| folder.is_dir());
+        Self(
+            folders
+                .map(Place::Folder)
+                .chain([Place::Embedded])
+                .collect(),
+        )
+    }
+
+    /// The places, the first of which wins.
+    pub fn places(&self) -> &[Place] {
+        &self.0
+    }
+
+    /// The file of this name, `units/sg100.toml`, of the first place that has it.
+    pub fn file(&self, name: &str) -> Option<Found> {
+        self.files(name).next()
+    }
+
+    /// How the file of this name is shown to a person: where it is, or where the first place would have it.
+    pub fn shown(&self, name: &str) -> String {
+        let missing = || self.0[0].shown(name);
+        self.file(name).map_or_else(missing, |found| found.shown())
+    }
+
+    /// Every file of this name, of the first place first.
+    pub fn files(&self, name: &str) -> impl Iterator<Item = Found> {
+        self.0.iter().filter_map(move |place| place.file(name))
+    }
+
+    /// Names without their ending of the files `FOLDER/NAME.ENDING`.
+    pub fn names(&self, folder: &str, ending: &str) -> BTreeSet<String> {
+        let files = self.0.iter().flat_map(|place| place.names(folder));
+        let names = files.filter_map(|name| {
+            let name = name.strip_suffix(ending)?.strip_suffix('.')?;
+            Some(name.to_owned())
+        });
+        names.collect()
+    }
+
+    /// Every procedure and data file by its name.
+    ///
+    /// # Errors
+    /// A folder cannot be read, or holds too many files.
+    pub fn all(&self) -> Result<BTreeMap<String, Found>, ScriptsError> {
+        let mut all = BTreeMap::new();
+        for place in &self.0 {
+            for (name, found) in place.all()? {
+                all.entry(name).or_insert(found);
+            }
+            if all.len() > MOST_ENTRIES {
+                return Err(place::too_many(&self.0[0].to_string()));
+            }
+        }
+        Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests;

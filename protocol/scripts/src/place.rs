@@ -1,0 +1,171 @@
+//! One place with procedures and data files: a folder, or the program itself.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use crate::{DEEPEST_FOLDER, MOST_ENTRIES, ScriptsError};
+
+/// Names with `/` between folders, and contents; sorted by name.
+const EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
+
+/// A place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A folder on the disk.
+    Folder(PathBuf),
+    /// What the program carries with it.
+    Embedded,
+}
+
+/// A file that a place has.
+#[derive(Clone, Debug)]
+pub enum Found {
+    /// On the disk.
+    File(PathBuf),
+    /// In the program.
+    Embedded(&'static str, &'static [u8]),
+}
+
+/// The user's own procedures and data files; it may not be there yet. None without a home.
+pub fn own_folder() -> Option<PathBuf> {
+    directories::ProjectDirs::from("", "", "ptu")
+        .map(|directories| directories.data_dir().join("scripts"))
+}
+
+/// Those of all users of this computer: the depot's own, and those that a package installed.
+pub(crate) fn system_folders() -> Vec<PathBuf> {
+    if cfg!(windows) {
+        let programs = std::env::var_os("ProgramData").map(PathBuf::from);
+        return programs
+            .map(|folder| folder.join("ptu").join("scripts"))
+            .into_iter()
+            .collect();
+    }
+    ["/etc/ptu/scripts", "/usr/share/ptu/scripts"]
+        .map(PathBuf::from)
+        .into()
+}
+
+impl Place {
+    pub(crate) fn file(&self, name: &str) -> Option<Found> {
+        match self {
+            Self::Folder(folder) => {
+                let path = folder.join(name);
+                path.exists().then_some(Found::File(path))
+            }
+            Self::Embedded => {
+                let at = EMBEDDED.binary_search_by_key(&name, |(name, _)| name);
+                at.ok()
+                    .map(|at| Found::Embedded(EMBEDDED[at].0, EMBEDDED[at].1))
+            }
+        }
+    }
+
+    /// How the file of this name would be shown to a person.
+    pub(crate) fn shown(&self, name: &str) -> String {
+        match self {
+            Self::Folder(folder) => folder.join(name).display().to_string(),
+            Self::Embedded => format!("{name} (embedded)"),
+        }
+    }
+
+    /// Names of the files in a folder of it, not of those in folders within.
+    pub(crate) fn names(&self, folder: &str) -> Vec<String> {
+        match self {
+            Self::Folder(root) => {
+                let entries = std::fs::read_dir(root.join(folder)).into_iter();
+                let entries = entries.flatten().flatten();
+                entries
+                    .filter_map(|entry| entry.file_name().into_string().ok())
+                    .collect()
+            }
+            Self::Embedded => {
+                let names = EMBEDDED.iter().filter_map(|(name, _)| {
+                    let name = name.strip_prefix(folder)?.strip_prefix('/')?;
+                    (!name.contains('/')).then(|| name.to_owned())
+                });
+                names.collect()
+            }
+        }
+    }
+
+    /// Every procedure and data file of it, by its name.
+    pub(crate) fn all(&self) -> Result<Vec<(String, Found)>, ScriptsError> {
+        match self {
+            Self::Folder(root) => {
+                let mut collecting = Collecting {
+                    root,
+                    found: Vec::new(),
+                    entries: 0,
+                };
+                collecting.collect(root, 0)?;
+                Ok(collecting.found)
+            }
+            Self::Embedded => {
+                let all = EMBEDDED.iter();
+                let all = all.map(|&(name, bytes)| (name.to_owned(), Found::Embedded(name, bytes)));
+                Ok(all.collect())
+            }
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Folder(folder) => folder.display().fmt(f),
+            Self::Embedded => f.write_str("embedded in the program"),
+        }
+    }
+}
+
+impl Found {
+    /// As it is named to a person.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Embedded(name, _) => Place::Embedded.shown(name),
+        }
+    }
+}
+
+pub(crate) fn too_many(place: &str) -> ScriptsError {
+    ScriptsError::unreadable(
+        place,
+        format!("the scripts directory holds more than {MOST_ENTRIES} files and folders"),
+    )
+}
+
+/// The files under a folder.
+struct Collecting<'a> {
+    root: &'a Path,
+    found: Vec<(String, Found)>,
+    entries: usize,
+}
+
+impl Collecting<'_> {
+    fn collect(&mut self, folder: &Path, depth: usize) -> Result<(), ScriptsError> {
+        let cannot = |why: &dyn fmt::Display| ScriptsError::unreadable(folder.display(), why);
+        if depth > DEEPEST_FOLDER {
+            return Err(cannot(
+                &"too many folders within folders; does a link lead back?",
+            ));
+        }
+        for entry in std::fs::read_dir(folder).map_err(|error| cannot(&error))? {
+            let path = entry.map_err(|error| cannot(&error))?.path();
+            self.entries += 1;
+            if self.entries > MOST_ENTRIES {
+                return Err(too_many(&folder.display().to_string()));
+            }
+            let ending = path.extension().and_then(|ending| ending.to_str());
+            if path.is_dir() {
+                self.collect(&path, depth + 1)?;
+            } else if matches!(ending, Some("star" | "toml" | "zst")) {
+                let name = path.strip_prefix(self.root).unwrap_or(&path);
+                let name = name.to_string_lossy().replace('\\', "/");
+                self.found.push((name, Found::File(path)));
+            }
+        }
+        Ok(())
+    }
+}

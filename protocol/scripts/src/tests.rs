@@ -1,0 +1,86 @@
+use std::fs;
+
+use super::*;
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().expect("under it")).expect("made");
+        fs::write(path, text).expect("written");
+    }
+    folder
+}
+
+fn text(found: Option<Found>) -> String {
+    match found.expect("there") {
+        Found::File(path) => fs::read_to_string(path).expect("read"),
+        Found::Embedded(_, bytes) => String::from_utf8(bytes.to_vec()).expect("UTF-8"),
+    }
+}
+
+#[test]
+fn the_program_carries_all_that_the_repository_ships() {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
+    let shipped = ScriptFiles::find(Some(&shipped)).expect("there");
+    let embedded = ScriptFiles::layered([]);
+    let names = |files: &ScriptFiles| files.all().expect("listed").into_keys().collect::<Vec<_>>();
+    assert_eq!(names(&embedded), names(&shipped));
+    for name in names(&embedded)
+        .iter()
+        .filter(|name| !name.ends_with(".zst"))
+    {
+        assert_eq!(
+            text(embedded.file(name)),
+            text(shipped.file(name)),
+            "{name}"
+        );
+    }
+    let lines = embedded.names("lines", "toml");
+    assert_eq!(lines, shipped.names("lines", "toml"));
+    assert!(lines.contains("line8"));
+}
+
+#[test]
+fn an_own_file_counts_before_the_systems_and_that_before_the_embedded_one() {
+    let own = folder(&[("atp/mine.star", "mine"), ("lines/line8.toml", "own line")]);
+    let depot = folder(&[
+        ("lines/line8.toml", "depot line"),
+        ("lines/depot.toml", "more"),
+    ]);
+    let missing = own.path().join("missing");
+    let places = [own.path(), &missing, depot.path()].map(Path::to_owned);
+    let files = ScriptFiles::layered(places);
+    assert_eq!(files.places().len(), 3);
+    assert_eq!(text(files.file("lines/line8.toml")), "own line");
+    assert_eq!(text(files.file("lines/depot.toml")), "more");
+    assert!(text(files.file("units/sg100.toml")).contains("overspeed"));
+    assert!(files.file("units/none.toml").is_none());
+    assert_eq!(files.files("lines/line8.toml").count(), 3);
+    let all = files.all().expect("listed");
+    assert!(all.contains_key("atp/mine.star") && all.contains_key("atp/overspeed.star"));
+    assert!(files.names("lines", "toml").contains("depot"));
+}
+
+#[test]
+fn a_folder_that_is_given_is_taken_alone() {
+    let given = folder(&[("atp/only.star", "only")]);
+    let files = ScriptFiles::find(Some(given.path())).expect("a folder");
+    assert_eq!(files.all().expect("listed").len(), 1);
+    assert!(files.file("units/sg100.toml").is_none());
+    let file = given.path().join("atp/only.star");
+    let refused = ScriptFiles::find(Some(&file)).expect_err("no folder");
+    assert!(refused.to_string().ends_with("is not a directory"));
+}
+
+#[test]
+fn a_link_that_leads_back_ends_in_words() {
+    let given = folder(&[("atp/only.star", "only")]);
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(given.path(), given.path().join("atp/back")).expect("linked");
+        let files = ScriptFiles::find(Some(given.path())).expect("a folder");
+        let refused = files.all().expect_err("endless").to_string();
+        assert!(refused.contains("does a link lead back?"), "{refused}");
+    }
+}
