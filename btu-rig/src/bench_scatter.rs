@@ -14,7 +14,7 @@ use crate::rig::random::Random;
 const OWN_SEQUENCE: u64 = 0xBE7C_45CA_77E2_0B1D;
 
 /// All that differs; see `scripts/bench_scatter.toml`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchScatter {
     /// Train and track.
@@ -26,7 +26,7 @@ pub struct BenchScatter {
 }
 
 /// How sensors differ; each is one of [`Sensors`].
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorScatter {
     /// Level in the antenna over the intended one.
@@ -46,7 +46,7 @@ pub struct SensorScatter {
 }
 
 /// How the times of unit and bench lie to each other; each is one of [`Timing`].
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimingScatter {
     /// Power-up after a whole cycle of the bench, ms.

@@ -17,7 +17,9 @@ const STORED_NONE: &str = "unknown";
 
 /// Identifier of a line-replaceable unit (LRU), for instance `eb_relay`: the smallest part that maintenance
 /// exchanges. `scripts/units/faults.toml` lists them.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(try_from = "String")]
 pub struct LruId(Cow<'static, str>);
 

@@ -140,8 +140,8 @@ impl<L: Listener> Listener for EventStream<L> {
     fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
         if let Some(stream) = &mut self.stream
             && stream.to.is_some()
+            && let Some(line) = stream.lines.event(procedure, event)
         {
-            let line = stream.lines.event(procedure, event);
             stream.put(line);
         }
         self.listener.on_event(procedure, event);

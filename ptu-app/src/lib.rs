@@ -15,5 +15,6 @@ mod fault_months;
 #[cfg(feature = "window")]
 pub mod gui;
 mod operator;
+mod run_recording;
 mod sparkline;
 mod trend;

@@ -59,9 +59,10 @@ fn faults(scripts: &ScriptFiles, names: &[String]) -> Result<Vec<FaultMode>> {
     if names.is_empty() {
         return Ok(Vec::new());
     }
-    let file = "units/faults.toml";
-    let catalogue =
-        FaultCatalogue::from_toml(&read(scripts, file)?).map_err(|e| wrong(scripts, file, &e))?;
+    let files = scripts.catalogue();
+    let texts: Result<Vec<_>, _> = files.iter().map(|file| read(scripts, file)).collect();
+    let catalogue = FaultCatalogue::from_toml(&texts?.join("\n"))
+        .map_err(|e| wrong(scripts, &files.join(" with "), &e))?;
     let find = |name: &String| {
         let fault = catalogue.fault(name).cloned().ok_or_else(|| {
             UsageError(format!("no fault {name}; `ptu catalog faults` lists them"))

@@ -9,7 +9,7 @@ use crate::conditions::{Conditions, Disturbance, MAX_DELAY_FACTOR};
 use crate::rig::random::{Random, standard_normal};
 
 /// A quantity that differs from run to run.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum Spread {
     /// Any value of a range as likely as any other.
@@ -78,7 +78,9 @@ pub(crate) fn check_spreads(spreads: &[(&str, Spread, f64, f64)]) -> Result<(), 
 }
 
 /// All that differs; see `scripts/scatter.toml`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, serde::Deserialize, schemars::JsonSchema, serde::Serialize,
+)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
     /// Passengers, kg; what the train cannot carry stays behind.

@@ -4,7 +4,7 @@ use protocol::config::{ConfigError, within};
 use serde::{Deserialize, Serialize};
 
 /// Data of the train control and monitoring system.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TcmsData {
     /// Powering of P0.5, P1 .. P4, % of full effort (S3).

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Priors and thresholds of the diagnosis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Prior probability that a unit brought to the bench has no fault.
@@ -70,7 +70,7 @@ pub struct Settings {
 }
 
 /// Probabilities where nothing was counted, and how far counts and measured values are trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LikelihoodSettings {
     /// Probability that a check passes if nothing is known. With the next two it makes 1, as a check that was
@@ -93,7 +93,7 @@ pub struct LikelihoodSettings {
 }
 
 /// Weights of the faults that show in a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SignSettings {
     /// Probability of a sign that names the part, under a fault of it that is not in the dictionary.
@@ -109,7 +109,7 @@ pub struct SignSettings {
 }
 
 /// Weights of the signs in a unit's own log.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LogSettings {
     /// Weight of a sign that did not show, beside 1 of a sign that did.
@@ -120,7 +120,7 @@ pub struct LogSettings {
 }
 
 /// What a conclusion says and shows.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConclusionSettings {
     /// Parts from this probability on are named when it cannot be told which has failed.

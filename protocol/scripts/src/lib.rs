@@ -101,6 +101,15 @@ impl ScriptFiles {
         self.0.iter().filter_map(move |place| place.file(name))
     }
 
+    /// Names of the files that make up the fault catalogue: parts and modes, and further modes.
+    pub fn catalogue(&self) -> Vec<String> {
+        let further = self.names("faults", "toml").into_iter();
+        let further = further.map(|name| format!("faults/{name}.toml"));
+        std::iter::once("units/faults.toml".to_owned())
+            .chain(further)
+            .collect()
+    }
+
     /// Names without their ending of the files `FOLDER/NAME.ENDING`.
     pub fn names(&self, folder: &str, ending: &str) -> BTreeSet<String> {
         let files = self.0.iter().flat_map(|place| place.names(folder));

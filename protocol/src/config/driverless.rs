@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Times of the door sequence at a station.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DriverlessConfig {
     /// How long doors stand open at least, ms.

@@ -47,7 +47,7 @@ pub enum ConfigError {
 }
 
 /// One speed code of the code table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedCode {
     /// Name in scripts, for instance `55`.
@@ -61,7 +61,7 @@ pub struct SpeedCode {
 }
 
 /// ATP receiver and decoder.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReceiverConfig {
     /// Accepted distance from the carrier, Hz.
@@ -84,7 +84,7 @@ pub struct ReceiverConfig {
 }
 
 /// Overspeed supervision.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OverspeedConfig {
     /// Alarm above limit plus this, km/h.
@@ -128,7 +128,7 @@ const fn jog_kmh() -> f64 {
 }
 
 /// Supervision of the doors.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DoorConfig {
     /// Distance from the stop point that counts as aligned, m [S0: ±0.30].
@@ -146,7 +146,7 @@ const fn lines_ms() -> u32 {
 }
 
 /// The train that the unit is in.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrainConfig {
     /// Train number; 0 = none: station data for any train are taken, and the answers carry the number received.
@@ -154,7 +154,7 @@ pub struct TrainConfig {
 }
 
 /// Orders of the wayside, and what is keyed in at the cab.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OrdersConfig {
     /// Difference between the section length in orders and in the track database, m.
@@ -177,7 +177,7 @@ impl Default for OrdersConfig {
 }
 
 /// Silence that each channel is allowed, and frames rejected on it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkConfig {
     /// I/O silence that applies the emergency brake, ms.
@@ -193,7 +193,7 @@ pub struct LinkConfig {
 }
 
 /// How far what the TEST board makes may be from what it is asked for.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TestBoardConfig {
     /// Carrier, Hz.
@@ -219,7 +219,7 @@ impl Default for TestBoardConfig {
 }
 
 /// Start after power-up.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StartConfig {
     /// How long the self-test takes, ms.
@@ -227,7 +227,7 @@ pub struct StartConfig {
 }
 
 /// Everything one type of unit is configured with.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnitConfig {
     /// Name, at most 16 ASCII characters.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Tachometers, standstill and rollback.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TachoConfig {
     /// Pulses per wheel turn.
@@ -110,7 +110,7 @@ impl TachoConfig {
 }
 
 /// Supervision of markers and TRA.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerConfig {
     /// Distance from its place at which a marker is believed right after another one, m.

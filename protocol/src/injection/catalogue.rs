@@ -12,7 +12,7 @@ use crate::LruId;
 use crate::config::{ConfigError, conflict};
 
 /// A part that can be replaced.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lru {
     /// Name used in faults.
@@ -24,7 +24,7 @@ pub struct Lru {
 }
 
 /// The catalogue of parts and fault modes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FaultCatalogue {
     /// Parts.

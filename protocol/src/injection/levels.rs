@@ -11,7 +11,9 @@ const FULL_EFFORT: f64 = 1024.0;
 const HALF: f64 = 0.5;
 
 /// What kind of fault a mode is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum FaultKind {
     /// Something does not work, all the time.

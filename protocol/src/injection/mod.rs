@@ -23,7 +23,9 @@ pub use levels::FaultKind;
 pub use occurrence::{Occurrence, OccurrenceState};
 
 /// A place in the signal path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
     /// Level from the ATP antenna, before the receiver.
@@ -241,7 +243,7 @@ impl Place {
 }
 
 /// What happens at a place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
 pub enum Effect {
     /// Nothing comes through.
@@ -294,7 +296,7 @@ pub enum Effect {
 
 /// What a laptop alone lacks to find a fault: it has the maintenance port of a unit on a train at rest in a depot, and
 /// with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum OutOfReach {
     /// Wheels that turn, or a train that is driven.
@@ -317,7 +319,7 @@ impl OutOfReach {
 }
 
 /// One fault mode of one part.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FaultMode {
     /// Identifier, `part.mode`.

@@ -11,7 +11,7 @@ use crate::{Duration, Instant, Speed};
 const HYSTERESIS: f64 = 0.1;
 
 /// When a fault mode acts, once it has set in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case", tag = "when", deny_unknown_fields)]
 pub enum Occurrence {
     /// All the time.

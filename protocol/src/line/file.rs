@@ -30,10 +30,11 @@ pub enum LineError {
 }
 
 /// What a line file holds.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {
     name: String,
+    #[schemars(with = "Option<String>")]
     checksum: Option<Spanned<String>>,
     loops_m: Option<[f64; 2]>,
     sections: Vec<Section>,
@@ -52,6 +53,11 @@ pub(super) fn read(text: &str) -> Result<Line, LineError> {
         Some(given) => check_sum(text, &given).map(|()| line),
         None => Ok(line),
     }
+}
+
+/// What a line file looks like.
+pub fn file_schema() -> schemars::Schema {
+    schemars::SchemaGenerator::default().into_root_schema_for::<File>()
 }
 
 /// CRC-32 of a line file, its own `checksum = "…"` line left out: what the unit reports of its

@@ -8,11 +8,11 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-pub use file::{LineError, checksum};
+pub use file::{LineError, checksum, file_schema};
 pub use rules::Broken;
 
 /// A gradient from a position on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gradient {
     /// Where it begins, m from the section's start.
@@ -22,7 +22,7 @@ pub struct Gradient {
 }
 
 /// A curve from a position on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Curve {
     /// Where it begins, m from the section's start.
@@ -33,7 +33,7 @@ pub struct Curve {
 
 /// A speed code that the wayside sends from a position on. A unit's ATO slows for a lower one before its place;
 /// the limit that its ATP supervises is read from the antenna alone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CodeFrom {
     /// Where it begins, m from the section's start.
@@ -43,7 +43,7 @@ pub struct CodeFrom {
 }
 
 /// One section, from a departure to an arrival station.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Section {
     /// Section number.
@@ -80,7 +80,7 @@ pub struct Section {
 }
 
 /// The track database of a line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Line {
     /// Name, for instance `line8`.
     pub name: String,

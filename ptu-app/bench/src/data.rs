@@ -14,6 +14,7 @@ use protocol::line::{self, Line};
 use script_files::{Found, Place, ScriptFiles};
 use sha2::{Digest, Sha256};
 
+use crate::drive::train::train;
 use crate::failure::{Failure, did_you_mean};
 use crate::new_file::{NewFile, cannot_write};
 use crate::owner_only;
@@ -169,13 +170,44 @@ impl ScriptsDirectory {
         })
     }
 
-    /// The catalogue of parts and fault modes.
+    /// The catalogue of parts and fault modes: `units/faults.toml`, and the modes of the files in `faults/`.
     ///
     /// # Errors
     /// The file is missing or wrong.
     pub fn faults(&self) -> Result<FaultCatalogue, Failure> {
-        let load = |text: &str| FaultCatalogue::from_toml(text);
-        Ok(self.load(UNITS, FAULTS, "fault catalogue", load)?.content)
+        let mut text = String::new();
+        let mut catalogue = None;
+        for name in self.0.catalogue() {
+            text.push_str(&self.text(&name)?);
+            text.push('\n');
+            let read = FaultCatalogue::from_toml(&text);
+            let wrong = |error| Failure::usage(format!("{}: {error}", self.shown(&name)));
+            catalogue = Some(read.map_err(wrong)?);
+        }
+        catalogue.ok_or_else(|| Failure::usage("there is no fault catalogue"))
+    }
+
+    /// Reads every data file, used or not: how many there are.
+    ///
+    /// # Errors
+    /// The first that is wrong.
+    pub fn check_data(&self) -> Result<usize, Failure> {
+        let (units, lines, trains) = (
+            self.unit_config_names(),
+            self.line_names(),
+            self.train_names(),
+        );
+        for name in &units {
+            self.unit_config(name)?;
+        }
+        for name in &lines {
+            self.line(name)?;
+        }
+        for name in &trains {
+            train(self, name)?;
+        }
+        self.faults()?;
+        Ok(units.len() + lines.len() + trains.len() + self.0.catalogue().len())
     }
 
     /// How good units, trains and benches differ: `bench_scatter.toml`, or a file given in its place.

@@ -13,14 +13,14 @@ use crate::run::{check_serial, software_version};
 /// The file's name in the scripts directory.
 const FLEET: &str = "fleet.toml";
 
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct FleetFile {
+pub(crate) struct FleetFile {
     #[serde(default)]
     trains: Vec<Train>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Train {
     number: String,

@@ -37,6 +37,7 @@ pub mod record;
 pub mod replay;
 pub mod run;
 pub mod run_diagnosis;
+pub mod schemas;
 pub mod stdio;
 pub mod stop;
 pub mod stored;

@@ -30,9 +30,9 @@ pub const FILE: &str = "units/structure.toml";
 const FAILS: f64 = 0.5;
 
 /// The file as it is written.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Written {
+pub(crate) struct Written {
     /// Parts on the way of every signal that has a way.
     everywhere: Vec<LruId>,
     /// Parts beside them in procedures that a laptop runs.
@@ -43,7 +43,7 @@ struct Written {
     off_way: Vec<KnownOffWay>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenWay {
     #[serde(default)]
@@ -60,7 +60,7 @@ struct WrittenWay {
 }
 
 /// Parts that checks do not always tell apart.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenGroup {
     parts: Vec<LruId>,
@@ -71,7 +71,7 @@ struct WrittenGroup {
 }
 
 /// What several parts share.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenShared {
     part: LruId,
@@ -81,7 +81,7 @@ struct WrittenShared {
 }
 
 /// Fault modes that are known to fail a step off the way of their part.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KnownOffWay {
     /// Their names.

@@ -11,7 +11,7 @@ use crate::failure::{Failure, did_you_mean};
 pub const FILE: &str = "symptoms.toml";
 
 /// A symptom.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Symptom {
     /// Its name in commands and in the database.
@@ -22,9 +22,9 @@ pub struct Symptom {
     pub parts: Vec<LruId>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Written {
+pub(crate) struct Written {
     symptoms: Vec<Symptom>,
 }
 

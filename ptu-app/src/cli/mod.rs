@@ -6,6 +6,7 @@ mod database;
 mod db;
 mod diagnose;
 mod diagnose_matrix;
+mod doctor;
 mod drive;
 mod faults;
 #[cfg(feature = "window")]
@@ -14,7 +15,9 @@ mod gui;
 #[path = "no_window.rs"]
 mod gui;
 mod help;
+mod help_files;
 mod keep;
+mod new;
 mod output;
 mod ports;
 mod record;
@@ -83,6 +86,11 @@ enum Verb {
     Train(Box<train::TrainArguments>),
     /// List serial ports
     Ports(ports::PortsArguments),
+    Doctor(doctor::DoctorArguments),
+    New(new::NewArguments),
+    /// Write manual pages and shell completions, for packages
+    #[command(name = "help-files", hide = true)]
+    HelpFiles(help_files::HelpFilesArguments),
     /// Load scripts for another process of this program
     #[command(name = loading::WORD, hide = true)]
     LoadScripts,
@@ -143,6 +151,9 @@ impl Cli {
             Verb::Db(arguments) => arguments.run(),
             Verb::Train(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
+            Verb::Doctor(arguments) => arguments.run(),
+            Verb::New(arguments) => arguments.run(),
+            Verb::HelpFiles(arguments) => arguments.run(),
             Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }
     }

@@ -17,6 +17,7 @@ use super::{Database, ScriptsOption, answered, print_out, run_list};
 use crate::console::{Console, verdict_table};
 use crate::event_stream::{EventStream, is_stdout};
 use crate::operator::Operator;
+use crate::run_recording::RunRecording;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
@@ -142,6 +143,9 @@ pub struct RunArguments {
     /// Write each event of the run as a JSON line (docs/events.md); - for standard output, which then has nothing else
     #[arg(long, value_name = "FILE|-", conflicts_with_all = ["check", "list"])]
     events: Option<PathBuf>,
+    /// Record every signal and event of the run, whatever its verdict, in an MCAP file for Foxglove, PlotJuggler and others
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["check", "list"])]
+    record: Option<PathBuf>,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -188,7 +192,7 @@ impl RunArguments {
             resume::tell_changes(earlier, &procedures, &setup);
         }
         if self.check {
-            return check::show(&procedures);
+            return check::show(&procedures, directory.check_data()?);
         }
         let procedures = self.asked_for(procedures);
         let asks = procedures.iter().any(|procedure| procedure.asks());
@@ -209,6 +213,7 @@ impl RunArguments {
             adaptive: None,
             continues: earlier.map(|earlier| earlier.run.id),
         };
+        setup.record_whole = self.record.is_some();
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
     }
@@ -326,7 +331,8 @@ impl RunArguments {
         }
         let stop = Stop::default();
         stop.listen();
-        let mut console = EventStream::begin(Console::new(plan)?, self.events.as_deref())?;
+        let console = EventStream::begin(Console::new(plan)?, self.events.as_deref())?;
+        let mut console = RunRecording::begin(console, self.record.as_deref())?;
         let result = match self.adaptive {
             false => run::run(plan, setup, store, &stop, &mut console),
             true => {
@@ -346,6 +352,7 @@ impl RunArguments {
             }
         };
         let outcome = result.as_ref().ok().map(|(_, outcome)| outcome);
+        let (console, recorded) = console.finish(outcome);
         let (console, streamed) = console.finish(outcome);
         console.finish();
         let (store, outcome) = result?;
@@ -373,6 +380,6 @@ impl RunArguments {
         }
         self.reports.write(&store, directory, &detail)?;
         store.close()?;
-        answered(streamed.map(|()| outcome.exit), outcome.exit)
+        answered(streamed.and(recorded).map(|()| outcome.exit), outcome.exit)
     }
 }

@@ -158,6 +158,28 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     }
 }
 
+/// Goal: who starts the program for the first time is led to a part by a demonstration; who has a history, to its units.
+#[test]
+fn a_first_start_offers_a_demonstration_that_finds_a_part() {
+    for language in [Language::English, Language::Korean] {
+        let words = language.words();
+        let mut counted = window(language, [1280.0, 800.0], Density::Operator, "");
+        counted.window.wait_for(words.case.first_start);
+        counted.look("first start");
+        counted.click(words.case.demonstrate);
+        counted.window.wait_for("SIM-0001");
+        counted.window.wait_for(words.case.unknown);
+        counted.click(&words.content(SYMPTOM));
+        counted.click(words.case.find_part);
+        counted.window.wait_for(words.case.record_repair);
+        counted.window.wait_for_part("eb_relay");
+        let wrong = &counted.wrong;
+        assert!(wrong.is_empty(), "{language:?} {wrong:#?}");
+        let found = latest(&counted.window);
+        assert_eq!(found["run"]["symptom"], "brakes_late");
+    }
+}
+
 #[test]
 fn a_case_takes_ten_clicks_in_english() {
     from_symptom_to_signed_sheet(Language::English, [1280.0, 800.0], Density::Operator);

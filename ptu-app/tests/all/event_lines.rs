@@ -6,7 +6,8 @@ use std::process::Stdio;
 use ptu_report::event_lines::{COMMON, EVENTS, Kind, VERSION, schema};
 use serde_json::Value;
 
-use crate::common::{Place, text};
+use crate::common::{Place, number, text};
+use crate::trace_files::run_python;
 
 fn lines(text: &str) -> Vec<Value> {
     let line = |line| serde_json::from_str(line).expect("a JSON line");
@@ -134,4 +135,47 @@ fn the_schema_in_docs_is_that_of_the_program() {
         std::fs::read_to_string(file).expect("a schema") == made,
         "PTU_WRITE_SCHEMA=1 writes it again"
     );
+}
+
+/// Goal: a whole run can be looked at in other programs: every row of every signal, and the same events as the stream has.
+/// Method: two procedures of a bad unit side by side, read by the format's own reader.
+#[test]
+fn a_recorded_run_has_every_row_and_every_event() {
+    let place = Place::new();
+    let [record, stream] = ["run.mcap", "run.jsonl"].map(|name| place.text_path(name));
+    let run = ["run", "atp/overspeed", "twc/exchange", "--jobs", "2"];
+    let to = ["--record", &*record, "--events", &*stream];
+    place
+        .ptu(&[&run[..], &["--inject", "eb_relay.slow"], &to].concat())
+        .exits(1);
+    let read: Value = serde_json::from_str(&run_python("read_run.py", &[&record])).expect("JSON");
+    assert_eq!(read["ordered"], true);
+    let events: Vec<_> = read["events"]
+        .as_array()
+        .expect("events")
+        .iter()
+        .map(text)
+        .collect();
+    assert_eq!(events.join("\n"), place.read("run.jsonl").trim_end());
+    let stored = place.json(&["runs", "show", "latest", "--json"]);
+    let rows = number(&read["counts"]["signals"]);
+    let expected = number(&stored["run"]["bench_time_s"]) / 0.05;
+    // Bring-up is part of the time, and before the first row.
+    assert!(
+        rows <= expected && rows > 0.9 * expected,
+        "{rows} of {expected} rows"
+    );
+    assert!(
+        number(&read["fastest_kmh"]) > 70.0,
+        "{}",
+        read["fastest_kmh"]
+    );
+}
+
+/// Goal: a recording that cannot be written is told before anything is driven.
+#[test]
+fn a_recording_that_has_no_place_is_refused_first() {
+    let place = Place::new();
+    let told = place.ptu(&["run", "tcms/link", "--record", "nowhere/run.mcap"]);
+    told.exits(2).explains(&["cannot write nowhere/run.mcap"]);
 }

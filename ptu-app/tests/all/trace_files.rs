@@ -32,13 +32,13 @@ pub fn python() -> PathBuf {
     assert!(
         python.exists(),
         "{} is missing: run scripts/test once, it installs the readers, or name a Python that has pyarrow, \
-         mcap, duckdb and polars in PTU_TEST_PYTHON",
+         mcap, duckdb, polars and jsonschema in PTU_TEST_PYTHON",
         python.display()
     );
     python
 }
 
-fn run_python(script: &str, arguments: &[&str]) -> String {
+pub fn run_python(script: &str, arguments: &[&str]) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/readers")
         .join(script);

@@ -18,7 +18,7 @@ mod sequence;
 mod settle;
 
 pub use figures::Figures;
-pub use file::{MAX_AFTER_S, MAX_STEPS};
+pub use file::{MAX_AFTER_S, MAX_STEPS, file_schema};
 pub use keys::{names as key_names, stimulus, words};
 pub use outcome::{AtpBrake, Ending, Outcome, StepDone};
 pub use plan::{ManualError, Plan};

@@ -3,7 +3,7 @@
 //! Layers, bottom up:
 //! * `quantity`, `item`: the values of the script language, free of Starlark;
 //! * `verb`, `param_type`, `args`, `verbs`: its verbs, each a table entry with typed parameters;
-//! * `context`, `amounts`, `globals`: unit configuration, line, signals: the names a script knows;
+//! * `context`, `amounts`, `globals`: unit configuration, line, signals: the names a script knows; `stubs`: the same for editors;
 //! * `handle`: those values inside Starlark;
 //! * `nesting`, `check`: find errors without running a script, also where it would never run;
 //! * `evaluate`: runs it once, within bounds, with no access to anything but its libraries;
@@ -22,6 +22,7 @@ mod item;
 mod nesting;
 mod param_type;
 mod quantity;
+mod stubs;
 mod suggest;
 mod verb;
 mod verbs;
@@ -40,6 +41,8 @@ use super::plan::Procedure;
 use crate::train::TrainData;
 use context::Context;
 use evaluate::Evaluation;
+
+pub use stubs::stubs;
 
 /// Script texts by path under the scripts folder, with `/` between names.
 pub type Scripts = BTreeMap<String, String>;

@@ -8,7 +8,7 @@ use crate::train::actuator::Times;
 use crate::train::car_set::CarSet;
 
 /// A train of cars.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CarsData {
     /// Name of the train.
@@ -39,7 +39,7 @@ pub struct CarsData {
 }
 
 /// Powering.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Force of the whole train at full power and full load, N [S3 eq. 1].
@@ -55,7 +55,7 @@ pub struct Traction {
 }
 
 /// Electric brake of the motor cars.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricBrake {
     /// Its greatest force over the car's weight [S3 eq. 6].
@@ -69,7 +69,7 @@ pub struct ElectricBrake {
 }
 
 /// Service brake.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirBrake {
     /// Full service brake, km/h/s [S3: B7].
@@ -89,7 +89,7 @@ pub struct AirBrake {
 }
 
 /// Emergency brake, by air alone (S3).
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmergencyBrake {
     /// Its deceleration, km/h/s.
@@ -103,7 +103,7 @@ pub struct EmergencyBrake {
 }
 
 /// What resists motion.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Resistance {
     /// Resistance when starting from rest, kgf/t.
@@ -123,7 +123,7 @@ pub struct Resistance {
 }
 
 /// Slip, slide and the protection against it.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wheels {
     /// Friction of a sliding wheel over adhesion.
@@ -137,7 +137,7 @@ pub struct Wheels {
 }
 
 /// One car.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CarData {
     /// Name, for instance `M1`.
@@ -174,7 +174,7 @@ impl CarData {
 }
 
 /// Whether a car is driven.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// With motors and electric brake.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Times of the door drives.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DoorData {
     /// Time in which a closed door opens, s.

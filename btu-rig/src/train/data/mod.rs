@@ -16,7 +16,8 @@ pub use cars::{
 pub use doors::DoorData;
 
 /// Data of a train, checked when it comes from a file.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
+#[schemars(untagged)]
 pub enum TrainData {
     /// A point mass with ideal drive and brakes.
     Ideal(IdealData),
@@ -25,7 +26,7 @@ pub enum TrainData {
 }
 
 /// The papers' point mass [S0 eq. 8].
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct IdealData {
     /// Name of the train.
@@ -63,7 +64,7 @@ pub struct IdealData {
 }
 
 /// The one key all models have.
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 struct Kind {
     model: String,
 }

@@ -6,7 +6,7 @@ use super::AtoConfig;
 use crate::config::{ConfigError, conflict};
 
 /// Servo tracking controller and its profile [S0 §3.1].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ServoConfig {
     /// Chosen closed-loop poles in the z-plane, real and imaginary part (S0).
@@ -37,7 +37,7 @@ pub struct ServoConfig {
 }
 
 /// How far the observer trusts a measured speed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObserverConfig {
     /// How fast an error of the model is taken away, 1/s.
@@ -56,7 +56,7 @@ pub struct ObserverConfig {
 }
 
 /// Jerk-limited profile (S1).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProfileConfig {
     /// Acceleration limit, m/s² [S1: a_L].
@@ -73,7 +73,7 @@ pub struct ProfileConfig {
 }
 
 /// Proportional-integral controller (S1).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PiConfig {
     /// Proportional gain, N per unit of speed [S1: 300 000].
@@ -87,7 +87,7 @@ pub struct PiConfig {
 }
 
 /// Unit of speed of a gain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainUnit {
     /// m/s.
@@ -98,7 +98,7 @@ pub enum GainUnit {
 
 /// Mamdani controller (S1). Places of the sets are not printed; isosceles triangles that overlap by
 /// half lie evenly, so the outermost peak fixes all of a variable.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FuzzyConfig {
     /// Error at which `nb`/`pb` peak, m/s; `ns`/`ps` at half of it.
@@ -112,7 +112,7 @@ pub struct FuzzyConfig {
 }
 
 /// Station stop curve [S2 §3.2] and the loop that follows it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PssConfig {
     /// Brake rate, m/s² [S2: B_r].

@@ -12,7 +12,9 @@ pub use controllers::{
 };
 
 /// The speed controllers that can be chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum ControllerKind {
     /// S-curve profile and servo tracking controller [S0 §3.1].
@@ -47,7 +49,7 @@ impl ControllerKind {
 
 /// What the unit knows of the train it drives: REG turns force into a share of what is there, the
 /// controllers scale their gains by mass.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtoTrainConfig {
     /// Empty mass, kg (S3).
@@ -85,7 +87,7 @@ pub struct AtoTrainConfig {
 }
 
 /// Limits of ATO's monitoring of its inputs and of itself.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtoWatchConfig {
     /// Speed error that is not following, km/h.
@@ -99,7 +101,7 @@ pub struct AtoWatchConfig {
 }
 
 /// How ATO inches to a stop point that it has missed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JogConfig {
     /// Greatest distance from the stop point from which it jogs, m; 0 = not at all.
@@ -125,7 +127,7 @@ impl Default for JogConfig {
 }
 
 /// Parameters of automatic operation: limits of the run, the train, each speed controller.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtoConfig {
     /// The speed controller in use.

@@ -295,7 +295,10 @@ struct EventForwarder<'a>(&'a BenchThread);
 impl Listener for EventForwarder<'_> {
     fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
         // Traces and recorded stimuli are large, and the window reads them from the database.
-        if !matches!(event, SessionEvent::Trace(_) | SessionEvent::Recording(_)) {
+        if !matches!(
+            event,
+            SessionEvent::Trace(_) | SessionEvent::Rows(_) | SessionEvent::Recording(_)
+        ) {
             self.0.tell(BenchEvent::Run {
                 procedure: procedure.id.clone(),
                 event: event.clone(),

@@ -172,6 +172,7 @@ impl Progress {
             SessionEvent::Fault(_)
             | SessionEvent::LinkLost(_)
             | SessionEvent::Trace(_)
+            | SessionEvent::Rows(_)
             | SessionEvent::Recording(_) => {}
         }
     }

@@ -179,6 +179,7 @@ impl BenchContents {
             expected,
             realtime: false,
             slower: 1,
+            record_whole: false,
             run_control: None,
         })
     }

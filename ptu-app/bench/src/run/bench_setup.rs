@@ -59,6 +59,8 @@ pub struct BenchSetup {
     pub realtime: bool,
     /// Times the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
+    /// Every row is handed on as an event, not only those around faults.
+    pub record_whole: bool,
     /// Watches and controls the runs, if set.
     pub run_control: Option<Arc<dyn RunControl>>,
 }
@@ -208,6 +210,7 @@ impl BenchSetup {
         };
         Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
             .controlled_by(self.run_control.clone())
+            .recorded_whole(self.record_whole)
     }
 }
 

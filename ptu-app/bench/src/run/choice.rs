@@ -164,6 +164,7 @@ impl BenchChoice {
             serial,
             realtime: self.realtime,
             slower: self.slower,
+            record_whole: false,
             run_control: None,
         })
     }

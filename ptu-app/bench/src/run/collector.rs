@@ -188,7 +188,7 @@ impl<'a> Collector<'a> {
                 }
                 self.store_outside(&procedure.id);
             }
-            SessionEvent::Run(_) => {}
+            SessionEvent::Run(_) | SessionEvent::Rows(_) => {}
             SessionEvent::LinkLost(_) => self.link_lost = true,
             SessionEvent::Fault(fault) => self.fault(fault),
             SessionEvent::Trace(cut) => self.trace(&cut),

@@ -63,6 +63,7 @@ impl BenchSetup {
         }
         let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
             .controlled_by(self.run_control.clone())
+            .recorded_whole(self.record_whole)
             .with_max_lag(self.max_lag(None));
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);

@@ -2,7 +2,7 @@
 
 use btu_rig::procedure::RunEvent;
 use btu_rig::recorded::StimulusRecord;
-use btu_rig::recorder::RecordedWindow;
+use btu_rig::recorder::{RecordedWindow, Row};
 use protocol::{Duration, Instant};
 
 use super::fault_watch::FaultSeen;
@@ -16,6 +16,8 @@ pub enum SessionEvent {
     Fault(FaultSeen),
     /// The window around faults is complete.
     Trace(Box<RecordedWindow>),
+    /// Rows since those before, of a run that is recorded whole.
+    Rows(Vec<Row>),
     /// What was done to the bench in a procedure whose traces came before.
     Recording(Box<RecordedStimuli>),
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot

@@ -65,7 +65,7 @@ pub use observe::{ObservationBuilder, of_run};
 pub(crate) use repaired::trace_repaired;
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};
-pub(crate) use trace_data::channel;
+pub use trace_data::{channel, in_steps};
 
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use suite::Suite;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::recorded::StimulusPlayer;
-use btu_rig::recorder::{RecordedWindow, Recorder};
+use btu_rig::recorder::{RecordedWindow, Recorder, Row};
 use btu_rig::rig::{Bench, UnitLink};
 use fault_db::TraceData;
 use protocol::signal::Sample;
@@ -41,6 +41,8 @@ pub struct Session<L: UnitLink> {
     paused: Option<Duration>,
     fresh_unit: bool,
     run_control: Option<Arc<dyn RunControl>>,
+    /// Rows that were not handed on yet, of a run that is recorded whole.
+    rows: Option<Vec<Row>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -73,6 +75,7 @@ impl<L: UnitLink> Session<L> {
             in_step: InStep::default(),
             fresh_unit,
             run_control: None,
+            rows: None,
             with_person: false,
         }
     }
@@ -80,6 +83,12 @@ impl<L: UnitLink> Session<L> {
     /// Sets the run control.
     pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
         self.run_control = run_control;
+        self
+    }
+
+    /// Hands every row on, if the run is to be recorded whole.
+    pub fn recorded_whole(mut self, is_it: bool) -> Self {
+        self.rows = is_it.then(Vec::new);
         self
     }
 
@@ -213,6 +222,12 @@ impl<L: UnitLink> Session<L> {
         }
         if let Some(run_control) = &self.run_control {
             run_control.after_cycle(now, self.bench.rig());
+        }
+        if let Some(rows) = &mut self.rows {
+            rows.push(Row {
+                at: now,
+                sample: self.sample.clone(),
+            });
         }
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);

@@ -28,7 +28,7 @@ pub fn trace_data(cut: &RecordedWindow) -> TraceData {
 
 /// The value in whole steps of its signal: arithmetic leaves crumbs below the step that mean nothing
 /// and would be kept at the price of a floating-point column.
-fn in_steps(signal: Signal, value: f64) -> f64 {
+pub fn in_steps(signal: Signal, value: f64) -> f64 {
     match signal.definition().kind {
         // Hundredths are divided, so that 0.3 is written as 0.3.
         Kind::Number { lsb: 0.01 } => (value * 100.0).round() / 100.0,

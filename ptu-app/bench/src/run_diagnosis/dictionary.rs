@@ -133,9 +133,7 @@ fn shipped(directory: &ScriptsDirectory, name: &str) -> Result<Option<Dictionary
 /// What differs, in a few words.
 fn differences(made_of: &Basis, now: &Basis) -> String {
     let is_changed = |(name, sum): &(&String, &String)| {
-        now.procedures
-            .get(*name)
-            .is_some_and(|there| there != *sum)
+        now.procedures.get(*name).is_some_and(|there| there != *sum)
     };
     let changed = made_of.procedures.iter().filter(is_changed);
     let changed: Vec<_> = changed.map(|(name, _)| name.as_str()).collect();

@@ -29,8 +29,8 @@ impl EventLines {
         )
     }
 
-    /// The line of an event.
-    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> String {
+    /// The line of an event; rows have none.
+    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
         let (name, keys) = match event {
             SessionEvent::Run(event) => of_runner(event),
             SessionEvent::Fault(fault) => (
@@ -50,6 +50,7 @@ impl EventLines {
                     "began_us": trace.rows.first().map(|row| row.at.as_us()),
                 }),
             ),
+            SessionEvent::Rows(_) => return None,
             SessionEvent::Recording(recording) => {
                 ("recording", json!({ "began_us": recording.began.as_us() }))
             }
@@ -58,7 +59,7 @@ impl EventLines {
                 ("ended", json!({ "bench_time_us": bench_time.as_us() }))
             }
         };
-        self.line(Some(&procedure.id), name, keys)
+        Some(self.line(Some(&procedure.id), name, keys))
     }
 
     /// The last line.

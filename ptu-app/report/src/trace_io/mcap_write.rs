@@ -12,7 +12,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapError, WriteOptions};
 use serde_json::{Map, Value, json};
 
-use super::about::{NAME, TraceInfo};
+use super::about::NAME;
 use super::column::{column_name, word};
 use super::part::TracePart;
 use ptu_bench::failure::Failure;
@@ -30,31 +30,28 @@ pub(super) fn put(
 ) -> Result<(), Failure> {
     let failed = |error: McapError| cannot_write(to, &error);
     let about = &chosen.about;
-    let options = WriteOptions::new()
-        .library("ptu")
-        .compression(Some(Compression::Zstd))
-        .compression_threads(0)
-        .chunk_size(Some(CHUNK_BYTES));
-    let mut file = options.create(out).map_err(failed)?;
+    let mut file = options().create(out).map_err(failed)?;
     let metadata = Metadata {
         name: NAME.to_owned(),
         metadata: BTreeMap::from([("about".to_owned(), about.json())]),
     };
     file.write_metadata(&metadata).map_err(failed)?;
-    let schema = schema(about).to_string();
+    let schema = schema(&about.channels).to_string();
     let schema = file
         .add_schema(NAME, "jsonschema", schema.as_bytes())
         .map_err(failed)?;
     let channel = file
         .add_channel(schema, TOPIC, "json", &BTreeMap::new())
         .map_err(failed)?;
-    let keys = keys(about);
+    let keys = keys(&about.channels);
     let mut message = Vec::new();
     chosen.each_block(|first, columns| {
         for row in 0..columns.first().map_or(0, Vec::len) {
             message.clear();
-            put_row(&mut message, about, &keys, columns, row)
-                .map_err(|error| failed(error.into()))?;
+            put_row(&mut message, &about.channels, &keys, |place| {
+                columns[place][row]
+            })
+            .map_err(|error| failed(error.into()))?;
             let number = first + row;
             let at_us = (number as i64).saturating_mul(about.period_us);
             // Nothing was recorded before 1970.
@@ -76,24 +73,33 @@ pub(super) fn put(
     Ok(())
 }
 
-/// Each signal's name as JSON has it before a value; the same in every row.
-fn keys(about: &TraceInfo) -> Vec<String> {
-    let name = |channel: &Channel| Value::from(column_name(channel)).to_string();
-    about.channels.iter().map(|c| name(c) + ":").collect()
+/// How every file of ours is packed.
+pub(super) fn options() -> WriteOptions {
+    WriteOptions::new()
+        .library("ptu")
+        .compression(Some(Compression::Zstd))
+        .compression_threads(0)
+        .chunk_size(Some(CHUNK_BYTES))
 }
 
-fn put_row(
+/// Each signal's name as JSON has it before a value; the same in every row.
+pub(super) fn keys(channels: &[Channel]) -> Vec<String> {
+    let name = |channel: &Channel| Value::from(column_name(channel)).to_string();
+    channels.iter().map(|c| name(c) + ":").collect()
+}
+
+/// A message with the samples of one row, by the places of their channels.
+pub(super) fn put_row(
     message: &mut Vec<u8>,
-    about: &TraceInfo,
+    channels: &[Channel],
     keys: &[String],
-    columns: &[Vec<f64>],
-    row: usize,
+    sample: impl Fn(usize) -> f64,
 ) -> io::Result<()> {
     message.push(b'{');
-    for (place, (key, column)) in keys.iter().zip(columns).enumerate() {
+    for (place, (key, channel)) in keys.iter().zip(channels).enumerate() {
         let before = if place == 0 { "" } else { "," };
-        let channel = &about.channels[place];
-        let value = word(channel, column[row]).map_or_else(|| number(column[row]), Value::from);
+        let sample = sample(place);
+        let value = word(channel, sample).map_or_else(|| number(sample), Value::from);
         write!(message, "{before}{key}{value}")?;
     }
     message.push(b'}');
@@ -110,9 +116,8 @@ fn number(sample: f64) -> Value {
 }
 
 /// What a message looks like, as JSON Schema.
-fn schema(about: &TraceInfo) -> Value {
-    let properties: Map<String, Value> = about
-        .channels
+pub(super) fn schema(channels: &[Channel]) -> Value {
+    let properties: Map<String, Value> = channels
         .iter()
         .map(|channel| (column_name(channel), property(channel)))
         .collect();

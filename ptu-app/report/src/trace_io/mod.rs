@@ -2,6 +2,7 @@
 //!
 //! * [`export`]: a stored trace, or a part of it, as CSV, Parquet or MCAP, a piece at a time, so that an
 //!   hour of all signals takes no more memory than a second of one;
+//! * [`RunMcap`]: a whole run while it goes on, every row of every signal and every event;
 //! * [`TraceInfo`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
 //! * [`import`]: signals of a CSV, Parquet or MCAP file, ours or another program's;
 //! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
@@ -18,6 +19,7 @@ mod mcap_write;
 mod parquet;
 mod parquet_read;
 mod part;
+mod run_mcap;
 mod series;
 
 pub use about::TraceInfo;
@@ -26,4 +28,5 @@ pub use beside::beside;
 pub use column::column_name;
 pub use export::{Format, export};
 pub use part::{Seconds, TracePart};
+pub use run_mcap::RunMcap;
 pub use series::{Import, import, is_importable};

@@ -11,7 +11,7 @@ use ptu_bench::stdio;
 use ptu_report::without_korean;
 
 /// Limits without a source and texts without Korean as notes, and how many there are.
-pub(super) fn show(procedures: &[Arc<Procedure>]) -> Result<Exit, Failure> {
+pub(super) fn show(procedures: &[Arc<Procedure>], data_files: usize) -> Result<Exit, Failure> {
     let steps: usize = (procedures.iter())
         .map(|procedure| procedure.steps.len())
         .sum();
@@ -30,7 +30,7 @@ pub(super) fn show(procedures: &[Arc<Procedure>]) -> Result<Exit, Failure> {
         n => format!("{n} texts have no Korean"),
     };
     print_out(&format!(
-        "{} procedures, {steps} steps, no errors; {found}; {english}",
+        "{} procedures, {steps} steps, {data_files} data files, no errors; {found}; {english}",
         procedures.len()
     ))
 }

@@ -24,21 +24,25 @@ const MAX_PERMILLE: f64 = 50.0;
 /// Keys of a step's condition.
 const WHEN: [&str; 3] = ["after_s", "at_kmh", "at_standstill"];
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RawFile {
     title: String,
     line: Option<String>,
     section: Option<u16>,
+    #[schemars(with = "Option<RawLoad>")]
     load: Option<Spanned<RawLoad>>,
     code: Option<String>,
+    #[schemars(with = "Option<f64>")]
     gradient_permille: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     end_after_s: Option<Spanned<f64>>,
     #[serde(default)]
+    #[schemars(schema_with = "steps")]
     steps: Vec<Spanned<RawStep>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(untagged)]
 enum RawLoad {
     Kg(f64),
@@ -47,6 +51,16 @@ enum RawLoad {
 
 /// Keys of a step.
 type RawStep = BTreeMap<String, Spanned<Value>>;
+
+/// What a file of a sequence looks like.
+pub fn file_schema() -> schemars::Schema {
+    schemars::SchemaGenerator::default().into_root_schema_for::<RawFile>()
+}
+
+/// What a schema says of steps: their keys are those of the commands, which are checked when they are read.
+fn steps(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({ "type": "array", "items": { "type": "object" } })
+}
 
 /// A text whose places are told as lines.
 struct Lines<'a>(&'a str);

@@ -16,6 +16,9 @@ use crate::run::fault_watch::{self, FaultSeen};
 use crate::run::repetitions::RepetitionTally;
 use crate::run::settle::between_procedures;
 
+/// Rows that are handed on together: five seconds of them.
+const ROWS_AT_ONCE: usize = 100;
+
 /// The state of one procedure's run.
 struct Progress<'a> {
     procedure: &'a Procedure,
@@ -96,6 +99,7 @@ impl<L: UnitLink> Session<L> {
             let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
             let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
             self.emit(&mut runner, &mut rounds, &mut progress, sink);
+            self.hand_rows(ROWS_AT_ONCE, sink);
             if !go_on() {
                 runner.leave();
             }
@@ -134,6 +138,7 @@ impl<L: UnitLink> Session<L> {
             }
             runner = Runner::new(procedure.clone(), options.clone(), rounds.over());
         }
+        self.hand_rows(1, sink);
         sink(SessionEvent::Run(
             rounds.finished(link_lost, self.bench.now()),
         ));
@@ -195,6 +200,13 @@ impl<L: UnitLink> Session<L> {
             let event = rounds.outside(Outside::BringUp, Verdict::Failed, found, fault.at);
             sink(SessionEvent::Run(event));
             self.report(fault, progress, sink);
+        }
+    }
+
+    /// Hands rows on once there are so many.
+    fn hand_rows(&mut self, at_least: usize, sink: &mut dyn FnMut(SessionEvent)) {
+        if let Some(rows) = self.rows.as_mut().filter(|rows| rows.len() >= at_least) {
+            sink(SessionEvent::Rows(std::mem::take(rows)));
         }
     }
 

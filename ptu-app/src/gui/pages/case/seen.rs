@@ -3,16 +3,20 @@
 use eframe::egui::{Button, RichText, Ui, vec2};
 use fault_db::{RunFilter, RunSummary};
 
+use crate::gui::parts::ActionPlace;
 use crate::gui::request::CachedResponse;
 use crate::gui::{PageContext, Sizes};
 use ptu_bench::clock;
 use ptu_bench::process_id;
+use ptu_bench::run::BenchChoice;
 use ptu_report::naming::DOT;
 
 /// As many runs are looked at, the latest first.
 const MOST: u32 = 200;
 /// As many units are offered.
 const SHOWN: usize = 4;
+/// The fault of the demonstration: a check shows it, and its part can be replaced and proved.
+const DEMONSTRATED: &str = "eb_relay.slow";
 
 /// Units of the history, each with the run that saw it last.
 #[derive(Default)]
@@ -26,10 +30,13 @@ impl SeenUnits {
         self.runs.poll();
     }
 
-    /// Shows them while no unit is connected.
+    /// Shows them while no unit is connected; where none was ever tested, a demonstration is offered.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
         if self.runs.items().is_empty() {
+            if self.runs.get().value().is_some() {
+                demonstration(ui, context);
+            }
             return;
         }
         let words = context.words;
@@ -87,6 +94,23 @@ impl SeenUnits {
             }
             Ok(seen)
         }));
+    }
+}
+
+/// The whole way of a case, on the embedded unit with a fault.
+fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = &context.words.case;
+    ui.add_space(8.0);
+    ui.label(RichText::new(words.first_start).size(Sizes::of(ui).text));
+    let place = ActionPlace::new(ui, "demonstration", ());
+    let begin = super::large(ui, words.demonstrate, true);
+    if place.clicked(&begin) {
+        let unit = context.units.chosen_mut();
+        unit.choice = BenchChoice {
+            faults: vec![DEMONSTRATED.into()],
+            ..BenchChoice::default()
+        };
+        unit.connect(context.queries);
     }
 }
 

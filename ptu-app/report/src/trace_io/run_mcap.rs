@@ -1,0 +1,144 @@
+//! A whole run as MCAP, written while it goes on: rows of all signals under the topic `signals`, and the events of
+//! `docs/events.md` under `events`.
+//!
+//! A message's time is that of the run's beginning and the bench time since, so that procedures whose units were switched
+//! on one after the other follow each other.
+
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+
+use btu_rig::procedure::Procedure;
+use fault_db::Channel;
+use mcap::records::MessageHeader;
+use mcap::{McapError, Writer};
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::mcap_write::{keys, options, put_row, schema};
+use crate::event_lines::{EventLines, schema as events_schema};
+use ptu_bench::run::{Outcome, SessionEvent, channel, in_steps};
+
+/// The recording of one run.
+pub struct RunMcap<W: Write + Seek> {
+    file: Writer<W>,
+    channels: Vec<Channel>,
+    keys: Vec<String>,
+    signals: Topic,
+    events: Topic,
+    lines: EventLines,
+    /// Microseconds since 1970 at the beginning.
+    t0_us: i64,
+    /// Bench time of the procedures before the present one.
+    before: Duration,
+    /// Bench time of what was written last, in the present procedure.
+    last: Instant,
+}
+
+/// A channel of the file, and its messages so far.
+struct Topic {
+    id: u16,
+    count: u32,
+}
+
+impl<W: Write + Seek> RunMcap<W> {
+    /// Begins the file; the run begins at `t0_us`, microseconds since 1970.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn begin(out: W, t0_us: i64) -> Result<Self, McapError> {
+        let mut file = options().create(out)?;
+        let channels: Vec<_> = Signal::ALL.iter().map(|signal| channel(*signal)).collect();
+        let mut topic = |name: &str, schema: String| {
+            let schema =
+                file.add_schema(&format!("ptu.{name}"), "jsonschema", schema.as_bytes())?;
+            let id = file.add_channel(schema, name, "json", &BTreeMap::new())?;
+            Ok::<_, McapError>(Topic { id, count: 0 })
+        };
+        let signals = topic("signals", schema(&channels).to_string())?;
+        let events = topic("events", events_schema().to_string())?;
+        let mut recording = Self {
+            file,
+            keys: keys(&channels),
+            channels,
+            signals,
+            events,
+            lines: EventLines::default(),
+            t0_us,
+            before: Duration::ZERO,
+            last: Instant::ZERO,
+        };
+        let first = recording.lines.started();
+        recording.put_line(&first)?;
+        Ok(recording)
+    }
+
+    /// Adds an event, or rows.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> Result<(), McapError> {
+        if let SessionEvent::Rows(rows) = event {
+            let mut message = Vec::new();
+            for row in rows {
+                self.last = row.at;
+                message.clear();
+                let sample =
+                    |place: usize| in_steps(Signal::ALL[place], row.value(Signal::ALL[place]));
+                put_row(&mut message, &self.channels, &self.keys, sample)?;
+                let at_ns = self.now_ns();
+                put(&mut self.file, &mut self.signals, at_ns, &message)?;
+            }
+            return Ok(());
+        }
+        if let Some(line) = self.lines.event(procedure, event) {
+            self.put_line(&line)?;
+        }
+        if let SessionEvent::Ended { bench_time } = event {
+            self.before += *bench_time;
+            self.last = Instant::ZERO;
+        }
+        Ok(())
+    }
+
+    /// Ends the file; what it was written to.
+    ///
+    /// # Errors
+    /// Some of it could not be written.
+    pub fn finish(mut self, outcome: Option<&Outcome>) -> Result<W, McapError> {
+        if let Some(outcome) = outcome {
+            let last = self.lines.finished(outcome);
+            self.put_line(&last)?;
+        }
+        self.file.finish()?;
+        Ok(self.file.into_inner())
+    }
+
+    fn put_line(&mut self, line: &str) -> Result<(), McapError> {
+        let at_ns = self.now_ns();
+        put(&mut self.file, &mut self.events, at_ns, line.as_bytes())
+    }
+
+    fn now_ns(&self) -> u64 {
+        let bench_us = self.before.as_us() + self.last.as_us();
+        u64::try_from(self.t0_us)
+            .unwrap_or(0)
+            .saturating_add(bench_us)
+            .saturating_mul(1000)
+    }
+}
+
+fn put<W: Write + Seek>(
+    file: &mut Writer<W>,
+    topic: &mut Topic,
+    at_ns: u64,
+    message: &[u8],
+) -> Result<(), McapError> {
+    let header = MessageHeader {
+        channel_id: topic.id,
+        sequence: topic.count,
+        log_time: at_ns,
+        publish_time: at_ns,
+    };
+    topic.count = topic.count.wrapping_add(1);
+    file.write_to_known_channel(&header, message)
+}

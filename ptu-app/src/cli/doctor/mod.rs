@@ -1,0 +1,141 @@
+//! `ptu doctor`: what this computer lacks for testing units, and how to get it.
+
+mod checks;
+
+use clap::Args;
+use fault_db::Address;
+use serde::Serialize;
+
+use super::{Database, ScriptsOption, answered, print_json, print_out};
+use ptu_bench::failure::{Exit, Failure};
+
+/// Check this computer: scripts, ports, display, database, disk, clock and server
+///
+/// Changes nothing, opens no port, and says for each finding what to do.
+///
+/// Examples:
+///   ptu doctor
+///   ptu doctor --server postgres://kim@depot/history
+///
+/// Exit codes: 0 nothing is in the way of testing units; 1 something is.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct DoctorArguments {
+    /// Server that this computer syncs with: postgres://USER@HOST/DATABASE
+    #[arg(long, value_name = "ADDRESS")]
+    server: Option<Address>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    database: Database,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+/// How well something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    /// As it should be, or not needed.
+    Ok,
+    /// Some uses are not possible, or soon will not be.
+    Warning,
+    /// Units cannot be tested, or what is recorded is lost.
+    Wrong,
+}
+
+impl State {
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Warning => "warning",
+            Self::Wrong => "WRONG",
+        }
+    }
+}
+
+/// What was found of one subject.
+#[derive(Debug, Serialize)]
+struct Finding {
+    subject: &'static str,
+    state: State,
+    found: String,
+    /// What to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    remedy: Option<String>,
+}
+
+impl Finding {
+    fn ok(subject: &'static str, found: impl Into<String>) -> Self {
+        Self {
+            subject,
+            state: State::Ok,
+            found: found.into(),
+            remedy: None,
+        }
+    }
+
+    fn warning(subject: &'static str, found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            state: State::Warning,
+            remedy: Some(remedy.into()),
+            ..Self::ok(subject, found)
+        }
+    }
+
+    fn wrong(subject: &'static str, found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            state: State::Wrong,
+            ..Self::warning(subject, found, remedy)
+        }
+    }
+
+    fn line(&self) -> String {
+        let mut text = format!(
+            "{:<8} {:<9} {}",
+            self.state.word(),
+            self.subject,
+            self.found
+        );
+        if let Some(remedy) = &self.remedy {
+            text.push_str(&format!("\n{:18} → {remedy}", ""));
+        }
+        text
+    }
+}
+
+impl DoctorArguments {
+    /// Looks at all and tells.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let mut findings = checks::scripts(self.scripts.find());
+        findings.extend(checks::ports());
+        findings.push(checks::display());
+        let file = self
+            .database
+            .server()?
+            .is_none()
+            .then(|| self.database.file());
+        if let Some(file) = file.transpose()? {
+            findings.extend(checks::database(&file));
+            findings.push(checks::disk(&file));
+        }
+        findings.push(checks::clock());
+        let server = match self.server {
+            Some(server) => Some(server),
+            None => self.database.server()?,
+        };
+        findings.push(checks::server(server.as_ref()));
+        let exit = match findings.iter().any(|found| found.state == State::Wrong) {
+            true => Exit::Failed,
+            false => Exit::Passed,
+        };
+        let told = if self.json {
+            print_json(&findings)
+        } else {
+            let lines: Vec<_> = findings.iter().map(Finding::line).collect();
+            print_out(&lines.join("\n"))
+        };
+        answered(told, exit)
+    }
+}

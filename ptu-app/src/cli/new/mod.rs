@@ -1,0 +1,237 @@
+//! `ptu new`: commented files to begin with, in the user's own scripts.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use script_files::own_folder;
+
+use super::{ScriptsOption, print_out};
+use ptu_bench::data::ScriptsDirectory;
+use ptu_bench::failure::{Exit, Failure};
+
+/// Begin a procedure, unit configuration, line or fault mode of one's own
+///
+/// Writes a file with comments that is right as it stands and passes `ptu run --check`. Without --in it goes into the
+/// user's own scripts, which are laid over those of the program. A file that is there is left as it is.
+///
+/// Examples:
+///   ptu new procedure door/depot_doors
+///   ptu new unit sg200
+///   ptu new line line9
+///   ptu new fault eb_relay.late_when_cold
+///   ptu new stubs --in ~/ptu-stubs      the script language, for editors that complete and explain it
+///   ptu new schemas --in ~/my-scripts   the keys of every data file, for the same
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct NewArguments {
+    /// What to begin
+    #[arg(value_enum)]
+    what: What,
+    /// Its name: of a procedure with its folder, of a fault with its part
+    #[arg(required_if_eq_any([("what", "procedure"), ("what", "unit"), ("what", "line"), ("what", "fault")]))]
+    name: Option<String>,
+    /// Scripts directory to write into [default: the user's own]
+    #[arg(long = "in", value_name = "DIR")]
+    into: Option<PathBuf>,
+    #[command(flatten)]
+    scripts: ScriptsOption,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum What {
+    /// Check procedure, `FOLDER/NAME.star`
+    Procedure,
+    /// Unit configuration, `units/NAME.toml`
+    Unit,
+    /// Line with its sections, `lines/NAME.toml`
+    Line,
+    /// Fault mode to inject, `faults/PART.NAME.toml`
+    Fault,
+    /// The words of the script language as Python stubs, for editors
+    Stubs,
+    /// JSON Schemas of every kind of data file, for editors
+    Schemas,
+}
+
+impl NewArguments {
+    /// Writes it.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let Some(folder) = self.into.clone().or_else(own_folder) else {
+            return Err(Failure::usage(
+                "no user data directory; name a folder with --in",
+            ));
+        };
+        match self.what {
+            What::Stubs => return stubs(&folder),
+            What::Schemas => return schemas(&folder),
+            _ => {}
+        }
+        let name = self.name.clone().unwrap_or_default();
+        let name = name.trim_end_matches(".star").trim_end_matches(".toml");
+        self.check_name(name)?;
+        let (file, text) = self.begun(&self.scripts.find()?, name)?;
+        let file = folder.join(file);
+        write_new(&file, &text)?;
+        let check = match &self.into {
+            Some(folder) => format!("ptu run --check --scripts {}", folder.display()),
+            None => "ptu run --check".to_owned(),
+        };
+        print_out(&format!(
+            "written: {}\nchange it, then `{check}`; `{}`",
+            file.display(),
+            self.next(name)
+        ))
+    }
+
+    /// Letters, digits and `_`, as in the names that are shipped; a procedure stands in folders.
+    fn check_name(&self, name: &str) -> Result<(), Failure> {
+        let is_word = |word: &str| {
+            word.starts_with(|first: char| first.is_ascii_lowercase())
+                && (word.bytes()).all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+        };
+        let (words, form): (Vec<_>, _) = match self.what {
+            What::Procedure => (name.split('/').collect(), "FOLDER/NAME"),
+            What::Fault => (name.split('.').collect(), "PART.NAME"),
+            _ => (vec![name], "NAME"),
+        };
+        let count = match self.what {
+            What::Procedure => words.len() >= 1,
+            What::Fault => words.len() == 2,
+            _ => true,
+        };
+        match count && words.iter().all(|word| is_word(word)) {
+            true => Ok(()),
+            false => Err(Failure::usage(format!(
+                "\"{name}\" is no name here: {form}, in small letters, digits and _"
+            ))),
+        }
+    }
+
+    /// Path under the scripts directory, and text.
+    fn begun(&self, scripts: &ScriptsDirectory, name: &str) -> Result<(String, String), Failure> {
+        Ok(match self.what {
+            What::Procedure => {
+                let title = name.rsplit('/').next().unwrap_or(name).replace('_', " ");
+                let text = include_str!("procedure.star").replace("{title}", &title);
+                (format!("{name}.star"), text)
+            }
+            What::Unit => (
+                format!("units/{name}.toml"),
+                renamed(&scripts.text("units/sg100.toml")?, "sg100", name),
+            ),
+            What::Line => {
+                let text = renamed(&scripts.text("lines/test_track.toml")?, "test_track", name);
+                (format!("lines/{name}.toml"), summed(&text))
+            }
+            What::Fault => {
+                let part = name.split('.').next().unwrap_or(name);
+                let parts = scripts.faults()?.lrus;
+                if !parts.iter().any(|lru| lru.id.as_str() == part) {
+                    let parts = parts.iter().map(|lru| lru.id.as_str());
+                    return Err(Failure::usage(format!(
+                        "no part \"{part}\"{}; `ptu catalog lrus` lists them",
+                        ptu_bench::failure::did_you_mean(part, parts)
+                    )));
+                }
+                let text = include_str!("fault.toml")
+                    .replace("{id}", name)
+                    .replace("{part}", part);
+                (format!("faults/{name}.toml"), text)
+            }
+            What::Stubs | What::Schemas => unreachable!("have no name and are written before"),
+        })
+    }
+
+    /// What it can be used for at once.
+    fn next(&self, name: &str) -> String {
+        match self.what {
+            What::Procedure => format!("ptu run {name}"),
+            What::Unit => format!("ptu run --unit-config {name}"),
+            What::Line => format!("ptu run --line {name}"),
+            What::Fault => format!("ptu run --inject {name}"),
+            What::Stubs | What::Schemas => String::new(),
+        }
+    }
+}
+
+/// A shipped file under another name, where it says its own.
+fn renamed(text: &str, from: &str, to: &str) -> String {
+    let quoted = |name: &str| format!("\"{name}\"");
+    let begin = format!(
+        "# {to}: begun as a copy of {from}. Its values are those of {from} until they are changed; name the source of \
+         each.\n#\n"
+    );
+    begin + &text.replacen(&quoted(from), &quoted(to), usize::MAX)
+}
+
+/// The line file with its own checksum, which a unit reports of its track database.
+fn summed(text: &str) -> String {
+    let sum = protocol::line::checksum(text);
+    let line = |line: &str| match line.starts_with("checksum = ") {
+        true => format!(
+            "# Of all other lines. After a change, `ptu run --check` says the new one.\nchecksum = \"{sum:08x}\"\n"
+        ),
+        false => format!("{line}\n"),
+    };
+    let with_note: String = text.lines().map(line).collect();
+    let sum_now = protocol::line::checksum(&with_note);
+    with_note.replace(&format!("{sum:08x}"), &format!("{sum_now:08x}"))
+}
+
+fn write_new(file: &Path, text: &str) -> Result<(), Failure> {
+    let cannot = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::AlreadyExists => Failure::usage(format!(
+            "{} is there already; choose another name, or change that one",
+            file.display()
+        )),
+        _ => Failure::bench(format!("cannot write {}: {error}", file.display())),
+    };
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(cannot)?;
+    }
+    let mut new = std::fs::File::create_new(file).map_err(cannot)?;
+    new.write_all(text.as_bytes()).map_err(cannot)
+}
+
+/// One file for each namespace, and one for the words outside of all.
+fn stubs(folder: &Path) -> Result<Exit, Failure> {
+    for (name, text) in btu_rig::procedure::loader::stubs() {
+        let file = folder.join(name);
+        std::fs::create_dir_all(folder)
+            .and_then(|()| std::fs::write(&file, text))
+            .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))?;
+    }
+    print_out(&format!(
+        "written: {}\nname this folder to the editor's Starlark server, for instance `starlark-lsp start \
+         --builtin-paths {}`",
+        folder.display(),
+        folder.display()
+    ))
+}
+
+/// A schema for each kind of data file, and the file that tells Taplo, which editors use for TOML, which is for which.
+fn schemas(folder: &Path) -> Result<Exit, Failure> {
+    let mut rules = String::new();
+    let into = folder.join("schemas");
+    let write = |file: &Path, text: &str| {
+        std::fs::create_dir_all(&into)
+            .and_then(|()| std::fs::write(file, text))
+            .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
+    };
+    for one in ptu_bench::schemas::all() {
+        let name = format!("{}.schema.json", one.name);
+        let text = format!("{:#}\n", one.schema.as_value());
+        write(&into.join(&name), &text)?;
+        rules.push_str(&format!(
+            "[[rule]]\ninclude = {:?}\nexclude = {:?}\nschema.path = \"schemas/{name}\"\n\n",
+            one.files, one.except
+        ));
+    }
+    write(&folder.join(".taplo.toml"), &rules)?;
+    print_out(&format!(
+        "written: {} and {}",
+        into.display(),
+        folder.join(".taplo.toml").display()
+    ))
+}

@@ -1,0 +1,237 @@
+//! What leads a newcomer: `ptu doctor`, `ptu new`, and the help that a package installs.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::{Place, list, text};
+use crate::trace_files::run_python;
+
+fn finding<'a>(found: &'a Value, subject: &str) -> &'a Value {
+    let mut findings = list(found).iter();
+    let one = findings.find(|finding| text(&finding["subject"]) == subject);
+    one.unwrap_or_else(|| panic!("nothing of {subject}: {found}"))
+}
+
+/// Goal: on a computer that is as it should be nothing is wrong, before the first run and after it, and nothing is made.
+#[test]
+fn a_good_computer_has_nothing_wrong() {
+    let place = Place::new();
+    let found = place.json(&["doctor", "--json"]);
+    assert_eq!(text(&finding(&found, "scripts")["state"]), "ok");
+    let database = finding(&found, "database");
+    assert!(text(&database["found"]).contains("will be made"), "{found}");
+    assert!(!place.path("history.db").exists());
+    place.recorded_run();
+    let found = place.json(&["doctor", "--json"]);
+    let database = finding(&found, "database");
+    assert!(
+        text(&database["found"]).contains("newest run of 20"),
+        "{found}"
+    );
+    let told = place.ptu(&["doctor"]).exits(0);
+    for word in ["scripts", "ports", "display", "disk", "clock", "server"] {
+        assert!(told.out.contains(word), "{}", told.all());
+    }
+}
+
+/// Goal: each thing that keeps a technician from testing is named with what to do about it, and ends with 1.
+#[test]
+fn what_is_wrong_is_named_with_its_remedy() {
+    let place = Place::new();
+    place.recorded_run();
+    let run = "UPDATE run SET started_at_us = started_at_us + 400000000000000";
+    let changed = rusqlite::Connection::open(place.path("history.db")).expect("the history");
+    changed.execute_batch(run).expect("moved into the future");
+    drop(changed);
+    fs::create_dir(place.path("own")).expect("a folder");
+    for (name, content) in [("a.db", "no database"), ("own/x.star", "procedure(")] {
+        place.write(name, content);
+    }
+    let asks: [(&[&str], &str, &str, &str); 4] = [
+        (
+            &[],
+            "clock",
+            "later than this computer's clock",
+            "set the clock",
+        ),
+        (
+            &["--db", "a.db"],
+            "database",
+            "is not a database",
+            "`ptu db check`",
+        ),
+        (
+            &["--scripts", "own"],
+            "scripts",
+            "no unit configuration",
+            "move it away",
+        ),
+        (
+            &["--server", "postgres://kim@127.0.0.1:9/history"],
+            "server",
+            "127.0.0.1",
+            "sync them when it answers",
+        ),
+    ];
+    for (arguments, subject, says, remedy) in asks {
+        let told = place
+            .ptu(&[&["doctor", "--json"], arguments].concat())
+            .exits(1);
+        let found: Value = serde_json::from_str(&told.out).expect("JSON");
+        let wrong = list(&found)
+            .iter()
+            .find(|finding| {
+                text(&finding["state"]) == "wrong" && text(&finding["subject"]) == subject
+            })
+            .unwrap_or_else(|| panic!("{subject}: {found}"));
+        assert!(text(&wrong["found"]).contains(says), "{wrong}");
+        assert!(text(&wrong["remedy"]).contains(remedy), "{wrong}");
+    }
+}
+
+/// Goal: what a newcomer begins is right as it stands: it passes the check, and the check of it passes on a good unit.
+#[test]
+fn what_is_begun_passes_the_check_and_is_used_at_once() {
+    let place = Place::new();
+    let own = place.path("ptu/scripts");
+    for (what, name) in [
+        ("procedure", "depot/doors"),
+        ("unit", "sg200"),
+        ("line", "line9"),
+        ("fault", "eb_relay.late_when_cold"),
+    ] {
+        place.ptu(&["new", what, name]).exits(0);
+        let told = place.ptu(&["new", what, name]).exits(2);
+        assert!(told.err.contains("is there already"), "{}", told.all());
+    }
+    // Beside the shipped ones, as they are laid over them.
+    for folder in ["depot", "units", "lines", "faults"] {
+        assert!(own.join(folder).is_dir(), "{folder}");
+    }
+    let whole = place.path("whole");
+    copy(&crate::common::scripts(), &whole);
+    copy(&own, &whole);
+    let whole = whole.to_string_lossy().into_owned();
+    let run = |arguments: &[&str]| place.ptu(&[arguments, &["--scripts", &whole]].concat());
+    let told = run(&["run", "--check"]).exits(0);
+    assert!(told.out.contains("data files, no errors"), "{}", told.all());
+    run(&[
+        "run",
+        "depot/doors",
+        "--unit-config",
+        "sg200",
+        "--line",
+        "line9",
+    ])
+    .exits(0);
+    run(&[
+        "run",
+        "atp/overspeed",
+        "--inject",
+        "eb_relay.late_when_cold",
+    ])
+    .exits(1);
+    let faults = run(&["catalog", "faults"]).exits(0);
+    assert!(
+        faults.out.contains("eb_relay.late_when_cold"),
+        "{}",
+        faults.all()
+    );
+}
+
+fn copy(from: &std::path::Path, to: &std::path::Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let to = to.join(path.file_name().expect("a name"));
+        match path.is_dir() {
+            true => copy(&path, &to),
+            false => drop(fs::copy(&path, &to).expect("copied")),
+        }
+    }
+}
+
+#[test]
+fn a_name_that_cannot_be_is_refused_before_anything_is_written() {
+    let place = Place::new();
+    for (what, name, says) in [
+        ("procedure", "../x", "is no name here"),
+        ("procedure", "Doors", "is no name here"),
+        ("unit", "a/b", "is no name here"),
+        ("fault", "eb_relay", "PART.NAME"),
+        ("fault", "eb_relais.slow", "did you mean \"eb_relay\"?"),
+    ] {
+        let told = place.ptu(&["new", what, name]).exits(2);
+        assert!(told.err.contains(says), "{}", told.all());
+    }
+    assert!(!place.path("ptu").exists());
+    place.ptu(&["new", "unit"]).exits(2);
+}
+
+/// Goal: an editor knows every word; the stubs are Python, by a foreign reader.
+#[test]
+fn stubs_for_editors_are_python() {
+    let place = Place::new();
+    let folder = place.text_path("stubs");
+    place.ptu(&["new", "stubs", "--in", &folder]).exits(0);
+    assert!(place.read("stubs/tacho.py").contains("def speed("));
+    let files = fs::read_dir(place.path("stubs")).expect("a folder");
+    let files: Vec<_> = files.map(|file| file.expect("an entry").path()).collect();
+    let read = std::process::Command::new("python3")
+        .args(["-m", "py_compile"])
+        .args(&files)
+        .status();
+    if let Ok(status) = read {
+        assert!(status.success());
+    }
+}
+
+/// Goal: an editor tells a wrong key while it is written, and nothing that is right: by a foreign reader, on every data file
+/// that is shipped or begun.
+#[test]
+fn every_data_file_fits_its_schema_and_a_wrong_key_does_not() {
+    let place = Place::new();
+    let folder = place.path("scripts");
+    copy(&crate::common::scripts(), &folder);
+    let folder = folder.to_string_lossy().into_owned();
+    place.ptu(&["new", "schemas", "--in", &folder]).exits(0);
+    for (what, name) in [
+        ("unit", "sg200"),
+        ("line", "line9"),
+        ("fault", "eb_relay.late"),
+    ] {
+        place.ptu(&["new", what, name, "--in", &folder]).exits(0);
+    }
+    let said = run_python("check_schemas.py", &[&folder]);
+    assert!(
+        said.ends_with("each fits, and none with a wrong key\n"),
+        "{said}"
+    );
+}
+
+/// Goal: a package has a manual page of every verb, and completions of three shells.
+#[test]
+fn the_help_that_a_package_installs_names_every_verb() {
+    let place = Place::new();
+    let folder = place.text_path("help");
+    place.ptu(&["help-files", &folder]).exits(0);
+    let page = place.read("help/man1/ptu-faults-list.1");
+    assert!(
+        page.contains("ptu faults list") || page.contains("ptu\\-faults\\-list"),
+        "{page}"
+    );
+    for verb in ["run", "doctor", "diagnose", "db-sync"] {
+        assert!(
+            place.path(&format!("help/man1/ptu-{verb}.1")).is_file(),
+            "{verb}"
+        );
+    }
+    assert!(!place.path("help/man1/ptu-help-files.1").exists());
+    for file in ["bash/ptu.bash", "zsh/_ptu", "fish/ptu.fish"] {
+        assert!(
+            place.read(&format!("help/{file}")).contains("doctor"),
+            "{file}"
+        );
+    }
+}
