@@ -73,10 +73,7 @@ pub(super) fn stored(steps: u32, ended: bool) -> (Stored, Id) {
         writer.flush().expect("kept");
     }
     drop(writer);
-    let stored = Stored {
-        store,
-        folder: folder,
-    };
+    let stored = Stored { store, folder };
     (stored, id)
 }
 

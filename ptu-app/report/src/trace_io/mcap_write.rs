@@ -48,10 +48,9 @@ pub(super) fn put(
     chosen.each_block(|first, columns| {
         for row in 0..columns.first().map_or(0, Vec::len) {
             message.clear();
-            put_row(&mut message, &about.channels, &keys, |place| {
-                columns[place][row]
-            })
-            .map_err(|error| failed(error.into()))?;
+            let samples = columns.iter().map(|column| column[row]);
+            put_row(&mut message, &about.channels, &keys, samples)
+                .map_err(|error| failed(error.into()))?;
             let number = first + row;
             let at_us = (number as i64).saturating_mul(about.period_us);
             // Nothing was recorded before 1970.
@@ -88,17 +87,17 @@ pub(super) fn keys(channels: &[Channel]) -> Vec<String> {
     channels.iter().map(|c| name(c) + ":").collect()
 }
 
-/// A message with the samples of one row, by the places of their channels.
+/// A message with the samples of one row, in the order of their channels.
 pub(super) fn put_row(
     message: &mut Vec<u8>,
     channels: &[Channel],
     keys: &[String],
-    sample: impl Fn(usize) -> f64,
+    samples: impl Iterator<Item = f64>,
 ) -> io::Result<()> {
     message.push(b'{');
-    for (place, (key, channel)) in keys.iter().zip(channels).enumerate() {
+    let fields = keys.iter().zip(channels).zip(samples);
+    for (place, ((key, channel), sample)) in fields.enumerate() {
         let before = if place == 0 { "" } else { "," };
-        let sample = sample(place);
         let value = word(channel, sample).map_or_else(|| number(sample), Value::from);
         write!(message, "{before}{key}{value}")?;
     }

@@ -82,9 +82,8 @@ impl<W: Write + Seek> RunMcap<W> {
             for row in rows {
                 self.last = row.at;
                 message.clear();
-                let sample =
-                    |place: usize| in_steps(Signal::ALL[place], row.value(Signal::ALL[place]));
-                put_row(&mut message, &self.channels, &self.keys, sample)?;
+                let samples = Signal::ALL.iter().map(|of| in_steps(*of, row.value(*of)));
+                put_row(&mut message, &self.channels, &self.keys, samples)?;
                 let at_ns = self.now_ns();
                 put(&mut self.file, &mut self.signals, at_ns, &message)?;
             }

@@ -206,7 +206,7 @@ pub(super) fn disk(file: &Path) -> Finding {
             let found = format!("{} MiB free in {}", free >> 20, folder.display());
             match free {
                 ..NO_ROOM => Finding::wrong(SUBJECT, found, remedy),
-                ..LITTLE_ROOM => Finding::warning(SUBJECT, found, remedy),
+                NO_ROOM..LITTLE_ROOM => Finding::warning(SUBJECT, found, remedy),
                 _ => Finding::ok(SUBJECT, found),
             }
         }

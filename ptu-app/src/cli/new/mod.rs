@@ -95,11 +95,8 @@ impl NewArguments {
             What::Fault => (name.split('.').collect(), "PART.NAME"),
             _ => (vec![name], "NAME"),
         };
-        let count = match self.what {
-            What::Procedure => words.len() >= 1,
-            What::Fault => words.len() == 2,
-            _ => true,
-        };
+        // `split` gives one word at least.
+        let count = self.what != What::Fault || words.len() == 2;
         match count && words.iter().all(|word| is_word(word)) {
             true => Ok(()),
             false => Err(Failure::usage(format!(
