@@ -7,6 +7,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 use crate::atomic_file::AtomicFile;
 use crate::error::StoreError;
 use crate::open_options::Synchronous;
+use crate::platform;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
 use crate::schema_guard;
 use crate::sql_functions;
@@ -101,8 +102,7 @@ pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError
 pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
     let mut options = std::fs::OpenOptions::new();
     options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    platform::for_owner(&mut options);
     options.open(path).map(drop)
 }
 

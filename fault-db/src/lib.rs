@@ -38,6 +38,7 @@ mod lookup;
 mod maintenance;
 mod open_options;
 mod packed;
+mod platform;
 mod query;
 mod record;
 mod recording;

@@ -4,6 +4,8 @@ use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read as _, Result};
 use std::path::Path;
 
+use crate::platform;
+
 /// Opens a regular file. Nothing else is even opened: a pipe would block until somebody writes to it, and a
 /// device may never end or act on being opened.
 ///
@@ -42,25 +44,8 @@ fn must_be_file(about: &Metadata) -> Result<()> {
 }
 
 fn kind(about: &Metadata) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt as _;
-        let kind = about.file_type();
-        for (is_it, name) in [
-            (kind.is_fifo(), "a pipe"),
-            (kind.is_socket(), "a socket"),
-            (kind.is_char_device() || kind.is_block_device(), "a device"),
-        ] {
-            if is_it {
-                return name;
-            }
-        }
-    }
-    if about.is_dir() {
-        "a folder"
-    } else {
-        "something else"
-    }
+    let other = || platform::special_kind(about.file_type()).unwrap_or("something else");
+    if about.is_dir() { "a folder" } else { other() }
 }
 
 #[cfg(test)]

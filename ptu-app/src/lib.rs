@@ -7,7 +7,6 @@
 //! the database crate opens its own files and connections.
 
 pub mod cli;
-mod computer_name;
 mod console;
 mod distances;
 mod event_stream;

@@ -3,10 +3,11 @@
 use std::process::ExitCode;
 
 use ptu_app::cli::Cli;
-use ptu_bench::stop::survive_file_limit;
+use ptu_bench::platform::{ready_output, survive_file_limit};
 
 fn main() -> ExitCode {
     survive_file_limit();
+    ready_output();
     match Cli::asked().and_then(Cli::run) {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {

@@ -3,7 +3,8 @@
 //!
 //! What is served is anything [`Served`]: the unit at its harness, or one at the maintenance port of a train.
 
-mod priority;
+mod platform;
+mod serial_end;
 mod tcp;
 mod wire;
 
@@ -16,7 +17,8 @@ use std::vec::Vec;
 
 use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
-pub use priority::keep_time;
+pub use platform::keep_time;
+pub use serial_end::{PORT_WAITS, SerialEnd};
 pub use wire::{Place, Wire};
 
 /// What is at the far end of a wire.

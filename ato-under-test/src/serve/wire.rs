@@ -1,19 +1,15 @@
 //! The far end of the wire: pseudo-terminal, serial port or TCP socket. Only a pseudo-terminal in lock step
 //! waits for its tester.
 
-use std::boxed::Box;
 use std::format;
-use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
 use std::string::{String, ToString};
-use std::vec::Vec;
 
 use protocol::{Duration, Instant};
-use rustix::fs::{Mode, OFlags};
-use rustix::pty::OpenptFlags;
-use rustix::termios::OptionalActions;
 
 use super::ServeError;
+use super::platform::Pty;
+use super::serial_end::{PORT_WAITS, SerialEnd};
 use super::tcp::Server;
 
 /// Baud rate of a serial port when none is given.
@@ -63,10 +59,10 @@ pub struct Wire {
 }
 
 enum FarEnd {
-    /// The master side; the slave is kept open so that testers can come and go.
-    Pty { master: File, _slave: File },
+    /// A pseudo-terminal made for this.
+    Pty(Pty),
     /// A real port.
-    Serial(Box<dyn serialport::SerialPort>),
+    Serial(SerialEnd),
     /// A socket that serves one client at a time.
     Tcp(Server),
 }
@@ -81,13 +77,13 @@ impl Wire {
             Place::Pty => Self::open_pty(false),
             Place::Serial { path, baud } => {
                 let port = serialport::new(path, *baud)
-                    .timeout(std::time::Duration::ZERO)
+                    .timeout(PORT_WAITS)
                     .open()
                     .map_err(io::Error::from)
                     .map_err(ServeError::new(format!("opening serial port {path}")))?;
                 Ok(Self {
                     name: path.clone(),
-                    end: FarEnd::Serial(port),
+                    end: FarEnd::Serial(SerialEnd(port)),
                 })
             }
             Place::Tcp(address) => {
@@ -110,29 +106,12 @@ impl Wire {
     }
 
     fn open_pty(waits: bool) -> Result<Self, ServeError> {
-        let open = || {
-            let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
-            let master = rustix::pty::openpt(flags)?;
-            rustix::pty::grantpt(&master)?;
-            rustix::pty::unlockpt(&master)?;
-            let name = rustix::pty::ptsname(&master, Vec::new())?;
-            let flags = OFlags::RDWR | OFlags::NOCTTY;
-            let slave = rustix::fs::open(&name, flags, Mode::empty())?;
-            let mut raw = rustix::termios::tcgetattr(&slave)?;
-            raw.make_raw();
-            rustix::termios::tcsetattr(&slave, OptionalActions::Now, &raw)?;
-            if !waits {
-                rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
-            }
-            Ok(Self {
-                name: name.to_string_lossy().into_owned(),
-                end: FarEnd::Pty {
-                    master: File::from(master),
-                    _slave: File::from(slave),
-                },
-            })
-        };
-        open().map_err(ServeError::new("opening a pseudo-terminal"))
+        let opened = Pty::open(waits);
+        let (pty, name) = opened.map_err(ServeError::new("opening a pseudo-terminal"))?;
+        Ok(Self {
+            name,
+            end: FarEnd::Pty(pty),
+        })
     }
 
     /// Where testers reach it.
@@ -162,7 +141,7 @@ impl Wire {
     /// The port is gone.
     pub fn read(&mut self, into: &mut [u8]) -> Result<usize, ServeError> {
         let read = match &mut self.end {
-            FarEnd::Pty { master, .. } => nothing_is_zero(master.read(into)),
+            FarEnd::Pty(pty) => nothing_is_zero(pty.read(into)),
             FarEnd::Serial(port) => nothing_is_zero(port.read(into)),
             FarEnd::Tcp(server) => Ok(server.read(into)),
         };
@@ -175,7 +154,7 @@ impl Wire {
     /// The port is gone.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), ServeError> {
         let written = match &mut self.end {
-            FarEnd::Pty { master, .. } => master.write(bytes),
+            FarEnd::Pty(pty) => pty.write(bytes),
             FarEnd::Serial(port) => port.write(bytes),
             FarEnd::Tcp(server) => {
                 server.write(bytes);

@@ -14,6 +14,7 @@ use super::{schema, tls};
 use crate::backend::{Backend, Server};
 use crate::error::StoreError;
 use crate::id::IdSource;
+use crate::platform;
 use crate::store::Store;
 
 const DOING: &str = "connecting";
@@ -57,7 +58,7 @@ pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> 
     let path = PathBuf::from(address.to_string());
     let environment = |name: &str| std::env::var_os(name);
     let user = address.user.clone().or_else(|| {
-        let named = environment("PGUSER").or_else(|| environment("USER"));
+        let named = environment("PGUSER").or_else(|| environment(platform::LOGGED_IN));
         named.and_then(|name| name.into_string().ok())
     });
     let user = user.ok_or_else(|| StoreError::BadAddress {
@@ -65,7 +66,10 @@ pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> 
     })?;
     let database = address.database.clone().unwrap_or_else(|| user.clone());
     let password = password::find(address, &user, &database, &environment);
-    let mut config = config(address, &user, &database);
+    let config = config(address, &user, &database);
+    let mut config = config.map_err(|reason| StoreError::BadAddress {
+        reason: reason.to_owned(),
+    })?;
     if let Some(secret) = &password.secret {
         config.password(secret);
     }
@@ -93,7 +97,7 @@ fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
     })
 }
 
-fn config(address: &Address, user: &str, database: &str) -> Config {
+fn config(address: &Address, user: &str, database: &str) -> Result<Config, &'static str> {
     let mut config = Config::new();
     config
         .user(user)
@@ -106,7 +110,8 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
         .keepalives_interval(Duration::from_secs(10))
         .keepalives_retries(3);
     if address.is_socket() {
-        config.ssl_mode(SslMode::Disable).host_path(&address.host);
+        config.ssl_mode(SslMode::Disable);
+        platform::at_socket(&mut config, &address.host)?;
     } else {
         // Our own stream negotiates TLS, and whether there is any.
         config
@@ -114,7 +119,7 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
             .ssl_negotiation(SslNegotiation::Direct)
             .host(&address.host);
     }
-    config
+    Ok(config)
 }
 
 /// Connects on a thread of its own, because resolving a name, and a server that accepts a connection and then

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::address::Address;
+use crate::platform;
 use crate::regular_file::read_regular_file;
 
 /// Longest password file that is read, bytes.
@@ -73,7 +74,7 @@ fn file(address: &Address, environment: Environment<'_>) -> Option<PathBuf> {
     let named = address.password_file.clone();
     named
         .or_else(|| environment("PGPASSFILE").map(PathBuf::from))
-        .or_else(|| environment("HOME").map(|home| Path::new(&home).join(".pgpass")))
+        .or_else(|| platform::password_file(environment))
         .filter(|file| address.password_file.is_some() || file.exists())
 }
 
@@ -85,14 +86,10 @@ fn read(file: &Path) -> Result<String, String> {
     if !about.is_file() {
         return Err(format!("the password file {shown} is no file"));
     }
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        if about.permissions().mode() & 0o077 != 0 {
-            return Err(format!(
-                "the password file {shown} was not read, because others can: chmod 600 {shown}"
-            ));
-        }
+    if platform::is_open_to_others(&about) {
+        return Err(format!(
+            "the password file {shown} was not read, because others can: chmod 600 {shown}"
+        ));
     }
     let cannot =
         |why: &dyn std::fmt::Display| format!("the password file {shown} cannot be read ({why})");

@@ -14,7 +14,8 @@
 //! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person is told;
-//!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal.
+//!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`platform`]: what operating systems do
+//!   differently.
 
 pub mod aboard;
 pub mod bench_worker;
@@ -30,6 +31,7 @@ pub mod kept;
 pub mod link;
 pub mod new_file;
 pub mod owner_only;
+pub mod platform;
 pub mod pool;
 pub mod process_id;
 pub mod progress;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use fault_db::AtomicFile;
 
 use crate::failure::Failure;
+use crate::platform;
 
 /// Names tried beside one that is taken.
 const BESIDE: u32 = 1000;
@@ -49,7 +50,7 @@ impl NewFile {
             Err(_) => None,
         };
         // What a link leads to is replaced, not the link.
-        let place = std::fs::canonicalize(place).unwrap_or_else(|_| place.to_path_buf());
+        let place = platform::real_path(place).unwrap_or_else(|_| place.to_path_buf());
         let part = AtomicFile::begin(&place);
         let opened = File::create_new(part.path());
         let file = opened.map_err(|error| cannot(error.to_string()))?;
@@ -83,14 +84,8 @@ impl NewFile {
     /// # Errors
     /// The disk's.
     pub fn keep_to_owner(&self) -> Result<(), Failure> {
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt as _;
-            let mode = std::fs::Permissions::from_mode(0o600);
-            let set = self.file.get_ref().set_permissions(mode);
-            set.map_err(|error| cannot_write(&self.place, &error))?;
-        }
-        Ok(())
+        platform::keep_to_owner(self.file.get_ref())
+            .map_err(|error| cannot_write(&self.place, &error))
     }
 
     /// Holds what was written so far to be on the disk: nothing but its name is missing then.

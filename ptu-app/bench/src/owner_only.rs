@@ -3,17 +3,14 @@
 use std::path::Path;
 
 use crate::failure::Failure;
+use crate::platform;
 
 /// Makes a folder and those above it, as far as they are missing, for their owner alone.
 ///
 /// # Errors
 /// The system's.
 pub fn folder(path: &Path) -> std::io::Result<()> {
-    let mut builder = std::fs::DirBuilder::new();
-    builder.recursive(true);
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(path)
+    platform::make_folder(path)
 }
 
 /// The same of the folder a file is to lie in.
@@ -30,16 +27,9 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
 /// What to say of a file that others can read or write, if they can. Its rights stay as they are: somebody may
 /// have given them on purpose.
 pub fn told_if_shared(file: &Path) -> Option<String> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        let mode = std::fs::metadata(file).ok()?.permissions().mode() & 0o777;
-        if mode & 0o077 != 0 {
-            let shown = file.display();
-            return Some(format!(
-                "{shown} is open to others (mode {mode:03o}); to keep it to yourself: chmod 600 {shown}"
-            ));
-        }
-    }
-    None
+    let (rights, command) = platform::readable_by_others(file)?;
+    let shown = file.display();
+    Some(format!(
+        "{shown} is open to others ({rights}); to keep it to yourself: {command}"
+    ))
 }

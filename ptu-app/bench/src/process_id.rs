@@ -1,5 +1,7 @@
 //! Identifies this process so that another process can tell whether it still runs.
 
+use crate::platform::start_of;
+
 /// `pid:start` of this process; the start time keeps a reused pid apart.
 pub fn this_process() -> String {
     let pid = std::process::id();
@@ -13,11 +15,4 @@ pub fn is_alive(owner: &str) -> bool {
     };
     let Ok(pid) = pid.parse() else { return false };
     start_of(pid).is_some_and(|found| found == start)
-}
-
-/// Field 22 of `/proc/PID/stat`: ticks from boot to the process's start.
-fn start_of(pid: u32) -> Option<String> {
-    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    let after_name = stat.rsplit_once(')')?.1;
-    after_name.split_whitespace().nth(19).map(str::to_owned)
 }

@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, OnceLock};
 
+use crate::platform::StopSignals;
+
 /// Counts the presses of stop; clones share the count.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<StopRequests>);
@@ -51,7 +53,7 @@ impl Stop {
         self.presses() == 0
     }
 
-    /// Listens to interrupt, termination and hang-up signals on a thread of its own, from before this returns.
+    /// Listens to the system's requests to stop (interrupt, termination, a closed terminal) on a thread of its own, from before this returns.
     /// Without it (no runtime, no signals) the process ends at once, and the unit's own time-out makes its
     /// outputs safe.
     pub fn listen(&self) {
@@ -75,76 +77,15 @@ impl Stop {
             .build();
         let Ok(runtime) = runtime else { return };
         runtime.block_on(async {
-            use tokio::signal::unix::{SignalKind, signal};
-            let (Ok(mut interrupt), Ok(mut terminate)) = (
-                signal(SignalKind::interrupt()),
-                signal(SignalKind::terminate()),
-            ) else {
+            let Ok(mut signals) = StopSignals::listen() else {
                 return;
             };
-            let mut hang_up = heeds_hang_up()
-                .then(|| signal(SignalKind::hangup()).ok())
-                .flatten();
             let _ = listens.send(());
             loop {
-                tokio::select! {
-                    _ = interrupt.recv() => {}
-                    _ = terminate.recv() => {}
-                    () = received(hang_up.as_mut()) => {}
-                }
+                signals.next().await;
                 self.press();
                 then();
             }
         });
-    }
-}
-
-/// Lets a write beyond the largest size that files may have (`ulimit -f`) fail with the system's words, where the
-/// process would end without any. For good, from before this returns.
-pub fn survive_file_limit() {
-    /// Of Linux, macOS and the BSDs.
-    const SIGXFSZ: i32 = 25;
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_io()
-        .build();
-    if let Ok(runtime) = runtime {
-        let kind = tokio::signal::unix::SignalKind::from_raw(SIGXFSZ);
-        // What is installed stays when this is dropped.
-        drop(runtime.block_on(async { tokio::signal::unix::signal(kind) }));
-    }
-}
-
-/// Waits for a signal, for ever if there is none to wait for.
-async fn received(signal: Option<&mut tokio::signal::unix::Signal>) {
-    match signal {
-        Some(signal) => drop(signal.recv().await),
-        None => std::future::pending().await,
-    }
-}
-
-/// Whether a closed terminal is to end this process: not if it was started to outlive it (`nohup`).
-fn heeds_hang_up() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    !ignores_hang_up(&status)
-}
-
-/// Whether SIGHUP, number 1 and so bit 0, is ignored, by what Linux tells of a process.
-fn ignores_hang_up(status: &str) -> bool {
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    ignored
-        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-        .is_some_and(|mask| mask & 1 != 0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_process_started_with_nohup_ignores_a_closed_terminal() {
-        let status = |mask| format!("Name:\tptu\nSigBlk:\t0000000000000001\nSigIgn:\t{mask}\n");
-        assert!(ignores_hang_up(&status("0000000000001001")));
-        assert!(!ignores_hang_up(&status("0000000000001000")));
-        assert!(!ignores_hang_up("no Linux"));
     }
 }

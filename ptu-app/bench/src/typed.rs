@@ -4,6 +4,7 @@
 use std::io::{BufRead, IsTerminal, Read, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
+use crate::platform::in_foreground;
 use crate::stdio;
 
 /// Lines that wait for the next scan; whoever writes more waits.
@@ -38,11 +39,6 @@ impl Typed {
 /// Somebody at a terminal can be asked: its lines come here, and what is asked is shown there.
 pub fn somebody_is_there() -> bool {
     stdin().is_terminal() && in_foreground() && stdio::draws()
-}
-
-fn in_foreground() -> bool {
-    let of_terminal = || rustix::termios::tcgetpgrp(stdin());
-    !stdin().is_terminal() || of_terminal().is_ok_and(|group| group == rustix::process::getpgrp())
 }
 
 pub(crate) fn read(mut input: impl BufRead, send: &SyncSender<String>) {

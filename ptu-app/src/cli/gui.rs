@@ -9,6 +9,7 @@ use crate::gui::DataPaths;
 use crate::gui::{Options, Page, Settings, open};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
+use ptu_bench::platform::leave_own_console;
 use ptu_bench::stop::Stop;
 use ptu_report::words::Language;
 
@@ -105,6 +106,7 @@ impl GuiArguments {
                 .with_offered_faults()
                 .setup(&paths.scripts)?;
         }
+        leave_own_console();
         open(Options {
             paths,
             settings,

@@ -42,6 +42,7 @@ use serde::Serialize;
 use ptu_bench::clock;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
+use ptu_bench::platform::running_program;
 use ptu_bench::run::loading;
 use ptu_bench::stdio;
 use ptu_report::json_text;
@@ -130,8 +131,7 @@ impl Cli {
     /// # Errors
     /// With a message for a person and an exit code.
     pub fn run(self) -> Result<Exit, Failure> {
-        // The running program, also where its file was replaced since.
-        loading::load_apart("/proc/self/exe".into());
+        loading::load_apart(running_program());
         let Some(verb) = self.verb else {
             return gui::GuiArguments::usual()?.run();
         };

@@ -3,7 +3,6 @@
 //! Only the file and its write-ahead log are looked at, by size and time. A connection kept open for this would hold a
 //! lock, and keep other programs from what they need the file for alone.
 
-use std::fs::Metadata;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -13,6 +12,7 @@ use std::time::{Duration, SystemTime};
 use super::data_paths::{DataPaths, beside};
 use ptu_bench::bench_worker::Wake;
 use ptu_bench::failure::Failure;
+use ptu_bench::platform::identity;
 
 /// Time between two looks.
 const LOOK: Duration = Duration::from_secs(1);
@@ -91,19 +91,6 @@ impl Stamp {
         };
         Self([of(database), of(&beside(database, "-wal"))])
     }
-}
-
-/// Tells a file from another one put in its place.
-#[cfg(unix)]
-fn identity(file: &Metadata) -> u64 {
-    std::os::unix::fs::MetadataExt::ino(file)
-}
-
-#[cfg(not(unix))]
-fn identity(file: &Metadata) -> u64 {
-    let made = file.created().ok();
-    let since = made.and_then(|made| made.duration_since(SystemTime::UNIX_EPOCH).ok());
-    since.map_or(0, |since| since.as_micros() as u64)
 }
 
 #[cfg(test)]

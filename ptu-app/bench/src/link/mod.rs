@@ -10,5 +10,6 @@ mod wire;
 pub use ato_under_test::serve::keep_time;
 pub use delayed::Delayed;
 pub use pace::Pace;
+pub(crate) use port_lock::open_port;
 pub use sim::{SIM_SERIAL, SimLink};
 pub use wire::{Endpoint, WireLink};

@@ -4,13 +4,13 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
+use ato_under_test::serve::{PORT_WAITS, SerialEnd};
 use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
-use super::Pace;
-use super::port_lock;
+use super::{Pace, open_port};
 use crate::failure::Failure;
 
 /// Baud rate when none is given.
@@ -118,7 +118,7 @@ pub struct WireLink {
 }
 
 enum Port {
-    Serial(Box<dyn SerialPort>),
+    Serial(SerialEnd),
     Tcp(TcpStream),
     LockStep(Box<dyn SerialPort>),
 }
@@ -132,7 +132,7 @@ impl WireLink {
         let port = match endpoint {
             Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
             Endpoint::Serial { path, baud } => {
-                Port::Serial(open_serial(path, *baud, Duration::ZERO)?)
+                Port::Serial(SerialEnd(open_serial(path, *baud, PORT_WAITS)?))
             }
             Endpoint::LockStep(path) => Port::LockStep(open_serial(path, BAUD, STEP)?),
             Endpoint::Tcp(address) => connect(address)?,
@@ -172,7 +172,7 @@ impl WireLink {
 }
 
 fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialPort>, Failure> {
-    let port = port_lock::open(path, baud, waits)?;
+    let port = open_port(path, baud, waits)?;
     let _ = port.clear(serialport::ClearBuffer::All);
     Ok(port)
 }

@@ -192,7 +192,7 @@ fn harness_or_as_ptu<'de, D: Deserializer<'de>>(saved: D) -> Result<Harness, D::
 pub fn software_version(text: &str) -> Result<[u8; 3], String> {
     let parts: Vec<u8> = text
         .split('.')
-        .map_while(|part| part.parse().ok())
+        .map_while(|part| part.parse::<u8>().ok())
         .collect();
     let version = parts
         .try_into()

@@ -6,7 +6,6 @@
 
 use std::borrow::Cow;
 use std::io::{BufRead as _, BufReader, BufWriter, Read, Write as _};
-use std::os::unix::process::ExitStatusExt as _;
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -18,10 +17,10 @@ use btu_rig::procedure::loader::{self, LoadError, LoadEvent, Loaded, Scripts};
 use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
-use rustix::process::{Resource, Rlimit, Signal, setrlimit};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
+use crate::platform;
 
 /// The word that makes the program load scripts and nothing else.
 pub const WORD: &str = "load-scripts";
@@ -101,7 +100,8 @@ pub fn load(
             "cannot load scripts in a process of their own: {error}"
         ))
     };
-    let mut child = Command::new(program)
+    let mut command = Command::new(program);
+    let mut child = platform::without_window(&mut command)
         .arg(WORD)
         .env("RUST_BACKTRACE", "0")
         .stdin(Stdio::piped())
@@ -249,7 +249,7 @@ fn too_long(most_s: u64) -> String {
 
 /// Why a process broke off.
 fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
-    if status.signal() == Some(Signal::XCPU.as_raw()) {
+    if platform::ended_by_time(status) {
         return too_long(most_s);
     }
     let said = |parts: &[&str]| parts.iter().any(|part| words.contains(part));
@@ -279,21 +279,11 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
 /// It was told nothing that it understands, or nobody listens any more.
 pub fn serve() -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::bench(format!("{WORD}: {error}"));
-    let limit = |resource, current, maximum| {
-        let limit = Rlimit {
-            current: Some(current),
-            maximum: Some(maximum),
-        };
-        setrlimit(resource, limit).map_err(|error| failed(&error))
-    };
-    let most = MOST_MEMORY_MIB << 20;
-    limit(Resource::As, most, most)?;
-    limit(Resource::Core, 0, 0)?;
+    platform::limit_memory(MOST_MEMORY_MIB << 20).map_err(|error| failed(&error))?;
     let order = serde_json::from_reader(BufReader::new(std::io::stdin().lock()));
     let order: Order<'static> = order.map_err(|error| failed(&error))?;
     let most_s = most_time_s(&order.scripts);
-    // The signal that tells what it was comes first, and one that cannot be ignored a second later.
-    limit(Resource::Cpu, most_s, most_s + 1)?;
+    platform::limit_time(most_s).map_err(|error| failed(&error))?;
     let thread = std::thread::Builder::new().stack_size(STACK);
     let done = thread.spawn(move || say_all(&order));
     let done = done.map_err(|error| failed(&error))?;

@@ -9,8 +9,8 @@ use serde_json::json;
 
 use super::maintenance::{rivals, told_refused};
 use crate::cli::{Database, answered, print_json, print_out};
-use crate::computer_name::computer_name;
 use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::platform::computer_name;
 use ptu_bench::stop::Stop;
 use ptu_bench::{clock, process_id, stdio};
 

@@ -8,7 +8,8 @@ use ptu_bench::failure::Failure;
 
 /// What opens files here, and what stands before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {
-    ("cmd", &["/C", "start", ""])
+    // A command line would take apart a name with its signs in it.
+    ("explorer", &[])
 } else if cfg!(target_os = "macos") {
     ("open", &[])
 } else {

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use fault_db::{Address, Store, StoreError, SyncOptions};
 
-use crate::computer_name::computer_name;
 use crate::gui::PageContext;
 use crate::gui::parts::{Done, Job, Told};
 use ptu_bench::failure::Failure;
+use ptu_bench::platform::computer_name;
 use ptu_bench::{clock, process_id};
 use ptu_report::care::{self, Said};
 use ptu_report::words::{Words, fill};

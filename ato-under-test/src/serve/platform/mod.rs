@@ -1,0 +1,12 @@
+//! What each operating system does in a way of its own, under the same names: pseudo-terminals, reads of serial ports
+//! and priorities.
+
+#[cfg(unix)]
+mod unix;
+#[cfg(windows)]
+mod windows;
+
+#[cfg(unix)]
+pub use unix::{PORT_WAITS, Pty, keep_time, read_port};
+#[cfg(windows)]
+pub use windows::{PORT_WAITS, Pty, keep_time, read_port};

@@ -1,0 +1,47 @@
+//! Linux, and macOS by reading only.
+
+use std::ffi::OsString;
+use std::fs::{FileType, Metadata, OpenOptions};
+use std::os::unix::fs::{FileTypeExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
+
+/// The variable with the name of who is logged in.
+pub(crate) const LOGGED_IN: &str = "USER";
+
+/// A file that is made is for its owner alone.
+pub(crate) fn for_owner(options: &mut OpenOptions) {
+    options.mode(0o600);
+}
+
+/// Whether others than its owner can read or write a file.
+pub(crate) fn is_open_to_others(about: &Metadata) -> bool {
+    about.permissions().mode() & 0o077 != 0
+}
+
+/// What a file is that is neither regular nor a folder.
+pub(crate) fn special_kind(kind: FileType) -> Option<&'static str> {
+    let kinds = [
+        (kind.is_fifo(), "a pipe"),
+        (kind.is_socket(), "a socket"),
+        (kind.is_char_device() || kind.is_block_device(), "a device"),
+    ];
+    kinds
+        .iter()
+        .find(|(is_it, _)| *is_it)
+        .map(|(_, name)| *name)
+}
+
+/// libpq's password file of this user.
+pub(crate) fn password_file(environment: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    environment("HOME").map(|home| Path::new(&home).join(".pgpass"))
+}
+
+/// Connects to the socket in this folder.
+///
+/// # Errors
+/// Never.
+#[expect(clippy::unnecessary_wraps, reason = "it can fail elsewhere")]
+pub(crate) fn at_socket(config: &mut postgres::Config, folder: &str) -> Result<(), &'static str> {
+    config.host_path(folder);
+    Ok(())
+}

@@ -1,0 +1,34 @@
+//! Windows. What is made in a user's folders is closed to other users by the rights of those folders.
+
+use std::ffi::OsString;
+use std::fs::{FileType, Metadata, OpenOptions};
+use std::path::{Path, PathBuf};
+
+/// The variable with the name of who is logged in.
+pub(crate) const LOGGED_IN: &str = "USERNAME";
+
+/// Leaves it to the folder who may read a file that is made.
+pub(crate) fn for_owner(_: &mut OpenOptions) {}
+
+/// Not asked: rights are lists here. libpq does not ask either.
+pub(crate) fn is_open_to_others(_: &Metadata) -> bool {
+    false
+}
+
+/// What a file is that is neither regular nor a folder: Windows does not say.
+pub(crate) fn special_kind(_: FileType) -> Option<&'static str> {
+    None
+}
+
+/// libpq's password file of this user.
+pub(crate) fn password_file(environment: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    environment("APPDATA").map(|folder| Path::new(&folder).join(r"postgresql\pgpass.conf"))
+}
+
+/// There is no socket in a folder.
+///
+/// # Errors
+/// Always.
+pub(crate) fn at_socket(_: &mut postgres::Config, _: &str) -> Result<(), &'static str> {
+    Err("on Windows a server is reached by host name, not by a folder")
+}

@@ -1,0 +1,24 @@
+//! What each operating system does in a way of its own, under the same names: the terminal, requests to stop, serial
+//! ports, processes and their limits, and who may read a file. The rest of the program knows no operating system.
+
+#[cfg(unix)]
+mod unix;
+#[cfg(windows)]
+mod windows;
+
+#[cfg(unix)]
+use unix as system;
+#[cfg(windows)]
+use windows as system;
+
+pub use system::files::{identity, readable_by_others};
+pub use system::ports::{closed_to_user, is_probed_by_others};
+pub use system::process::{computer_name, leave_own_console, ready_output, running_program};
+pub use system::signals::survive_file_limit;
+
+pub(crate) use system::files::{keep_to_owner, make_folder, real_path};
+pub(crate) use system::limits::{ended_by_time, limit_memory, limit_time, without_window};
+pub(crate) use system::ports::{holder, open_alone};
+pub(crate) use system::process::start_of;
+pub(crate) use system::signals::StopSignals;
+pub(crate) use system::terminal::{KeyTerminal, columns, in_foreground};

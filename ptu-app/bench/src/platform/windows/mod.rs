@@ -1,0 +1,9 @@
+//! Windows.
+
+mod calls;
+pub mod files;
+pub mod limits;
+pub mod ports;
+pub mod process;
+pub mod signals;
+pub mod terminal;
