@@ -18,7 +18,7 @@ wordings! {
         name_first: "Write your name first", "먼저 이름을 적으십시오";
         reached_at: "The unit is reached at {place}; another place is chosen above, at Setup.", "장치 연결 위치: {place}. 다른 위치는 위의 설정에서 고르십시오.";
         seen_last: "Units seen last", "최근 시험한 장치";
-        first_start: "Nothing is recorded yet. A demonstration shows the way of a case on the embedded unit, which has a fault: its brakes come late.", "아직 기록이 없습니다. 고장이 하나 있는 내장 장치로 작업 순서를 시연할 수 있습니다. 증상: 제동이 늦음.";
+        first_start: "Nothing is recorded yet. A demonstration shows the way of a case on the simulated unit, which has a fault: its brakes come late.", "아직 기록이 없습니다. 고장이 하나 있는 모의 장치로 작업 순서를 시연할 수 있습니다. 증상: 제동이 늦음.";
         demonstrate: "Start the demonstration", "시연 시작";
         open_faults: "Open faults of this unit", "이 장치의 미해결 고장";
         repairs: "Earlier repairs", "이전 수리";
