@@ -91,12 +91,10 @@ impl ScriptsDirectory {
     /// # Errors
     /// It is missing or cannot be read.
     pub fn bytes(&self, name: &str, most: u64) -> Result<Vec<u8>, Failure> {
-        let file = match self.0.file(name) {
-            Some(Found::Embedded(_, bytes)) => return Ok(bytes.to_vec()),
-            Some(Found::File(file)) => file,
-            None => self.shown(name).into(),
-        };
-        read_regular_file(&file, most).map_err(|error| cannot_read(&file, &error))
+        match self.0.file(name) {
+            Some(found) => content(&found, most),
+            None => content(&Found::File(self.shown(name).into()), most),
+        }
     }
 
     /// Text of every `.star` file by its path under its place.
@@ -130,15 +128,13 @@ impl ScriptsDirectory {
     pub fn replacing(&self) -> Result<Vec<String>, Failure> {
         let mut replacing = Vec::new();
         for (name, found) in self.0.all()? {
-            let content = self.bytes(&name, LONGEST_FILE)?;
+            let mut below = self.0.files(&name).skip(1).peekable();
+            if below.peek().is_none() {
+                continue;
+            }
+            let own = content(&found, LONGEST_FILE)?;
             // The system's copy of what the program carries replaces nothing.
-            let differs = |other: &Found| match other {
-                Found::Embedded(_, bytes) => *bytes != content,
-                Found::File(file) => {
-                    read_regular_file(file, LONGEST_FILE).is_ok_and(|bytes| bytes != content)
-                }
-            };
-            if self.0.files(&name).skip(1).any(|other| differs(&other)) {
+            if below.any(|other| content(&other, LONGEST_FILE).is_ok_and(|bytes| bytes != own)) {
                 replacing.push(found.shown());
             }
         }
@@ -328,6 +324,15 @@ fn text(found: &Found) -> Result<String, Failure> {
     match found {
         Found::File(file) => read(file),
         Found::Embedded(_, bytes) => Ok(String::from_utf8_lossy(bytes).into_owned()),
+    }
+}
+
+fn content(found: &Found, most: u64) -> Result<Vec<u8>, Failure> {
+    match found {
+        Found::File(file) => {
+            read_regular_file(file, most).map_err(|error| cannot_read(file, &error))
+        }
+        Found::Embedded(_, bytes) => Ok(bytes.to_vec()),
     }
 }
 

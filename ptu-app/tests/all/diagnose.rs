@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use crate::common::{Place, has_shape, list, number, scripts, text};
+use crate::common::{Place, copy_folder, has_shape, list, number, scripts, text};
 use serde_json::Value;
 
 /// Parts whose fault modes look different enough that a whole run at the default seed must tell them.
@@ -45,24 +45,11 @@ fn diagnosis(place: &Place) -> Value {
 /// The scripts directory with one script changed, in a place of its own.
 fn changed_scripts(place: &Place) -> String {
     let to = place.path("scripts");
-    copy(&scripts(), &to);
+    copy_folder(&scripts(), &to);
     let script = to.join("door/interlocks.star");
     let text = std::fs::read_to_string(&script).expect("a script") + "\n# another remark\n";
     std::fs::write(&script, text).expect("changed");
     to.display().to_string()
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).expect("a folder");
-    for entry in std::fs::read_dir(from).expect("a folder") {
-        let entry = entry.expect("an entry");
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            std::fs::copy(entry.path(), target).expect("copied");
-        }
-    }
 }
 
 #[test]

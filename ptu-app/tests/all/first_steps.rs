@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::common::{Place, list, text};
+use crate::common::{Place, copy_folder, list, scripts, text};
 use crate::trace_files::run_python;
 
 fn finding<'a>(found: &'a Value, subject: &str) -> &'a Value {
@@ -110,8 +110,8 @@ fn what_is_begun_passes_the_check_and_is_used_at_once() {
         assert!(own.join(folder).is_dir(), "{folder}");
     }
     let whole = place.path("whole");
-    copy(&crate::common::scripts(), &whole);
-    copy(&own, &whole);
+    copy_folder(&scripts(), &whole);
+    copy_folder(&own, &whole);
     let whole = whole.to_string_lossy().into_owned();
     let run = |arguments: &[&str]| place.ptu(&[arguments, &["--scripts", &whole]].concat());
     let told = run(&["run", "--check"]).exits(0);
@@ -138,18 +138,6 @@ fn what_is_begun_passes_the_check_and_is_used_at_once() {
         "{}",
         faults.all()
     );
-}
-
-fn copy(from: &std::path::Path, to: &std::path::Path) {
-    fs::create_dir_all(to).expect("a folder");
-    for entry in fs::read_dir(from).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let to = to.join(path.file_name().expect("a name"));
-        match path.is_dir() {
-            true => copy(&path, &to),
-            false => drop(fs::copy(&path, &to).expect("copied")),
-        }
-    }
 }
 
 #[test]
@@ -193,7 +181,7 @@ fn stubs_for_editors_are_python() {
 fn every_data_file_fits_its_schema_and_a_wrong_key_does_not() {
     let place = Place::new();
     let folder = place.path("scripts");
-    copy(&crate::common::scripts(), &folder);
+    copy_folder(&scripts(), &folder);
     let folder = folder.to_string_lossy().into_owned();
     place.ptu(&["new", "schemas", "--in", &folder]).exits(0);
     for (what, name) in [

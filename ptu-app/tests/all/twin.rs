@@ -1,8 +1,6 @@
 //! What was expected beside what came: good twins, first deviations, differences, replays.
 
-use std::path::Path;
-
-use crate::common::{Place, has_shape, list, number, text};
+use crate::common::{Place, copy_folder, has_shape, list, number, text};
 use fault_db::Store;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::replay::{Original, explain, good_twin};
@@ -270,7 +268,7 @@ fn what_cannot_be_had_again_says_why() {
     let trace = first_trace(&place);
     // A scripts directory in which the configuration was changed since.
     let changed = place.path("changed");
-    copy(&crate::common::scripts(), &changed);
+    copy_folder(&crate::common::scripts(), &changed);
     let config = changed.join("units/sg100.toml");
     let old = std::fs::read_to_string(&config).expect("read");
     std::fs::write(&config, format!("{old}\n# another\n")).expect("written");
@@ -356,16 +354,4 @@ fn a_good_run_keeps_no_stimuli() {
         rows.to_string().contains('0') && !rows.to_string().contains('1'),
         "{rows}"
     );
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).expect("a folder");
-    for entry in std::fs::read_dir(from).expect("listed").flatten() {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            std::fs::copy(entry.path(), target).expect("copied");
-        }
-    }
 }

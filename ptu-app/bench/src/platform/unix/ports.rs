@@ -1,6 +1,6 @@
 //! Opens serial ports, and tells who holds one.
 //!
-//! The lock is the kernel's advisory one, which terminal programs heed, too, and which ends with its process however
+//! The lock is the kernel's advisory one, which terminal programs respect, too, and which ends with its process however
 //! that ends. A port of hardware is closed to all other programs besides; a pseudo-terminal is not, because that would
 //! outlast a killed tester as long as the other end is open.
 

@@ -20,7 +20,7 @@ pub fn start_of(process: u32) -> Option<String> {
     calls::started_at(process).map(|ticks| ticks.to_string())
 }
 
-/// Consoles of Windows 10 heed control sequences once they are told to.
+/// Consoles of Windows 10 act on control sequences once that is switched on.
 pub fn ready_output() {
     let _ = anstyle_query::windows::enable_ansi_colors();
 }
