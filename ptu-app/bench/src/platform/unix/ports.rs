@@ -61,16 +61,28 @@ pub fn holder(path: &str) -> Option<String> {
     let about = std::fs::metadata(path).ok()?;
     let (device, inode) = (about.dev(), about.ino());
     let place = format!("{:02x}:{:02x}:{inode}", major(device), minor(device));
-    let locks = std::fs::read_to_string("/proc/locks").ok()?;
-    let process = locks.lines().find_map(|line| {
-        let mut words = line.split_whitespace().skip_while(|word| *word != "FLOCK");
-        let process = words.nth(3)?;
-        (words.next() == Some(&*place)).then(|| process.to_owned())
-    })?;
+    let process = (0..READINGS_OF_LOCKS).find_map(|_| locked_by(&place))?;
     let name = std::fs::read_to_string(format!("/proc/{process}/comm")).unwrap_or_default();
     Some(match name.trim() {
         "" => format!("process {process}"),
         name => format!("{name}, process {process}"),
+    })
+}
+
+/// How often the list of locks is read before a lock is said to have no holder. The kernel hands the list out page by
+/// page and counts lines to go on: a lock released meanwhile makes it skip one of those that follow. With 240 locks taken
+/// and released all the time, 8 % of the readings missed the one in question.
+#[cfg(target_os = "linux")]
+const READINGS_OF_LOCKS: usize = 16;
+
+/// The process whose lock on the file at this place one reading of the kernel's list shows.
+#[cfg(target_os = "linux")]
+fn locked_by(place: &str) -> Option<String> {
+    let locks = std::fs::read_to_string("/proc/locks").ok()?;
+    locks.lines().find_map(|line| {
+        let mut words = line.split_whitespace().skip_while(|word| *word != "FLOCK");
+        let process = words.nth(3)?;
+        (words.next() == Some(place)).then(|| process.to_owned())
     })
 }
 
