@@ -144,7 +144,6 @@ pub(crate) fn merge_faults(backend: &Backend, kept: i64, merged: i64) -> SqlResu
     for sql in MOVE_REPAIRS.iter().chain(&MOVE_ROWS) {
         backend.execute(sql, &values![kept, merged])?;
     }
-    backend.execute(SUBTRACT_FROM_TALLY, &values![merged])?;
     backend.execute("DELETE FROM fault WHERE seq = ?1", &values![merged])?;
     recompute_fault(backend, kept)?;
     backend.execute(UPDATE_REPAIRS, &values![kept])?;
@@ -163,23 +162,6 @@ pub(crate) const MOVE_ROWS: [&str; 4] = [
 const MOVE_REPAIRS: [&str; 1] = [
     "UPDATE repair SET fault = ?1 WHERE fault = ?2 AND unit = (SELECT unit FROM fault WHERE seq = ?2)",
 ];
-
-/// Subtracts from the counts what the file's triggers counted of the fault that is removed.
-const SUBTRACT_FROM_TALLY: &str = "
-    INSERT INTO tally(dim, grain, at, key, opened, closed, bare)
-    SELECT dim, grain, at,
-        CASE dim WHEN 0 THEN '' WHEN 1 THEN code WHEN 2 THEN lru WHEN 3 THEN unit ELSE line END,
-        opened, closed, closed * (repairs = 0)
-    FROM fault,
-        (SELECT 0 AS dim UNION ALL SELECT 1 UNION ALL SELECT 2 UNION ALL SELECT 3 UNION ALL SELECT 4),
-        (SELECT 0 AS grain, utc_month(first_at_us) AS at, -1 AS opened, 0 AS closed
-            FROM fault WHERE seq = ?1
-        UNION ALL SELECT 1, utc_day(first_at_us), -1, 0 FROM fault WHERE seq = ?1
-        UNION ALL SELECT 0, utc_month(closed_at_us), 0, -1 FROM fault WHERE seq = ?1
-        UNION ALL SELECT 1, utc_day(closed_at_us), 0, -1 FROM fault WHERE seq = ?1)
-    WHERE seq = ?1 AND at IS NOT NULL
-    ON CONFLICT DO UPDATE SET opened = opened + excluded.opened, closed = closed + excluded.closed,
-        bare = bare + excluded.bare";
 
 /// Recomputes when the fault was opened before each of its repairs, from the events of both faults.
 const UPDATE_REPAIRS: &str = concat!(

@@ -58,7 +58,6 @@ mod text_enum;
 pub mod trace;
 mod trace_place;
 mod transaction;
-mod units;
 mod verify;
 mod views;
 mod withdrawal;

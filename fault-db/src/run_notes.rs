@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::limits;
 use crate::seal;
-use crate::server::derived_columns;
+use crate::server::derived_columns::note_words;
 use crate::store::Store;
 use crate::trace_place::TracePlace;
 
@@ -36,33 +36,7 @@ impl Store {
         text: &str,
         at_us: i64,
     ) -> Result<(), StoreError> {
-        const DOING: &str = "storing a note on a run";
-        limits::name("the name of who says it", who)?;
-        limits::note("the note", text)?;
-        let id = self.mint()?;
-        self.change(DOING, |backend| {
-            let seq: Option<i64> = self.first(
-                DOING,
-                "SELECT seq FROM run WHERE id = ?1",
-                &values![run],
-                |row| row.get(0),
-            )?;
-            let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
-            let add = || match backend {
-                Backend::Server(_) => {
-                    derived_columns::insert_run_note(backend, id, seq, at_us, who, text)
-                }
-                Backend::File(_) => {
-                    backend.execute(
-                        "INSERT INTO run_note(id, run, at_us, who, text)
-                         VALUES (?1, ?2, ?3, ?4, ?5)",
-                        &values![id, seq, at_us, who, text],
-                    )?;
-                    seal::events_and_notes::note(backend, id, &values![id, run, at_us, who, text])
-                }
-            };
-            add().map_err(|error| self.failed(DOING, error))
-        })
+        self.insert_run_note(run, None, who, text, at_us)
     }
 
     /// Adds a note to a place in a trace; it is a note on the run of the trace.
@@ -77,7 +51,51 @@ impl Store {
         at_us: i64,
     ) -> Result<(), StoreError> {
         let run = self.run_of_trace(place.trace)?;
-        self.add_run_note(run, who, &place.before(text), at_us)
+        self.insert_run_note(run, Some(place), who, text, at_us)
+    }
+
+    fn insert_run_note(
+        &self,
+        run: Id,
+        place: Option<TracePlace>,
+        who: &str,
+        text: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        const DOING: &str = "storing a note on a run";
+        limits::name("the name of who says it", who)?;
+        limits::note("the note", text)?;
+        let id = self.mint()?;
+        let (trace, place_us) = (place.map(|at| at.trace), place.map(|at| at.at_us));
+        self.change(DOING, |backend| {
+            let seq: Option<i64> = self.first(
+                DOING,
+                "SELECT seq FROM run WHERE id = ?1",
+                &values![run],
+                |row| row.get(0),
+            )?;
+            let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
+            let add = || match backend {
+                Backend::Server(_) => {
+                    backend.execute(
+                        "INSERT INTO run_note(id, run, at_us, who, trace, place_us, text, words)
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, CAST(?8 AS tsvector))",
+                        &values![id, seq, at_us, who, trace, place_us, text, note_words(text)],
+                    )?;
+                    Ok(())
+                }
+                Backend::File(_) => {
+                    backend.execute(
+                        "INSERT INTO run_note(id, run, at_us, who, trace, place_us, text)
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+                        &values![id, seq, at_us, who, trace, place_us, text],
+                    )?;
+                    let sealed = values![id, run, at_us, who, trace, place_us, text];
+                    seal::events_and_notes::note(backend, id, &sealed)
+                }
+            };
+            add().map_err(|error| self.failed(DOING, error))
+        })
     }
 
     /// Notes at places in a trace, by their places.
@@ -85,18 +103,17 @@ impl Store {
     /// # Errors
     /// There is no such trace, or the notes cannot be read.
     pub fn trace_notes(&self, trace: Id) -> Result<Vec<RunNote>, StoreError> {
-        const DOING: &str = "reading the notes on a trace";
         let run = self.run_of_trace(trace)?;
-        let notes = self
-            .backend()
-            .first("SELECT seq FROM run WHERE id = ?1", &values![run], |row| {
-                row.get(0)
-            })
-            .and_then(|seq| seq.map_or(Ok(Vec::new()), |seq| self.run_notes(seq)));
-        let mut notes = notes.map_err(|error| self.failed(DOING, error))?;
-        notes.retain(|note| note.place.is_some_and(|place| place.trace == trace));
-        notes.sort_by_key(|note| note.place.map(|place| place.at_us));
-        Ok(notes)
+        let sql = format!(
+            "{NOTES} JOIN run r ON r.seq = n.run WHERE r.id = ?1 AND n.trace = ?2
+             ORDER BY n.place_us, n.at_us, n.id"
+        );
+        self.select(
+            "reading the notes on a trace",
+            &sql,
+            &values![run, trace],
+            note,
+        )
     }
 
     fn run_of_trace(&self, trace: Id) -> Result<Id, StoreError> {
@@ -111,22 +128,21 @@ impl Store {
 
     /// Notes on the run with this row number, oldest first.
     pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
-        self.backend().select(
-            "SELECT at_us, who, text FROM run_note WHERE run = ?1 ORDER BY at_us, id",
-            &values![run],
-            |row| {
-                let stored: String = row.get(2)?;
-                let (place, text) = match TracePlace::split(&stored) {
-                    Some((place, text)) => (Some(place), text.to_owned()),
-                    None => (None, stored),
-                };
-                Ok(RunNote {
-                    at_us: row.get(0)?,
-                    who: row.get(1)?,
-                    place,
-                    text,
-                })
-            },
-        )
+        let sql = format!("{NOTES} WHERE n.run = ?1 ORDER BY n.at_us, n.id");
+        self.backend().select(&sql, &values![run], note)
     }
+}
+
+const NOTES: &str = "SELECT n.at_us, n.who, n.text, n.trace, n.place_us FROM run_note n";
+
+fn note(row: Row<'_>) -> SqlResult<RunNote> {
+    let (trace, at_us) = (row.get::<Option<Id>>(3)?, row.get::<Option<i64>>(4)?);
+    Ok(RunNote {
+        at_us: row.get(0)?,
+        who: row.get(1)?,
+        place: trace
+            .zip(at_us)
+            .map(|(trace, at_us)| TracePlace { trace, at_us }),
+        text: row.get(2)?,
+    })
 }

@@ -284,7 +284,7 @@ impl<'a> RunWriter<'a> {
                 conn.prepare_cached(SQL)?.execute(values)?;
                 match is_rest {
                     true => Ok(()),
-                    false => seal::append(store.backend(), "run", id, &payload, digest),
+                    false => seal::append(store.backend(), "run", id, &payload, &digest),
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;

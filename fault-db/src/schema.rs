@@ -1,4 +1,4 @@
-//! The schema's versions: one SQL file each, applied in order; `user_version` counts them.
+//! The schema of a file: one SQL text per version, applied in order; `user_version` counts them.
 
 use rusqlite::Connection;
 use rusqlite::config::DbConfig;
@@ -9,45 +9,40 @@ pub const APPLICATION_ID: i32 = 0x4654_4442;
 /// The schema version this crate reads and writes.
 pub const SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-const STEPS: &[&str] = &[
-    include_str!("schema/0001.sql"),
-    include_str!("schema/0002.sql"),
-    include_str!("schema/0003.sql"),
-    concat!(
-        include_str!("schema/0004.sql"),
-        include_str!("schema/views.sql"),
-        include_str!("schema/counts.sql"),
-        include_str!("schema/words.sql")
-    ),
-    include_str!("schema/0005.sql"),
-    include_str!("schema/0006.sql"),
-    concat!(
-        include_str!("schema/0007.sql"),
-        include_str!("schema/packed.sql")
-    ),
-    include_str!("schema/0008.sql"),
-];
+/// The first creates all; each later one changes what the one before it left.
+const STEPS: &[&str] = &[concat!(
+    include_str!("schema/tables.sql"),
+    include_str!("schema/triggers.sql"),
+    include_str!("schema/views.sql"),
+)];
 
-/// Recomputes the tables of counts.
-pub(crate) const COUNTS: &str = concat!(
-    include_str!("schema/counts.sql"),
-    include_str!("schema/packed.sql")
-);
+/// Fills the derived tables.
+pub(crate) const DERIVED: &str = include_str!("schema/derived.sql");
 
-/// Rebuilds the full-text index of notes.
+/// Fills the full-text index of notes.
 pub(crate) const WORDS: &str = include_str!("schema/words.sql");
 
-/// Migrates a file to another schema version, in the caller's transaction.
-pub(crate) fn bring_to(conn: &Connection, version: usize) -> Result<(), rusqlite::Error> {
-    let from = usize::try_from(user_version(conn)?).unwrap_or(version);
-    let steps = STEPS.get(from..version).unwrap_or_default();
-    // This is the program's own SQL: one step widens the check of a column, which no `ALTER TABLE` does.
+/// Creates a file's tables, or migrates those of an earlier version, in the caller's transaction.
+pub(crate) fn bring_up_to_date(conn: &Connection) -> Result<(), rusqlite::Error> {
+    bring_to(conn, STEPS)
+}
+
+/// The tables, indexes, views and triggers of this version, in an empty database.
+pub(crate) fn create(conn: &Connection, version: i32) -> Result<(), rusqlite::Error> {
+    let version = usize::try_from(version).unwrap_or_default();
+    bring_to(conn, &STEPS[..version.min(STEPS.len())])
+}
+
+fn bring_to(conn: &Connection, steps: &[&str]) -> Result<(), rusqlite::Error> {
+    let from = usize::try_from(user_version(conn)?).unwrap_or(steps.len());
+    // This is the program's own SQL: a step may widen the check of a column, which no `ALTER TABLE` does.
     let defensive = conn.db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE)?;
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, false)?;
-    let done = steps.iter().try_for_each(|step| conn.execute_batch(step));
+    let steps_left = steps.get(from..).unwrap_or_default();
+    let done = (steps_left.iter()).try_for_each(|step| conn.execute_batch(step));
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, defensive)?;
     done?;
-    conn.pragma_update(None, "user_version", version as i64)
+    conn.pragma_update(None, "user_version", steps.len() as i64)
 }
 
 /// The file's own schema version; 0 for a new one.
@@ -60,17 +55,43 @@ mod tests {
     use super::*;
     use crate::sql_functions;
 
-    #[test]
-    fn the_sql_names_our_application_id() {
-        let sql = format!("PRAGMA application_id = {APPLICATION_ID};");
-        assert!(include_str!("schema/0001.sql").contains(&sql));
+    /// A made-up next version: a column with a value in each row, and an index.
+    const NEXT: &[&str] = &[
+        STEPS[0],
+        "ALTER TABLE run ADD COLUMN depot TEXT NOT NULL DEFAULT '';
+         UPDATE run SET depot = 'depot ' || seq;
+         CREATE INDEX run_by_depot ON run(depot);",
+    ];
+
+    const RUNS: &str = "INSERT INTO unit VALUES (1, 'ATC-1', 'atc', 'sg100', '{}');
+        WITH RECURSIVE n(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM n WHERE n < 2000)
+        INSERT INTO run(id, unit, unit_kind, unit_config_name, sw_versions, line, train, seed, operator, source,
+            started_at_us, app_version, scripts_sha256, unit_config_sha256, owner)
+        SELECT randomblob(16), 1, 'atc', 'sg100', '{}', 'line8', '', 1, '', 'sim', n, '', '', '', '' FROM n;";
+
+    fn in_memory() -> Connection {
+        let conn = Connection::open_in_memory().expect("a database in memory");
+        sql_functions::register(&conn).expect("functions");
+        conn
     }
 
     #[test]
-    fn the_steps_apply() {
-        let conn = Connection::open_in_memory().expect("a database in memory");
-        sql_functions::register(&conn).expect("functions");
-        bring_to(&conn, STEPS.len()).expect("every step applies to the one before");
+    fn the_sql_names_our_application_id() {
+        let sql = format!("PRAGMA application_id = {APPLICATION_ID};");
+        assert!(STEPS[0].contains(&sql));
+    }
+
+    #[test]
+    fn a_file_is_migrated_once_and_keeps_its_rows() {
+        let conn = in_memory();
+        bring_up_to_date(&conn).expect("created");
+        conn.execute_batch(RUNS).expect("runs");
+        bring_to(&conn, NEXT).expect("migrated");
+        bring_to(&conn, NEXT).expect("nothing left to do");
+        assert_eq!(user_version(&conn).expect("a version"), 2);
+        let last = "SELECT depot FROM run ORDER BY started_at_us DESC LIMIT 1";
+        let last: String = conn.query_row(last, [], |row| row.get(0)).expect("a row");
+        assert_eq!(last, "depot 2000");
     }
 
     /// Goal: a program killed in the middle of bringing a file up to date leaves the file it found.
@@ -81,29 +102,14 @@ mod tests {
         let dir = tempfile::tempdir().expect("a directory");
         let path = dir.path().join("a.db");
         let conn = Connection::open(&path).expect("made");
-        let old = [
-            include_str!("schema/0001.sql"),
-            include_str!("schema/0002.sql"),
-            include_str!("schema/0003.sql"),
-        ];
-        let runs = "WITH RECURSIVE n(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM n WHERE n < 2000)
-            INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
-                scripts_sha256, unit_config_sha256, owner)
-            SELECT randomblob(16), 1, 'line8', 1, '', 'sim', n, '', '', '', '' FROM n";
-        conn.execute_batch(&format!(
-            "PRAGMA journal_mode = WAL; {} PRAGMA user_version = 3;
-             INSERT INTO unit VALUES (1, 'ATC-1', 'atc', 'sg100', '{{}}'); {runs};
-             PRAGMA wal_checkpoint(TRUNCATE); PRAGMA cache_size = 5; BEGIN IMMEDIATE",
-            old.concat()
-        ))
-        .expect("an old file");
         sql_functions::register(&conn).expect("functions");
-        let counts = include_str!("schema/counts.sql");
-        for sql in [include_str!("schema/0004.sql"), counts, WORDS] {
-            conn.execute_batch(sql).expect("under way");
-        }
-        conn.execute_batch("UPDATE run SET train = 'T' || seq; PRAGMA user_version = 4")
-            .expect("nearly done");
+        conn.execute_batch("PRAGMA journal_mode = WAL")
+            .expect("set");
+        bring_up_to_date(&conn).expect("created");
+        conn.execute_batch(RUNS).expect("runs");
+        let begin = "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA cache_size = 5; BEGIN IMMEDIATE";
+        conn.execute_batch(begin).expect("begun");
+        bring_to(&conn, NEXT).expect("nearly done");
 
         let killed = dir.path().join("killed.db");
         let log = |path: &std::path::Path| path.with_extension("db-wal");
@@ -111,13 +117,13 @@ mod tests {
         let written = std::fs::copy(log(&path), log(&killed)).expect("its log");
         assert!(written > 100_000, "{written}: the work was under way");
         let found = Connection::open(&killed).expect("opens");
-        assert_eq!(user_version(&found).expect("readable"), 3);
+        assert_eq!(user_version(&found).expect("readable"), SCHEMA_VERSION);
         let one = |sql: &str| found.query_row(sql, [], |row| row.get::<_, String>(0));
         assert_eq!(one("PRAGMA integrity_check").expect("checked"), "ok");
-        let train = one("SELECT train FROM run").expect_err("not a column yet");
-        assert!(train.to_string().contains("no such column"), "{train}");
+        let depot = one("SELECT depot FROM run").expect_err("not a column yet");
+        assert!(depot.to_string().contains("no such column"), "{depot}");
         sql_functions::register(&found).expect("functions");
-        bring_to(&found, STEPS.len()).expect("and it can be brought up to date");
-        assert_eq!(user_version(&found).expect("readable"), SCHEMA_VERSION);
+        bring_to(&found, NEXT).expect("and it can be brought up to date");
+        assert_eq!(user_version(&found).expect("readable"), 2);
     }
 }

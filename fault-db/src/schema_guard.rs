@@ -64,7 +64,7 @@ fn made(version: i32) -> Result<&'static Objects> {
     }
     let conn = Connection::open_in_memory()?;
     sql_functions::register(&conn)?;
-    schema::bring_to(&conn, place)?;
+    schema::create(&conn, version)?;
     let found = objects(&conn)?;
     Ok(MADE[place].get_or_init(|| found))
 }
@@ -156,7 +156,7 @@ mod tests {
         for version in 1..=SCHEMA_VERSION {
             let conn = Connection::open_in_memory().expect("a database in memory");
             sql_functions::register(&conn).expect("functions");
-            schema::bring_to(&conn, version as usize).expect("made");
+            schema::create(&conn, version).expect("made");
             conn.execute_batch("ANALYZE").expect("statistics");
             assert_eq!(foreign_objects(&conn, version).expect("compared"), [""; 0]);
             let planted = "CREATE TRIGGER x AFTER UPDATE ON run BEGIN SELECT 1; END;

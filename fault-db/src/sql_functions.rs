@@ -2,7 +2,7 @@
 
 use chrono::{DateTime, Datelike as _, NaiveDate, NaiveTime};
 use rusqlite::Connection;
-use rusqlite::functions::{Aggregate, Context, FunctionFlags};
+use rusqlite::functions::{Context, FunctionFlags};
 use rusqlite::types::FromSqlError;
 
 use crate::full_text::{Search, words};
@@ -10,7 +10,6 @@ use crate::packed::PackRows;
 use crate::record::{RepairRecord, part_name};
 use crate::server::derived_columns;
 use crate::statistics;
-use crate::units;
 
 /// Microseconds of a day.
 pub(crate) const DAY_US: i64 = 86_400_000_000;
@@ -22,10 +21,6 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
         | FunctionFlags::SQLITE_INNOCUOUS;
     conn.create_scalar_function("utc_day", 1, flags, |context| at(context, utc_day))?;
     conn.create_scalar_function("utc_month", 1, flags, |context| at(context, utc_month))?;
-    conn.create_scalar_function("with_unit", 2, flags, |context| {
-        Ok(units::with(context.get_raw(0).as_blob()?, context.get(1)?))
-    })?;
-    conn.create_aggregate_function("unit_set", 1, flags, UnitSet)?;
     statistics::register(conn, flags)?;
     conn.create_aggregate_function("packed_rows", -1, flags, PackRows)?;
     conn.create_scalar_function("part_of", 1, flags, |context| {
@@ -55,26 +50,6 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
             .as_ref()
             .is_some_and(|asked| asked.is_in(&said(text))))
     })
-}
-
-/// Aggregate: the set of the units in a group.
-struct UnitSet;
-
-impl Aggregate<Vec<u8>, Vec<u8>> for UnitSet {
-    fn init(&self, _: &mut Context<'_>) -> rusqlite::Result<Vec<u8>> {
-        Ok(Vec::new())
-    }
-
-    fn step(&self, context: &mut Context<'_>, set: &mut Vec<u8>) -> rusqlite::Result<()> {
-        if let Some(unit) = context.get(0)? {
-            units::insert(set, unit);
-        }
-        Ok(())
-    }
-
-    fn finalize(&self, _: &mut Context<'_>, set: Option<Vec<u8>>) -> rusqlite::Result<Vec<u8>> {
-        Ok(set.unwrap_or_default())
-    }
 }
 
 /// NULL in, NULL out.

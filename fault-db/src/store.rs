@@ -19,9 +19,6 @@ use crate::schema::SCHEMA_VERSION;
 use crate::trace::{Channel, TraceCodec, TraceError};
 use crate::{schema, schema_guard, seal};
 
-/// The first schema with a chain of seals over events and notes.
-const SEALED_SINCE: i32 = 5;
-
 /// More than the number of distinct repeated statements in this crate.
 const STATEMENT_CACHE: usize = 64;
 
@@ -177,12 +174,11 @@ impl Store {
                 if from == SCHEMA_VERSION {
                     return self.name();
                 }
-                schema::bring_to(conn, SCHEMA_VERSION as usize).map_err(failed)?;
-                // From schema 5 on the chain is begun already.
-                if from >= SEALED_SINCE {
+                schema::bring_up_to_date(conn).map_err(failed)?;
+                if from > 0 {
                     return self.name();
                 }
-                seal::begin(&self.backend, from, minted).map_err(|error| self.failed(DOING, error))
+                seal::begin(&self.backend, minted).map_err(|error| self.failed(DOING, error))
             });
         }
         self.name()

@@ -38,7 +38,7 @@ mod tests {
     fn the_page_describes_every_column() {
         let conn = Connection::open_in_memory().expect("a database in memory");
         sql_functions::register(&conn).expect("functions");
-        schema::bring_to(&conn, schema::SCHEMA_VERSION as usize).expect("the schema");
+        schema::bring_up_to_date(&conn).expect("the schema");
         let sql = "SELECT v.name, c.name FROM sqlite_schema v, pragma_table_info(v.name) c
             WHERE v.type = 'view' ORDER BY 1, 2";
         let mut select = conn.prepare(sql).expect("a question");

@@ -129,32 +129,6 @@ impl Resolved<'_> {
         Ok(())
     }
 
-    /// The number of conditions if the filter has only unit, code, part, line and a span of time, else
-    /// `None`.
-    pub fn identity_filters_only(&self) -> Option<usize> {
-        let FaultFilter {
-            serial,
-            train,
-            cause,
-            severity,
-            states,
-            procedure,
-            run,
-            note,
-            ..
-        } = self.filter;
-        let texts = [serial, train, cause, severity, procedure, note];
-        let is_plain =
-            texts.iter().all(|text| text.is_none()) && states.is_empty() && run.is_none();
-        let asked = [
-            self.unit.is_some(),
-            self.codes.is_some(),
-            self.lrus.is_some(),
-            self.filter.line.is_some(),
-        ];
-        is_plain.then(|| asked.iter().filter(|asked| **asked).count())
-    }
-
     pub fn unit(&self) -> Option<i64> {
         self.unit
     }
@@ -342,19 +316,8 @@ impl Resolved<'_> {
 
     /// The conditions with the span of time, on the time column `at` of `x`.
     pub fn conditions_at(&self, backend: &Backend, of: FilteredTable, at: &str) -> Conditions {
-        self.conditions_from(backend, of, at, self.filter.since_us)
-    }
-
-    /// The same, and not before `since_us`: one lower bound, since an index is searched by one only.
-    pub fn conditions_from(
-        &self,
-        backend: &Backend,
-        of: FilteredTable,
-        at: &str,
-        since_us: Option<i64>,
-    ) -> Conditions {
         let mut all = self.conditions(backend, of, None);
-        all.add(&format!("x.{at} >= ?"), since_us.max(self.filter.since_us));
+        all.add(&format!("x.{at} >= ?"), self.filter.since_us);
         all.add(&format!("x.{at} < ?"), self.filter.until_us);
         all
     }

@@ -141,7 +141,7 @@ impl Store {
         let rows = rows.map_or(0..row.rows, |rows| {
             rows.start.min(row.rows)..rows.end.min(row.rows)
         });
-        let columns = if is_part && shape.has_checksums() && row.bytes > FETCHED_WHOLE {
+        let columns = if is_part && row.bytes > FETCHED_WHOLE {
             self.parts(id, &row, &shape, &wanted, &rows)?
         } else {
             self.fetched(id, row.seq, &shape, &wanted, &rows, is_part)?
@@ -179,7 +179,7 @@ impl Store {
                 return Ok(Err(TraceError::Checksum));
             };
             // The checksums of the parts suffice, where there are some.
-            let whole = !(is_part && shape.has_checksums());
+            let whole = !is_part;
             let columns = self.codec().decode(data, shape, wanted, rows.clone());
             // Damage with a known place is reported before damage without.
             Ok(match columns {

@@ -309,7 +309,9 @@ pub(super) static TABLES: [Table; COUNT] = [
     Table {
         of: TableId::Note,
         name: "run_note",
-        columns: columns![id Bytes, run Run, at_us Integer, who Text, text Text],
+        columns: columns![
+            id Bytes, run Run, at_us Integer, who Text, trace Bytes, place_us Integer, text Text,
+        ],
         derived: &[Column {
             name: "words",
             kind: Kind::Text,
@@ -359,7 +361,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         of: TableId::Seal,
         name: "seal",
         columns: columns![
-            origin Bytes, ordinal Integer, what Text, id Bytes, covers Integer, says Text, digest Bytes,
+            origin Bytes, ordinal Integer, what Text, id Bytes, says Text, digest Bytes,
             hash Bytes,
         ],
         by: "origin",

@@ -1,14 +1,17 @@
--- What `ptu db query` is asked about: fault-db/VIEWS.md says what each column means. Ids are text as
--- they are printed, times are UTC text, and beside each the number of microseconds an index knows.
+-- What `ptu db query` is asked about: fault-db/VIEWS.md says what each column means. Ids are text as they are
+-- printed, times are UTC text, and beside each the number of microseconds by which an index finds it.
 
 CREATE VIEW runs AS
   SELECT
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS id,
-    u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source,
+    u.serial AS unit, u.kind, r.line, r.train, r.operator, r.source, r.connection, r.symptom,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.finished_at_us / 1000 / 1000.0, 'unixepoch') AS finished_at, r.verdict,
-    CAST(r.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, r.injected, r.app_version, r.started_at_us
+    CAST(r.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, r.injected, r.app_version,
+    CASE WHEN r.continues IS NOT NULL THEN
+      lower(hex(substr(r.continues, 1, 4)) || '-' || hex(substr(r.continues, 5, 2)) || '-' || hex(substr(r.continues, 7, 2)) || '-'
+      || hex(substr(r.continues, 9, 2)) || '-' || hex(substr(r.continues, 11))) END AS continues, r.started_at_us
   FROM run r JOIN unit u ON u.seq = r.unit;
 
 CREATE VIEW steps AS
@@ -16,7 +19,7 @@ CREATE VIEW steps AS
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
     u.serial AS unit, s.step_index, s.procedure, s.name, s.verdict,
-    s.message, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line,
+    s.message, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     r.started_at_us
   FROM step s JOIN run r ON r.seq = s.run JOIN unit u ON u.seq = r.unit;
@@ -26,7 +29,7 @@ CREATE VIEW measurements AS
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
     u.serial AS unit, s.procedure, s.name AS step, m.step_index, m.name,
-    m.value, m.unit AS measured_in, m.low, m.high, m.verdict,
+    m.value, m.unit AS measured_in, m.low, m.high, m.verdict, m.limit_source,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     r.started_at_us
   FROM measurement m JOIN step s ON s.run = m.run AND s.step_index = m.step_index
@@ -36,7 +39,7 @@ CREATE VIEW faults AS
   SELECT
     lower(hex(substr(f.id, 1, 4)) || '-' || hex(substr(f.id, 5, 2)) || '-' || hex(substr(f.id, 7, 2)) || '-'
       || hex(substr(f.id, 9, 2)) || '-' || hex(substr(f.id, 11))) AS id,
-    u.serial AS unit, f.code, f.code_name AS name, f.lru, f.severity, f.state,
+    u.serial AS unit, f.code, f.code_name AS name, f.lru, coalesce(f.cause, f.lru) AS cause, f.severity, f.state,
     f.line, f.occurrences, f.repairs,
     strftime('%Y-%m-%dT%H:%M:%fZ', f.first_at_us / 1000 / 1000.0, 'unixepoch') AS first_at,
     strftime('%Y-%m-%dT%H:%M:%fZ', f.last_at_us / 1000 / 1000.0, 'unixepoch') AS last_at,
@@ -66,7 +69,12 @@ CREATE VIEW events AS
     lower(hex(substr(f.id, 1, 4)) || '-' || hex(substr(f.id, 5, 2)) || '-' || hex(substr(f.id, 7, 2)) || '-'
       || hex(substr(f.id, 9, 2)) || '-' || hex(substr(f.id, 11))) AS fault_id,
     e.kind, e.who,
-    CASE WHEN e.kind = 'repair' THEN json_extract(e.body, '$.note') ELSE e.body END AS text, e.state, e.turn,
+    CASE WHEN e.kind = 'repair' THEN json_extract(e.body, '$.note')
+      WHEN e.kind IN ('cause', 'diagnosed')
+        THEN trim(json_extract(e.body, '$.part') || ' ' || json_extract(e.body, '$.note'))
+      ELSE e.body END AS text,
+    e.state,
+    EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id) AS withdrawn, e.turn,
     strftime('%Y-%m-%dT%H:%M:%fZ', e.at_us / 1000 / 1000.0, 'unixepoch') AS happened_at, e.at_us
   FROM fault_event e JOIN fault f ON f.seq = e.fault;
 
@@ -111,5 +119,9 @@ CREATE VIEW notes AS
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
     u.serial AS unit, n.who, n.text,
+    CASE WHEN n.trace IS NOT NULL THEN
+      lower(hex(substr(n.trace, 1, 4)) || '-' || hex(substr(n.trace, 5, 2)) || '-' || hex(substr(n.trace, 7, 2)) || '-'
+      || hex(substr(n.trace, 9, 2)) || '-' || hex(substr(n.trace, 11))) END AS trace_id,
+    CAST(n.place_us AS DOUBLE PRECISION) / 1e6 AS place_s,
     strftime('%Y-%m-%dT%H:%M:%fZ', n.at_us / 1000 / 1000.0, 'unixepoch') AS noted_at, n.at_us
   FROM run_note n JOIN run r ON r.seq = n.run JOIN unit u ON u.seq = r.unit;

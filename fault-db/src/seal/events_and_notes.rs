@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::append;
 use super::canonical::{CanonicalHash, take_rows};
-use super::{append, hex};
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 
@@ -98,7 +98,7 @@ pub(crate) fn event(
     hash.values(fields);
     hash.values(&values![serial, code, lru]);
     hash.text(&payload);
-    append(backend, "event", id, &payload, hash.finish())
+    append(backend, "event", id, &payload, &hash.finish())
 }
 
 /// Seals an event that came without a seal.
@@ -121,11 +121,11 @@ pub(crate) fn seal_event_as_found(backend: &Backend, event: i64, found: &str) ->
         "event",
         id,
         &payload,
-        event_digest(backend, event, &payload)?,
+        &event_digest(backend, event, &payload)?,
     )
 }
 
-const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.text
+const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.trace, n.place_us, n.text
      FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1";
 
 /// The digest of a stored note on a run.
@@ -141,7 +141,7 @@ pub(crate) fn note(backend: &Backend, id: Id, fields: &[Value<'_>]) -> SqlResult
     let mut hash = CanonicalHash::of("note");
     hash.values(fields);
     hash.text("");
-    append(backend, "note", id, "", hash.finish())
+    append(backend, "note", id, "", &hash.finish())
 }
 
 /// Seals a note that came without a seal.
@@ -154,55 +154,8 @@ pub(crate) fn seal_note_as_found(backend: &Backend, note: i64, found: &str) -> S
             "note",
             id,
             &payload,
-            note_digest(backend, note, &payload)?,
+            &note_digest(backend, note, &payload)?,
         ),
         None => Ok(()),
     }
-}
-
-/// The digest function of a row number and the entry's payload.
-type DigestOf = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
-
-/// One digest over all events or notes up to a row number: those stored before schema 5.
-pub(crate) fn earlier(
-    backend: &Backend,
-    what: SealedTable,
-    last: i64,
-) -> SqlResult<EarlierPayload> {
-    let (seqs, digest): (&str, DigestOf) = match what {
-        SealedTable::Events => (
-            "SELECT seq FROM fault_event WHERE seq <= ?1 ORDER BY seq",
-            event_digest,
-        ),
-        SealedTable::Notes => (
-            "SELECT seq FROM run_note WHERE seq <= ?1 ORDER BY seq",
-            note_digest,
-        ),
-    };
-    let seqs: Vec<i64> = backend.select(seqs, &values![last], |row| row.get(0))?;
-    let mut all = CanonicalHash::new();
-    for seq in &seqs {
-        all.plain(&digest(backend, *seq, "")?);
-    }
-    Ok(EarlierPayload {
-        last: seqs.last().copied().unwrap_or(0),
-        count: seqs.len(),
-        sha256: hex(&all.finish()),
-    })
-}
-
-/// Which table.
-#[derive(Clone, Copy)]
-pub(crate) enum SealedTable {
-    Events,
-    Notes,
-}
-
-/// Rows stored before they were sealed one by one.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct EarlierPayload {
-    /// The last row number.
-    pub last: i64,
-    pub count: usize,
-    pub sha256: String,
 }

@@ -30,8 +30,6 @@ pub struct RunSealed {
     pub seal: String,
     /// SHA-256 of the run's content, in hex.
     pub digest: String,
-    /// Digest version: 1 by an earlier version, covering less; 2 complete.
-    pub covers: i64,
     /// How the run came, if it came without a seal and was sealed as found.
     pub found: Option<String>,
 }
@@ -78,17 +76,16 @@ pub(crate) fn head_of(backend: &Backend, origin: Id) -> SqlResult<Option<(i64, V
 /// The seal of a run; that of the file which recorded it before those of files which found it.
 pub(crate) fn sealed_as(backend: &Backend, run: Id) -> SqlResult<Option<RunSealed>> {
     let sealed = backend.select(
-        "SELECT origin, ordinal, hash, digest, covers, says FROM seal
+        "SELECT origin, ordinal, hash, digest, says FROM seal
          WHERE id = ?1 AND what = 'run' ORDER BY origin, ordinal",
         &values![run],
         |row| {
-            let payload = super::run::RunPayload::of(row.get(5)?).unwrap_or_default();
+            let payload = super::run::RunPayload::of(row.get(4)?).unwrap_or_default();
             Ok(RunSealed {
                 file: row.get(0)?,
                 entry: row.get(1)?,
                 seal: hex(row.get(2)?),
                 digest: hex(row.get(3)?),
-                covers: row.get(4)?,
                 found: payload.found,
             })
         },

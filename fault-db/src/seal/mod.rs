@@ -11,40 +11,27 @@ pub(crate) mod events_and_notes;
 mod head;
 pub(crate) mod run;
 pub(crate) mod trace;
-pub(crate) mod version1;
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
 
 use canonical::CanonicalHash;
-pub(crate) use canonical::DIGEST_VERSION;
 pub use head::{RunSealed, SealHead};
 pub(crate) use head::{head_of, sealed_as};
 
 use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
-use events_and_notes::{EarlierPayload, SealedTable};
+use crate::schema::SCHEMA_VERSION;
 
 /// How a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
 pub(crate) const BY_SYNC: &str = "sync";
-const BY_UPDATE: &str = "an earlier version";
 
 /// Appends an entry to the file's own chain.
 pub(crate) fn append(
     backend: &Backend,
     what: &str,
     id: Id,
-    payload: &str,
-    digest: [u8; 32],
-) -> SqlResult<()> {
-    append_as(backend, what, id, DIGEST_VERSION, payload, &digest)
-}
-
-fn append_as(
-    backend: &Backend,
-    what: &str,
-    id: Id,
-    covers: i64,
     payload: &str,
     digest: &[u8],
 ) -> SqlResult<()> {
@@ -55,20 +42,24 @@ fn append_as(
         None => (0, None),
     };
     backend.execute(
-        "INSERT INTO seal(origin, ordinal, what, id, covers, says, digest, hash)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+        "INSERT INTO seal(origin, ordinal, what, id, says, digest, hash) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
         &values![
             origin,
             ordinal + 1,
             what,
             id,
-            covers,
             payload,
             digest,
             &chained(before.as_deref(), digest)[..]
         ],
     )?;
     Ok(())
+}
+
+/// The hash of an entry, from the hash of the entry before and its digest.
+pub(crate) fn chained(before: Option<&[u8]>, digest: &[u8]) -> [u8; 32] {
+    let hash = Sha256::new().chain_update(before.unwrap_or_default());
+    hash.chain_update(digest).finalize().into()
 }
 
 /// The file's id, under which its entries are made; a server has none.
@@ -79,8 +70,6 @@ pub(crate) fn own_file_id(backend: &Backend) -> SqlResult<Option<Id>> {
     let sql = "SELECT value FROM about WHERE key = 'file_id'";
     backend.first(sql, &[], |row| row.get(0))
 }
-
-pub(crate) use version1::chained;
 
 /// Appends an entry whose payload is its whole content.
 pub(crate) fn append_statement(
@@ -95,7 +84,7 @@ pub(crate) fn append_statement(
         what,
         id,
         &payload,
-        statement_digest(what, id, &payload),
+        &statement_digest(what, id, &payload),
     )
 }
 
@@ -105,19 +94,6 @@ pub(crate) fn statement_digest(what: &str, id: Id, payload: &str) -> [u8; 32] {
     hash.bytes(id.as_bytes());
     hash.text(payload);
     hash.finish()
-}
-
-/// The digest of a stored run, in the version of its seal.
-pub(crate) fn run_digest(
-    backend: &Backend,
-    run: i64,
-    covers: i64,
-    payload: &str,
-) -> SqlResult<[u8; 32]> {
-    match covers {
-        DIGEST_VERSION => run::digest(backend, run, payload),
-        _ => version1::digest(backend, run),
-    }
 }
 
 /// Seals a run that came without a seal.
@@ -132,7 +108,7 @@ pub(crate) fn seal_run_as_found(backend: &Backend, run: i64, found: &str) -> Sql
         "run",
         id,
         &payload,
-        run::digest(backend, run, &payload)?,
+        &run::digest(backend, run, &payload)?,
     )
 }
 
@@ -151,48 +127,24 @@ pub(crate) struct PrunedPayload {
     pub at_us: i64,
 }
 
-/// The payload of the first entry of a chain in schema 5.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// The kind of the first entry of a chain.
+pub(crate) const BEGUN: &str = "begun";
+
+/// The payload of the first entry of a chain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BegunPayload {
-    /// The file's schema before; 0 for a new file.
+    /// The file's schema.
     pub schema: i32,
-    /// Runs sealed by an earlier version, and finished runs that had no seal.
-    pub runs_sealed: i64,
-    pub runs_found: usize,
-    pub events: EarlierPayload,
-    pub notes: EarlierPayload,
 }
 
-/// Gives a file its id and begins its chain, in the transaction that migrates it; earlier runs keep their
-/// seals.
-pub(crate) fn begin(backend: &Backend, schema: i32, minted: Id) -> SqlResult<Id> {
-    let known = own_file_id(backend)?;
-    let origin = known.unwrap_or(minted);
-    if known.is_none() {
-        let sql = "INSERT INTO about(key, value) VALUES ('file_id', ?1)";
-        backend.execute(sql, &values![origin])?;
-    }
-    let count = |sql: &str| backend.first(sql, &[], |row| row.get::<i64>(0));
-    // Schemas before 4 had no seals. From schema 4 on, a run without a seal was put in by hand.
-    let found: Vec<i64> = match schema {
-        0..4 => backend.select(
-            "SELECT seq FROM run WHERE verdict IS NOT NULL ORDER BY finished_at_us, seq",
-            &[],
-            |row| row.get(0),
-        )?,
-        _ => Vec::new(),
-    };
+/// Gives a new file its id and begins its chain, in the transaction that creates its tables.
+pub(crate) fn begin(backend: &Backend, origin: Id) -> SqlResult<Id> {
+    let sql = "INSERT INTO about(key, value) VALUES ('file_id', ?1)";
+    backend.execute(sql, &values![origin])?;
     let begun = BegunPayload {
-        schema,
-        runs_sealed: count("SELECT count(DISTINCT id) FROM seal")?.unwrap_or(0),
-        runs_found: found.len(),
-        events: events_and_notes::earlier(backend, SealedTable::Events, i64::MAX)?,
-        notes: events_and_notes::earlier(backend, SealedTable::Notes, i64::MAX)?,
+        schema: SCHEMA_VERSION,
     };
-    append_statement(backend, "begun", origin, &begun)?;
-    for run in found {
-        seal_run_as_found(backend, run, BY_UPDATE)?;
-    }
+    append_statement(backend, BEGUN, origin, &begun)?;
     Ok(origin)
 }
 
@@ -216,7 +168,7 @@ impl RecountedPayload {
     pub fn text(&self) -> String {
         let at = chrono::DateTime::from_timestamp_micros(self.at_us).unwrap_or_default();
         format!(
-            "counted anew at {}; until then {}",
+            "counted again at {}; before, {}",
             at.format("%Y-%m-%d %H:%M:%S UTC"),
             self.differed.join("; ")
         )
@@ -267,21 +219,19 @@ pub(crate) fn start_chain_of_copy(
         return Ok(());
     };
     let went_on = backend.select(
-        "SELECT what, id, covers, says, digest FROM seal WHERE origin = ?1 AND ordinal > ?2
-         ORDER BY ordinal",
+        "SELECT what, id, says, digest FROM seal WHERE origin = ?1 AND ordinal > ?2 ORDER BY ordinal",
         &values![before, payload.after],
         |row| {
             Ok((
                 row.get::<String>(0)?,
                 row.get::<Id>(1)?,
-                row.get::<i64>(2)?,
-                row.get::<String>(3)?,
-                row.get::<Vec<u8>>(4)?,
+                row.get::<String>(2)?,
+                row.get::<Vec<u8>>(3)?,
             ))
         },
     )?;
-    for (what, id, covers, payload, digest) in went_on {
-        append_as(backend, &what, id, covers, &payload, &digest)?;
+    for (what, id, payload, digest) in went_on {
+        append(backend, &what, id, &payload, &digest)?;
     }
     Ok(())
 }

@@ -71,12 +71,8 @@ pub(crate) struct RunDigest {
     scripts: [u8; 32],
     steps: CanonicalHash,
     measurements: CanonicalHash,
-    sources: CanonicalHash,
     occurrences: BTreeMap<Id, [u8; 32]>,
     payload: RunPayload,
-    continues: Option<Id>,
-    connection: Option<String>,
-    symptom: Option<String>,
 }
 
 impl RunDigest {
@@ -95,6 +91,9 @@ impl RunDigest {
             record.seed.cast_signed(),
             &record.operator,
             &record.source,
+            record.connection.as_ref(),
+            record.symptom.as_ref(),
+            record.continues,
             record.started_at_us,
             &record.app_version,
             &record.scripts_sha256,
@@ -115,12 +114,8 @@ impl RunDigest {
             scripts: hash.finish(),
             steps: CanonicalHash::new(),
             measurements: CanonicalHash::new(),
-            sources: CanonicalHash::new(),
             occurrences: BTreeMap::new(),
             payload: RunPayload::default(),
-            continues: record.continues,
-            connection: record.connection.clone(),
-            symptom: record.symptom.clone(),
         }
     }
 
@@ -135,15 +130,10 @@ impl RunDigest {
             step.bench_time_us,
             &step.message,
             step.script_line,
+            step.limit_source.as_ref(),
         ]);
-        self.source(step.index, OF_STEP, step.limit_source.as_deref());
         for (ordinal, measurement) in (0u32..).zip(&step.measurements) {
             self.measurement(step.index, ordinal, measurement);
-            self.source(
-                step.index,
-                i64::from(ordinal),
-                measurement.limit_source.as_deref(),
-            );
         }
     }
 
@@ -157,13 +147,8 @@ impl RunDigest {
             measurement.low,
             measurement.high,
             measurement.verdict.as_str(),
+            measurement.limit_source.as_ref(),
         ]);
-    }
-
-    fn source(&mut self, step: u32, ordinal: i64, source: Option<&str>) {
-        if let Some(source) = source {
-            self.sources.values(&values![step, ordinal, source]);
-        }
     }
 
     /// Adds an occurrence of a fault.
@@ -211,13 +196,6 @@ impl RunDigest {
             end.bench_time_us,
             end.wall_time_us,
         ]);
-        if let Some(earlier) = self.continues {
-            run.values(&values![earlier]);
-        }
-        if self.connection.is_some() || self.symptom.is_some() {
-            run.values(&values![self.connection.as_ref(), self.symptom.as_ref()]);
-        }
-        add_sources(&mut run, self.sources.clone());
         let payload = self.payload.text();
         let parts = [
             self.scripts,
@@ -244,14 +222,6 @@ fn joined<'a>(occurrences: impl Iterator<Item = &'a [u8; 32]>) -> [u8; 32] {
     hash.finish()
 }
 
-/// Adds the sources of a run's limits; of a run without any nothing.
-fn add_sources(run: &mut CanonicalHash, sources: CanonicalHash) {
-    let digest = sources.finish();
-    if digest != CanonicalHash::new().finish() {
-        run.bytes(&digest);
-    }
-}
-
 fn whole(mut run: CanonicalHash, parts: [[u8; 32]; 4], payload: &str) -> [u8; 32] {
     parts.iter().for_each(|part| run.bytes(part));
     run.text(payload);
@@ -260,29 +230,16 @@ fn whole(mut run: CanonicalHash, parts: [[u8; 32]; 4], payload: &str) -> [u8; 32
 
 const RUN: &str =
     "SELECT r.id, u.serial, r.unit_kind, r.unit_config_name, r.sw_versions, r.line, r.train,
-        r.seed, r.operator, r.source, r.started_at_us, r.app_version, r.scripts_sha256,
+        r.seed, r.operator, r.source, r.connection, r.symptom, r.continues, r.started_at_us, r.app_version, r.scripts_sha256,
         r.unit_config_sha256, r.injected, r.owner, r.verdict, r.finished_at_us, r.bench_time_us,
         r.wall_time_us
      FROM run r JOIN unit u ON u.seq = r.unit WHERE r.seq = ?1";
 
-/// Of a run that continues no other it adds nothing.
-const CONTINUES: &str = "SELECT continues FROM run WHERE seq = ?1 AND continues IS NOT NULL";
-
-/// Of a run that nobody led it adds nothing.
-const CONNECTION: &str = "SELECT connection, symptom FROM run
-     WHERE seq = ?1 AND (connection IS NOT NULL OR symptom IS NOT NULL)";
-
-/// Those of its limits; a step's own stands before those of its measurements.
-const SOURCES: &str = "SELECT step_index, -1 AS ordinal, limit_source FROM step WHERE run = ?1 AND limit_source IS NOT NULL
-     UNION ALL SELECT step_index, ordinal, limit_source FROM measurement WHERE run = ?1 AND limit_source IS NOT NULL
-     ORDER BY 1, 2";
-const OF_STEP: i64 = -1;
-
 const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
     "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us, message,
-        script_line FROM step WHERE run = ?1 ORDER BY step_index",
-    "SELECT step_index, ordinal, name, value, unit, low, high, verdict FROM measurement
+        script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
+    "SELECT step_index, ordinal, name, value, unit, low, high, verdict, limit_source FROM measurement
      WHERE run = ?1 ORDER BY step_index, ordinal",
 ];
 
@@ -312,11 +269,6 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
     parts[3] = joined(occurrences.values());
     let mut whole_run = CanonicalHash::of("run");
     take_rows(&mut whole_run, backend, RUN, &of_run)?;
-    take_rows(&mut whole_run, backend, CONTINUES, &of_run)?;
-    take_rows(&mut whole_run, backend, CONNECTION, &of_run)?;
-    let mut sources = CanonicalHash::new();
-    take_rows(&mut sources, backend, SOURCES, &of_run)?;
-    add_sources(&mut whole_run, sources);
     Ok(whole(whole_run, parts, payload))
 }
 

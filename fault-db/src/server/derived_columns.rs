@@ -1,9 +1,7 @@
 //! Columns derived from the text of events and notes: search words, and the part that a repair replaced.
 //! In a file triggers fill them; for a server they are computed here.
 
-use crate::backend::{Backend, SqlResult, values};
 use crate::full_text;
-use crate::id::Id;
 use crate::record::{CAUSE, DIAGNOSED, REPAIR};
 use crate::sql_functions;
 
@@ -28,21 +26,4 @@ pub(crate) fn note_words(text: &str) -> String {
 /// The part that an event names, in lower case: a repair the one replaced, an attribution the cause.
 pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
     matches!(kind, REPAIR | CAUSE | DIAGNOSED).then(|| sql_functions::part_of(body))
-}
-
-/// Inserts a note on a run made on the server itself.
-pub(crate) fn insert_run_note(
-    backend: &Backend,
-    id: Id,
-    run: i64,
-    at_us: i64,
-    who: &str,
-    text: &str,
-) -> SqlResult<()> {
-    backend.execute(
-        "INSERT INTO run_note(id, run, at_us, who, text, words)
-         VALUES (?1, ?2, ?3, ?4, ?5, CAST(?6 AS tsvector))",
-        &values![id, run, at_us, who, text, note_words(text)],
-    )?;
-    Ok(())
 }

@@ -7,13 +7,11 @@ use crate::error::StoreError;
 use crate::id::Id;
 
 /// The schema's migrations; `meta` holds the version.
-const STEPS: &[&str] = &[
-    concat!(include_str!("schema.sql"), include_str!("views.sql")),
-    include_str!("0002.sql"),
-    include_str!("0003.sql"),
-    include_str!("0004.sql"),
-    include_str!("0005.sql"),
-];
+const STEPS: &[&str] = &[concat!(
+    include_str!("tables.sql"),
+    include_str!("rules.sql"),
+    include_str!("views.sql"),
+)];
 
 /// The schema this crate reads and writes on a server.
 pub const SERVER_SCHEMA_VERSION: i32 = STEPS.len() as i32;

@@ -1,6 +1,6 @@
 //! Where in a trace's blob each piece of a channel lies.
 //!
-//! Encoding 2, the one written now:
+//! Encoding 1:
 //!
 //! ```text
 //! varint rows, varint columns, varint bytes of the directory
@@ -9,19 +9,17 @@
 //! bodies, channel by channel, block by block
 //! ```
 //! Every piece has a checksum of its own, so a channel, or a part of one, is read and known to be what
-//! was written without touching any other. Encoding 1 had one block, neither checksums nor the length of
-//! the directory; there only the checksum of the whole blob tells.
+//! was written without touching any other.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::column::Tag;
 use super::varint::{put, take};
 use super::{Channel, TraceError};
 
-/// The number of the current encoding, in the trace table.
-pub const ENCODING: i64 = 2;
-/// The encoding of earlier versions.
-const WITHOUT_CHECKSUMS: i64 = 1;
+/// The number of the encoding, in the trace table.
+pub const ENCODING: i64 = 1;
 
 /// Rows of a block: 3.4 minutes at 50 ms. A fault's trace is one block, an hour is eighteen.
 const BLOCK_ROWS: usize = 4096;
@@ -39,21 +37,8 @@ pub struct Shape<'a> {
 }
 
 impl Shape<'_> {
-    /// Whether pieces have checksums of their own. Without them the whole blob has to be read to verify any.
-    pub(crate) fn has_checksums(&self) -> bool {
-        self.encoding == ENCODING
-    }
-
     fn blocks(&self) -> usize {
-        self.rows.div_ceil(self.block_rows())
-    }
-
-    fn block_rows(&self) -> usize {
-        if self.has_checksums() {
-            BLOCK_ROWS
-        } else {
-            self.rows.max(1)
-        }
+        self.rows.div_ceil(BLOCK_ROWS)
     }
 }
 
@@ -86,18 +71,16 @@ pub(super) struct Piece {
     pub rows: Range<usize>,
     /// Bytes of the blob.
     pub bytes: Range<usize>,
-    crc: Option<u32>,
+    crc: u32,
 }
 
 impl Piece {
     /// Refuses a body that does not match its checksum.
     pub fn check(&self, body: &[u8]) -> Result<(), &'static str> {
-        match self.crc {
-            Some(crc) if crc != crc32fast::hash(body) => {
-                Err("it does not match its checksum: it was changed after it was written")
-            }
-            _ => Ok(()),
+        if self.crc == crc32fast::hash(body) {
+            return Ok(());
         }
+        Err("it does not match its checksum: it was changed after it was written")
     }
 }
 
@@ -126,17 +109,15 @@ impl Layout {
             let what = "its column count is another than its channel list has";
             return Err(damaged(rest, what));
         }
-        match shape.encoding {
-            WITHOUT_CHECKSUMS => Ok(length),
-            ENCODING => {
-                let directory = take(&mut rest).and_then(|bytes| usize::try_from(bytes).ok());
-                let end = directory
-                    .and_then(|bytes| bytes.checked_add(start.len() - rest.len() + CRC_BYTES));
-                end.filter(|end| *end <= length)
-                    .ok_or_else(|| damaged(rest, "the directory is cut off"))
-            }
-            found => Err(TraceError::Encoding { found }),
+        if shape.encoding != ENCODING {
+            let found = shape.encoding;
+            return Err(TraceError::Encoding { found });
         }
+        let directory = take(&mut rest).and_then(|bytes| usize::try_from(bytes).ok());
+        let end =
+            directory.and_then(|bytes| bytes.checked_add(start.len() - rest.len() + CRC_BYTES));
+        end.filter(|end| *end <= length)
+            .ok_or_else(|| damaged(rest, "the directory is cut off"))
     }
 
     /// Reads the directory; `head` is as much of the blob as `head_length` says, `length` that of all
@@ -149,16 +130,14 @@ impl Layout {
             offset: head.len() - rest.len(),
             what,
         };
-        if shape.has_checksums() {
-            let (before, crc) = head
-                .split_last_chunk::<CRC_BYTES>()
-                .ok_or_else(|| damaged(head, "the directory is cut off"))?;
-            if crc32fast::hash(before) != u32::from_le_bytes(*crc) {
-                return Err(damaged(rest, "the directory does not match its checksum"));
-            }
-            take(&mut rest);
-            rest = &rest[..rest.len().saturating_sub(CRC_BYTES)];
+        let (before, crc) = head
+            .split_last_chunk::<CRC_BYTES>()
+            .ok_or_else(|| damaged(head, "the directory is cut off"))?;
+        if crc32fast::hash(before) != u32::from_le_bytes(*crc) {
+            return Err(damaged(rest, "the directory does not match its checksum"));
         }
+        take(&mut rest);
+        rest = &rest[..rest.len().saturating_sub(CRC_BYTES)];
         let blocks = shape.blocks();
         let count = blocks.saturating_mul(shape.channels.len());
         // A piece takes two bytes at least, so this allocates no more than the blob did.
@@ -166,8 +145,7 @@ impl Layout {
             return Err(damaged(rest, "the directory is cut off"));
         }
         let mut pieces = Vec::with_capacity(count);
-        // First all lengths: without a stored directory length, they tell where the bodies begin.
-        let mut at = 0usize;
+        let mut at = head.len();
         for place in 0..count {
             let (&byte, after) = rest.split_first().ok_or_else(|| damaged(rest, "cut off"))?;
             let tag = Tag::from_byte(byte).ok_or_else(|| damaged(rest, "unknown column form"))?;
@@ -175,49 +153,28 @@ impl Layout {
             let bytes = take(&mut rest).and_then(|bytes| usize::try_from(bytes).ok());
             let end = bytes.and_then(|bytes| at.checked_add(bytes));
             let end = end.ok_or_else(|| damaged(rest, "bad column length"))?;
-            let crc = if shape.has_checksums() {
-                let crc = rest.split_first_chunk::<CRC_BYTES>();
-                let (crc, after) = crc.ok_or_else(|| damaged(rest, "cut off"))?;
-                rest = after;
-                Some(u32::from_le_bytes(*crc))
-            } else {
-                None
-            };
-            let first = place % blocks * shape.block_rows();
+            let crc = rest.split_first_chunk::<CRC_BYTES>();
+            let (crc, after) = crc.ok_or_else(|| damaged(rest, "cut off"))?;
+            rest = after;
+            let first = place % blocks * BLOCK_ROWS;
             pieces.push(Piece {
                 tag,
-                rows: first..shape.rows.min(first + shape.block_rows()),
+                rows: first..shape.rows.min(first + BLOCK_ROWS),
                 bytes: at..end,
-                crc,
+                crc: u32::from_le_bytes(*crc),
             });
             at = end;
         }
-        let begin = if shape.has_checksums() {
-            if !rest.is_empty() {
-                return Err(damaged(rest, "bytes after the directory"));
-            }
-            head.len()
-        } else {
-            head.len() - rest.len()
+        if !rest.is_empty() {
+            return Err(damaged(rest, "bytes after the directory"));
+        }
+        let what = match at.cmp(&length) {
+            Ordering::Equal => return Ok(Self { pieces, blocks }),
+            Ordering::Less => "bytes after the last column",
+            Ordering::Greater => "a column is cut off",
         };
-        match at.checked_add(begin) {
-            Some(end) if end == length => {}
-            Some(end) if end < length => {
-                let what = "bytes after the last column";
-                return Err(TraceError::Blob { offset: end, what });
-            }
-            _ => {
-                let what = "a column is cut off";
-                return Err(TraceError::Blob {
-                    offset: length,
-                    what,
-                });
-            }
-        }
-        for piece in &mut pieces {
-            piece.bytes = piece.bytes.start + begin..piece.bytes.end + begin;
-        }
-        Ok(Self { pieces, blocks })
+        let offset = at.min(length);
+        Err(TraceError::Blob { offset, what })
     }
 
     /// The pieces of the channel at `place` that contain any of `rows`, in order; they are adjacent.

@@ -15,7 +15,6 @@ mod foreign_files;
 mod history;
 mod life;
 mod merging;
-mod older_schemas;
 mod opening;
 mod pruning;
 mod recording;

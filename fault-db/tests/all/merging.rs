@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{Random, T0_US, by_hand, end, fault, ids, measurement, run_record, step};
 use fault_db::{
-    CauseRecord, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter, Store,
-    StoreError, Synchronous, Verdict,
+    CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter,
+    StatKey, StatQuery, Store, StoreError, Synchronous, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -37,10 +37,6 @@ fn said(store: &Store) -> Vec<String> {
             || ' ids ' || (SELECT group_concat(hex(id)) FROM (SELECT id FROM fault WHERE seq = f.seq
                 UNION SELECT id FROM fault_alias a WHERE a.fault = f.seq ORDER BY id))
          FROM fault f JOIN unit u ON u.seq = f.unit",
-        "SELECT dim || ' ' || grain || ' ' || at || ' '
-            || CASE dim WHEN 3 THEN (SELECT serial FROM unit WHERE seq = key) ELSE key END || ' '
-            || seen || ' ' || opened || ' ' || closed || ' ' || bare
-         FROM tally WHERE seen <> 0 OR opened <> 0 OR closed <> 0",
         "SELECT hex(e.id) || ' ' || r.part || ' ' || r.line || ' ' || r.opened_at_us || ' '
             || ifnull(r.back_at_us, '-') FROM repair r JOIN fault_event e ON e.seq = r.event",
         "SELECT DISTINCT what || hex(id) FROM seal WHERE what <> 'begun'",
@@ -57,6 +53,22 @@ fn said(store: &Store) -> Vec<String> {
             .expect("answers");
         lines.sort();
         said.extend(lines);
+    }
+    for by in [
+        StatKey::Code,
+        StatKey::Lru,
+        StatKey::Cause,
+        StatKey::Unit,
+        StatKey::Line,
+        StatKey::All,
+    ] {
+        let query = StatQuery {
+            by,
+            filter: FaultFilter::default(),
+            now_us: T0_US + 10_000 * HOUR_US,
+            back_within_days: 30,
+        };
+        said.push(format!("{:?}", store.stats(&query).expect("counted")));
     }
     said
 }
@@ -487,17 +499,19 @@ const TAMPERED: [(&str, &str); 8] = [
     ),
     (
         "an occurrence",
-        "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
-         SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru FROM fault_occurrence",
+        "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line,
+            code_name, severity)
+         SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru, line, code_name, severity FROM fault_occurrence",
     ),
     (
         "a fault",
         "INSERT INTO fault(seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, occurrences)
          SELECT 99, randomblob(16), unit, 77, lru, 'made_up', severity, 'open', 5, 5, 1 FROM fault;
-         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state)
-         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open');
-         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru)
-         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru FROM fault_occurrence",
+         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
+         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open', 1, x'', 0);
+         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line,
+            code_name, severity)
+         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru, line, code_name, severity FROM fault_occurrence",
     ),
     (
         "all of it, sealed again",

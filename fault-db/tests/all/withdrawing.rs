@@ -138,13 +138,12 @@ fn said(store: &Store) -> Vec<String> {
     let conn = Connection::open(store.path()).expect("opens");
     for sql in [
         "SELECT quote(event) || fault || part || at_us || '/' || opened_at_us || '/' || ifnull(back_at_us, '-') FROM repair",
-        "SELECT dim || ' ' || grain || ' ' || at || ' ' || quote(key) || ' ' || seen || opened || closed || bare || ' '
-            || repairs || ' ' || repair_us || ' ' || back FROM tally
-         WHERE seen <> 0 OR opened <> 0 OR closed <> 0 OR bare <> 0 OR repairs <> 0 OR repair_us <> 0 OR back <> 0",
         "SELECT seq || state || ifnull(closed_at_us, '-') || repairs || disputed || ifnull(cause, '-') FROM fault",
     ] {
         let mut select = conn.prepare(sql).expect("a question");
-        let rows = select.query_map([], |row| row.get::<_, String>(0)).expect("asked");
+        let rows = select
+            .query_map([], |row| row.get::<_, String>(0))
+            .expect("asked");
         said.extend(rows.map(|row| row.expect("read")));
     }
     said

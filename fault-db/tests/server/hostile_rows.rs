@@ -1,11 +1,11 @@
-//! Rows that hold what no history holds, in a laptop's file or on a server of before: they stay where they are, are
+//! Rows that hold what no history holds, in a laptop's file or on a server: they stay where they are, are
 //! reported, and block nothing.
 
 use crate::common::change;
 use crate::laptop::{Laptop, connect, day};
 use crate::private::{name_of, shared};
 
-/// Goal: what a laptop's file holds since an earlier version took it stays behind, and the rest goes.
+/// Goal: what a laptop's file holds, put in by hand, that no history can hold stays there, and the rest is sent.
 #[test]
 fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
     for (sql, named, runs, events) in [
@@ -92,8 +92,7 @@ fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
     }
 }
 
-/// Goal: invalid rows that an early version of the server accepted from one laptop block neither others nor later
-/// events.
+/// Goal: invalid rows that the server's owner put in by hand block neither other laptops nor later events.
 #[test]
 fn invalid_rows_on_the_server_do_not_block_a_sync() {
     let address = shared().database();
@@ -108,8 +107,8 @@ fn invalid_rows_on_the_server_do_not_block_a_sync() {
             "ALTER TABLE fault_event DISABLE TRIGGER in_domain; ALTER TABLE fault_occurrence DISABLE TRIGGER in_domain;
              ALTER TABLE run DISABLE TRIGGER in_domain; ALTER TABLE fault_alias DISABLE TRIGGER in_domain;
              INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version, scripts_sha256,
-                unit_config_sha256, owner, train, laptop)
-             SELECT x'', 1, '', 0, '', '', 9223372036854775807, '', '', '', '', '', 1;
+                unit_config_sha256, owner, train, unit_kind, unit_config_name, sw_versions, laptop)
+             SELECT x'', 1, '', 0, '', '', 9223372036854775807, '', '', '', '', '', '', '', '', 1;
              INSERT INTO fault_event(id, fault, kind, at_us, who, body, turn, follows, seen)
              SELECT x.id, f.seq, 'note', x.at_us, '', '', 1, x.follows, 0
              FROM (SELECT seq FROM fault LIMIT 1) f, (VALUES
@@ -117,8 +116,9 @@ fn invalid_rows_on_the_server_do_not_block_a_sync() {
                 (decode(repeat('0a', 16), 'hex'), 9223372036854775807, decode('', 'hex')),
                 (decode(repeat('0b', 16), 'hex'), -9223372036854775808, decode('', 'hex')),
                 (decode(repeat('0c', 16), 'hex'), 5, decode('010203', 'hex'))) AS x(id, at_us, follows);
-             INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line)
-             SELECT x.id, f.seq, r.seq, x.at_us, 0, '', '{', f.unit, f.code, f.lru, ''
+             INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line,
+                code_name, severity)
+             SELECT x.id, f.seq, r.seq, x.at_us, 0, '', '{', f.unit, f.code, f.lru, '', '', ''
              FROM (SELECT * FROM fault LIMIT 1) f, (SELECT seq FROM run WHERE id = x'') r, (VALUES
                 (decode('0102', 'hex'), 9223372036854775807),
                 (decode(repeat('0d', 16), 'hex'), -9223372036854775808)) AS x(id, at_us);

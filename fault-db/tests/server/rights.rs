@@ -105,8 +105,8 @@ fn rows_outside_of_the_domain_are_refused() {
     let run = |id: &str, started: i64| {
         format!(
             "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version, scripts_sha256,
-                unit_config_sha256, owner, train, laptop)
-             SELECT {id}, 1, '', 0, '', '', {started}, '', '', '', '', '', 1"
+                unit_config_sha256, owner, train, unit_kind, unit_config_name, sw_versions, laptop)
+             SELECT {id}, 1, '', 0, '', '', {started}, '', '', '', '', '', '', '', '{{}}', 1"
         )
     };
     let note = |id: &str, at_us: i64, text: &str| {
@@ -137,8 +137,8 @@ fn rows_outside_of_the_domain_are_refused() {
     };
     let seal = |digest: usize| {
         format!(
-            "INSERT INTO seal(origin, ordinal, what, id, covers, says, digest, hash)
-             SELECT {}, 1, 'run', {}, 2, '', {}, {}",
+            "INSERT INTO seal(origin, ordinal, what, id, says, digest, hash)
+             SELECT {}, 1, 'run', {}, '', {}, {}",
             id(16),
             id(16),
             id(digest),
@@ -171,42 +171,17 @@ fn rows_outside_of_the_domain_are_refused() {
 }
 
 #[test]
-fn setting_up_again_changes_nothing_and_an_older_server_is_brought_up_to_date() {
+fn setting_up_again_changes_nothing() {
     let address = shared().empty();
-    // As the first version left it, made by the account that everybody used.
-    let mut client = shared().client(name_of(&address));
-    let first = [
-        include_str!("../../src/server/schema.sql"),
-        include_str!("../../src/server/views.sql"),
-        "INSERT INTO meta VALUES ('application', 'ptu fault history'), ('schema', '1'),
-            ('server_id', '01890000-0000-7000-8000-000000000001');
-         INSERT INTO unit(serial, kind, config_name, sw_versions) VALUES ('U-0', 'atc', 'x', '{}');
-         INSERT INTO laptop(file_id, name, first_at_us, last_at_us, clock_offset_us, sent, sent_traces, received)
-            VALUES ('\\x00', 'old', 0, 0, 0, 0, 0, 0);
-         INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version, scripts_sha256,
-            unit_config_sha256, owner, train, laptop)
-            VALUES ('\\x00', 1, '', 0, '', '', 9223372036854775807, '', '', '', '', '', 1)",
-    ];
-    client
-        .batch_execute(&first.concat())
-        .expect("the first version");
-    let old = connect(&address).expect_err("an older server");
-    assert!(
-        matches!(old, StoreError::ServerOlderSchema { found: 1, .. }),
-        "{old}"
-    );
     let set_up = shared().set_up(&address);
-    assert_eq!(set_up.schema_before, Some(1));
+    assert_eq!(
+        (set_up.schema_before, set_up.schema),
+        (None, SERVER_SCHEMA_VERSION)
+    );
     let again = shared().set_up(&address);
     let known = Some(SERVER_SCHEMA_VERSION);
     assert_eq!((again.schema_before, again.made_account), (known, false));
     assert_eq!((&again.owner[..], &again.laptops[..]), ("ptu", LAPTOPS));
-    // Earlier rows stay, however absurd, and block nothing.
-    let runs: i64 = client
-        .query_one("SELECT count(*) FROM run", &[])
-        .expect("a count")
-        .get(0);
-    assert_eq!(runs, 1);
     let laptops = address.replace("ptu@", "laptop@");
     let laptop = Laptop::new("newer");
     laptop.run("U-0", day(0), &[101], true);

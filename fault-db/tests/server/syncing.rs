@@ -204,8 +204,8 @@ fn a_file_is_compared_with_the_chain_the_server_knows() {
         "UPDATE seal SET digest = x'07', hash = x'08' WHERE what = 'run' AND id = ?1",
         [run],
     )
-    .expect("sealed anew");
-    let trigger = include_str!("../../src/schema/0004.sql");
+    .expect("sealed again");
+    let trigger = include_str!("../../src/schema/triggers.sql");
     let begin = trigger.find("CREATE TRIGGER run_ended").expect("there");
     let end = begin + trigger[begin..].find("END;").expect("its end") + 4;
     file.execute_batch(&trigger[begin..end]).expect("as it was");

@@ -74,24 +74,6 @@ fn only_what_brings_runs_in_makes_a_database() {
     }
 }
 
-/// Goal: a file of an earlier version is checked, and nothing is changed in it. Method: one of the first version.
-#[test]
-fn a_file_of_an_earlier_version_is_checked_and_stays_as_it_is() {
-    let place = Place::new();
-    let db = place.text_path("old.db");
-    let connection = Connection::open(&db).expect("made");
-    let first = include_str!("../../../fault-db/src/schema/0001.sql");
-    connection.execute_batch(first).expect("the first version");
-    connection
-        .pragma_update(None, "user_version", 1)
-        .expect("its number");
-    drop(connection);
-    let before = std::fs::read(&db).expect("the file");
-    let said = place.ptu(&["db", "check", "--db", &db]).exits(0).out;
-    assert!(said.contains("of an earlier version"), "{said}");
-    assert_eq!(std::fs::read(&db).expect("the file"), before);
-}
-
 #[test]
 fn a_text_file_is_refused_and_left_as_it_is() {
     let place = Place::new();
@@ -174,7 +156,7 @@ fn seals_are_told_where_they_can_be_compared() {
     let run = place.recorded_run();
     let seal = place.json(&["runs", "show", &run, "--json"])["seal"].clone();
     let whole = crate::common::text(&seal["seal"]).to_owned();
-    assert_eq!((whole.len(), &seal["covers"]), (64, &serde_json::json!(2)));
+    assert_eq!(whole.len(), 64);
     let checked = place.json(&["db", "check", "--json"]);
     assert_eq!(
         checked["head"]["seal"], seal["seal"],

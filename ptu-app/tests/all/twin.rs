@@ -307,7 +307,7 @@ fn what_cannot_be_had_again_says_why() {
         .exits(3)
         .explains(&["127.0.0.1:1"]);
     let runs = place.run_ids().len();
-    // The trace of an earlier version.
+    // A trace without its recording.
     let conn = Connection::open(place.path("history.db")).expect("opens");
     conn.execute("DELETE FROM recording", []).expect("deleted");
     drop(conn);

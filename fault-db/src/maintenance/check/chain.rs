@@ -6,13 +6,10 @@ use super::seal_entry::{SEALS_PER_BATCH, Seal, position_error, seals_after};
 use super::{Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
-use crate::seal::events_and_notes::{
-    EarlierPayload, EventPayload, SealedTable, earlier, event_digest, is_of_its_fault, note_digest,
-};
-use crate::seal::run::RunPayload;
+use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
 use crate::seal::{
-    BegunPayload, DIGEST_VERSION, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex,
-    own_file_id, run_digest, statement_digest, trace, version1,
+    BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex, own_file_id, run,
+    statement_digest, trace,
 };
 
 /// What is collected while the chains are read.
@@ -20,15 +17,14 @@ use crate::seal::{
 struct ChainSummary {
     /// Seals of runs.
     runs: u32,
-    /// Of these, with a digest of version 1.
-    by_earlier: u32,
     /// Runs, events and notes sealed as found, since they came without a seal.
     found: u32,
     /// Traces and recordings named in a run's seal that do not exist, and whether another file made the seal.
     missing: BTreeMap<(Id, Option<i64>), bool>,
     /// Those deleted by a prune, with their digests.
     pruned: BTreeSet<(Id, Option<i64>, String)>,
-    begun: Option<BegunPayload>,
+    /// Whether the file's own chain has its first entry.
+    is_begun: bool,
 }
 
 /// Checks all chains; the number of runs checked.
@@ -76,20 +72,10 @@ pub(super) fn check(
                 ),
             });
         }
-        check_begun(backend, own, &summary, &mut found, remarks)?;
+        check_begun(backend, own, summary.is_begun, &mut found)?;
     }
     check_unsealed_runs(backend, &mut found)?;
-    let ChainSummary {
-        by_earlier,
-        found: as_found,
-        ..
-    } = summary;
-    if by_earlier > 0 {
-        let covered = version1::COVERED;
-        remarks.push(format!(
-            "{by_earlier} runs were sealed by an earlier version: covers {covered}"
-        ));
-    }
+    let as_found = summary.found;
     if as_found > 0 {
         remarks.push(format!(
             "{as_found} runs, events and notes came without a seal and were sealed as they were found then"
@@ -114,16 +100,13 @@ fn check_entry(
         ("note", None) => found.add(format!("{}: its note was taken out", seal.name())),
         ("run", Some(run)) => {
             summary.runs += 1;
-            summary.by_earlier += u32::from(seal.covers < DIGEST_VERSION);
-            if run_digest(backend, run, seal.covers, &seal.payload)? != seal.digest[..] {
+            if run::digest(backend, run, &seal.payload)? != seal.digest[..] {
                 found.add(format!("run {id} was changed after it was sealed"));
             }
-            if seal.covers == DIGEST_VERSION {
-                let payload = RunPayload::of(&seal.payload).unwrap_or_default();
-                summary.found += u32::from(payload.found.is_some());
-                let came = own != Some(seal.origin);
-                check_traces_and_recordings(backend, (id, run, came), &payload, summary, found)?;
-            }
+            let payload = run::RunPayload::of(&seal.payload).unwrap_or_default();
+            summary.found += u32::from(payload.found.is_some());
+            let came = own != Some(seal.origin);
+            check_traces_and_recordings(backend, (id, run, came), &payload, summary, found)?;
         }
         ("event", Some(event)) => {
             let payload = EventPayload::of(&seal.payload);
@@ -151,9 +134,7 @@ fn check_entry(
                             .insert((id, payload.recording, payload.sha256));
                     }
                 }
-                "begun" if own == Some(seal.origin) => {
-                    summary.begun = serde_json::from_str(&seal.payload).ok();
-                }
+                BEGUN if own == Some(seal.origin) => summary.is_begun = true,
                 RECOUNTED => {
                     if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
                         remarks.push(payload.text());
@@ -170,7 +151,7 @@ fn check_entry(
 fn check_traces_and_recordings(
     backend: &Backend,
     (id, run, came): (Id, i64, bool),
-    payload: &RunPayload,
+    payload: &run::RunPayload,
     summary: &mut ChainSummary,
     found: &mut Findings<'_>,
 ) -> SqlResult<()> {
@@ -241,67 +222,37 @@ fn check_traces_and_recordings(
     Ok(())
 }
 
-/// Checks the rows that were there before seals covered them one by one.
+/// Checks that the file's own chain has its beginning, and that each event and note has a seal.
 fn check_begun(
     backend: &Backend,
     own: Option<Id>,
-    summary: &ChainSummary,
+    is_begun: bool,
     found: &mut Findings<'_>,
-    remarks: &mut Remarks,
 ) -> SqlResult<()> {
-    let Some(begun) = &summary.begun else {
-        let copied = "SELECT 1 FROM seal WHERE origin = ?1 AND what = 'copied' AND ordinal = 1";
-        let is_copy = match own {
-            Some(own) => backend.first(copied, &values![own], |_| Ok(()))?.is_some(),
-            None => false,
-        };
-        if !is_copy {
-            found.add(
-                "the beginning of this file's own chain of seals is not there: it was taken out"
-                    .into(),
-            );
-        }
-        // The chain that the file was copied with covers the events and notes of before.
-        return Ok(());
+    let copied = "SELECT 1 FROM seal WHERE origin = ?1 AND what = 'copied' AND ordinal = 1";
+    let is_copy = match own {
+        Some(own) => backend.first(copied, &values![own], |_| Ok(()))?.is_some(),
+        None => false,
     };
-    let rows = [
-        (
-            "events",
-            SealedTable::Events,
-            &begun.events,
-            UNSEALED_EVENTS,
-        ),
-        ("notes", SealedTable::Notes, &begun.notes, UNSEALED_NOTES),
-    ];
-    for (name, what, said, unsealed) in rows {
-        let now = earlier(backend, what, said.last)?;
-        if now != *said && (said.count > 0 || now.count > 0) {
-            found.add(format!(
-                "the {name} from before the fifth schema are not what they were when the file was brought up to date"
-            ));
-        }
-        backend.each(unsealed, &values![said.last], |row| {
+    if !is_begun && !is_copy {
+        let missing =
+            "the beginning of this file's own chain of seals is not there: it was taken out";
+        found.add(missing.to_owned());
+    }
+    for (name, unsealed) in [("events", UNSEALED_EVENTS), ("notes", UNSEALED_NOTES)] {
+        backend.each(unsealed, &[], |row| {
             let id = row.get::<Id>(0)?;
             found.add(format!("one of the {name}, {id}, has no seal: it was put in by hand, or its seal was taken out"));
             Ok(())
         })?;
     }
-    let EarlierPayload { count: events, .. } = begun.events;
-    let EarlierPayload { count: notes, .. } = begun.notes;
-    if events + notes > 0 {
-        remarks.push(format!(
-            "{events} events and {notes} notes were here before this file was brought up to date (schema {}): \
-             they are covered as they were then",
-            begun.schema
-        ));
-    }
     Ok(())
 }
 
-const UNSEALED_EVENTS: &str = "SELECT e.id FROM fault_event e WHERE e.seq > ?1
-    AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = 'event') ORDER BY e.seq";
-const UNSEALED_NOTES: &str = "SELECT n.id FROM run_note n WHERE n.seq > ?1
-    AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = n.id AND s.what = 'note') ORDER BY n.seq";
+const UNSEALED_EVENTS: &str = "SELECT e.id FROM fault_event e
+    WHERE NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = 'event') ORDER BY e.seq";
+const UNSEALED_NOTES: &str = "SELECT n.id FROM run_note n
+    WHERE NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = n.id AND s.what = 'note') ORDER BY n.seq";
 
 /// Finds runs without a seal, and sealed runs without a verdict.
 fn check_unsealed_runs(backend: &Backend, found: &mut Findings<'_>) -> SqlResult<()> {

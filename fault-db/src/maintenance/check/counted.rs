@@ -1,4 +1,4 @@
-//! Checks and rebuilds the tables of counts and sums that triggers maintain.
+//! Checks and rebuilds the derived tables, which triggers maintain.
 //!
 //! The statements that fill these tables are run against temporary tables of the same names: an unqualified
 //! name means the temporary table, so the check changes nothing in the file.
@@ -10,14 +10,13 @@ use super::derived::faults_that_differ;
 use crate::backend::SqlResult;
 use crate::error::StoreError;
 use crate::event_graph::recompute_fault;
-use crate::schema::{COUNTS, WORDS};
+use crate::schema::{DERIVED, WORDS};
 use crate::seal::{RECOUNTED, RecountedPayload, append_statement};
 use crate::store::Store;
 
-/// The tables of counts, and the columns to index for a join with itself.
-const TABLES: [(&str, Option<&str>); 5] = [
+/// The derived tables, and the columns to index for a join with itself.
+const TABLES: [(&str, Option<&str>); 4] = [
     ("repair", None),
-    ("tally", None),
     ("measured_day", Some("name, day")),
     ("measured_month", Some("name, month, unit")),
     ("packed", Some("block")),
@@ -25,21 +24,12 @@ const TABLES: [(&str, Option<&str>); 5] = [
 
 /// Queries that count differing rows. Floating-point sums depend on the order of summation; that much
 /// difference is allowed, relative to the sum of squares.
-const DIFFERENCES: [(&str, &str); 7] = [
+const DIFFERENCES: [(&str, &str); 6] = [
     (
         "rows of the table of repairs",
         "SELECT count(DISTINCT event) FROM (
             SELECT * FROM (SELECT * FROM main.repair EXCEPT SELECT * FROM temp.repair)
             UNION ALL SELECT * FROM (SELECT * FROM temp.repair EXCEPT SELECT * FROM main.repair))",
-    ),
-    (
-        "counts by day or month",
-        "WITH kept AS (SELECT * FROM main.tally
-            WHERE seen <> 0 OR opened <> 0 OR closed <> 0 OR bare <> 0 OR repairs <> 0 OR repair_us <> 0
-                OR back <> 0 OR units <> x'')
-         SELECT count(*) FROM (SELECT DISTINCT dim, grain, at, key FROM (
-            SELECT * FROM (SELECT * FROM kept EXCEPT SELECT * FROM temp.tally)
-            UNION ALL SELECT * FROM (SELECT * FROM temp.tally EXCEPT SELECT * FROM kept)))",
     ),
     (
         "sums of measured values by day",
@@ -107,7 +97,7 @@ fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result
             ))?;
         }
     }
-    conn.execute_batch(COUNTS)?;
+    conn.execute_batch(DERIVED)?;
     for (what, sql) in DIFFERENCES {
         let differ: i64 = conn.query_row(sql, [], |row| row.get(0))?;
         if differ > 0 {
@@ -119,7 +109,7 @@ fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result
 
 /// Recounts everything; what differed.
 pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreError> {
-    const DOING: &str = "counting anew";
+    const DOING: &str = "filling the derived tables again";
     let failed = |error| store.failed(DOING, error);
     let conn = store.file()?;
     let id = store.mint()?;
@@ -136,7 +126,7 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
             if let Some((_, id)) = faults.first() {
                 let count = faults.len();
                 differed.push(format!(
-                    "{count} faults, first {id}, did not stand as their occurrences and events say"
+                    "{count} faults, first {id}, were not as their occurrences and events say"
                 ));
             }
             let work = || -> SqlResult<()> {
@@ -151,7 +141,7 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
                 Ok(())
             };
             work().map_err(|error| store.failed(DOING, error))?;
-            conn.execute_batch(COUNTS).map_err(failed)?;
+            conn.execute_batch(DERIVED).map_err(failed)?;
             conn.execute_batch(WORDS).map_err(failed)?;
             Ok(differed)
         }))

@@ -10,7 +10,7 @@ const CONTRADICTS: [&str; 4] = [
     "SELECT 'fault ' || lower(hex(f.id)) || ' has a name or a severity that no occurrence of it says'
      FROM fault f WHERE EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq)
         AND NOT EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq
-            AND (o.code_name IS NULL OR (o.code_name, o.severity) = (f.code_name, f.severity)))",
+            AND (o.code_name, o.severity) = (f.code_name, f.severity))",
     "SELECT 'occurrence ' || lower(hex(o.id)) || ' is of another unit, code or part than its fault'
      FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
      WHERE (o.unit, o.code, o.lru) <> (f.unit, f.code, f.lru)",
@@ -18,8 +18,8 @@ const CONTRADICTS: [&str; 4] = [
      FROM fault_occurrence o JOIN run r ON r.seq = o.run WHERE (o.unit, o.line) <> (r.unit, r.line)",
     "SELECT 'unit ' || u.serial || ' is what no run found it to be'
      FROM unit u WHERE EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq)
-        AND NOT EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq AND (r.sw_versions IS NULL
-            OR (r.unit_kind, r.unit_config_name, r.sw_versions) = (u.kind, u.config_name, u.sw_versions)))",
+        AND NOT EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq
+            AND (r.unit_kind, r.unit_config_name, r.sw_versions) = (u.kind, u.config_name, u.sw_versions))",
 ];
 
 /// Runs all checks in one snapshot of the file.
@@ -32,7 +32,7 @@ pub(super) fn check(conn: &Connection, problems: &mut Vec<Problem>) -> rusqlite:
     let mut found = Findings::new(problems, "count", REBUILD);
     faults_that_differ(conn, |_, id| {
         found.add(format!(
-            "fault {id} does not stand as its occurrences and events say: state, times, line or counts"
+            "fault {id} is not as its occurrences and events say: state, times, line or counts"
         ));
     })
 }

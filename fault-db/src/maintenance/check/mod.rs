@@ -29,8 +29,7 @@ pub struct CheckReport {
     pub recordings: u32,
     /// Problems found; empty is good.
     pub problems: Vec<Problem>,
-    /// Remarks that are no problems: what an earlier version sealed, what was sealed as found, and what was
-    /// recounted.
+    /// Remarks that are no problems: what was sealed as found, and what was recounted.
     pub remarks: Vec<String>,
     /// The last entry of the file's chain of seals, for comparison with values known elsewhere.
     pub head: Option<SealHead>,
@@ -42,7 +41,7 @@ type Remarks = Vec<String>;
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// integrity, schema, foreign_key, count, fault, trace, recording, seal or tally.
+    /// integrity, schema, foreign_key, count, fault, trace, recording, seal or derived.
     pub kind: &'static str,
     /// Where it is, and what is wrong.
     pub detail: String,
@@ -62,7 +61,7 @@ const ALTERED: &str = "somebody has changed the file by hand: what no line names
 const FOREIGN_OBJECT: &str = "nothing is written to such a file; keep a copy of it as it is, then go on with a backup, or \
     take out by hand what is not of this program and check it again";
 const REBUILD: &str = "a row may have been changed by hand: hold the file against a backup or the server first; then \
-    `db rebuild` makes it anew from the rows it follows from, and what differed stays on record";
+    `db rebuild` derives it again from the other rows, and what differed stays on record";
 
 /// Collects problems of one kind, up to the limit.
 struct Findings<'a> {
@@ -193,13 +192,13 @@ impl Store {
         report.runs = runs.map_err(|error| self.failed("checking seals", error))?;
         report.head = self.head()?;
 
-        let found = Findings::new(problems, "tally", REBUILD);
+        let found = Findings::new(problems, "derived", REBUILD);
         counted::check(conn, found).map_err(failed)?;
         counted::in_snapshot(conn, || derived::check(conn, &mut report.problems)).map_err(failed)
     }
 
-    /// Recomputes everything that follows from other rows: counts by day and month, repairs, sums of measured
-    /// values, search words of notes, and derived columns of faults. Runs, faults, events and traces stay as
+    /// Recomputes everything that follows from other rows: repairs, packed faults, sums of measured values, search
+    /// words of notes, and derived columns of faults. Runs, faults, events and traces stay as
     /// they are, and so do their seals, even if wrong or missing. What differed is sealed with this time, and
     /// returned.
     pub fn rebuild(&self, at_us: i64) -> Result<Vec<String>, StoreError> {

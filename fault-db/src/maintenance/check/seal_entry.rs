@@ -13,7 +13,6 @@ pub(super) struct Seal {
     pub ordinal: i64,
     pub what: String,
     pub id: Id,
-    pub covers: i64,
     pub payload: String,
     pub digest: Vec<u8>,
     pub hash: Vec<u8>,
@@ -57,7 +56,7 @@ pub(super) fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<V
         (&last.origin.as_bytes()[..], last.ordinal)
     });
     let sql = format!(
-        "SELECT s.origin, s.ordinal, s.what, s.id, s.covers, s.says, s.digest, s.hash,
+        "SELECT s.origin, s.ordinal, s.what, s.id, s.says, s.digest, s.hash,
             CASE s.what WHEN 'run' THEN (SELECT r.seq FROM run r WHERE r.id = s.id)
                 WHEN 'event' THEN (SELECT e.seq FROM fault_event e WHERE e.id = s.id)
                 WHEN 'note' THEN (SELECT n.seq FROM run_note n WHERE n.id = s.id) END
@@ -69,11 +68,10 @@ pub(super) fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<V
             ordinal: row.get(1)?,
             what: row.get(2)?,
             id: row.get(3)?,
-            covers: row.get(4)?,
-            payload: row.get(5)?,
-            digest: row.get(6)?,
-            hash: row.get(7)?,
-            row: row.get(8)?,
+            payload: row.get(4)?,
+            digest: row.get(5)?,
+            hash: row.get(6)?,
+            row: row.get(7)?,
         })
     })
 }

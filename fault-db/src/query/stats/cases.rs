@@ -1,10 +1,8 @@
 //! Cases as they are counted: a fault with its repairs, or several faults of a unit that one part explains.
 
-use super::counts::{Bins, Counts, CountsByKey, Key};
-use super::repairs::within_us;
-use super::{StatKey, StatQuery, by_row};
-use crate::backend::{Backend, SqlResult};
-use crate::query::fault_filter::{FilteredTable, Resolved};
+use super::StatQuery;
+use super::counts::Counts;
+use crate::sql_functions::DAY_US;
 
 /// A fault, or the faults of a unit that come from one part and were not closed at the same time.
 #[derive(Clone, Debug)]
@@ -32,16 +30,17 @@ pub(super) struct CaseRepair {
 #[derive(Clone, Copy)]
 pub(super) struct RepairTimes {
     /// A fault seen again within this time is back.
-    within_us: i64,
+    pub within_us: i64,
     /// From then on a repair is too recent.
-    young_us: i64,
+    pub young_us: i64,
 }
 
 impl RepairTimes {
     pub fn of(query: &StatQuery) -> Self {
+        let within_us = i64::from(query.back_within_days) * DAY_US;
         Self {
-            within_us: within_us(query),
-            young_us: query.now_us - within_us(query) + 1,
+            within_us,
+            young_us: query.now_us - within_us + 1,
         }
     }
 }
@@ -108,87 +107,4 @@ pub(super) fn cases_of(mut attributed: Vec<Case>) -> Vec<Case> {
         }
     }
     cases
-}
-
-/// Counts cases by cause, row by row.
-pub(super) fn count(
-    backend: &Backend,
-    resolved: &Resolved<'_>,
-    query: &StatQuery,
-    bins: &Bins,
-) -> SqlResult<CountsByKey> {
-    let mut counted = by_row::seen(backend, resolved, StatKey::Cause, bins)?;
-    let mut parts: Vec<Key> = Vec::new();
-    let (mut alone, mut attributed) = (Vec::new(), Vec::new());
-    for (part, is_attributed, mut fault) in read(backend, resolved)? {
-        let known = parts.iter().position(|known| *known == part);
-        fault.place = known.unwrap_or(parts.len());
-        if known.is_none() {
-            parts.push(part);
-        }
-        match is_attributed {
-            true => attributed.push(fault),
-            false => alone.push(fault),
-        }
-    }
-    alone.extend(cases_of(attributed));
-    let filter = resolved.filter();
-    let times = RepairTimes::of(query);
-    for case in alone {
-        let counts = counted.entry(parts[case.place].clone()).or_default();
-        case.count(times, |at_us, change| {
-            let is_asked = filter.since_us.is_none_or(|since_us| at_us >= since_us)
-                && filter.until_us.is_none_or(|until_us| at_us < until_us);
-            if is_asked {
-                change(counts);
-            }
-        });
-    }
-    counted.retain(|_, counts| !counts.is_nothing() || counts.not_closed > 0);
-    Ok(counted)
-}
-
-/// The faults that the filter selects, at any time, with their repairs: the part each counts for, and whether it is
-/// attributed to it.
-fn read(backend: &Backend, resolved: &Resolved<'_>) -> SqlResult<Vec<(Key, bool, Case)>> {
-    let conditions = resolved.conditions_at_any_time(backend, FilteredTable::Faults);
-    let sql = format!(
-        "SELECT coalesce(x.cause, x.lru), CASE WHEN x.cause IS NULL THEN 0 ELSE 1 END, x.unit, x.first_at_us,
-            x.last_at_us, x.closed_at_us, x.repairs, x.seq FROM fault x {} ORDER BY x.seq",
-        conditions.sql()
-    );
-    let mut seqs: Vec<i64> = Vec::new();
-    let mut faults = backend.select(&sql, conditions.values(), |row| {
-        seqs.push(row.get(7)?);
-        let case = Case {
-            place: 0,
-            unit: row.get(2)?,
-            first_us: row.get(3)?,
-            last_us: row.get(4)?,
-            closed_us: row.get(5)?,
-            is_repaired: row.get::<i64>(6)? > 0,
-            repairs: Vec::new(),
-        };
-        Ok((
-            Key::from_field(row.field(0)?),
-            row.get::<i64>(1)? == 1,
-            case,
-        ))
-    })?;
-    let conditions = resolved.conditions_at_any_time(backend, FilteredTable::Repairs);
-    let sql = format!(
-        "SELECT x.fault, x.at_us, x.opened_at_us, x.back_at_us FROM repair x {}",
-        conditions.sql()
-    );
-    backend.each(&sql, conditions.values(), |row| {
-        if let Ok(place) = seqs.binary_search(&row.get(0)?) {
-            faults[place].2.repairs.push(CaseRepair {
-                at_us: row.get(1)?,
-                opened_us: row.get(2)?,
-                back_us: row.get(3)?,
-            });
-        }
-        Ok(())
-    })?;
-    Ok(faults)
 }

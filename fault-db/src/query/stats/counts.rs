@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::HOUR_US;
 use crate::backend::Field;
 use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
-use crate::units;
 
 /// The key of a count: a code or unit by its number, a part or line by its name; empty for all faults.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,7 +35,7 @@ pub(crate) struct Counts {
     pub units: Units,
     pub last_at_us: Option<i64>,
     pub course: Vec<u64>,
-    pub repairs: super::repairs::Repairs,
+    pub repairs: Repairs,
 }
 
 impl Counts {
@@ -51,33 +51,6 @@ impl Counts {
         }
     }
 
-    /// Adds the counts of a day or month.
-    pub fn add(&mut self, tally: &Tally<'_>) {
-        self.add_occurrences(tally.bins, tally.bin, tally.occurrences);
-        self.opened += tally.opened;
-        self.closed += tally.closed;
-        self.closed_without_repair += tally.closed_without_repair;
-        self.units.add(tally.units);
-        self.repairs.all += tally.repairs;
-        self.repairs.us += tally.repair_us;
-        self.repairs.back += tally.back;
-    }
-
-    /// Subtracts the counts of a day from those of its month. The set of units cannot be reduced by this.
-    pub fn subtract(&mut self, tally: &Tally<'_>) {
-        let less = |count: &mut u32, by: u32| *count = count.saturating_sub(by);
-        self.occurrences = self.occurrences.saturating_sub(tally.occurrences);
-        if let Some(count) = self.course.get_mut(tally.bin) {
-            *count = count.saturating_sub(tally.occurrences);
-        }
-        less(&mut self.opened, tally.opened);
-        less(&mut self.closed, tally.closed);
-        less(&mut self.closed_without_repair, tally.closed_without_repair);
-        less(&mut self.repairs.all, tally.repairs);
-        self.repairs.us -= tally.repair_us;
-        less(&mut self.repairs.back, tally.back);
-    }
-
     /// Adds the counts of another key that has none of the same faults.
     pub fn add_key(&mut self, other: &Self) {
         self.occurrences += other.occurrences;
@@ -85,9 +58,7 @@ impl Counts {
         self.not_closed += other.not_closed;
         self.closed += other.closed;
         self.closed_without_repair += other.closed_without_repair;
-        if let Units::Set(units) = &other.units {
-            self.units.add(units);
-        }
+        self.units.add(&other.units);
         self.last_at_us = self.last_at_us.max(other.last_at_us);
         let bins = self.course.len().max(other.course.len());
         self.course.resize(bins, 0);
@@ -117,53 +88,65 @@ impl Counts {
     }
 }
 
-/// The stored counts of a key on a day or in a month.
-pub(crate) struct Tally<'a> {
-    pub bins: &'a Bins,
-    pub bin: usize,
-    pub occurrences: u64,
-    pub opened: u32,
-    pub closed: u32,
-    pub closed_without_repair: u32,
-    pub units: &'a [u8],
-    pub repairs: u32,
-    pub repair_us: i64,
+/// Counts of repairs of one key.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Repairs {
+    pub all: u32,
     pub back: u32,
+    /// Have held so far, but are too recent to be judged.
+    pub young: u32,
+    /// Sum of the times from a fault's opening to its repair, µs.
+    pub us: i64,
 }
 
-/// The set of units, or only their number.
+impl Repairs {
+    /// Mean time from a fault's opening to its repair, hours.
+    pub fn mean_hours(&self) -> Option<f64> {
+        (self.all > 0).then(|| self.us as f64 / f64::from(self.all) / HOUR_US)
+    }
+}
+
+/// The units of a key: a bit for each row number, or, of a server, only how many they are.
 #[derive(Clone, Debug)]
 pub(crate) enum Units {
-    Set(Vec<u8>),
+    Set(Vec<u64>),
     Number(u32),
 }
 
 impl Default for Units {
     fn default() -> Self {
-        Self::Number(0)
+        Self::Set(Vec::new())
     }
 }
 
 impl Units {
     pub fn count(&self) -> u32 {
         match self {
-            Self::Set(set) => units::count(set),
+            Self::Set(set) => set.iter().map(|bits| bits.count_ones()).sum(),
             Self::Number(number) => *number,
         }
     }
 
-    /// Adds the units of a set.
-    pub fn add(&mut self, more: &[u8]) {
-        match self {
-            Self::Set(set) => units::add(set, more),
-            Self::Number(_) => *self = Self::Set(more.to_vec()),
+    pub fn add_one(&mut self, unit: i64) {
+        let (Self::Set(set), Ok(unit)) = (self, usize::try_from(unit)) else {
+            return;
+        };
+        let (place, bit) = (unit / 64, unit % 64);
+        if set.len() <= place {
+            set.resize(place + 1, 0);
         }
+        set[place] |= 1 << bit;
     }
 
-    pub fn add_one(&mut self, unit: i64) {
-        match self {
-            Self::Set(set) => units::insert(set, unit),
-            Self::Number(_) => *self = Self::Set(units::with(&[], unit)),
+    fn add(&mut self, more: &Self) {
+        let (Self::Set(set), Self::Set(more)) = (self, more) else {
+            return;
+        };
+        if set.len() < more.len() {
+            set.resize(more.len(), 0);
+        }
+        for (bits, more) in set.iter_mut().zip(more) {
+            *bits |= more;
         }
     }
 }
@@ -225,5 +208,21 @@ impl Bins {
         } else {
             utc_month(at_us)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_unit_is_counted_once() {
+        let mut units = Units::default();
+        [3, 900, 3].iter().for_each(|unit| units.add_one(*unit));
+        assert_eq!(units.count(), 2);
+        let mut more = Units::default();
+        [4, 900].iter().for_each(|unit| more.add_one(*unit));
+        units.add(&more);
+        assert_eq!(units.count(), 3);
     }
 }

@@ -1,27 +1,22 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
-//! A file answers in one of three ways:
-//! * if the filter allows it, from the counts that its triggers maintain, and incomplete days row by row;
-//! * row by row for one unit's counts by code, part, cause or line, as a server always does;
-//! * from the packed faults for every other filter, and for several spans at once.
+//! A file counts its packed faults, for every filter and for several spans at once (`in_file`); a server is asked in SQL
+//! (`on_server`), because it groups its rows faster than it returns them.
 
-mod by_row;
 mod cases;
 mod counts;
 mod exposure;
-mod from_packed;
-mod from_tally;
-mod repairs;
+mod in_file;
+mod on_server;
 
 use serde::Serialize;
 
 pub(crate) use counts::Bins;
 use counts::{Counts, CountsByKey, Key};
 use exposure::{Exposure, Observed};
-use from_tally::TallyPart;
 
 use super::fault_filter::{FaultFilter, Resolved};
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::store::Store;
 
@@ -101,20 +96,13 @@ struct CountedSpan {
     bins: Bins,
 }
 
-/// Which of the three ways of the module's document counts.
-enum Method {
-    Tally(TallyPart),
-    Rows,
-    Packed,
-}
-
 const DOING: &str = "counting faults";
 
 impl Store {
     /// Counts faults by code, part, unit or line, or cases by cause, the most frequent first.
     ///
     /// # Errors
-    /// Of the filter, or of the file or server.
+    /// The filter names what is not there, or the file or server cannot be read.
     pub fn stats(&self, query: &StatQuery) -> Result<Vec<FaultStat>, StoreError> {
         Ok(self.count_and_total(query, false)?.0)
     }
@@ -122,7 +110,7 @@ impl Store {
     /// The same, and the counts of all keys together.
     ///
     /// # Errors
-    /// Of the filter, or of the file or server.
+    /// The filter names what is not there, or the file or server cannot be read.
     pub fn stats_and_total(
         &self,
         query: &StatQuery,
@@ -134,7 +122,7 @@ impl Store {
     /// overlap.
     ///
     /// # Errors
-    /// Of the filter, or of the file or server.
+    /// The filter names what is not there, or the file or server cannot be read.
     pub fn stats_of_spans(
         &self,
         query: &StatQuery,
@@ -161,7 +149,7 @@ impl Store {
             }
         };
         let spans: Vec<_> = spans.iter().map(within).collect();
-        let counted = from_packed::count(self.backend(), &resolved, query, &spans)
+        let counted = in_file::count(self.backend(), &resolved, query, &spans)
             .map_err(|error| self.failed(DOING, error))?;
         let in_spans = counted.into_iter().zip(&spans);
         let in_spans = in_spans.map(|(counted, span)| {
@@ -215,18 +203,6 @@ impl Store {
         Ok((stats, total.stat(days)))
     }
 
-    fn method(&self, resolved: &Resolved<'_>, by: StatKey) -> Method {
-        if let Backend::Server(_) = self.backend() {
-            return Method::Rows;
-        }
-        let is_of_unit = resolved.identity_filters_only().is_some() && resolved.unit().is_some();
-        match from_tally::part_for(resolved, by) {
-            Some(part) => Method::Tally(part),
-            None if is_of_unit => Method::Rows,
-            None => Method::Packed,
-        }
-    }
-
     fn count(
         &self,
         resolved: &Resolved<'_>,
@@ -234,22 +210,13 @@ impl Store {
         span: &CountedSpan,
     ) -> Result<CountsByKey, StoreError> {
         let backend = self.backend();
-        let counted = match self.method(resolved, query.by) {
-            Method::Tally(part) => from_tally::count(backend, &part, &query.filter, &span.bins)
-                .and_then(|counted| add_state_and_repairs(backend, resolved, query, counted, true)),
-            Method::Rows if query.by == StatKey::Cause => {
-                cases::count(backend, resolved, query, &span.bins)
-            }
-            Method::Rows => {
-                by_row::count(backend, resolved, query.by, &span.bins).and_then(|counted| {
-                    add_state_and_repairs(backend, resolved, query, counted, false)
-                })
-            }
-            Method::Packed => {
+        let counted = match backend {
+            Backend::File(_) => {
                 let spans = std::slice::from_ref(span);
-                from_packed::count(backend, resolved, query, spans)
+                in_file::count(backend, resolved, query, spans)
                     .map(|mut counted| counted.pop().unwrap_or_default())
             }
+            Backend::Server(_) => on_server::count(backend, resolved, query, &span.bins),
         };
         counted.map_err(|error| self.failed(DOING, error))
     }
@@ -278,39 +245,7 @@ impl Store {
     }
 }
 
-/// Adds the faults that are not closed, and the repairs as far as they are not counted.
-fn add_state_and_repairs(
-    backend: &Backend,
-    resolved: &Resolved<'_>,
-    query: &StatQuery,
-    mut counted: CountsByKey,
-    has_repairs: bool,
-) -> SqlResult<CountsByKey> {
-    counted.retain(|_, counts| !counts.is_nothing());
-    by_row::add_not_closed(backend, resolved, query.by, &mut counted)?;
-    if !has_repairs || query.back_within_days != repairs::KEPT_DAYS {
-        repairs::add(backend, resolved, query, &mut counted)?;
-    }
-    repairs::add_young(backend, resolved, query, &mut counted)?;
-    Ok(counted)
-}
-
-impl StatKey {
-    /// The key of faults, occurrences and repairs called `x`.
-    fn column(self) -> &'static str {
-        match self {
-            Self::Code => "x.code",
-            Self::Lru => "x.lru",
-            // Of occurrences; a fault's own row is not asked by cause.
-            Self::Cause => "(SELECT coalesce(f.cause, f.lru) FROM fault f WHERE f.seq = x.fault)",
-            Self::Unit => "x.unit",
-            Self::Line => "x.line",
-            Self::All => "''",
-        }
-    }
-}
-
-/// Readable names of keys; of texts none.
+/// Readable names of keys that are numbers.
 struct Names {
     by: StatKey,
     of_numbers: std::collections::BTreeMap<i64, String>,

@@ -50,7 +50,7 @@ impl Merge<'_> {
                 return Ok(());
             }
             let (origin, ordinal): (Id, i64) = (row.get(0)?, row.get(1)?);
-            let (digest, hash): (&[u8], Vec<u8>) = (row.get(6)?, row.get(7)?);
+            let (digest, hash): (&[u8], Vec<u8>) = (row.get(5)?, row.get(6)?);
             let before = last.take().filter(|last| last.origin == origin);
             let mut parted = before.as_ref().is_some_and(|before| before.parted);
             let known = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
@@ -65,7 +65,7 @@ impl Merge<'_> {
                 None => {
                     let id = row.get::<Id>(3)?;
                     parted |= self.left_out.contains(&id.as_bytes()[..])
-                        || self.is_different(row.get(2)?, id, row.get(5)?, digest)?;
+                        || self.is_different(row.get(2)?, id, row.get(4)?, digest)?;
                     if !parted {
                         for row in rows.iter() {
                             insert.execute(params_from_iter(row))?;

@@ -6,8 +6,8 @@ use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
 use crate::replication::tables::TABLES;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
-use crate::seal::run::RunPayload;
-use crate::seal::{DIGEST_VERSION, hex, run_digest, trace, version1};
+use crate::seal::run::{self, RunPayload};
+use crate::seal::{hex, trace};
 
 impl Merge<'_> {
     /// Names rows whose parent does not exist, and marks the runs that they are part of.
@@ -65,7 +65,7 @@ pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<Stri
         (true, false) => {
             let mut fits = true;
             for seal in sealed {
-                fits &= run_digest(theirs, run, seal.covers, &seal.payload)? == seal.digest[..];
+                fits &= run::digest(theirs, run, &seal.payload)? == seal.digest[..];
             }
             if fits {
                 return Ok(None);
@@ -140,13 +140,13 @@ pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Optio
     Ok(None)
 }
 
-/// What the seals of a run say of its traces and recordings; those of earlier versions say nothing.
+/// What the seals of a run say of its traces and recordings.
 fn payloads(theirs: &Backend, run: i64) -> SqlResult<Vec<RunPayload>> {
-    let sealed = seals(theirs, run)?.into_iter();
-    let known = sealed.filter(|seal| seal.covers == DIGEST_VERSION);
-    Ok(known
-        .filter_map(|seal| RunPayload::of(&seal.payload))
-        .collect())
+    let sealed = seals(theirs, run)?;
+    let payloads = sealed
+        .iter()
+        .filter_map(|seal| RunPayload::of(&seal.payload));
+    Ok(payloads.collect())
 }
 
 fn seals_of(theirs: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<(String, Vec<u8>)>> {
@@ -157,24 +157,22 @@ fn seals_of(theirs: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<(String, V
     )
 }
 
-/// A seal of a run; files that shared the run before there were seals have each sealed it.
+/// A seal of a run. A run that came without one has one of each file that sealed it as found.
 #[derive(PartialEq, Eq)]
 struct Seal {
-    covers: i64,
     payload: String,
     digest: Vec<u8>,
 }
 
 fn seals(backend: &Backend, run: i64) -> SqlResult<Vec<Seal>> {
     backend.select(
-        "SELECT s.covers, s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'
+        "SELECT s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'
          WHERE r.seq = ?1",
         &values![run],
         |row| {
             Ok(Seal {
-                covers: row.get(0)?,
-                payload: row.get(1)?,
-                digest: row.get(2)?,
+                payload: row.get(0)?,
+                digest: row.get(1)?,
             })
         },
     )
@@ -182,7 +180,7 @@ fn seals(backend: &Backend, run: i64) -> SqlResult<Vec<Seal>> {
 
 /// Whether a run that is finished here is the same in the other file. One copied while it was running may
 /// well hold less.
-pub(super) fn is_same(ours: &Backend, run: i64, theirs: &Backend, there: i64) -> SqlResult<bool> {
+pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, there: i64) -> SqlResult<bool> {
     let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND (verdict IS NOT NULL
         OR EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run'))";
     if theirs
@@ -193,28 +191,25 @@ pub(super) fn is_same(ours: &Backend, run: i64, theirs: &Backend, there: i64) ->
     }
     let sealed = seals(theirs, there)?;
     // Entries of an imported log may stand under different runs here and there; each side is held to its seal.
-    let of_log =
-        |seal: &Seal| seal.covers == DIGEST_VERSION && seal.payload.contains("\"entries\"");
+    let of_log = |seal: &Seal| seal.payload.contains("\"entries\"");
     if sealed.iter().any(of_log) {
         for seal in &sealed {
-            if run_digest(theirs, there, seal.covers, &seal.payload)? != seal.digest[..] {
+            if run::digest(theirs, there, &seal.payload)? != seal.digest[..] {
                 return Ok(false);
             }
         }
     } else {
-        match version1::digest(theirs, there) {
-            Ok(theirs) if theirs == version1::digest(ours, run)? => {}
+        match run::digest(theirs, there, "") {
+            Ok(theirs) if theirs == run::digest(ours, here, "")? => {}
             // No text, or of another type.
             Ok(_) | Err(SqlError::Value { .. }) => return Ok(false),
             Err(error) => return Err(error),
         }
     }
     // A row changed by hand still has its old seal; a row sealed again by hand has another digest.
-    let known = seals(ours, run)?;
+    let known = seals(ours, here)?;
     for seal in sealed {
-        if !known.contains(&seal)
-            && run_digest(ours, run, seal.covers, &seal.payload)? != seal.digest[..]
-        {
+        if !known.contains(&seal) && run::digest(ours, here, &seal.payload)? != seal.digest[..] {
             return Ok(false);
         }
     }

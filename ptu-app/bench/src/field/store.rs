@@ -68,7 +68,7 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
             .map(|place| entry_id(&source.serial, entry, place));
         let is_known = match id {
             Some(id) if store.has_occurrence(id)? => true,
-            // Imported by an earlier version, or seen in a run. Without a date only the id can tell.
+            // Seen in a run. Without a date only the id can tell.
             Some(_) if entry.at_us.is_none() => false,
             _ => store.knows_occurrence(&source.serial, what, entry.at_us)?,
         };

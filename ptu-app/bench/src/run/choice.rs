@@ -10,7 +10,7 @@ use std::sync::Arc;
 use btu_rig::procedure::plan::Connection;
 use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
 use protocol::message::Identity;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use super::BenchSetup;
 use crate::data::ScriptsDirectory;
@@ -26,8 +26,7 @@ use crate::link::Endpoint;
 pub struct BenchChoice {
     /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
-    /// Whether the bench harness is connected. Settings of before said `as_ptu`.
-    #[serde(alias = "as_ptu", deserialize_with = "harness_or_as_ptu")]
+    /// Whether the bench harness is connected.
     pub harness: Harness,
     /// Line, `lines/NAME.toml`.
     pub line: String,
@@ -170,21 +169,6 @@ impl BenchChoice {
     }
 }
 
-/// A harness by its word, or whether only the maintenance port is connected, as settings of before have it.
-fn harness_or_as_ptu<'de, D: Deserializer<'de>>(saved: D) -> Result<Harness, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Saved {
-        Harness(Harness),
-        AsPtu(bool),
-    }
-    Ok(match Saved::deserialize(saved)? {
-        Saved::Harness(harness) => harness,
-        Saved::AsPtu(true) => Harness::None,
-        Saved::AsPtu(false) => Harness::Auto,
-    })
-}
-
 /// Reads a software version, `MAJOR.MINOR.PATCH`.
 ///
 /// # Errors
@@ -220,10 +204,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_of_before_say_whether_there_is_a_harness() {
+    fn saved_settings_may_leave_the_harness_out() {
         for (saved, harness) in [
-            (r#"{"as_ptu": true}"#, Harness::None),
-            (r#"{"as_ptu": false}"#, Harness::Auto),
             (r#"{"harness": "bench"}"#, Harness::Bench),
             ("{}", Harness::Auto),
         ] {

@@ -327,10 +327,9 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
     let place: [(&str, &dyn std::fmt::Display); 3] =
         [("digits", &digits), ("n", &seal.entry), ("file", &file)];
     let said = fill(report.seal_of, &place);
-    match (seal.covers, &seal.found) {
-        (2.., None) => said,
-        (2.., Some(_)) => format!("{said} ({})", report.seal_found),
-        _ => format!("{said} ({})", report.seal_earlier),
+    match seal.found {
+        None => said,
+        Some(_) => format!("{said} ({})", report.seal_found),
     }
 }
 

@@ -21,10 +21,9 @@ pub fn column_name(channel: &Channel) -> String {
     }
 }
 
-/// Whether a signal is called so in a file: as [`column_name`] has it, by its bare name, or as earlier versions headed it.
+/// Whether a signal is called so in a file: as [`column_name`] has it, or by its bare name.
 pub fn is_called(channel: &Channel, text: &str) -> bool {
-    let former = || format!("{}_{}", channel.name, channel.unit.replace('/', ""));
-    text == channel.name || text == column_name(channel) || text == former()
+    text == channel.name || text == column_name(channel)
 }
 
 /// The word for a sample of an enumeration; what has no word is a number still.

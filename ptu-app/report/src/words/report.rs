@@ -43,7 +43,6 @@ wordings! {
         scripts_hash: "SHA-256 of all scripts", "전체 스크립트 SHA-256";
         seal: "Seal", "봉인";
         seal_of: "{digits}, entry {n} of database {file}", "{digits}, 데이터베이스 {file}의 {n}번 항목";
-        seal_earlier: "by an earlier version, which covered less", "이전 버전의 봉인으로 적용 범위가 좁음";
         seal_found: "as the run was found when it came in", "외부에서 들어온 시점의 기록 그대로 봉인";
         scripts: "Scripts", "스크립트";
         script: "Script", "스크립트";

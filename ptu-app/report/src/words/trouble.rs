@@ -167,8 +167,8 @@ mod tests {
             "recording 7 of run X7 was taken out: no seal says that it was pruned",
             "one of the notes, X7, has no seal: it was put in by hand, or its seal was taken out",
             "run X7 was finished and has no seal: its seal was taken out, or it was put in by hand",
-            "7 counts by day or month are not what the history says",
-            "fault X7 does not stand as its occurrences and events say: state, times, line or counts",
+            "7 sums of measured values by day are not what the history says",
+            "fault X7 is not as its occurrences and events say: state, times, line or counts",
             "trace X7: damaged at byte 7: X7",
         ] {
             let said = Language::Korean.words().trouble(message);

@@ -1,29 +1,65 @@
--- Second version: the account of the laptops adds rows and reads, and nothing else. What follows from rows is
--- kept by functions of the owner (functions.sql). What comes in is held to the domain that a laptop holds it
--- to (fault-db/src/domain.rs): when it comes in, so that a row from before never stands in the way.
+-- What may be written. Rows are only ever added, with the exceptions named here, and each is held to the domain that a
+-- laptop holds it to (fault-db/src/history/domain.rs) when it comes in.
+CREATE FUNCTION refuse_change() RETURNS trigger LANGUAGE plpgsql SET search_path FROM CURRENT AS $$
+BEGIN
+  RAISE EXCEPTION 'rows of % are only ever added', TG_TABLE_NAME USING ERRCODE = 'restrict_violation';
+END $$;
 
-ALTER FUNCTION refuse_change() SET search_path FROM CURRENT;
-ALTER FUNCTION run_may_end() SET search_path FROM CURRENT;
-ALTER FUNCTION occurrence_may_move() SET search_path FROM CURRENT;
-ALTER FUNCTION event_may_move() SET search_path FROM CURRENT;
+-- A run that had no verdict may get one, once: its program was only thought dead.
+CREATE FUNCTION run_may_end() RETURNS trigger LANGUAGE plpgsql SET search_path FROM CURRENT AS $$
+DECLARE
+  ends constant text[] := ARRAY['verdict', 'finished_at_us', 'bench_time_us', 'wall_time_us'];
+BEGIN
+  IF OLD.verdict IS NULL AND to_jsonb(OLD) - ends = to_jsonb(NEW) - ends THEN
+    RETURN NEW;
+  END IF;
+  RAISE EXCEPTION 'rows of run are only ever added' USING ERRCODE = 'restrict_violation';
+END $$;
 
-ALTER TABLE fault ALTER COLUMN occurrences SET DEFAULT 0;
-ALTER TABLE fault ALTER COLUMN repairs SET DEFAULT 0;
+-- A trace comes after the occurrence it shows, and is hung on it once. Two faults may turn out to be one.
+CREATE FUNCTION occurrence_may_move() RETURNS trigger LANGUAGE plpgsql SET search_path FROM CURRENT AS $$
+DECLARE
+  pointers constant text[] := ARRAY['trace', 'fault'];
+BEGIN
+  IF to_jsonb(OLD) - pointers = to_jsonb(NEW) - pointers
+    AND (OLD.trace IS NULL OR OLD.trace IS NOT DISTINCT FROM NEW.trace) THEN
+    RETURN NEW;
+  END IF;
+  RAISE EXCEPTION 'rows of fault_occurrence are only ever added' USING ERRCODE = 'restrict_violation';
+END $$;
 
--- Times of a row from before may be any; what asks for a day, a month or a date goes on.
-CREATE FUNCTION near(at_us bigint) RETURNS bigint LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE
-  RETURN least(greatest(at_us, -62135596800000000), 253402300799999999);
-CREATE OR REPLACE FUNCTION utc_month(at_us bigint) RETURNS bigint
-  LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE AS $$
-  SELECT CAST((extract(year FROM at) - 1970) * 12 + extract(month FROM at) - 1 AS bigint)
-  FROM (SELECT timestamp '1970-01-01'
-    + least(greatest(at_us, -62135596800000000), 253402300799999999) * interval '1 microsecond' AS at) AS time
-$$;
-CREATE OR REPLACE FUNCTION time_text(at_us bigint) RETURNS text LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE
-  RETURN to_char(to_timestamp(near(at_us) / 1000 / 1000.0) AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"');
--- And an id of any length.
-CREATE OR REPLACE FUNCTION id_text(id bytea) RETURNS text LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE
-  RETURN CASE octet_length(id) WHEN 16 THEN CAST(CAST(encode(id, 'hex') AS uuid) AS text) ELSE encode(id, 'hex') END;
+CREATE FUNCTION event_may_move() RETURNS trigger LANGUAGE plpgsql SET search_path FROM CURRENT AS $$
+BEGIN
+  IF to_jsonb(OLD) - 'fault' = to_jsonb(NEW) - 'fault' THEN
+    RETURN NEW;
+  END IF;
+  RAISE EXCEPTION 'rows of fault_event are only ever added' USING ERRCODE = 'restrict_violation';
+END $$;
+
+CREATE TRIGGER only_added BEFORE UPDATE ON run FOR EACH ROW EXECUTE FUNCTION run_may_end();
+CREATE TRIGGER only_added BEFORE UPDATE ON fault_occurrence
+  FOR EACH ROW EXECUTE FUNCTION occurrence_may_move();
+CREATE TRIGGER only_added BEFORE UPDATE ON fault_event
+  FOR EACH ROW EXECUTE FUNCTION event_may_move();
+DO $$
+DECLARE
+  name text;
+BEGIN
+  FOREACH name IN ARRAY ARRAY['run_script', 'step', 'measurement', 'recording', 'channel_set', 'trace',
+    'run_note', 'seal']
+  LOOP
+    EXECUTE format('CREATE TRIGGER only_added BEFORE UPDATE ON %I
+      FOR EACH ROW EXECUTE FUNCTION refuse_change()', name);
+  END LOOP;
+  FOREACH name IN ARRAY ARRAY['run', 'fault_occurrence', 'run_script', 'step', 'measurement',
+    'recording', 'channel_set', 'trace', 'fault_event', 'run_note', 'seal', 'unit']
+  LOOP
+    EXECUTE format('CREATE TRIGGER only_added_1 BEFORE DELETE ON %I
+      FOR EACH ROW EXECUTE FUNCTION refuse_change()', name);
+    EXECUTE format('CREATE TRIGGER only_added_2 BEFORE TRUNCATE ON %I
+      FOR EACH STATEMENT EXECUTE FUNCTION refuse_change()', name);
+  END LOOP;
+END $$;
 
 ---- the domain ----
 
@@ -67,13 +103,15 @@ BEGIN
       AND is_name(NEW.source) AND is_time(NEW.started_at_us) AND is_time(NEW.finished_at_us)
       AND is_span(NEW.bench_time_us) AND is_span(NEW.wall_time_us) AND is_name(NEW.app_version)
       AND is_name(NEW.scripts_sha256) AND is_name(NEW.unit_config_sha256) AND is_text(NEW.injected)
-      AND is_name(NEW.owner) AND is_name(NEW.train)'],
+      AND is_name(NEW.owner) AND is_name(NEW.train) AND is_name(NEW.unit_kind) AND is_name(NEW.unit_config_name)
+      AND is_json(NEW.sw_versions) AND is_id(NEW.continues) AND is_name(NEW.connection) AND is_name(NEW.symptom)'],
     ['run_script', 'INSERT', 'is_name(NEW.path) AND is_name(NEW.sha256)'],
     ['step', 'INSERT', 'is_count(NEW.step_index) AND is_name(NEW.procedure) AND is_name(NEW.name)
       AND is_span(NEW.started_bench_us) AND is_span(NEW.bench_time_us) AND is_text(NEW.message)
-      AND is_count(NEW.script_line)'],
+      AND is_count(NEW.script_line) AND is_text(NEW.limit_source)'],
     ['measurement', 'INSERT', 'is_count(NEW.step_index) AND is_count(NEW.ordinal) AND is_name(NEW.name)
-      AND is_finite(NEW.value) AND is_name(NEW.unit) AND is_finite(NEW.low) AND is_finite(NEW.high)'],
+      AND is_finite(NEW.value) AND is_name(NEW.unit) AND is_finite(NEW.low) AND is_finite(NEW.high)
+      AND is_text(NEW.limit_source)'],
     ['fault', 'INSERT', 'is_id(NEW.id) AND is_name(NEW.code_name) AND is_name(NEW.lru)
       AND is_name(NEW.severity) AND is_time(NEW.first_at_us) AND is_time(NEW.last_at_us)
       AND is_name(NEW.line)'],
@@ -88,14 +126,16 @@ BEGIN
       AND is_count(NEW.recording)'],
     ['fault_occurrence', 'INSERT', 'is_id(NEW.id) AND is_count(NEW.step_index) AND is_time(NEW.at_us)
       AND is_span(NEW.bench_us) AND is_text(NEW.message) AND is_json(NEW.freeze_json) AND is_name(NEW.lru)
-      AND is_name(NEW.line)'],
+      AND is_name(NEW.line) AND is_name(NEW.code_name) AND is_name(NEW.severity)'],
     ['fault_event', 'INSERT', 'is_id(NEW.id) AND is_name(NEW.kind) AND is_time(NEW.at_us)
-      AND is_name(NEW.who) AND is_text(NEW.body) AND (NEW.kind <> ''repair'' OR is_json(NEW.body))
+      AND is_name(NEW.who) AND is_text(NEW.body) AND (NEW.kind NOT IN (''repair'', ''cause'', ''diagnosed'') OR is_json(NEW.body))
       AND is_count(NEW.turn) AND octet_length(NEW.follows) <= 65536 AND octet_length(NEW.follows) % 16 = 0
-      AND is_count(NEW.seen) AND is_name(NEW.part)'],
-    ['run_note', 'INSERT', 'is_id(NEW.id) AND is_time(NEW.at_us) AND is_name(NEW.who) AND is_text(NEW.text)'],
-    ['seal', 'INSERT', 'is_id(NEW.origin) AND is_count(NEW.ordinal) AND is_digest(NEW.digest)
-      AND is_digest(NEW.hash)']
+      AND is_count(NEW.seen) AND is_name(NEW.part)
+      AND (NEW.kind <> ''withdrawn'' OR is_id(NEW.follows) AND NEW.state IS NULL)'],
+    ['run_note', 'INSERT', 'is_id(NEW.id) AND is_time(NEW.at_us) AND is_name(NEW.who) AND is_id(NEW.trace)
+      AND is_span(NEW.place_us) AND is_text(NEW.text)'],
+    ['seal', 'INSERT', 'is_id(NEW.origin) AND is_count(NEW.ordinal) AND is_name(NEW.what) AND is_id(NEW.id)
+      AND octet_length(NEW.says) <= 16777216 AND is_digest(NEW.digest) AND is_digest(NEW.hash)']
   ]
   LOOP
     EXECUTE format('CREATE TRIGGER in_domain BEFORE %s ON %I FOR EACH ROW WHEN (NOT (%s))

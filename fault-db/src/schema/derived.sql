@@ -1,4 +1,4 @@
--- Counts, repairs and sums, anew. Unqualified names only: a check makes them in temporary tables.
+-- Fills the derived tables from the others. Unqualified names only: a check fills temporary tables of the same names.
 DELETE FROM repair;
 INSERT INTO repair(event, fault, unit, code, lru, line, part, at_us, opened_at_us, back_at_us)
   SELECT e.seq, f.seq, f.unit, f.code, f.lru, f.line, part_of(e.body), e.at_us,
@@ -9,31 +9,6 @@ INSERT INTO repair(event, fault, unit, code, lru, line, part, at_us, opened_at_u
       AND o.lru = f.lru AND o.at_us > e.at_us)
   FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.kind = 'repair'
     AND NOT EXISTS (SELECT 1 FROM fault_event w WHERE w.kind = 'withdrawn' AND w.follows = e.id);
-
-DELETE FROM tally;
-WITH counted(unit, code, lru, line, at_us, seen, opened, closed, bare, repairs, repair_us, back) AS (
-  SELECT unit, code, lru, line, at_us, 1, 0, 0, 0, 0, 0, 0 FROM fault_occurrence
-  UNION ALL SELECT unit, code, lru, line, first_at_us, 0, 1, 0, 0, 0, 0, 0 FROM fault
-  UNION ALL SELECT unit, code, lru, line, closed_at_us, 0, 0, 1, repairs = 0, 0, 0, 0 FROM fault
-    WHERE closed_at_us IS NOT NULL
-  UNION ALL SELECT unit, code, lru, line, at_us, 0, 0, 0, 0, 1, at_us - opened_at_us,
-    coalesce(back_at_us - at_us < 2592000000000, 0) FROM repair
-), daily AS (
-  SELECT unit, code, lru, line, utc_day(at_us) AS day, utc_month(at_us) AS month, sum(seen) AS seen,
-    sum(opened) AS opened, sum(closed) AS closed, sum(bare) AS bare, sum(repairs) AS repairs,
-    sum(repair_us) AS repair_us, sum(back) AS back
-  FROM counted GROUP BY 1, 2, 3, 4, 5, 6
-)
-INSERT INTO tally(dim, grain, at, key, seen, opened, closed, bare, repairs, repair_us, back, units)
-  SELECT dim, grain,
-    CASE grain WHEN 0 THEN month ELSE day END,
-    CASE dim WHEN 0 THEN '' WHEN 1 THEN code WHEN 2 THEN lru WHEN 3 THEN unit ELSE line END,
-    sum(seen), sum(opened), sum(closed), sum(bare), sum(repairs), sum(repair_us), sum(back),
-    unit_set(CASE WHEN seen > 0 THEN unit END)
-  FROM daily,
-    (SELECT 0 AS dim UNION ALL SELECT 1 UNION ALL SELECT 2 UNION ALL SELECT 3 UNION ALL SELECT 4),
-    (SELECT 0 AS grain UNION ALL SELECT 1)
-  GROUP BY 1, 2, 3, 4;
 
 DELETE FROM measured_day;
 INSERT INTO measured_day(name, procedure, day, n, x, xx, least, most, not_passed)
@@ -51,3 +26,16 @@ INSERT INTO measured_month(name, procedure, month, unit, n, x, xx, t, tt, tx)
       JOIN step s ON s.run = m.run AND s.step_index = m.step_index
     WHERE m.value IS NOT NULL)
   GROUP BY 1, 2, 3, 4;
+
+DELETE FROM packed;
+INSERT INTO packed(block, faults, occurrences, repairs)
+  SELECT seq >> 5, packed_rows(seq, unit, code, lru, line, severity, state, first_at_us, last_at_us, closed_at_us,
+    repairs, cause), (SELECT packed_rows(1) WHERE false), (SELECT packed_rows(1) WHERE false)
+  FROM fault GROUP BY 1;
+UPDATE packed SET occurrences = known.rows FROM
+  (SELECT o.fault >> 5 AS of, packed_rows(o.fault, o.at_us, o.line, s.procedure, o.run) AS rows
+   FROM fault_occurrence o LEFT JOIN step s ON s.run = o.run AND s.step_index = o.step_index GROUP BY 1) AS known
+  WHERE packed.block = known.of;
+UPDATE packed SET repairs = known.rows FROM
+  (SELECT fault >> 5 AS of, packed_rows(fault, at_us, opened_at_us, back_at_us) AS rows FROM repair GROUP BY 1) AS known
+  WHERE packed.block = known.of;

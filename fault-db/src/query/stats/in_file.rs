@@ -1,4 +1,4 @@
-//! Counts from a file's table `packed`: all faults with their occurrences and repairs are gone through.
+//! Counts in a file: all faults with their occurrences and repairs are gone through in the table `packed`.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -114,7 +114,7 @@ impl Counting<'_> {
     fn block(&mut self, row: Row<'_>) -> SqlResult<()> {
         let damaged = |column| SqlError::Value {
             column,
-            reason: "not what was packed; `ptu db rebuild` packs it anew".to_owned(),
+            reason: "not what was packed; `ptu db rebuild` packs it again".to_owned(),
         };
         let faults = Faults::read(row.get(0)?).ok_or_else(|| damaged(0))?;
         let occurrences = Occurrences::read(row.get(1)?).ok_or_else(|| damaged(1))?;
