@@ -1,13 +1,15 @@
 //! Storage and analysis of the maintenance test unit's history: runs, measurements, faults and traces, in
 //! one SQLite file, or of many laptops on a PostgreSQL server.
 //!
-//! Three layers, each of which uses only those before it:
+//! Each folder uses only those before it:
 //!
-//! 1. [`trace`]: equally spaced samples of named channels, compressed column by column;
-//! 2. [`Store`]: one open file or server, with its schema, its checks on opening and its errors;
-//! 3. operations on a store: [`RunWriter`] records a run as it happens, `query` reads, `fault_log` changes
-//!    the state of faults, `maintenance` checks, backs up and prunes files, `replication` brings the rows
-//!    of one store into another.
+//! 1. `files`, `backend` (SQLite and PostgreSQL), `values` (what is recorded), [`trace`] (samples of named channels,
+//!    compressed column by column), `error`;
+//! 2. `schema` (tables of a file, SQL functions), `seal` (the chain of hashes), `store` ([`Store`]: one open file or
+//!    server);
+//! 3. `history` writes: [`RunWriter`] records a run as it happens, people change the state of faults; `query` reads;
+//! 4. `maintenance` checks, backs up and prunes files; `server` sets up a server; `exchange` brings the rows of one store
+//!    into another: import, export, synchronisation.
 //!
 //! The crate reads no clock, starts no thread, draws no random number and opens no file but the database:
 //! the caller gives times and an [`IdSource`]. Exceptions: [`read_regular_file`] and [`AtomicFile`] read and
@@ -17,87 +19,61 @@
 //! Names ending in `at_us` are microseconds since 1970 (UTC); `bench_us` is time on the bench's own clock;
 //! `bench_time_us` and `wall_time_us` are durations.
 
-mod atomic_file;
 mod backend;
-mod cases;
-mod compression;
-mod conflicts;
-mod dictionaries;
-mod domain;
 mod error;
-mod event_graph;
-mod fault_event;
-mod fault_log;
-mod fault_state;
-mod file;
-mod full_text;
+mod exchange;
+mod files;
+mod history;
 mod id;
-mod insert;
-pub mod limits;
-mod lookup;
 mod maintenance;
-mod open_options;
-mod packed;
-mod platform;
 mod query;
-mod record;
-mod recording;
-mod recurrence;
-mod regular_file;
-mod replication;
-mod run_notes;
-mod run_writer;
 mod schema;
-mod schema_guard;
 mod seal;
 mod server;
-mod sql_functions;
-mod statistics;
 mod store;
-mod text_enum;
 pub mod trace;
-mod trace_place;
-mod transaction;
-mod verify;
-mod views;
-mod withdrawal;
+mod values;
 
-pub use atomic_file::AtomicFile;
-pub use cases::ChangedFault;
-pub use conflicts::{ConflictingEvent, StateConflict};
-pub use dictionaries::DictionaryRecord;
-pub use domain::{Refusals, Refused};
 pub use error::{QueryLimit, StoreError};
-pub use fault_state::{FaultAction, FaultState, TransitionError};
-pub use id::{Id, IdSource};
-pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
-pub use open_options::{OpenOptions, Synchronous};
-pub use query::{
-    ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultEvent, FaultFilter, FaultStat,
-    FaultSummary, LOG_SOURCE, Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault,
-    Occurrence, PartHistory, PartRepair, QueryBounds, QueryResult, RepairsOf, RunDetail, RunFault,
-    RunFilter, RunOccurrence, RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery,
-    Stay, TraceHead, TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep,
-    TrendUnit, code_number, is_practice,
-};
-pub use record::{
-    CauseRecord, FaultRecord, FreezeSample, MeasurementRecord, RepairRecord, RunEnd, RunRecord,
-    ScriptRecord, StepRecord, UnitRecord, Verdict,
-};
-pub use recording::{Recording, RecordingRecord};
-pub use regular_file::{open_regular_file, read_regular_file};
-pub use replication::{
+pub use exchange::domain::{Refusals, Refused};
+pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
 };
-pub use run_notes::RunNote;
-pub use run_writer::{FaultStored, RunWriter};
+pub use files::regular_file::{open_regular_file, read_regular_file};
+pub use history::cases::ChangedFault;
+pub use history::conflicts::{ConflictingEvent, StateConflict};
+pub use history::dictionaries::DictionaryRecord;
+pub use history::insert::FaultStored;
+pub use history::limits;
+pub use history::recording::{Recording, RecordingRecord};
+pub use history::run_notes::RunNote;
+pub use history::run_writer::RunWriter;
+pub use history::verify::{RepairToProve, SettledFault};
+pub use history::withdrawal::{ToWithdraw, Withdrawn};
+pub use id::{Id, IdSource};
+pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
+pub use query::{
+    ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultFilter, FaultStat, FaultSummary,
+    Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,
+    PartRepair, QueryBounds, QueryResult, RepairsOf, RunDetail, RunFault, RunFilter, RunOccurrence,
+    RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, Stay, TraceHead,
+    TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit, code_number,
+    is_practice,
+};
+pub use schema::views::VIEWS_PAGE;
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
 pub use server::{Address, Claim, MOST_TRIES, Queue, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use store::Store;
-pub use text_enum::UnknownWord;
+pub use store::atomic_file::AtomicFile;
+pub use store::open_options::{OpenOptions, Synchronous};
 pub use trace::{Channel, ChannelKind, TraceData, TraceError};
-pub use trace_place::TracePlace;
-pub use verify::{RepairToProve, SettledFault};
-pub use views::VIEWS_PAGE;
-pub use withdrawal::{Correction, ToWithdraw, WithdrawalError, Withdrawn};
+pub use values::event::{Correction, FaultEvent};
+pub use values::fault_state::{FaultAction, FaultState, TransitionError};
+pub use values::record::{
+    CauseRecord, FaultRecord, FreezeSample, LOG_SOURCE, MeasurementRecord, RepairRecord, RunEnd,
+    RunRecord, ScriptRecord, StepRecord, UnitRecord, Verdict,
+};
+pub use values::text_enum::UnknownWord;
+pub use values::trace_place::TracePlace;
+pub use values::withdrawal_error::WithdrawalError;

@@ -1,7 +1,5 @@
 //! Errors of a backend, before the file or server they concern is known.
 
-use crate::domain::Refusal;
-
 /// An error of a file, of a server, of a value in a row, or of a row outside its domain.
 #[derive(Debug)]
 pub(crate) enum SqlError {
@@ -22,5 +20,29 @@ impl From<rusqlite::Error> for SqlError {
 impl From<postgres::Error> for SqlError {
     fn from(error: postgres::Error) -> Self {
         Self::Server(error)
+    }
+}
+
+/// A row outside its columns' domain: its table, its name there, and why.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    pub table: &'static str,
+    pub shown: String,
+    pub reason: String,
+}
+
+impl Refusal {
+    /// The error of reading such a row.
+    pub fn of(table: &'static str, shown: String, reason: String) -> SqlError {
+        SqlError::Refused(Box::new(Self {
+            table,
+            shown,
+            reason,
+        }))
+    }
+
+    /// Which row, as "fault event 0197…".
+    pub fn row(&self) -> String {
+        format!("{} {}", self.table.replace('_', " "), self.shown)
     }
 }

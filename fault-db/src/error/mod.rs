@@ -7,10 +7,10 @@ mod sqlite;
 
 use std::path::PathBuf;
 
-use crate::fault_state::TransitionError;
 use crate::id::{Id, list};
 use crate::trace::TraceError;
-use crate::withdrawal::WithdrawalError;
+use crate::values::fault_state::TransitionError;
+use crate::values::withdrawal_error::WithdrawalError;
 pub(crate) use query_limit::MOST_RESULT_BYTES;
 pub use query_limit::QueryLimit;
 pub(crate) use server::NO_TLS;

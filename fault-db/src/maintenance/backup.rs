@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::atomic_file::AtomicFile;
 use crate::error::StoreError;
-use crate::file::copy_to;
 use crate::store::Store;
+use crate::store::atomic_file::AtomicFile;
+use crate::store::file::copy_to;
 
 impl Store {
     /// Copies the file as it is now, compacted, while others may write to it.

@@ -10,8 +10,8 @@ use super::runs::RunSummary;
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::record::{CauseRecord, part_name};
 use crate::store::Store;
+use crate::values::record::{CauseRecord, part_name};
 
 /// Of which units repairs are asked for.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::backend::values;
 use crate::error::StoreError;
-use crate::sql_functions::DAY_US;
+use crate::schema::sql_functions::DAY_US;
 use crate::store::Store;
 
 /// Occurrences of one fault of one unit on one day.

@@ -1,8 +1,8 @@
 //! The distinct names in a history (units, lines, codes …), for choices in filters.
 
 use crate::error::StoreError;
-use crate::record::part_name;
 use crate::store::Store;
+use crate::values::record::part_name;
 
 impl Store {
     /// Every code a fault was ever recorded with, and its latest name.
@@ -30,7 +30,7 @@ impl Store {
         self.select("listing parts", sql, &[], |row| row.get(0))
     }
 
-    /// Every part a fault came from: the one told, or else the one it points at. Reads all faults.
+    /// Every part a fault came from: the attributed one, or else the one it points at. Reads all faults.
     pub fn known_causes(&self) -> Result<Vec<String>, StoreError> {
         let sql = "SELECT DISTINCT cause FROM faults ORDER BY cause";
         self.select("listing parts", sql, &[], |row| row.get(0))

@@ -9,10 +9,10 @@ use super::note_filter::{
 };
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::error::StoreError;
-use crate::fault_state::FaultState;
-use crate::full_text::Search;
 use crate::id::Id;
+use crate::schema::full_text::Search;
 use crate::store::Store;
+use crate::values::fault_state::FaultState;
 
 /// Selects faults; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct FaultFilter {
     pub code: Option<String>,
     /// The part it points at.
     pub lru: Option<String>,
-    /// The part it comes from: the one that a diagnosis or a person has told, or else the one it points at.
+    /// The part it comes from: the attributed one, or else the one it points at.
     pub cause: Option<String>,
     /// Severity.
     pub severity: Option<String>,

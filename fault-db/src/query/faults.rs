@@ -5,13 +5,14 @@ use serde::Serialize;
 use super::fault_filter::FaultFilter;
 use super::filter::limit;
 use crate::backend::{Row, SqlError, SqlResult, values};
-use crate::cases::REST_OF_CASE;
 use crate::error::StoreError;
-use crate::fault_state::FaultState;
+use crate::history::cases::REST_OF_CASE;
 use crate::id::Id;
-use crate::record::{CAUSE, CauseRecord, DIAGNOSED, FreezeSample, REPAIR, RepairRecord};
 use crate::store::Store;
-use crate::withdrawal::Correction;
+use crate::values::event::Correction;
+use crate::values::event::FaultEvent;
+use crate::values::fault_state::FaultState;
+use crate::values::record::{CAUSE, DIAGNOSED, FreezeSample, REPAIR};
 
 /// A fault in a list: one row per unit, code and part until it is closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,7 +27,7 @@ pub struct FaultSummary {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// The part it comes from, where a diagnosis or a person has told.
+    /// The part it comes from, if a diagnosis or a person has attributed it.
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,
@@ -97,31 +98,6 @@ pub struct Occurrence {
     pub trace_id: Option<Id>,
     /// Freeze frame: all signals at that moment.
     pub freeze: Vec<FreezeSample>,
-}
-
-/// An event of a fault.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FaultEvent {
-    /// The event.
-    pub id: Id,
-    /// opened, recurred, acknowledged, repair, repaired, passed, confirmed, verified, closed, reopened, note, cause or
-    /// diagnosed. A run `confirmed` what a person may have `verified`.
-    pub kind: String,
-    /// When.
-    pub at_us: i64,
-    /// Who; empty for the program itself.
-    pub who: String,
-    /// The text; empty for a repair and for a cause.
-    pub note: String,
-    /// The fault's state after it; `None` if it did not change.
-    pub state: Option<FaultState>,
-    /// The repair, if it is one.
-    pub repair: Option<RepairRecord>,
-    /// The part it comes from, if it says that.
-    pub cause: Option<CauseRecord>,
-    /// Who has withdrawn it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub correction: Option<Correction>,
 }
 
 const SELECT_FAULT: &str = "

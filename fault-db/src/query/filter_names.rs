@@ -2,7 +2,7 @@
 
 use crate::backend::values;
 use crate::error::StoreError;
-use crate::full_text::Search;
+use crate::schema::full_text::Search;
 use crate::store::Store;
 
 /// The words to search for.

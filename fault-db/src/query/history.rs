@@ -6,14 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::faults::json;
 use crate::backend::{Row, SqlError, SqlResult, values};
 use crate::error::StoreError;
-use crate::event_graph::standing;
+use crate::history::graph_sql::standing;
 use crate::id::Id;
-use crate::record::REPAIR;
-use crate::record::{RepairRecord, part_name};
 use crate::store::Store;
-
-/// The source of a run that is an imported log begins with this.
-pub const LOG_SOURCE: &str = "log of ";
+use crate::values::record::LOG_SOURCE;
+use crate::values::record::REPAIR;
+use crate::values::record::{RepairRecord, part_name};
 
 /// Two readings of a log may date the same entry this far apart, µs: the unit's clock and ours drift, and an
 /// answer takes time. From one power-up to the same event after the next a unit needs longer.

@@ -14,11 +14,13 @@ use super::filter::Conditions;
 use super::note_filter::repaired_with;
 use crate::backend::{SqlResult, values};
 use crate::error::StoreError;
-use crate::event_graph::standing;
+use crate::history::graph_sql::standing;
 use crate::id::Id;
-use crate::record::{CAUSE, CauseRecord, DIAGNOSED, REPAIR, RepairRecord, Verdict, part_name};
 use crate::store::Store;
-use crate::text_enum::text_enum;
+use crate::values::record::{
+    CAUSE, CauseRecord, DIAGNOSED, REPAIR, RepairRecord, Verdict, part_name,
+};
+use crate::values::text_enum::text_enum;
 
 text_enum! {
     /// What has the serial number.

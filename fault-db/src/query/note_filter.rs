@@ -2,8 +2,8 @@
 
 use super::filter::Conditions;
 use crate::backend::Backend;
-use crate::event_graph::standing;
-use crate::full_text::Search;
+use crate::history::graph_sql::standing;
+use crate::schema::full_text::Search;
 
 /// Selects the faults with these words in an event's text.
 pub(super) fn faults_with_note(backend: &Backend, search: &Search, all: &mut Conditions) -> String {

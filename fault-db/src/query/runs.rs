@@ -8,14 +8,14 @@ use super::faults::json;
 use super::filter::{Conditions, limit};
 use crate::backend::{Row, SqlResult, values};
 use crate::error::StoreError;
-use crate::fault_state::FaultState;
+use crate::history::run_notes::RunNote;
+use crate::history::verify::{SETTLED, SettledFault, made_by};
 use crate::id::Id;
-use crate::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
-use crate::run_notes::RunNote;
 use crate::seal::{RunSealed, sealed_as};
 use crate::store::Store;
-use crate::text_enum::text_enum;
-use crate::verify::{SETTLED, SettledFault, made_by};
+use crate::values::fault_state::FaultState;
+use crate::values::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
+use crate::values::text_enum::text_enum;
 
 text_enum! {
     /// Whether a run is finished.
@@ -93,7 +93,7 @@ pub struct RunSummary {
     pub continues: Option<Id>,
     /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
     pub connection: Option<String>,
-    /// What was wrong with the unit, as who brought it said: a name of `symptoms.toml`.
+    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
     pub symptom: Option<String>,
     /// Steps recorded, and what failed outside them.
     pub steps: u32,
@@ -133,7 +133,7 @@ pub struct RunFault {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// The part it comes from, where a diagnosis or a person has told.
+    /// The part it comes from, if a diagnosis or a person has attributed it.
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,

@@ -6,9 +6,9 @@ use super::filter::Conditions;
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::id::Id;
-use crate::record::{Verdict, part_name};
-use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
+use crate::schema::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 use crate::store::Store;
+use crate::values::record::{Verdict, part_name};
 
 const BY_DAY: &str = "reading a measurement by day";
 

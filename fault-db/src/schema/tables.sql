@@ -24,12 +24,12 @@ CREATE TABLE run(
   unit_config_name TEXT NOT NULL,
   sw_versions TEXT NOT NULL,
   line TEXT NOT NULL,
-  train TEXT NOT NULL,                  -- the train the unit is in, as the tester names it; empty: not said
+  train TEXT NOT NULL,                  -- the train the unit is in, as the tester names it; empty: not stated
   seed INTEGER NOT NULL,                -- the 64 bits of an unsigned seed
   operator TEXT NOT NULL,
   source TEXT NOT NULL,                 -- sim, serial:..., tcp:...
-  connection TEXT,                      -- harness, or ptu for the maintenance port alone; NULL: not said
-  symptom TEXT,                         -- what was wrong with the unit, as the person who brought it said; NULL: not said
+  connection TEXT,                      -- harness, or ptu for the maintenance port alone; NULL: not stated
+  symptom TEXT,                         -- what was wrong with the unit, as reported; NULL: not stated
   continues BLOB,                       -- id of the run whose open steps this one runs, maybe of another file; NULL: none
   started_at_us INTEGER NOT NULL,
   finished_at_us INTEGER,
@@ -65,7 +65,7 @@ CREATE TABLE step(
   bench_time_us INTEGER NOT NULL,
   message TEXT NOT NULL,
   script_line INTEGER,
-  limit_source TEXT,                    -- where the numbers it expected come from; NULL: not said
+  limit_source TEXT,                    -- where the numbers it expected come from; NULL: not stated
   PRIMARY KEY(run, step_index)
 ) STRICT, WITHOUT ROWID;
 
@@ -79,14 +79,14 @@ CREATE TABLE measurement(
   low REAL,
   high REAL,
   verdict TEXT NOT NULL CHECK(verdict IN ('passed','failed','error','skipped','aborted')),
-  limit_source TEXT,                    -- where its limits come from; NULL: not said
+  limit_source TEXT,                    -- where its limits come from; NULL: not stated
   PRIMARY KEY(run, step_index, ordinal),
   FOREIGN KEY(run, step_index) REFERENCES step(run, step_index)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX measurement_by_name ON measurement(name, run, value, unit, low, high, verdict);
 
 -- One row per unit, code and part (lru) that is not closed; the writer keeps that rule, because two files that
--- disagree can still be merged. Columns from `state` on follow from occurrences and events (fault-db/src/event_graph.rs).
+-- disagree can still be merged. Columns from `state` on follow from occurrences and events (fault-db/src/history/graph_sql.rs).
 CREATE TABLE fault(
   seq INTEGER PRIMARY KEY,
   id BLOB NOT NULL UNIQUE,
@@ -259,7 +259,7 @@ CREATE TABLE sync_server(
 
 ---- derived: these tables follow from the others; triggers keep them (triggers.sql) ----
 
--- What happened to a part, one row per repair event that nobody has withdrawn.
+-- What happened to a part, one row per repair event that was not withdrawn.
 CREATE TABLE repair(
   event INTEGER PRIMARY KEY REFERENCES fault_event(seq),
   fault INTEGER NOT NULL REFERENCES fault(seq),
@@ -275,7 +275,7 @@ CREATE TABLE repair(
 CREATE INDEX repair_by_fault ON repair(unit, code, lru, at_us, opened_at_us, back_at_us, line);
 CREATE INDEX repair_by_part ON repair(part, at_us);
 
--- Faults with their occurrences and repairs, packed by column for counts with any filter (fault-db/src/packed.rs). A row
+-- Faults with their occurrences and repairs, packed by column for counts with any filter (fault-db/src/schema/packed.rs). A row
 -- holds the 32 faults whose seq / 32 it names. Triggers empty it when one of them changes; the end of a run and of an
 -- import fills empty rows if they are more than a few; a reader packs the others itself.
 CREATE TABLE packed(

@@ -2,11 +2,9 @@
 
 use serde::Serialize;
 
-use super::{hex, own_file_id};
+use super::hex;
 use crate::backend::{Backend, SqlResult, values};
-use crate::error::StoreError;
 use crate::id::Id;
-use crate::store::Store;
 
 /// The last entry of a chain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -38,29 +36,6 @@ impl RunSealed {
     /// The first digits of the seal, as on a test sheet.
     pub fn short(&self) -> &str {
         self.seal.get(..16).unwrap_or(&self.seal)
-    }
-}
-
-impl Store {
-    /// The last entry of this file's chain; `None` for a server, which has no chain of its own, and for a
-    /// file never opened for writing.
-    pub fn head(&self) -> Result<Option<SealHead>, StoreError> {
-        const DOING: &str = "reading the last seal";
-        let Backend::File(_) = self.backend() else {
-            return Ok(None);
-        };
-        let read = || -> SqlResult<_> {
-            let Some(file) = own_file_id(self.backend())? else {
-                return Ok(None);
-            };
-            let head = head_of(self.backend(), file)?;
-            Ok(head.map(|(entries, hash)| SealHead {
-                file,
-                entries,
-                seal: hex(&hash),
-            }))
-        };
-        read().map_err(|error| self.failed(DOING, error))
     }
 }
 

@@ -12,7 +12,7 @@ use super::canonical::{CanonicalHash, columns, take_rows};
 use super::{hex, trace};
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
-use crate::record::{MeasurementRecord, RunEnd, RunRecord, StepRecord};
+use crate::values::record::{MeasurementRecord, RunEnd, RunRecord, StepRecord};
 
 /// The payload of a run's seal: its traces and recordings, which may be deleted or arrive later, and occurrences
 /// that another run may have brought before.

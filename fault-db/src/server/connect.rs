@@ -13,8 +13,8 @@ use super::password::{self, Password};
 use super::{schema, tls};
 use crate::backend::{Backend, Server};
 use crate::error::StoreError;
+use crate::files::platform;
 use crate::id::IdSource;
-use crate::platform;
 use crate::store::Store;
 
 const DOING: &str = "connecting";

@@ -1,6 +1,5 @@
--- What follows from rows, kept for the laptops, who may only add. Each function says what the rows say; of the
--- rest a laptop tells how far it is, and what a unit and a fault are called by now. Made anew by each
--- `ptu db server init`; how a fault is settled is fault-db/src/event_graph.rs.
+-- Keep what follows from other rows, for laptops, which may only add rows. A laptop reports how far it has read, and
+-- the present names of units and faults. Each `ptu db server init` replaces these functions; how a fault is settled is fault-db/src/history/graph_sql.rs.
 
 -- A file comes: what is here of it.
 CREATE OR REPLACE FUNCTION meet_laptop(file bytea, called text, ahead_us bigint)
@@ -19,7 +18,7 @@ CREATE OR REPLACE FUNCTION note_sent(of_laptop bigint, sent bigint, sent_traces 
   UPDATE laptop SET sent = $2, sent_traces = $3 WHERE seq = $1
 $$;
 
--- What became new once more meanwhile stays new.
+-- What changed again meanwhile stays fresh.
 CREATE OR REPLACE FUNCTION note_told(of_laptop bigint, received bigint, faults bigint[], times bigint[])
   RETURNS void LANGUAGE sql SECURITY DEFINER SET search_path FROM CURRENT AS $$
   UPDATE laptop SET received = $2 WHERE seq = $1;
@@ -75,8 +74,8 @@ CREATE OR REPLACE FUNCTION settle_faults(faults bigint[]) RETURNS void
 $$;
 
 -- Of these faults, those that are not closed become one with the oldest of the same unit, code and part that is
--- not closed either, and their ids other names of it. Each laptop that has either of them is told again what
--- was said about both. How rows move is fault-db/src/event_graph.rs.
+-- not closed either, and their ids other names of it. Each laptop that has either of them reads again what
+-- was written about both. How rows move is fault-db/src/history/graph_sql.rs.
 CREATE OR REPLACE FUNCTION join_faults(faults bigint[]) RETURNS void
   LANGUAGE plpgsql SECURITY DEFINER SET search_path FROM CURRENT AS $$
 DECLARE

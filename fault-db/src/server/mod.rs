@@ -4,7 +4,6 @@ mod address;
 mod address_in_text;
 mod bounded;
 mod connect;
-pub(crate) mod derived_columns;
 mod password;
 mod queue;
 pub(crate) mod schema;

@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::address::Address;
-use crate::platform;
-use crate::regular_file::read_regular_file;
+use crate::files::platform;
+use crate::files::regular_file::read_regular_file;
 
 /// Longest password file that is read, bytes.
 const LONGEST_FILE: u64 = 1 << 20;

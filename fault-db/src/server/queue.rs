@@ -75,7 +75,7 @@ pub enum Claim {
 }
 
 impl Queue {
-    /// Connects, and enters the campaign's runs if nobody has: `campaign` tells it from all others, `what` is for people.
+    /// Connects, and enters the campaign's runs if they are not there yet: `campaign` tells it from all others, `what` is for people.
     ///
     /// # Errors
     /// The server cannot be reached, or lets this account make no tables.
@@ -118,7 +118,7 @@ impl Queue {
         })
     }
 
-    /// Takes a run, which is then nobody else's for the time of the lease.
+    /// Takes a run, which no other process gets for the time of the lease.
     ///
     /// # Errors
     /// The server's.

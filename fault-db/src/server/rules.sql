@@ -1,5 +1,5 @@
 -- What may be written. Rows are only ever added, with the exceptions named here, and each is held to the domain that a
--- laptop holds it to (fault-db/src/history/domain.rs) when it comes in.
+-- laptop holds it to (fault-db/src/exchange/domain.rs) when it comes in.
 CREATE FUNCTION refuse_change() RETURNS trigger LANGUAGE plpgsql SET search_path FROM CURRENT AS $$
 BEGIN
   RAISE EXCEPTION 'rows of % are only ever added', TG_TABLE_NAME USING ERRCODE = 'restrict_violation';

@@ -7,7 +7,8 @@ use super::connect::open;
 use super::schema::{self, SERVER_SCHEMA_VERSION};
 use crate::backend::{Backend, Server, SqlError, SqlResult, values};
 use crate::error::StoreError;
-use crate::event_graph::{MOVE_ROWS, RECOMPUTE_FAULT};
+use crate::history::event_graph::MOVE_ROWS;
+use crate::history::graph_sql::RECOMPUTE_FAULT;
 use crate::id::IdSource;
 use crate::store::Store;
 

@@ -1,4 +1,4 @@
--- The history of all laptops on a server: tables and columns as in a laptop's file (fault-db/src/history/schema), so that
+-- The history of all laptops on a server: tables and columns as in a laptop's file (fault-db/src/schema), so that
 -- the same questions are asked of both. Rows are joined by small numbers (seq) of this server's own; between
 -- laptops a row is its 16-byte UUIDv7 (id). Text is ordered by its bytes. What a file derives and keeps is a
 -- query here.
@@ -149,8 +149,8 @@ CREATE TABLE fault_alias(
 );
 CREATE INDEX fault_alias_by_fault ON fault_alias(fault);
 
--- The faults a laptop has in its file, by the ids they have there; fresh until it has been told all that
--- happened to them: counts how often that became true, 0 = it has been told.
+-- The faults a laptop has in its file, by the ids they have there. `fresh` counts the changes that the laptop has not
+-- read yet; 0: it has read all.
 CREATE TABLE laptop_fault(
   laptop bigint NOT NULL REFERENCES laptop(seq),
   id bytea NOT NULL,

@@ -11,7 +11,7 @@ use rustls::{ClientConfig, DigitallySignedStruct, RootCertStore, SignatureScheme
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::address::{Address, Guard};
-use crate::regular_file::read_regular_file;
+use crate::files::regular_file::read_regular_file;
 
 /// Longest certificate file, bytes; all public issuers together take less.
 const LONGEST_FILE: u64 = 16 << 20;

@@ -9,7 +9,7 @@ use super::Findings;
 use super::derived::faults_that_differ;
 use crate::backend::SqlResult;
 use crate::error::StoreError;
-use crate::event_graph::recompute_fault;
+use crate::history::event_graph::recompute_fault;
 use crate::schema::{DERIVED, WORDS};
 use crate::seal::{RECOUNTED, RecountedPayload, append_statement};
 use crate::store::Store;

@@ -3,7 +3,7 @@
 use rusqlite::Connection;
 
 use super::{ALTERED, Findings, Problem, REBUILD};
-use crate::event_graph::RECOMPUTE_FAULT;
+use crate::history::graph_sql::RECOMPUTE_FAULT;
 
 /// Queries for contradictions that no sequence of operations explains.
 const CONTRADICTS: [&str; 4] = [

@@ -11,10 +11,10 @@ use serde::Serialize;
 
 use crate::backend::Backend;
 use crate::error::StoreError;
+use crate::history::recording::check_recordings;
 use crate::id::Id;
-use crate::recording::check_recordings;
 use crate::schema::SCHEMA_VERSION;
-use crate::schema_guard;
+use crate::schema::guard;
 use crate::seal::SealHead;
 use crate::store::Store;
 
@@ -157,8 +157,7 @@ impl Store {
         let failed = |error| self.failed("checking", error);
         let problems = &mut report.problems;
         let mut found = Findings::new(problems, "schema", FOREIGN_OBJECT);
-        let foreign_objects =
-            schema_guard::foreign_objects(conn, SCHEMA_VERSION).map_err(failed)?;
+        let foreign_objects = guard::foreign_objects(conn, SCHEMA_VERSION).map_err(failed)?;
         foreign_objects
             .into_iter()
             .for_each(|detail| found.add(detail));

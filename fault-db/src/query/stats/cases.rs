@@ -2,7 +2,7 @@
 
 use super::StatQuery;
 use super::counts::Counts;
-use crate::sql_functions::DAY_US;
+use crate::schema::sql_functions::DAY_US;
 
 /// A fault, or the faults of a unit that come from one part and were not closed at the same time.
 #[derive(Clone, Debug)]

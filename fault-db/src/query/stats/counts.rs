@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::HOUR_US;
 use crate::backend::Field;
-use crate::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
+use crate::schema::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
 
 /// The key of a count: a code or unit by its number, a part or line by its name; empty for all faults.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

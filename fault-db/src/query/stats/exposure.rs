@@ -5,7 +5,7 @@ use super::StatKey;
 use super::counts::{Bins, Key};
 use crate::backend::values;
 use crate::error::StoreError;
-use crate::sql_functions::DAY_US;
+use crate::schema::sql_functions::DAY_US;
 use crate::store::Store;
 
 /// The units that match a filter, and when they were observed first.

@@ -8,8 +8,8 @@ use super::cases::{Case, CaseRepair, RepairTimes, cases_of};
 use super::counts::{Bins, Counts, CountsByKey, Key};
 use super::{CountedSpan, StatKey, StatQuery};
 use crate::backend::{Backend, Row, SqlError, SqlResult};
-use crate::packed::{Column, Packed, each_block};
-use crate::sql_functions::utc_day;
+use crate::schema::packed::{Column, Packed, each_block};
+use crate::schema::sql_functions::utc_day;
 
 /// Counts what the filter selects in each of several spans, which are in order and do not overlap.
 pub(super) fn count(

@@ -146,12 +146,13 @@ mod tests {
         for message in all.iter().filter(|message| *message != "fault X7: X7") {
             check(message);
         }
-        for message in messages(include_str!("../../../../fault-db/src/withdrawal.rs"))
-            .into_iter()
-            .chain(messages(include_str!(
-                "../../../../fault-db/src/fault_state.rs"
-            )))
-        {
+        for message in messages(include_str!(
+            "../../../../fault-db/src/values/withdrawal_error.rs"
+        ))
+        .into_iter()
+        .chain(messages(include_str!(
+            "../../../../fault-db/src/values/fault_state.rs"
+        ))) {
             check(&format!("fault X7: {message}"));
         }
     }

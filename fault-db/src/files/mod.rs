@@ -1,0 +1,4 @@
+//! Files of the operating system, whatever they hold.
+
+pub(crate) mod platform;
+pub(crate) mod regular_file;

@@ -1,0 +1,165 @@
+//! Cases: the faults of a unit that are not closed and that one part explains.
+//!
+//! A case has no row of its own. An event of the kind `cause` (a person's) or `diagnosed` (a run's) attributes a fault
+//! to a part, and merges as every event does; the faults that are attributed to the same part are the case.
+
+use crate::backend::{Row, SqlResult, values};
+use crate::error::StoreError;
+use crate::history::event_graph::recompute_fault;
+use crate::history::fault_event::{NewEvent, insert_event};
+use crate::history::graph_sql::standing;
+use crate::history::limits;
+use crate::id::Id;
+use crate::store::Store;
+use crate::values::fault_state::{FaultAction, FaultState};
+use crate::values::record::{CAUSE, CauseRecord, DIAGNOSED, part_name};
+
+/// A fault whose state was changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChangedFault {
+    /// The fault.
+    pub id: Id,
+    /// Its name.
+    pub code_name: String,
+    /// The part it points at.
+    pub lru: String,
+    /// Its state now.
+    pub state: FaultState,
+}
+
+/// A fault about to be changed.
+pub(crate) struct CaseFault {
+    pub seq: i64,
+    pub id: Id,
+    pub code_name: String,
+    pub lru: String,
+    pub state: FaultState,
+}
+
+/// The other faults of the case of fault `?1`, as `c`: the text after `FROM`.
+pub(crate) const REST_OF_CASE: &str =
+    "fault f JOIN fault c ON c.unit = f.unit AND c.cause = f.cause
+     WHERE f.seq = ?1 AND c.seq <> f.seq AND f.state <> 'closed' AND c.state <> 'closed'";
+
+/// What [`case_fault`] reads, of `c`.
+pub(crate) const CASE_FAULT: &str = "c.seq, c.id, c.code_name, c.lru, c.state";
+
+impl Store {
+    /// A person says which part a fault comes from; with an empty part, that it stands alone. No diagnosis changes it
+    /// afterwards.
+    ///
+    /// # Errors
+    /// There is no such fault, a text is too long, or the file or server does not take it.
+    pub fn set_cause(
+        &self,
+        fault: Id,
+        cause: &CauseRecord,
+        who: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        const DOING: &str = "attributing a fault";
+        cause.check()?;
+        limits::name("the name of who says it", who)?;
+        self.change(DOING, |_| {
+            let seq = self.fault_row(fault)?.seq;
+            self.attribute(seq, CAUSE, cause, who, at_us)
+        })
+    }
+
+    /// Attributes faults to the part that the diagnosis of a run found; which of them were not attributed to it yet.
+    /// A fault that is closed, or that a person has attributed, stays as it is.
+    ///
+    /// # Errors
+    /// There is no such fault, a text is too long, or the file or server does not take it.
+    pub fn attribute_diagnosed(
+        &self,
+        faults: &[Id],
+        cause: &CauseRecord,
+        at_us: i64,
+    ) -> Result<Vec<Id>, StoreError> {
+        const DOING: &str = "attributing faults";
+        const STAYS: &str = concat!(
+            "SELECT 1 FROM fault f WHERE f.seq = ?1 AND (f.state = 'closed' OR f.cause = ?2
+            OR EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.kind = 'cause'",
+            standing!("e"),
+            "))"
+        );
+        cause.check()?;
+        let part = part_name(&cause.part);
+        self.change(DOING, |_| {
+            let mut attributed = Vec::new();
+            for fault in faults {
+                let seq = self.fault_row(*fault)?.seq;
+                let stays = self.first(DOING, STAYS, &values![seq, part.as_str()], |_| Ok(()))?;
+                if stays.is_none() {
+                    self.attribute(seq, DIAGNOSED, cause, "", at_us)?;
+                    attributed.push(*fault);
+                }
+            }
+            Ok(attributed)
+        })
+    }
+
+    /// Adds the event, in the caller's transaction.
+    fn attribute(
+        &self,
+        seq: i64,
+        kind: &str,
+        cause: &CauseRecord,
+        who: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        // Text and numbers only: cannot fail.
+        let body = serde_json::to_string(cause).unwrap_or_default();
+        let event = NewEvent {
+            id: self.mint()?,
+            kind,
+            at_us,
+            who,
+            body: &body,
+            state: None,
+        };
+        insert_event(self.backend(), seq, &event)
+            .and_then(|()| recompute_fault(self.backend(), seq))
+            .map_err(|error| self.failed("attributing a fault", error))
+    }
+
+    /// The fault with this id, now or formerly.
+    pub(crate) fn fault_row(&self, fault: Id) -> Result<CaseFault, StoreError> {
+        let sql = format!(
+            "SELECT {CASE_FAULT} FROM fault c
+             WHERE c.seq = (SELECT seq FROM fault WHERE id = ?1
+                UNION ALL SELECT fault FROM fault_alias WHERE id = ?1)"
+        );
+        let found = self.first("looking up a fault", &sql, &values![fault], case_fault)?;
+        found.ok_or_else(|| StoreError::not_found("fault", fault))
+    }
+
+    /// The other faults of a fault's case that an action on it settles, too.
+    pub(crate) fn settled_with(
+        &self,
+        fault: &CaseFault,
+        action: FaultAction,
+    ) -> Result<Vec<CaseFault>, StoreError> {
+        let sql = format!("SELECT {CASE_FAULT} FROM {REST_OF_CASE} ORDER BY c.seq");
+        let mut rest = self.select("looking up a case", &sql, &values![fault.seq], case_fault)?;
+        rest.retain(|other| follows(action, fault.state, other.state));
+        Ok(rest)
+    }
+}
+
+/// Whether an action on a fault is one on another of its case. A part is replaced for all of them; of what else happens
+/// only those take part that are as far as it: one that came back must not be closed with one that is verified.
+fn follows(action: FaultAction, named: FaultState, other: FaultState) -> bool {
+    (action == FaultAction::Repair || other == named) && other.next(action).is_ok()
+}
+
+pub(crate) fn case_fault(row: Row<'_>) -> SqlResult<CaseFault> {
+    Ok(CaseFault {
+        seq: row.get(0)?,
+        id: row.get(1)?,
+        code_name: row.get(2)?,
+        lru: row.get(3)?,
+        state: row.get(4)?,
+    })
+}

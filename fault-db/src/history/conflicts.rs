@@ -1,0 +1,88 @@
+//! Faults in conflict: two users, each without the other's event, brought a fault to different states.
+//! Both events are kept and listed until a later event follows both.
+
+use serde::Serialize;
+
+use crate::error::StoreError;
+use crate::history::graph_sql::heads;
+use crate::id::Id;
+use crate::store::Store;
+use crate::values::fault_state::FaultState;
+
+/// A fault in conflict. The next event that changes its state resolves the conflict.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StateConflict {
+    /// The fault.
+    pub fault: Id,
+    /// The unit's serial number.
+    pub unit: String,
+    /// Stable number of the fault.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// Replaceable part it points at.
+    pub lru: String,
+    /// The state that stands meanwhile: the one that leaves the most work.
+    pub stands: FaultState,
+    /// The heads of its event graph, by time.
+    pub rivals: Vec<ConflictingEvent>,
+}
+
+/// One head of the event graph.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ConflictingEvent {
+    /// The event.
+    pub id: Id,
+    /// Its kind.
+    pub kind: String,
+    /// When, by the clock of the laptop.
+    pub at_us: i64,
+    /// Who did it.
+    pub who: String,
+    /// A note, or JSON for a repair.
+    pub body: String,
+    /// The state it brought the fault to.
+    pub state: FaultState,
+}
+
+/// The heads of faults that have more than one.
+const CONFLICTING_EVENTS: &str = concat!(
+    "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
+     FROM fault f JOIN unit u ON u.seq = f.unit, ",
+    heads!("f.seq"),
+    " AND e.kind <> 'opened' AND f.disputed = 1 ORDER BY f.id, e.at_us, e.id"
+);
+
+impl Store {
+    /// Faults in conflict, in the order of their ids.
+    pub fn conflicts(&self) -> Result<Vec<StateConflict>, StoreError> {
+        let mut conflicts = Vec::<StateConflict>::new();
+        let take = |row: crate::backend::Row<'_>| {
+            let fault: Id = row.get(0)?;
+            let rival = ConflictingEvent {
+                id: row.get(6)?,
+                kind: row.get(7)?,
+                at_us: row.get(8)?,
+                who: row.get(9)?,
+                body: row.get(10)?,
+                state: row.get(11)?,
+            };
+            match conflicts.last_mut().filter(|last| last.fault == fault) {
+                Some(last) => last.rivals.push(rival),
+                None => conflicts.push(StateConflict {
+                    fault,
+                    unit: row.get(1)?,
+                    code: row.get(2)?,
+                    code_name: row.get(3)?,
+                    lru: row.get(4)?,
+                    stands: row.get(5)?,
+                    rivals: vec![rival],
+                }),
+            }
+            Ok(())
+        };
+        let found = self.backend().each(CONFLICTING_EVENTS, &[], take);
+        found.map_err(|error| self.failed("looking for conflicts", error))?;
+        Ok(conflicts)
+    }
+}

@@ -1,0 +1,336 @@
+//! Inserts the rows of a run; the caller holds the transaction.
+
+use std::borrow::Cow;
+
+use rusqlite::{Connection, params};
+
+use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::history::fault_event::{NewEvent, insert_event};
+use crate::history::graph_sql::standing;
+use crate::history::limits;
+use crate::id::Id;
+use crate::seal;
+use crate::values::fault_state::{FaultAction, FaultState};
+use crate::values::record::{FaultRecord, MeasurementRecord, RunRecord, StepRecord, UnitRecord};
+
+/// The result of storing a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultStored {
+    /// The fault it belongs to.
+    pub fault: Id,
+    /// This occurrence of it.
+    pub occurrence: Id,
+    /// Whether it is the first of its fault.
+    pub is_new: bool,
+    /// Whether it reopened a fault that counted as repaired.
+    pub reopened: bool,
+}
+
+pub(crate) fn insert_run(
+    conn: &Connection,
+    id: Id,
+    record: &RunRecord,
+    sw_versions: &str,
+) -> rusqlite::Result<(i64, i64)> {
+    let unit = upsert_unit(conn, &record.unit, sw_versions)?;
+    conn.prepare_cached(
+        "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
+            scripts_sha256, unit_config_sha256, injected, owner, train, unit_kind, unit_config_name,
+            sw_versions, continues, connection, symptom)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,
+            ?19)",
+    )?
+    .execute(params![
+        id,
+        unit,
+        record.line,
+        record.seed.cast_signed(),
+        record.operator,
+        record.source,
+        record.started_at_us,
+        record.app_version,
+        record.scripts_sha256,
+        record.unit_config_sha256,
+        record.injected,
+        record.owner,
+        record.train,
+        record.unit.kind,
+        record.unit.config_name,
+        sw_versions,
+        record.continues,
+        record.connection,
+        record.symptom,
+    ])?;
+    let run = conn.last_insert_rowid();
+    let mut insert = conn.prepare_cached(
+        "INSERT OR REPLACE INTO run_script(run, path, sha256) VALUES (?1, ?2, ?3)",
+    )?;
+    for script in &record.scripts {
+        insert.execute(params![run, script.path, script.sha256])?;
+    }
+    Ok((run, unit))
+}
+
+fn upsert_unit(conn: &Connection, unit: &UnitRecord, versions: &str) -> rusqlite::Result<i64> {
+    conn.prepare_cached(
+        "INSERT INTO unit(serial, kind, config_name, sw_versions) VALUES (?1, ?2, ?3, ?4)
+         ON CONFLICT(serial) DO UPDATE SET kind = excluded.kind,
+            config_name = excluded.config_name, sw_versions = excluded.sw_versions
+         RETURNING seq",
+    )?
+    .query_row(
+        params![unit.serial, unit.kind, unit.config_name, versions],
+        |row| row.get(0),
+    )
+}
+
+pub(crate) fn insert_steps(
+    conn: &Connection,
+    run: i64,
+    steps: &[StepRecord],
+) -> rusqlite::Result<()> {
+    let mut insert = conn.prepare_cached(
+        "INSERT INTO step(run, step_index, procedure, name, verdict, started_bench_us,
+            bench_time_us, message, script_line, limit_source)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+    )?;
+    for step in steps {
+        insert.execute(params![
+            run,
+            step.index,
+            step.procedure,
+            step.name,
+            step.verdict,
+            step.started_bench_us,
+            step.bench_time_us,
+            step.message,
+            step.script_line,
+            step.limit_source,
+        ])?;
+        insert_measurements(conn, run, step.index, &step.measurements)?;
+    }
+    Ok(())
+}
+
+fn insert_measurements(
+    conn: &Connection,
+    run: i64,
+    step_index: u32,
+    measurements: &[MeasurementRecord],
+) -> rusqlite::Result<()> {
+    if measurements.is_empty() {
+        return Ok(());
+    }
+    let mut insert = conn.prepare_cached(
+        "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict,
+            limit_source)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+    )?;
+    for (ordinal, m) in measurements.iter().enumerate() {
+        let values = params![
+            run,
+            step_index,
+            ordinal,
+            m.name,
+            m.value,
+            m.unit,
+            m.low,
+            m.high,
+            m.verdict,
+            m.limit_source
+        ];
+        insert.execute(values)?;
+    }
+    Ok(())
+}
+
+/// Ids for all rows that one fault may add; unused ones are discarded.
+#[derive(Clone, Copy)]
+pub(crate) struct FaultIds {
+    pub fault: Id,
+    pub occurrence: Id,
+    pub event: Id,
+}
+
+/// The run that saw a fault.
+pub(crate) struct FaultPlace<'a> {
+    pub run: i64,
+    pub unit: i64,
+    pub line: &'a str,
+    /// Whether the run is an imported log, read later.
+    pub of_log: bool,
+    /// The last event known when the run began.
+    pub known_events: i64,
+}
+
+pub(crate) fn insert_fault(
+    backend: &Backend,
+    place: &FaultPlace<'_>,
+    ids: FaultIds,
+    record: &FaultRecord,
+) -> SqlResult<(FaultStored, [u8; 32])> {
+    let cut;
+    let record = match limits::cut(&record.message) {
+        Cow::Borrowed(_) => record,
+        Cow::Owned(message) => {
+            cut = FaultRecord {
+                message,
+                ..record.clone()
+            };
+            &cut
+        }
+    };
+    let known = backend.first(
+        "SELECT seq, id, state FROM fault
+         WHERE unit = ?1 AND code = ?2 AND lru = ?3 AND state <> 'closed'
+         ORDER BY seq DESC LIMIT 1",
+        &values![place.unit, record.code, &record.lru],
+        |row| {
+            Ok((
+                row.get::<i64>(0)?,
+                row.get::<Id>(1)?,
+                row.get::<FaultState>(2)?,
+            ))
+        },
+    )?;
+    let (fault, id, before) = match known {
+        Some((seq, id, state)) => (seq, id, Some(state)),
+        None => (
+            open_fault(backend, place, ids.fault, record)?,
+            ids.fault,
+            None,
+        ),
+    };
+    // Every state but closed has a transition for an occurrence, and closed was not selected.
+    let after = match before {
+        None => FaultState::Open,
+        // Read from a log later: events since then took this occurrence into account.
+        Some(state) if acted_since(backend, fault, place, record.at_us)? => state,
+        Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
+    };
+    let digest = insert_occurrence(backend, fault, place, ids.occurrence, record)?;
+    backend.execute(
+        "UPDATE fault SET occurrences = occurrences + 1, state = ?2, severity = ?3,
+            code_name = ?4, line = CASE WHEN ?5 < first_at_us THEN ?6 ELSE line END,
+            first_at_us = min(first_at_us, ?5), last_at_us = max(last_at_us, ?5)
+         WHERE seq = ?1",
+        &values![
+            fault,
+            after,
+            &record.severity,
+            &record.code_name,
+            record.at_us,
+            place.line
+        ],
+    )?;
+    let reopened = before.is_some_and(|state| state != after);
+    if before.is_none() || reopened {
+        let kind = if reopened {
+            FaultAction::Occur.event_kind()
+        } else {
+            "opened"
+        };
+        let (at_us, body) = (record.at_us, &record.message);
+        let event = NewEvent {
+            id: ids.event,
+            kind,
+            at_us,
+            who: "",
+            body,
+            state: Some(after),
+        };
+        insert_event(backend, fault, &event)?;
+    }
+    let stored = FaultStored {
+        fault: id,
+        occurrence: ids.occurrence,
+        is_new: before.is_none(),
+        reopened,
+    };
+    Ok((stored, digest))
+}
+
+/// Whether an event changed the fault's state after this time. Events known when a run began precede all it
+/// sees, whatever the time stamps of other laptops say.
+fn acted_since(
+    backend: &Backend,
+    fault: i64,
+    place: &FaultPlace<'_>,
+    at_us: i64,
+) -> SqlResult<bool> {
+    let acted = backend.first(
+        concat!(
+            "SELECT 1 FROM fault_event e
+             WHERE e.fault = ?1 AND e.state IS NOT NULL AND e.at_us > ?2 AND e.kind NOT IN ('opened', 'recurred')
+                AND e.seq > ?3",
+            standing!("e"),
+            " LIMIT 1"
+        ),
+        &values![fault, at_us, if place.of_log { 0 } else { place.known_events }],
+        |_| Ok(()),
+    )?;
+    Ok(acted.is_some())
+}
+
+fn open_fault(
+    backend: &Backend,
+    place: &FaultPlace<'_>,
+    id: Id,
+    record: &FaultRecord,
+) -> SqlResult<i64> {
+    let opened = backend.first(
+        "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us,
+            last_at_us, occurrences, line)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, 'open', ?7, ?7, 0, ?8)
+         RETURNING seq",
+        &values![
+            id,
+            place.unit,
+            record.code,
+            &record.code_name,
+            &record.lru,
+            &record.severity,
+            record.at_us,
+            place.line
+        ],
+        |row| row.get(0),
+    )?;
+    opened.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))
+}
+
+fn insert_occurrence(
+    backend: &Backend,
+    fault: i64,
+    place: &FaultPlace<'_>,
+    id: Id,
+    record: &FaultRecord,
+) -> SqlResult<[u8; 32]> {
+    let payload = values![
+        id,
+        record.step_index,
+        record.at_us,
+        record.bench_us,
+        &record.message,
+        json(&record.freeze)?,
+        record.code,
+        &record.lru,
+        place.line,
+        &record.code_name,
+        &record.severity,
+    ];
+    let digest = seal::run::occurrence(&payload);
+    let mut row = Vec::from(payload);
+    row.extend(values![fault, place.run, place.unit]);
+    backend.execute(
+        "INSERT INTO fault_occurrence(id, step_index, at_us, bench_us, message, freeze_json, code, lru,
+            line, code_name, severity, fault, run, unit)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+        &row,
+    )?;
+    Ok(digest)
+}
+
+pub(crate) fn json(value: &impl serde::Serialize) -> rusqlite::Result<String> {
+    serde_json::to_string(value)
+        .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))
+}

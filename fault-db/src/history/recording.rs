@@ -1,0 +1,163 @@
+//! Recordings: the stimuli of a procedure that found a fault, for replaying it. The two JSON texts are
+//! stored without being interpreted.
+
+use rusqlite::{Connection, params};
+use serde::Serialize;
+
+use crate::backend::values;
+use crate::error::StoreError;
+use crate::history::compression;
+use crate::history::run_writer::RunWriter;
+use crate::id::Id;
+use crate::seal;
+use crate::store::Store;
+
+/// Compression of the stimuli; they are a few kilobytes.
+const ZSTD_LEVEL: i32 = 3;
+/// Stimuli unpack to at most this many bytes.
+const MAX_STIMULI_BYTES: u64 = 64 << 20;
+
+/// A recording as it is handed in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordingRecord {
+    /// Place of the procedure in the run.
+    pub ordinal: u32,
+    /// The procedure.
+    pub procedure: String,
+    /// Bench time of the run at which the bench's clock was 0.
+    pub t0_bench_us: i64,
+    /// Setup of the bench, as JSON.
+    pub bench_json: String,
+    /// Stimuli with their times, as JSON.
+    pub stimuli_json: String,
+}
+
+/// A recording as it is handed out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Recording {
+    /// The run it belongs to.
+    pub run_id: Id,
+    /// The procedure.
+    pub procedure: String,
+    /// Bench time of the run at which the bench's clock was 0.
+    pub t0_bench_us: i64,
+    /// Setup of the bench, as JSON.
+    pub bench_json: String,
+    /// Stimuli with their times, as JSON.
+    pub stimuli_json: String,
+}
+
+impl RunWriter<'_> {
+    /// Commits the recording of a procedure and links traces of this run to it.
+    pub fn recording(&mut self, record: &RecordingRecord, traces: &[Id]) -> Result<(), StoreError> {
+        const DOING: &str = "storing a recording";
+        self.check_unfinished()?;
+        let (store, run) = (self.store, self.run);
+        let stimuli =
+            compression::pack(record.stimuli_json.as_bytes(), ZSTD_LEVEL).map_err(|error| {
+                StoreError::Io {
+                    path: store.path().to_path_buf(),
+                    reason: error.to_string(),
+                }
+            })?;
+        let digest = seal::trace::of_recording(&values![
+            self.id(),
+            record.ordinal,
+            &record.procedure,
+            record.t0_bench_us,
+            &record.bench_json,
+            &stimuli[..],
+        ]);
+        store.write(DOING, |conn| {
+            let work = || -> rusqlite::Result<()> {
+                conn.prepare_cached(
+                    "INSERT INTO recording(run, ordinal, procedure, t0_bench_us, bench_json, stimuli)
+                     VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                )?
+                .execute(params![
+                    run,
+                    record.ordinal,
+                    record.procedure,
+                    record.t0_bench_us,
+                    record.bench_json,
+                    stimuli
+                ])?;
+                let mut hang = conn
+                    .prepare_cached("UPDATE trace SET recording = ?1 WHERE id = ?2 AND run = ?3")?;
+                for trace in traces {
+                    hang.execute(params![record.ordinal, trace, run])?;
+                }
+                Ok(())
+            };
+            work().map_err(|error| store.failed(DOING, error))
+        })?;
+        self.seal.recording(record.ordinal, digest, traces);
+        Ok(())
+    }
+}
+
+impl Store {
+    /// The recording a trace was cut from; `None` for a trace of an earlier version, or one outside of any
+    /// procedure.
+    pub fn recording(&self, trace: Id) -> Result<Option<Recording>, StoreError> {
+        const SQL: &str = "SELECT u.id, r.procedure, r.t0_bench_us, r.bench_json, r.stimuli
+            FROM trace t JOIN run u ON u.seq = t.run
+            JOIN recording r ON r.run = t.run AND r.ordinal = t.recording WHERE t.id = ?1";
+        let found = self.first("reading a recording", SQL, &values![trace], |row| {
+            let packed: Vec<u8> = row.get(4)?;
+            let recording = Recording {
+                run_id: row.get(0)?,
+                procedure: row.get(1)?,
+                t0_bench_us: row.get(2)?,
+                bench_json: row.get(3)?,
+                stimuli_json: String::new(),
+            };
+            Ok((recording, packed))
+        })?;
+        found
+            .map(|(recording, packed)| match unpack(&packed) {
+                Ok(stimuli_json) => Ok(Recording {
+                    stimuli_json,
+                    ..recording
+                }),
+                Err(detail) => Err(StoreError::Corrupt {
+                    path: self.path().to_path_buf(),
+                    detail: format!("the recording of trace {trace}: {detail}"),
+                }),
+            })
+            .transpose()
+    }
+}
+
+/// The recordings that cannot be read back, each with the reason, and the number of all.
+pub(crate) fn check_recordings(conn: &Connection) -> rusqlite::Result<(u32, Vec<String>)> {
+    let mut select = conn.prepare(
+        "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
+         FROM recording r JOIN run u ON u.seq = r.run ORDER BY r.run, r.ordinal",
+    )?;
+    let mut rows = select.query([])?;
+    let (mut count, mut wrong) = (0, Vec::new());
+    while let Some(row) = rows.next()? {
+        count += 1;
+        let name: String = row.get(0)?;
+        let bench: String = row.get(1)?;
+        let packed: Vec<u8> = row.get(2)?;
+        let json = |text: &str| {
+            let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
+            read.map(drop).map_err(|error| error.to_string())
+        };
+        let found = unpack(&packed)
+            .and_then(|stimuli| json(&stimuli))
+            .and_then(|()| json(&bench));
+        if let Err(detail) = found {
+            wrong.push(format!("{name}: {detail}"));
+        }
+    }
+    Ok((count, wrong))
+}
+
+fn unpack(packed: &[u8]) -> Result<String, String> {
+    let damaged = |error: &dyn std::fmt::Display| format!("the stimuli are damaged: {error}");
+    let json = compression::unpack(packed, MAX_STIMULI_BYTES).map_err(|error| damaged(&error))?;
+    String::from_utf8(json).map_err(|error| damaged(&error))
+}

@@ -1,0 +1,148 @@
+//! Notes of a user on a run; never changed or deleted.
+
+use serde::Serialize;
+
+use crate::backend::{Backend, Row, SqlResult, values};
+use crate::error::StoreError;
+use crate::history::limits;
+use crate::id::Id;
+use crate::schema::derived_columns::note_words;
+use crate::seal;
+use crate::store::Store;
+use crate::values::trace_place::TracePlace;
+
+/// A note on a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RunNote {
+    /// When it was written.
+    pub at_us: i64,
+    /// Who wrote it.
+    pub who: String,
+    /// The place in a trace of the run that it is about.
+    pub place: Option<TracePlace>,
+    /// What it says.
+    pub text: String,
+}
+
+impl Store {
+    /// Adds a note to a run, whether it has ended or not.
+    ///
+    /// # Errors
+    /// There is no such run, or the note cannot be written.
+    pub fn add_run_note(
+        &self,
+        run: Id,
+        who: &str,
+        text: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        self.insert_run_note(run, None, who, text, at_us)
+    }
+
+    /// Adds a note to a place in a trace; it is a note on the run of the trace.
+    ///
+    /// # Errors
+    /// There is no such trace, or the note cannot be written.
+    pub fn add_trace_note(
+        &self,
+        place: TracePlace,
+        who: &str,
+        text: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        let run = self.run_of_trace(place.trace)?;
+        self.insert_run_note(run, Some(place), who, text, at_us)
+    }
+
+    fn insert_run_note(
+        &self,
+        run: Id,
+        place: Option<TracePlace>,
+        who: &str,
+        text: &str,
+        at_us: i64,
+    ) -> Result<(), StoreError> {
+        const DOING: &str = "storing a note on a run";
+        limits::name("the name of who says it", who)?;
+        limits::note("the note", text)?;
+        let id = self.mint()?;
+        let (trace, place_us) = (place.map(|at| at.trace), place.map(|at| at.at_us));
+        self.change(DOING, |backend| {
+            let seq: Option<i64> = self.first(
+                DOING,
+                "SELECT seq FROM run WHERE id = ?1",
+                &values![run],
+                |row| row.get(0),
+            )?;
+            let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
+            let add = || match backend {
+                Backend::Server(_) => {
+                    backend.execute(
+                        "INSERT INTO run_note(id, run, at_us, who, trace, place_us, text, words)
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, CAST(?8 AS tsvector))",
+                        &values![id, seq, at_us, who, trace, place_us, text, note_words(text)],
+                    )?;
+                    Ok(())
+                }
+                Backend::File(_) => {
+                    backend.execute(
+                        "INSERT INTO run_note(id, run, at_us, who, trace, place_us, text)
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+                        &values![id, seq, at_us, who, trace, place_us, text],
+                    )?;
+                    let sealed = values![id, run, at_us, who, trace, place_us, text];
+                    seal::events_and_notes::note(backend, id, &sealed)
+                }
+            };
+            add().map_err(|error| self.failed(DOING, error))
+        })
+    }
+
+    /// Notes at places in a trace, by their places.
+    ///
+    /// # Errors
+    /// There is no such trace, or the notes cannot be read.
+    pub fn trace_notes(&self, trace: Id) -> Result<Vec<RunNote>, StoreError> {
+        let run = self.run_of_trace(trace)?;
+        let sql = format!(
+            "{NOTES} JOIN run r ON r.seq = n.run WHERE r.id = ?1 AND n.trace = ?2
+             ORDER BY n.place_us, n.at_us, n.id"
+        );
+        self.select(
+            "reading the notes on a trace",
+            &sql,
+            &values![run, trace],
+            note,
+        )
+    }
+
+    fn run_of_trace(&self, trace: Id) -> Result<Id, StoreError> {
+        let run = self.first(
+            "looking for the run of a trace",
+            "SELECT r.id FROM trace t JOIN run r ON r.seq = t.run WHERE t.id = ?1",
+            &values![trace],
+            |row| row.get(0),
+        )?;
+        run.ok_or_else(|| StoreError::not_found("trace", trace))
+    }
+
+    /// Notes on the run with this row number, oldest first.
+    pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
+        let sql = format!("{NOTES} WHERE n.run = ?1 ORDER BY n.at_us, n.id");
+        self.backend().select(&sql, &values![run], note)
+    }
+}
+
+const NOTES: &str = "SELECT n.at_us, n.who, n.text, n.trace, n.place_us FROM run_note n";
+
+fn note(row: Row<'_>) -> SqlResult<RunNote> {
+    let (trace, at_us) = (row.get::<Option<Id>>(3)?, row.get::<Option<i64>>(4)?);
+    Ok(RunNote {
+        at_us: row.get(0)?,
+        who: row.get(1)?,
+        place: trace
+            .zip(at_us)
+            .map(|(trace, at_us)| TracePlace { trace, at_us }),
+        text: row.get(2)?,
+    })
+}

@@ -1,0 +1,301 @@
+//! Records one run while it happens.
+//!
+//! The run's row is on the disk before [`RunWriter::begin`] returns, so that a killed program leaves an
+//! interrupted run, not none. A fault is on the disk before [`RunWriter::fault`] returns. Steps are
+//! buffered and written in batches, in short transactions: one commit costs milliseconds, and a long
+//! transaction would lock out every other run on the file.
+
+use std::borrow::Cow;
+
+use rusqlite::params;
+
+use crate::backend::SqlError;
+use crate::error::StoreError;
+use crate::history::insert::FaultStored;
+use crate::history::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
+use crate::history::limits;
+use crate::id::Id;
+use crate::schema::packed::fill_empty_blocks;
+use crate::seal;
+use crate::seal::run::RunDigest;
+use crate::store::Store;
+use crate::trace::TraceData;
+use crate::values::record::LOG_SOURCE;
+use crate::values::record::{FaultRecord, RunEnd, RunRecord, StepRecord};
+
+/// Buffered steps that cause a flush.
+const FLUSH_AT_STEPS: usize = 256;
+
+/// Most steps that are buffered while writing fails.
+const MAX_WAITING_STEPS: usize = 16_384;
+
+/// The writing end of one run. Several may write to one store, and to one file.
+///
+/// Dropping it writes the buffered steps if it can; without [`finish`](Self::finish) the run then counts as
+/// interrupted.
+pub struct RunWriter<'a> {
+    pub(crate) store: &'a Store,
+    id: Id,
+    pub(crate) run: i64,
+    unit: i64,
+    line: String,
+    /// The run is an imported log, not a test.
+    of_log: bool,
+    /// The last event in the file when the run began.
+    known_events: i64,
+    waiting: Vec<StepRecord>,
+    /// Computed from the records as they come.
+    pub(crate) seal: RunDigest,
+    last_index: Option<u32>,
+    /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
+    /// where both are merged.
+    is_rest: bool,
+    finished: bool,
+}
+
+impl<'a> RunWriter<'a> {
+    /// Begins a run and commits it.
+    pub fn begin(store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
+        Self::begin_as(store.mint()?, store, record)
+    }
+
+    fn begin_as(id: Id, store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
+        const DOING: &str = "beginning a run";
+        record.check()?;
+        let sw_versions = json(&record.unit.sw_versions);
+        let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
+        let seal = RunDigest::begin(id, record, &sw_versions);
+        let (run, unit) = store.write(DOING, |conn| {
+            insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
+        })?;
+        let waiting = Vec::with_capacity(FLUSH_AT_STEPS);
+        Ok(Self {
+            store,
+            id,
+            run,
+            unit,
+            line: record.line.clone(),
+            of_log: record.source.starts_with(LOG_SOURCE),
+            known_events: store.last_event()?,
+            waiting,
+            seal,
+            last_index: None,
+            is_rest: false,
+            finished: false,
+        })
+    }
+
+    /// The file it writes to.
+    pub fn path(&self) -> &std::path::Path {
+        self.store.path()
+    }
+
+    /// Continues the same run in another file, with the buffered steps, which this file does not take.
+    /// Importing that file completes the run here.
+    ///
+    /// # Errors
+    /// The other file does not take the run; the steps stay buffered here.
+    pub fn continue_in<'b>(
+        &mut self,
+        store: &'b Store,
+        record: &RunRecord,
+    ) -> Result<RunWriter<'b>, StoreError> {
+        let mut rest = RunWriter::begin_as(self.id, store, record)?;
+        rest.waiting = std::mem::take(&mut self.waiting);
+        rest.last_index = self.last_index;
+        rest.is_rest = true;
+        self.finished = true;
+        Ok(rest)
+    }
+
+    /// The run's id.
+    pub fn id(&self) -> Id {
+        self.id
+    }
+
+    /// Steps recorded but not yet in the file.
+    pub fn waiting_steps(&self) -> usize {
+        self.waiting.len()
+    }
+
+    /// Records a finished step. It reaches the file with the next flush, fault or finish.
+    ///
+    /// After a write error the step stays buffered and is written when writing works again.
+    pub fn step(&mut self, mut step: StepRecord) -> Result<(), StoreError> {
+        self.check_unfinished()?;
+        step.check()?;
+        // A limit that no value reaches is none, and such a value was not measured.
+        for measured in &mut step.measurements {
+            for number in [&mut measured.value, &mut measured.low, &mut measured.high] {
+                *number = number.filter(|number| number.is_finite());
+            }
+        }
+        if let Some(last) = self.last_index.filter(|last| step.index <= *last) {
+            return Err(StoreError::StepOrder {
+                index: step.index,
+                last,
+            });
+        }
+        if self.waiting.len() >= MAX_WAITING_STEPS {
+            let path = self.store.path().to_path_buf();
+            return Err(StoreError::StepsWaiting {
+                path,
+                waiting: self.waiting.len(),
+            });
+        }
+        self.last_index = Some(step.index);
+        if let Cow::Owned(cut) = limits::cut(&step.message) {
+            step.message = cut;
+        }
+        self.seal.step(&step);
+        self.waiting.push(step);
+        if self.waiting.len() >= FLUSH_AT_STEPS {
+            self.flush()
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Commits the buffered steps.
+    pub fn flush(&mut self) -> Result<(), StoreError> {
+        const DOING: &str = "storing steps";
+        if self.waiting.is_empty() {
+            return Ok(());
+        }
+        let (store, run, waiting) = (self.store, self.run, &self.waiting);
+        store.write(DOING, |conn| {
+            insert_steps(conn, run, waiting).map_err(|error| store.failed(DOING, error))
+        })?;
+        self.waiting.clear();
+        Ok(())
+    }
+
+    /// Commits an occurrence of a fault, with its freeze frame, and the buffered steps.
+    ///
+    /// It belongs to the fault of the same unit, code and part that is not closed; if there is none, it
+    /// begins one. A repaired or verified fault is reopened.
+    pub fn fault(&mut self, record: &FaultRecord) -> Result<FaultStored, StoreError> {
+        let occurrence = self.store.mint()?;
+        self.fault_as(occurrence, record)
+    }
+
+    /// The same for an entry of a unit's own log, under an id that follows from the entry: other stores that import
+    /// it make the same, and where their histories meet it is one occurrence. It must not be known here.
+    pub fn logged_fault(
+        &mut self,
+        occurrence: Id,
+        record: &FaultRecord,
+    ) -> Result<FaultStored, StoreError> {
+        let stored = self.fault_as(occurrence, record)?;
+        self.seal.share_occurrence(occurrence);
+        Ok(stored)
+    }
+
+    fn fault_as(
+        &mut self,
+        occurrence: Id,
+        record: &FaultRecord,
+    ) -> Result<FaultStored, StoreError> {
+        const DOING: &str = "storing a fault";
+        self.check_unfinished()?;
+        let (store, run, waiting) = (self.store, self.run, &self.waiting);
+        let place = FaultPlace {
+            run,
+            unit: self.unit,
+            line: &self.line,
+            of_log: self.of_log,
+            known_events: self.known_events,
+        };
+        let ids = FaultIds {
+            fault: store.mint()?,
+            occurrence,
+            event: store.mint()?,
+        };
+        let (stored, digest) = store.write(DOING, |conn| {
+            let work = || {
+                insert_steps(conn, run, waiting)?;
+                insert_fault(store.backend(), &place, ids, record)
+            };
+            work().map_err(|error: SqlError| store.failed(DOING, error))
+        })?;
+        self.seal.occurrence(stored.occurrence, digest);
+        self.waiting.clear();
+        Ok(stored)
+    }
+
+    /// Commits a trace and links it to occurrences of this store; there may be none.
+    pub fn trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Result<Id, StoreError> {
+        self.check_unfinished()?;
+        let id = self.store.mint()?;
+        self.trace_as(id, occurrences, trace)?;
+        Ok(id)
+    }
+
+    /// Commits a trace of a unit's own record, under an id that follows from it; it must not be known here.
+    pub fn recorded_trace(&mut self, id: Id, trace: &TraceData) -> Result<(), StoreError> {
+        self.check_unfinished()?;
+        self.trace_as(id, &[], trace)
+    }
+
+    fn trace_as(
+        &mut self,
+        id: Id,
+        occurrences: &[Id],
+        trace: &TraceData,
+    ) -> Result<(), StoreError> {
+        let digest = self.store.insert_trace(id, self.run, occurrences, trace)?;
+        self.seal.trace(id, digest);
+        Ok(())
+    }
+
+    /// Commits the buffered steps and the verdict, and notes a run that passed at the repairs it speaks for. After
+    /// an error it can be called again.
+    pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
+        const DOING: &str = "finishing a run";
+        const SQL: &str = "UPDATE run SET verdict = ?2, finished_at_us = ?3, bench_time_us = ?4,
+            wall_time_us = ?5 WHERE seq = ?1";
+        self.check_unfinished()?;
+        let (store, run, waiting) = (self.store, self.run, &self.waiting);
+        let (unit, id, known_events) = (self.unit, self.id, self.known_events);
+        let (payload, digest) = self.seal.end(end);
+        let is_rest = self.is_rest;
+        store.write(DOING, |conn| {
+            let work = || {
+                insert_steps(conn, run, waiting)?;
+                let RunEnd {
+                    verdict,
+                    finished_at_us,
+                    bench_time_us,
+                    wall_time_us,
+                } = end;
+                let values = params![run, verdict, finished_at_us, bench_time_us, wall_time_us];
+                conn.prepare_cached(SQL)?.execute(values)?;
+                match is_rest {
+                    true => Ok(()),
+                    false => seal::append(store.backend(), "run", id, &payload, &digest),
+                }
+            };
+            work().map_err(|error: SqlError| store.failed(DOING, error))?;
+            store.note_passed((unit, run, id), known_events, end)?;
+            fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
+        })?;
+        self.waiting.clear();
+        self.finished = true;
+        Ok(())
+    }
+
+    pub(crate) fn check_unfinished(&self) -> Result<(), StoreError> {
+        if self.finished {
+            Err(StoreError::RunFinished { run: self.id })
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl Drop for RunWriter<'_> {
+    fn drop(&mut self) {
+        // The caller returns an error of its own, which says more.
+        let _ = self.flush();
+    }
+}

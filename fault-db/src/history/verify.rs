@@ -1,0 +1,298 @@
+//! Proves repairs by passing runs.
+//!
+//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at the
+//! repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how often the fault
+//! showed while it was there: an intermittent one hides. Who knows the rate decides ([`Store::repairs_to_prove`],
+//! [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a person sets. A fault that no step saw,
+//! for instance one read from a unit's log, is verified by a person.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::backend::values;
+use crate::error::StoreError;
+use crate::history::cases::{CASE_FAULT, REST_OF_CASE, case_fault};
+use crate::history::fault_event::{NewEvent, insert_event};
+use crate::history::fault_log::Change;
+use crate::history::graph_sql::standing;
+use crate::id::Id;
+use crate::store::Store;
+use crate::values::event::FaultEvent;
+use crate::values::fault_state::{FaultAction, FaultState};
+use crate::values::record::LOG_SOURCE;
+use crate::values::record::{RepairRecord, RunEnd, Verdict};
+
+/// Kind of the event that notes a passing run after a repair.
+const PASSED: &str = "passed";
+/// Kind of the event by which a run has proved a repair; by hand it is `verified`.
+const CONFIRMED: &str = "confirmed";
+/// What the note of such an event begins with, before the run's id.
+const IN_RUN: &str = "in run ";
+/// As many runs with the fault are evidence of its rate, the last ones.
+const MOST_RUNS: i64 = 8;
+
+/// Repaired faults of a unit whose last step passed in a run.
+const SHOWN_GONE: &str = concat!(
+    "SELECT f.seq, f.id FROM fault f
+    WHERE f.unit = ?1 AND f.state = 'repaired'
+        AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = f.seq AND e.state = 'repaired'",
+    standing!("e"),
+    ") <= ?3
+        AND EXISTS (
+            SELECT 1 FROM step seen JOIN step again
+                ON again.procedure = seen.procedure AND again.name = seen.name
+            WHERE again.run = ?2 AND again.verdict = 'passed'
+                AND (seen.run, seen.step_index) = (
+                    SELECT o.run, o.step_index FROM fault_occurrence o
+                    WHERE o.fault = f.seq ORDER BY o.at_us DESC, o.seq DESC LIMIT 1))
+    ORDER BY f.seq"
+);
+
+/// The repaired consequences in the case of fault `?1`, which names the cause itself.
+const WITH_IT: &str = concat!(
+    " AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
+    AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = c.seq AND e.state = 'repaired'",
+    standing!("e"),
+    ") <= ?2
+    ORDER BY c.seq"
+);
+
+/// Of those, the ones that a run has noted as passed, if no other fault naming the cause is left that is not
+/// verified.
+const PROVEN_WITH_IT: &str = "
+    AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
+    AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = c.seq AND e.kind = 'passed' AND e.body LIKE ?2)
+    AND NOT EXISTS (SELECT 1 FROM fault other WHERE other.unit = f.unit AND other.cause = f.cause
+        AND other.cause = lower(other.lru) AND other.state NOT IN ('verified', 'closed'))
+    ORDER BY c.seq";
+
+/// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
+const THERE: &str = concat!(
+    "SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
+    WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2
+        AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o WHERE o.fault = f.seq AND o.at_us >
+            coalesce((SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.state = 'verified'",
+    standing!("x"),
+    "), -1))
+        AND r.started_at_us <= (SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair'",
+    standing!("x"),
+    ")
+    ORDER BY r.started_at_us DESC, r.seq DESC LIMIT ?3"
+);
+
+/// A repair that a run may have proved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RepairToProve {
+    /// The repaired fault.
+    pub fault: Id,
+    /// Its name.
+    pub code_name: String,
+    /// Runs of the unit in which the fault was there, oldest first: the last ones, from the one that saw it first.
+    pub there: Vec<Id>,
+    /// Runs that passed since the repair, oldest first; the last one is the run that was asked about.
+    pub passed: Vec<Id>,
+}
+
+impl Store {
+    /// The number of the last event this file knows.
+    pub(crate) fn last_event(&self) -> Result<i64, StoreError> {
+        let found = self.first(
+            "beginning a run",
+            "SELECT coalesce(max(seq), 0) FROM fault_event",
+            &[],
+            |row| row.get(0),
+        )?;
+        Ok(found.unwrap_or_default())
+    }
+
+    /// Notes a run at the repaired faults of its unit that it shows to be gone, in the caller's transaction: those repaired
+    /// no later than the event of this number.
+    pub(crate) fn note_passed(
+        &self,
+        (unit, run, id): (i64, i64, Id),
+        known_events: i64,
+        end: &RunEnd,
+    ) -> Result<(), StoreError> {
+        const DOING: &str = "noting a run that passed";
+        if end.verdict != Verdict::Passed {
+            return Ok(());
+        }
+        let values = values![unit, run, known_events];
+        let gone = self.select(DOING, SHOWN_GONE, &values, |row| {
+            Ok((row.get::<i64>(0)?, row.get::<Id>(1)?))
+        })?;
+        let mut notes = BTreeMap::new();
+        let note = format!("{IN_RUN}{id}");
+        let with = format!("SELECT c.seq FROM {REST_OF_CASE} {WITH_IT}");
+        for (fault, id) in &gone {
+            let values = values![*fault, known_events];
+            for consequence in self.select(DOING, &with, &values, |row| row.get::<i64>(0))? {
+                notes.insert(consequence, format!("{note}, with fault {}", id.short()));
+            }
+        }
+        notes.extend(gone.iter().map(|(fault, _)| (*fault, note.clone())));
+        for (fault, note) in notes {
+            let event = NewEvent {
+                id: self.mint()?,
+                kind: PASSED,
+                at_us: end.finished_at_us,
+                who: "",
+                body: &note,
+                state: None,
+            };
+            insert_event(self.backend(), fault, &event)
+                .map_err(|error| self.failed(DOING, error))?;
+        }
+        Ok(())
+    }
+
+    /// The repaired faults that a run has shown to be gone, each with what tells how often such a fault hides.
+    ///
+    /// # Errors
+    /// There is no such run, or the file cannot be read.
+    pub fn repairs_to_prove(&self, run: Id) -> Result<Vec<RepairToProve>, StoreError> {
+        const DOING: &str = "looking for repairs to prove";
+        let mut repairs: BTreeMap<i64, RepairToProve> = BTreeMap::new();
+        let passed = self.select(
+            DOING,
+            concat!(
+                "SELECT f.seq, f.id, f.code_name, e.body FROM run r JOIN fault f ON f.unit = r.unit
+                 JOIN fault_event e ON e.fault = f.seq AND e.kind = 'passed'
+                 WHERE r.id = ?1 AND f.state = 'repaired' AND e.seq > (SELECT max(x.seq) FROM fault_event x
+                    WHERE x.fault = f.seq AND x.state = 'repaired'",
+                standing!("x"),
+                ") ORDER BY f.seq, e.seq"
+            ),
+            &values![run],
+            |row| {
+                let (fault, code_name) = (row.get::<Id>(1)?, row.get::<String>(2)?);
+                let passed = noted_run(row.get::<&str>(3)?);
+                Ok((row.get::<i64>(0)?, fault, code_name, passed))
+            },
+        )?;
+        for (row, fault, code_name, passed) in passed {
+            let repair = repairs.entry(row).or_insert(RepairToProve {
+                fault,
+                code_name,
+                there: Vec::new(),
+                passed: Vec::new(),
+            });
+            repair.passed.extend(passed);
+        }
+        repairs.retain(|_, repair| repair.passed.last() == Some(&run));
+        for (fault, repair) in &mut repairs {
+            repair.there = self.select(
+                DOING,
+                THERE,
+                &values![*fault, format!("{LOG_SOURCE}%"), MOST_RUNS],
+                |row| row.get::<Id>(0),
+            )?;
+            repair.there.reverse();
+            repair.there.retain(|run| !repair.passed.contains(run));
+        }
+        Ok(repairs.into_values().collect())
+    }
+
+    /// Marks repaired faults as verified by a run, each with the reason in words, and with a fault that names the part
+    /// which its case comes from the consequences, provided that no other fault naming it is left. Returns all that are
+    /// verified now.
+    ///
+    /// # Errors
+    /// There is no such run or fault, or the file does not take it.
+    pub fn confirm_repairs(&self, run: Id, proven: &[(Id, String)]) -> Result<Vec<Id>, StoreError> {
+        const DOING: &str = "verifying repairs";
+        let finished = self.first(
+            DOING,
+            "SELECT finished_at_us FROM run WHERE id = ?1",
+            &values![run],
+            |row| row.get::<Option<i64>>(0),
+        )?;
+        let Some(at_us) = finished.flatten() else {
+            return Err(StoreError::not_found("finished run", run));
+        };
+        self.change(DOING, |backend| {
+            let confirm = |fault, note: &str| {
+                let change = Change {
+                    action: FaultAction::Verify,
+                    kind: CONFIRMED,
+                    who: "",
+                    body: note,
+                    at_us,
+                };
+                self.apply(backend, fault, &change)
+            };
+            let mut rows = Vec::new();
+            for (fault, note) in proven {
+                let fault = self.fault_row(*fault)?;
+                if fault.state == FaultState::Repaired {
+                    rows.push((fault.seq, fault.id));
+                    confirm(fault, note)?;
+                }
+            }
+            let mut verified: Vec<Id> = rows.iter().map(|(_, id)| *id).collect();
+            let with = format!("SELECT {CASE_FAULT} FROM {REST_OF_CASE} {PROVEN_WITH_IT}");
+            for (fault, id) in rows {
+                let noted = format!("{IN_RUN}{run}");
+                let note = format!("{noted}, with fault {}", id.short());
+                let values = values![fault, format!("{noted}%")];
+                for consequence in self.select(DOING, &with, &values, case_fault)? {
+                    verified.push(confirm(consequence, &note)?.id);
+                }
+            }
+            Ok(verified)
+        })
+    }
+}
+
+/// The run that a note says passed the fault's own step, rather than that of a fault beside it.
+fn noted_run(note: &str) -> Option<Id> {
+    note.strip_prefix(IN_RUN)?.parse().ok()
+}
+
+/// A fault whose repair a run has proved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettledFault {
+    /// The fault.
+    pub id: Id,
+    /// Its number.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// The part it points at.
+    pub lru: String,
+    /// The repair that the run has proved; none if only its state was set.
+    pub repair: Option<RepairRecord>,
+}
+
+impl FaultEvent {
+    /// The run that passed after the repair, where the event notes one or is its proof.
+    pub fn passed_run(&self) -> Option<Id> {
+        if !matches!(&*self.kind, PASSED | CONFIRMED) {
+            return None;
+        }
+        let rest = self.note.strip_prefix(IN_RUN)?;
+        rest.split([',', ':']).next()?.parse().ok()
+    }
+
+    /// A run has proved the repair.
+    pub fn is_proof(&self) -> bool {
+        self.kind == CONFIRMED
+    }
+}
+
+/// The faults that run `?1` of the unit has proved to be repaired; `?2` is how its events begin.
+pub(crate) const SETTLED: &str = concat!(
+    "SELECT f.id, f.code, f.code_name, f.lru,
+        (SELECT x.body FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND x.at_us <= e.at_us",
+    standing!("x"),
+    " ORDER BY x.at_us DESC, x.seq DESC LIMIT 1)
+    FROM run r JOIN fault f ON f.unit = r.unit
+    JOIN fault_event e ON e.fault = f.seq AND e.kind = 'confirmed' AND e.body LIKE ?2
+    WHERE r.id = ?1 ORDER BY f.seq"
+);
+
+/// What the events that a run has made begin with, as a pattern.
+pub(crate) fn made_by(run: Id) -> String {
+    format!("{IN_RUN}{run}%")
+}

@@ -1,0 +1,417 @@
+//! One open history, in a file or on a server: opening, queries, transactions.
+
+pub(crate) mod atomic_file;
+pub(crate) mod file;
+mod head;
+mod lookup;
+pub(crate) mod open_options;
+mod transaction;
+
+use std::cell::{RefCell, RefMut};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
+
+use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
+use crate::error::StoreError;
+use crate::files::regular_file::make_private;
+use crate::id::{Id, IdSource};
+use crate::schema::SCHEMA_VERSION;
+use crate::schema::guard;
+use crate::store::file::{
+    READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
+    set_up_to_record,
+};
+use crate::store::open_options::OpenOptions;
+use crate::trace::{Channel, TraceCodec, TraceError};
+use crate::{schema, seal};
+
+/// More than the number of distinct repeated statements in this crate.
+const STATEMENT_CACHE: usize = 64;
+
+/// One open history. Not shared between threads; open it once per thread instead.
+///
+/// Runs are recorded in a file. Queries, and changes of faults by users, work on a server as well.
+pub struct Store {
+    backend: Backend,
+    path: PathBuf,
+    ids: Option<RefCell<IdSource>>,
+    codec: RefCell<TraceCodec>,
+    pub(crate) channel_sets: RefCell<BTreeMap<i64, Arc<[Channel]>>>,
+}
+
+impl std::fmt::Debug for Store {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Store")
+            .field("path", &self.path)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Store {
+    /// Opens a file for writing; creates it, or migrates its schema, if need be. A file of an earlier schema
+    /// is copied first, to `FILE.schemaN` beside it. Created files are readable for their owner only.
+    pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
+        // An existing file is not opened here: closing it would release SQLite's locks on it. If none can be
+        // created, SQLite's own attempt gives the reason.
+        if !path.exists() {
+            let _ = make_private(path);
+        }
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
+            | OpenFlags::SQLITE_OPEN_CREATE
+            | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let looked = connect(path, path, flags, options.busy_timeout_ms)
+            .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
+        let (conn, version) = match looked {
+            // On a write-protected disk SQLite fails without the reason; a file that can be read but not
+            // opened for writing is read-only.
+            Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
+                return Err(StoreError::ReadOnly {
+                    path: path.to_path_buf(),
+                });
+            }
+            other => other?,
+        };
+        let failed = |error| StoreError::from_sqlite(path, "opening", error);
+        // SQLite silently opens a write-protected file for reading.
+        if conn.is_readonly("main").map_err(failed)? {
+            return Err(StoreError::ReadOnly {
+                path: path.to_path_buf(),
+            });
+        }
+        refuse_foreign_objects(&conn, path)?;
+        if (1..SCHEMA_VERSION).contains(&version) {
+            keep_copy(&conn, path, version)?;
+        }
+        let OpenOptions {
+            ids,
+            synchronous,
+            max_pages,
+            ..
+        } = options;
+        set_up(&conn, version, synchronous).map_err(failed)?;
+        let store = Self::of_file(conn, path, Some(ids))?;
+        store.bring_up_to_date(version)?;
+        set_up_to_record(store.file()?, max_pages).map_err(failed)?;
+        Ok(store)
+    }
+
+    /// Opens a file for reading only; never creates, migrates or locks it.
+    ///
+    /// In a read-only directory the file is read as it is, provided that no other program left unfinished
+    /// work beside it.
+    pub fn open_read_only(path: &Path) -> Result<Self, StoreError> {
+        if !path.exists() {
+            return Err(StoreError::Missing {
+                path: path.to_path_buf(),
+            });
+        }
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let looked = connect(path, path, flags, READ_BUSY_TIMEOUT_MS)
+            .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
+        let (conn, version) = match looked {
+            // A write-ahead log needs a file beside the database, which this directory refuses.
+            Err(StoreError::CannotOpen { .. } | StoreError::ReadOnly { .. })
+                if !has_write_ahead_log(path) =>
+            {
+                let flags = flags | OpenFlags::SQLITE_OPEN_URI;
+                let conn = connect(path, &immutable_uri(path), flags, READ_BUSY_TIMEOUT_MS)?;
+                let version = identify(&conn, path)?;
+                (conn, version)
+            }
+            other => other?,
+        };
+        match version {
+            0 => Err(StoreError::Missing {
+                path: path.to_path_buf(),
+            }),
+            found if found < SCHEMA_VERSION => {
+                let known = SCHEMA_VERSION;
+                Err(StoreError::OlderSchema {
+                    path: path.to_path_buf(),
+                    found,
+                    known,
+                })
+            }
+            _ => Self::of_file(conn, path, None),
+        }
+    }
+
+    /// Descriptions of objects in this file that this program did not make or that were altered. Opening such
+    /// a file for writing is refused; a reader may be warned.
+    pub fn foreign_objects(&self) -> Result<Vec<String>, StoreError> {
+        let Backend::File(conn) = &self.backend else {
+            return Ok(Vec::new());
+        };
+        let found = guard::foreign_objects(conn, SCHEMA_VERSION);
+        found.map_err(|error| self.failed("looking at its tables", error))
+    }
+
+    /// Sets how long to wait for other writers of the file. While opening, a short wait is best; work under
+    /// way in the background may wait longer rather than lose what it has.
+    ///
+    /// # Errors
+    /// Of a server, which has none.
+    pub fn set_busy_timeout_ms(&self, busy_timeout_ms: u32) -> Result<(), StoreError> {
+        let timeout = std::time::Duration::from_millis(busy_timeout_ms.into());
+        let set = self.file()?.busy_timeout(timeout);
+        set.map_err(|error| self.failed("setting how long to wait", error))
+    }
+
+    /// The file's path as it was given; of a server its address without the password.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether it was opened for reading only.
+    pub fn is_read_only(&self) -> bool {
+        self.ids.is_none()
+    }
+
+    /// Creates the tables of a new file, or migrates those of an earlier version, and begins its chain of
+    /// seals, in one transaction; returns the file's id, which is given once.
+    fn bring_up_to_date(&self, version: i32) -> Result<Id, StoreError> {
+        const DOING: &str = "bringing it up to date";
+        if version < SCHEMA_VERSION {
+            let minted = self.mint()?;
+            return self.write(DOING, |conn| {
+                let failed = |error| self.failed(DOING, error);
+                // Another program may have been first.
+                let from = schema::user_version(conn).map_err(failed)?;
+                if from == SCHEMA_VERSION {
+                    return self.name();
+                }
+                schema::bring_up_to_date(conn).map_err(failed)?;
+                if from > 0 {
+                    return self.name();
+                }
+                seal::begin(&self.backend, minted).map_err(|error| self.failed(DOING, error))
+            });
+        }
+        self.name()
+    }
+
+    /// The file's id. Without it its chain of seals is lost, and must not be begun again.
+    fn name(&self) -> Result<Id, StoreError> {
+        let name = seal::own_file_id(&self.backend);
+        let name = name.map_err(|error| self.failed("reading its name", error))?;
+        name.ok_or_else(|| StoreError::Altered {
+            path: self.path.clone(),
+            what: "the file's own name was taken out of it".to_owned(),
+        })
+    }
+
+    /// The file's id, under which its seals are made.
+    pub(crate) fn file_id(&self) -> Result<Id, StoreError> {
+        self.check_writable()?;
+        self.name()
+    }
+
+    /// Checkpoints the write-ahead log and closes the file. Dropping closes it too, but cannot report an
+    /// error.
+    pub fn close(self) -> Result<(), StoreError> {
+        if !self.is_read_only() && matches!(self.backend, Backend::File(_)) {
+            self.checkpoint()?;
+        }
+        let path = self.path;
+        match self.backend {
+            Backend::File(conn) => conn
+                .close()
+                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error)),
+            Backend::Server(_) => Ok(()),
+        }
+    }
+
+    /// Checkpoints the write-ahead log as far as other readers allow.
+    pub(crate) fn checkpoint(&self) -> Result<(), StoreError> {
+        let done = self
+            .file()?
+            .query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
+        done.map_err(|error| self.failed("writing back the log", error))
+    }
+
+    /// Ends work on the file once `stops` says so, within milliseconds and with [`StoreError::Stopped`]: what one
+    /// transaction was to add is not added, and a copy that is not whole is removed. It holds until another one is set.
+    ///
+    /// # Errors
+    /// SQLite does not take it, or this is a server, whose work is not ended so.
+    pub fn stop_when(
+        &self,
+        stops: impl FnMut() -> bool + Send + 'static,
+    ) -> Result<(), StoreError> {
+        let set = self.file()?.progress_handler(STEPS_AT_ONCE, Some(stops));
+        set.map_err(|error| self.failed("preparing to stop", error))
+    }
+
+    /// The file's connection, for operations that only files have.
+    pub(crate) fn file(&self) -> Result<&Connection, StoreError> {
+        match &self.backend {
+            Backend::File(conn) => Ok(conn),
+            Backend::Server(_) => Err(StoreError::NotAFile {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    /// The server's connection, for operations that only servers have.
+    pub(crate) fn server(&self) -> Result<&Server, StoreError> {
+        match &self.backend {
+            Backend::Server(server) => Ok(server),
+            Backend::File(_) => Err(StoreError::NotAServer {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    /// Runs `work` in one short write transaction on the file, or in the one that is open; rolls back on an
+    /// error.
+    pub(crate) fn write<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce(&Connection) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        self.check_writable()?;
+        let conn = self.file()?;
+        if !conn.is_autocommit() {
+            return self.write_within(doing, conn, work);
+        }
+        let failed = |error| self.failed(doing, error);
+        // Immediate: a transaction that begins by reading cannot wait for another writer.
+        let begun = Transaction::new_unchecked(conn, TransactionBehavior::Immediate);
+        let transaction = begun.map_err(failed)?;
+        let result = work(&transaction)?;
+        transaction.commit().map_err(failed)?;
+        Ok(result)
+    }
+
+    /// Runs `work` in one short write transaction on the file or the server; rolls back on an error.
+    pub(crate) fn change<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce(&Backend) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        let Backend::Server(server) = &self.backend else {
+            return self.write(doing, |_| work(&self.backend));
+        };
+        self.check_writable()?;
+        let failed = |error: SqlError| self.failed(doing, error);
+        server.begin().map_err(failed)?;
+        match work(&self.backend) {
+            Ok(result) => {
+                server.batch("COMMIT").map_err(failed)?;
+                Ok(result)
+            }
+            Err(error) => {
+                // If even this fails, the server drops the connection, and the work with it.
+                let _ = server.batch("ROLLBACK");
+                Err(error)
+            }
+        }
+    }
+
+    /// All rows of a result.
+    pub(crate) fn select<T>(
+        &self,
+        doing: &'static str,
+        sql: &str,
+        values: &[Value<'_>],
+        read: impl FnMut(Row<'_>) -> SqlResult<T>,
+    ) -> Result<Vec<T>, StoreError> {
+        let found = self.backend.select(sql, values, read);
+        found.map_err(|error| self.failed(doing, error))
+    }
+
+    /// The first row of a result.
+    pub(crate) fn first<T>(
+        &self,
+        doing: &'static str,
+        sql: &str,
+        values: &[Value<'_>],
+        read: impl FnMut(Row<'_>) -> SqlResult<T>,
+    ) -> Result<Option<T>, StoreError> {
+        let found = self.backend.first(sql, values, read);
+        found.map_err(|error| self.failed(doing, error))
+    }
+
+    pub(crate) fn backend(&self) -> &Backend {
+        &self.backend
+    }
+
+    pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {
+        StoreError::from_sql(&self.path, doing, error.into())
+    }
+
+    pub(crate) fn check_writable(&self) -> Result<(), StoreError> {
+        if self.is_read_only() {
+            return Err(StoreError::ReadOnly {
+                path: self.path.clone(),
+            });
+        }
+        Ok(())
+    }
+
+    pub(crate) fn mint(&self) -> Result<Id, StoreError> {
+        match &self.ids {
+            Some(ids) => Ok(ids.borrow_mut().mint()),
+            None => Err(StoreError::ReadOnly {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    pub(crate) fn codec(&self) -> RefMut<'_, TraceCodec> {
+        self.codec.borrow_mut()
+    }
+
+    fn of_file(conn: Connection, path: &Path, ids: Option<IdSource>) -> Result<Self, StoreError> {
+        conn.set_prepared_statement_cache_capacity(STATEMENT_CACHE);
+        Self::of(Backend::File(conn), path, ids)
+    }
+
+    pub(crate) fn of(
+        backend: Backend,
+        path: &Path,
+        ids: Option<IdSource>,
+    ) -> Result<Self, StoreError> {
+        let codec = TraceCodec::new().map_err(|error: TraceError| StoreError::Io {
+            path: path.to_path_buf(),
+            reason: error.to_string(),
+        })?;
+        Ok(Self {
+            backend,
+            path: path.to_path_buf(),
+            ids: ids.map(RefCell::new),
+            codec: RefCell::new(codec),
+            channel_sets: RefCell::default(),
+        })
+    }
+}
+
+/// Steps of SQLite's engine between two looks at whether to stop; a statement of a few rows has about as many.
+const STEPS_AT_ONCE: i32 = 50;
+
+/// Refuses to write to a file that holds objects which no version of this program made.
+fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreError> {
+    let look = || {
+        // One snapshot: another program may be migrating the file this moment.
+        let _snapshot = conn.unchecked_transaction()?;
+        match schema::user_version(conn)? {
+            0 => Ok(Vec::new()),
+            version => guard::foreign_objects(conn, version),
+        }
+    };
+    let foreign_objects =
+        look().map_err(|error| StoreError::from_sqlite(path, "opening", error))?;
+    match &foreign_objects[..] {
+        [] => Ok(()),
+        [first, rest @ ..] => Err(StoreError::Altered {
+            path: path.to_path_buf(),
+            what: match rest.len() {
+                0 => first.clone(),
+                more => format!("{first}, and {more} more"),
+            },
+        }),
+    }
+}

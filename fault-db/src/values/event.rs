@@ -1,0 +1,43 @@
+//! An event of a fault, and its withdrawal.
+
+use serde::Serialize;
+
+use super::fault_state::FaultState;
+use super::record::{CauseRecord, RepairRecord};
+use crate::id::Id;
+
+/// An event of a fault.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultEvent {
+    /// The event.
+    pub id: Id,
+    /// opened, recurred, acknowledged, repair, repaired, passed, confirmed, verified, closed, reopened, note, cause or
+    /// diagnosed. A run `confirmed` what a person may have `verified`.
+    pub kind: String,
+    /// When.
+    pub at_us: i64,
+    /// Who; empty for the program itself.
+    pub who: String,
+    /// The text; empty for a repair and for a cause.
+    pub note: String,
+    /// The fault's state after it; `None` if it did not change.
+    pub state: Option<FaultState>,
+    /// The repair, if it is one.
+    pub repair: Option<RepairRecord>,
+    /// The part it comes from, if it says that.
+    pub cause: Option<CauseRecord>,
+    /// Who has withdrawn it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correction: Option<Correction>,
+}
+
+/// Who took an event back, when and why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Correction {
+    /// When, µs since 1970.
+    pub at_us: i64,
+    /// Who.
+    pub who: String,
+    /// Why.
+    pub note: String,
+}

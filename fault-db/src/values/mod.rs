@@ -1,0 +1,8 @@
+//! What is recorded, and the words for it.
+
+pub(crate) mod event;
+pub(crate) mod fault_state;
+pub(crate) mod record;
+pub(crate) mod text_enum;
+pub(crate) mod trace_place;
+pub(crate) mod withdrawal_error;

@@ -1,0 +1,224 @@
+//! The records a caller hands in to be stored. Times ending in `at_us` are UTC.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::id::Id;
+use crate::values::text_enum::text_enum;
+
+/// The source of a run that is an imported log begins with this.
+pub const LOG_SOURCE: &str = "log of ";
+
+text_enum! {
+    /// The verdict of a step, a measurement or a whole run: a column. This crate names no other, so the caller
+    /// converts its own verdict.
+    Verdict {
+        /// Every expectation held.
+        Passed = "passed",
+        /// An expectation did not hold.
+        Failed = "failed",
+        /// It could not be tested.
+        Error = "error",
+        /// Not run, by choice or condition.
+        Skipped = "skipped",
+        /// Of a search for a fault that found none: all that was run passed, and that was not enough to accept the unit.
+        Inconclusive = "inconclusive",
+        /// Stopped by the operator.
+        Aborted = "aborted",
+    }
+}
+
+/// The unit under test, as a run finds it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnitRecord {
+    /// Serial number; identifies the unit permanently.
+    pub serial: String,
+    /// Kind of unit.
+    pub kind: String,
+    /// Name of the unit configuration.
+    pub config_name: String,
+    /// Software version of each of its parts.
+    pub sw_versions: BTreeMap<String, String>,
+}
+
+/// A procedure file that a run uses.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ScriptRecord {
+    /// Path as the operator would name it.
+    pub path: String,
+    /// SHA-256 of its text, in hex.
+    pub sha256: String,
+}
+
+/// A run at its beginning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunRecord {
+    /// The unit under test.
+    pub unit: UnitRecord,
+    /// Line data in use.
+    pub line: String,
+    /// The train the unit is in, as the tester names it; empty if not given.
+    pub train: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Name of the tester.
+    pub operator: String,
+    /// Where the unit is: `sim`, `serial:…`, `tcp:…`.
+    pub source: String,
+    /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
+    pub connection: Option<String>,
+    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
+    pub symptom: Option<String>,
+    /// When it began.
+    pub started_at_us: i64,
+    /// Version of the program.
+    pub app_version: String,
+    /// SHA-256 over all scripts, in hex.
+    pub scripts_sha256: String,
+    /// SHA-256 of the unit configuration, in hex.
+    pub unit_config_sha256: String,
+    /// Faults injected on purpose, if any.
+    pub injected: Option<String>,
+    /// Identifies the writing process, so that a reader can tell whether it still runs.
+    pub owner: String,
+    /// The procedure files used.
+    pub scripts: Vec<ScriptRecord>,
+    /// The earlier run whose open procedures it runs.
+    pub continues: Option<Id>,
+}
+
+/// A run at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunEnd {
+    /// The run's verdict.
+    pub verdict: Verdict,
+    /// When it ended.
+    pub finished_at_us: i64,
+    /// Duration on the bench's clock.
+    pub bench_time_us: i64,
+    /// Duration on the wall clock.
+    pub wall_time_us: i64,
+}
+
+/// A finished step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepRecord {
+    /// Place in the run; must rise from step to step.
+    pub index: u32,
+    /// The procedure it belongs to.
+    pub procedure: String,
+    /// Its name.
+    pub name: String,
+    /// The step's verdict.
+    pub verdict: Verdict,
+    /// Bench time at its start.
+    pub started_bench_us: i64,
+    /// Bench time it took.
+    pub bench_time_us: i64,
+    /// The reason of the verdict; empty if there is nothing to say.
+    pub message: String,
+    /// Line of the script it comes from.
+    pub script_line: Option<u32>,
+    /// Where the numbers of what it expected come from, in the caller's words.
+    pub limit_source: Option<String>,
+    /// What it measured.
+    pub measurements: Vec<MeasurementRecord>,
+}
+
+/// A measured value with its limits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeasurementRecord {
+    /// Its name.
+    pub name: String,
+    /// The value; `None` if nothing could be measured. NaN is stored as NULL.
+    pub value: Option<f64>,
+    /// Unit of value and limits.
+    pub unit: String,
+    /// Lowest allowed value.
+    pub low: Option<f64>,
+    /// Highest allowed value.
+    pub high: Option<f64>,
+    /// Where its limits come from, in the caller's words.
+    pub limit_source: Option<String>,
+    /// Its verdict.
+    pub verdict: Verdict,
+}
+
+/// One occurrence of a fault.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaultRecord {
+    /// Stable number of the fault.
+    pub code: i64,
+    /// Its name.
+    pub code_name: String,
+    /// Replaceable part it points at, or the caller's word for none. Identifies the fault, with unit and code.
+    pub lru: String,
+    /// Severity, in the caller's words: a database may hold those of another program.
+    pub severity: String,
+    /// Time of the occurrence.
+    pub at_us: i64,
+    /// The same on the bench's clock.
+    pub bench_us: i64,
+    /// Step under way, if any; it need not be recorded yet.
+    pub step_index: Option<u32>,
+    /// Description.
+    pub message: String,
+    /// All signals at that moment.
+    pub freeze: Vec<FreezeSample>,
+}
+
+/// One signal of a freeze frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FreezeSample {
+    /// Name of the signal.
+    pub name: String,
+    /// Its value; `None` if there was none.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// The word for the value, for an enum or a bit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+}
+
+/// A part's name for comparison: trimmed, in lower case.
+pub(crate) fn part_name(part: &str) -> String {
+    part.trim().to_lowercase()
+}
+
+/// The kind of an event whose body is a [`RepairRecord`].
+pub(crate) const REPAIR: &str = "repair";
+
+/// The kinds of events whose body is a [`CauseRecord`]: by a person, and by the diagnosis of a run. A person's stands
+/// before any run's. In the SQL of `event_graph`, the first in alphabetical order stands before the other.
+pub(crate) const CAUSE: &str = "cause";
+pub(crate) const DIAGNOSED: &str = "diagnosed";
+
+/// The part that a fault comes from, as a person or the diagnosis of a run says.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CauseRecord {
+    /// The part; empty: the fault is no consequence of another part, and stands alone.
+    pub part: String,
+    /// The run whose diagnosis found it, by its id; `None` of a person's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// Its probability there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// Why.
+    pub note: String,
+}
+
+/// A repair made for a fault.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RepairRecord {
+    /// The part replaced or worked on.
+    pub part: String,
+    /// Serial number of the part taken out.
+    pub serial_old: Option<String>,
+    /// Serial number of the part put in.
+    pub serial_new: Option<String>,
+    /// What was done.
+    pub note: String,
+}

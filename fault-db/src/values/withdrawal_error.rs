@@ -1,0 +1,30 @@
+//! Why what a person wrote cannot be withdrawn.
+
+/// Why nothing is taken back.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WithdrawalError {
+    /// There is no event of a person, or all are withdrawn.
+    #[error("nobody has written anything about it that could be withdrawn")]
+    NothingWritten,
+    /// Something else was written last.
+    #[error("the last that was written about it is another: {kind} by {who}")]
+    OtherWritten {
+        /// Kind of what was written last.
+        kind: String,
+        /// Who wrote it.
+        who: String,
+    },
+    /// What was written cannot be taken back without what came after it.
+    #[error(
+        "it was {after} after it was {kind}, and that rests on it; say by another state or a note what is so"
+    )]
+    Rested {
+        /// Kind of the person's event.
+        kind: String,
+        /// Kind of the event after it.
+        after: String,
+    },
+    /// It was closed, and the same fault was opened again.
+    #[error("it was seen again after it was closed, and is a fault of its own since")]
+    SeenSince,
+}
