@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::conditions::{Conditions, Sensors};
 use crate::drive::Scatter;
 use crate::drive::scatter::{Spread, check_spreads};
-use crate::rig::random::Random;
+use crate::random::Random;
 
 /// Sets what is drawn here apart from the train and day that the same seed gives.
 const OWN_SEQUENCE: u64 = 0xBE7C_45CA_77E2_0B1D;

@@ -8,10 +8,11 @@ use crate::stimulus::{
 };
 use crate::train::{EquipmentFaults, TrainData};
 
-use super::antenna::antenna_signal;
-use super::ranges::{U16_MAX, in_range, positive};
-use super::request::Request;
-use super::{DoorGear, Rig, Track, test_signals};
+use super::Rig;
+use super::session::{Request, test_signals};
+use super::train_side::DoorGear;
+use super::wayside::{Track, antenna_signal};
+use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
 /// Fastest wheel, km/h: the catalogue's range.
 const MAX_SPEED_KMH: f64 = 200.0;

@@ -7,9 +7,10 @@ use crate::lever::Lever;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
-use super::random::Random;
+use super::Rig;
 use super::tcms::pair_cars;
-use super::{PairEfforts, Rig, TrueMotion};
+use super::train_side::{PairEfforts, TrueMotion};
+use crate::random::Random;
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);

@@ -10,7 +10,7 @@ use crate::tcms::{CabOrder, TcmsEvent, TcmsInputs, TcmsView};
 use crate::train::{CarSet, TrainData, TrainInputs};
 
 use super::Rig;
-use super::log_reader::MAX_EVENTS;
+use super::session::MAX_EVENTS;
 
 /// TCMS's own cycle: two scans [default].
 const TCMS_CYCLE: Duration = Duration::from_us(2 * SCAN.as_us());

@@ -3,6 +3,7 @@
 
 mod conditions;
 mod orders;
+pub(crate) mod ranges;
 mod station;
 
 use protocol::Speed;

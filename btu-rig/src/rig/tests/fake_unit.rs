@@ -7,7 +7,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant};
 
-use crate::rig::random::Random;
+use crate::random::Random;
 use crate::rig::{LinkFailure, UnitLink};
 
 const CHALLENGE: u32 = 0x7D7E_1234;

@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 use super::{FakeUnit, bench};
 use crate::procedure::EventSource;
 use crate::procedure::Refusal;
-use crate::rig::log_reader::MAX_EVENTS;
+use crate::rig::session::MAX_EVENTS;
 use crate::stimulus::Stimulus;
 
 const TEST_SPEED: Stimulus = Stimulus::PtuSpeed {

@@ -6,7 +6,7 @@ use protocol::message::{Channel, IoInput, SelfTest};
 
 use super::{FakeUnit, bench, rig};
 use crate::procedure::{LineState, LogState};
-use crate::rig::random::Random;
+use crate::random::Random;
 use crate::rig::{Bench, LinkFailure, UnitLink};
 use crate::stimulus::{Stimulus, WaysideCondition};
 

@@ -1,7 +1,7 @@
 //! Which runs a campaign makes: fault modes at all their levels, with different onset times, on different
 //! units.
 
-use btu_rig::rig::Random;
+use btu_rig::random::Random;
 use diagnosis::Shared;
 use protocol::LruId;
 use protocol::injection::{Effect, FaultKind, FaultMode, Occurrence};

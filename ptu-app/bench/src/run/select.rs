@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
-use btu_rig::rig::Random;
+use btu_rig::random::Random;
 use glob::Pattern;
 
 use script_files::Place;

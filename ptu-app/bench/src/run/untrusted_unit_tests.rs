@@ -2,7 +2,8 @@
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::rig::{LinkFailure, Random, UnitLink};
+use btu_rig::random::Random;
+use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
 use protocol::{Duration, Instant};

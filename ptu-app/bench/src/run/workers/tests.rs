@@ -4,7 +4,7 @@ use std::path::Path;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::rig::Random;
+use btu_rig::random::Random;
 use protocol::Duration;
 use protocol::injection::FaultMode;
 

@@ -4,7 +4,8 @@ mod acts;
 mod antenna;
 
 use btu_rig::lever::Lever;
-use btu_rig::rig::{Bench, Random};
+use btu_rig::random::Random;
+use btu_rig::rig::Bench;
 use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
 use protocol::injection::{FaultMode, Place};
 use protocol::line::Section;

@@ -5,9 +5,9 @@ use protocol::{Duration, Instant, SCAN};
 
 use crate::conditions::Sensors;
 
-use super::random::Random;
-use super::ranges::{U16_MAX, in_range};
 use crate::procedure::Refusal;
+use crate::random::Random;
+use crate::stimulus::ranges::{U16_MAX, in_range};
 
 /// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
 pub const MAX_RATE_HZ: f64 = 655.0;

@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     fn section() -> Section {
-        let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let mut section = line.section(61).unwrap().clone();
         section.gradients = vec![
             Gradient {

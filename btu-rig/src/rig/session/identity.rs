@@ -46,7 +46,7 @@ struct Compared {
 
 /// Compares a unit with its record once it has said who it is.
 #[derive(Debug, Default)]
-pub(super) struct IdentityCheck {
+pub struct IdentityCheck {
     expected: ExpectedIdentity,
     compared: Vec<Compared>,
 }
@@ -152,7 +152,7 @@ impl Compared {
     }
 }
 
-pub(super) fn version([major, minor, patch]: [u8; 3]) -> String {
+pub fn version([major, minor, patch]: [u8; 3]) -> String {
     format!("{major}.{minor}.{patch}")
 }
 

@@ -7,7 +7,7 @@ use protocol::message::{
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant, Speed};
 
-use super::told_signals::{CARRIED, LINE_SIGNALS, Source};
+use super::signal_sources::{CARRIED, LINE_SIGNALS, Source};
 
 /// Age at which what the unit said is forgotten.
 const FORGOTTEN: Duration = Duration::from_ms(500);

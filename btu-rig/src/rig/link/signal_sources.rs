@@ -6,7 +6,7 @@ use crate::procedure::plan::Connection;
 
 /// Frames of the unit that carry signals.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Source {
+pub enum Source {
     Io,
     Tcms,
     Status,
@@ -17,7 +17,7 @@ pub(super) enum Source {
 
 /// Signals each kind of frame carries, forgotten with it. Mode and target come by two ways, so
 /// that they stay known when one of them fails.
-pub(super) const CARRIED: [(Source, &[Signal]); 6] = [
+pub const CARRIED: [(Source, &[Signal]); 6] = [
     (Source::Io, &IO_SIGNALS),
     (
         Source::Tcms,
@@ -99,7 +99,7 @@ const TRAIN_STATE_SIGNALS: [Signal; 31] = [
 ];
 
 /// What a harness sets and a unit on a train reads.
-pub(super) const LINE_SIGNALS: [Signal; 8] = [
+pub const LINE_SIGNALS: [Signal; 8] = [
     Signal::Doors,
     Signal::DoorsLeft,
     Signal::DoorsRight,
@@ -139,7 +139,7 @@ const STATUS_SIGNALS: [Signal; 25] = [
 ];
 
 /// Signals that nothing but `TrainState` tells on a connection.
-pub(super) fn told_by_train_state(connection: Connection) -> Vec<Signal> {
+pub fn told_by_train_state(connection: Connection) -> Vec<Signal> {
     let mut told = TRAIN_STATE_SIGNALS.to_vec();
     if connection == Connection::Ptu {
         told.extend(IO_SIGNALS);

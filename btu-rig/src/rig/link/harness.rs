@@ -46,7 +46,7 @@ impl std::str::FromStr for Harness {
 
 /// What is known of it.
 #[derive(Debug)]
-pub(super) struct HarnessWatch {
+pub struct HarnessWatch {
     found: Option<bool>,
     /// Since when the maintenance channel is heard and nothing else.
     alone_since: Option<Instant>,

@@ -8,7 +8,7 @@ use protocol::{Duration, Instant};
 use crate::stimulus::{StationData, WaysideCondition};
 
 use super::order_sender::OrderSender;
-use super::random::Random;
+use crate::random::Random;
 
 /// Period of the wayside's frames.
 pub const PERIOD: Duration = Duration::from_ms(250);
@@ -146,7 +146,7 @@ mod tests {
     /// through, none of the second is hurt.
     #[test]
     fn corrupt_frames_are_refused_and_spare_their_neighbours() {
-        let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let mut wayside = Wayside::new(&line.sections[0], Random::new(3));
         wayside.set_condition(WaysideCondition::Corrupt);
         let (mut bench, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));

@@ -9,9 +9,9 @@ use protocol::message::{
 use crate::procedure::Refusal;
 use crate::stimulus::StationData;
 
-use super::ranges::{U16_MAX, in_range};
 use super::request::Request;
-use super::wayside::wire_data;
+use crate::rig::wayside::wire_data;
+use crate::stimulus::ranges::{U16_MAX, in_range};
 
 /// Signal into the ATP test coil.
 ///

@@ -27,7 +27,7 @@ pub enum Request {
 }
 
 #[derive(Debug)]
-pub(super) struct Current {
+pub struct Current {
     pub request: Request,
     pub begun: Instant,
     /// When it is sent or given up next.

@@ -6,7 +6,7 @@ use crate::conditions::Sensors;
 use crate::stimulus::TachoCondition;
 
 use super::motion::Motion;
-use super::random::Random;
+use crate::random::Random;
 
 /// Where in its tooth space each channel starts, pulses: a quarter apart, and clear of an edge.
 const PHASES: [f64; 2] = [0.5, 0.75];
@@ -185,7 +185,7 @@ impl Tacho {
 mod tests {
     use protocol::Speed;
 
-    use super::super::wheel::Wheel;
+    use super::super::Wheel;
     use super::*;
 
     /// 860 mm and 100 pulses per turn, as in the default configuration.

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::stimulus::TcmsCondition;
 use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
 
-use super::random::Random;
+use crate::random::Random;
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,8 +7,7 @@ use protocol::line::Section;
 
 use crate::procedure::Refusal;
 
-use super::motion::Motion;
-use super::tacho::MAX_AGE_US;
+use crate::rig::train_side::{MAX_AGE_US, Motion};
 
 /// Pulses that may wait: a frame tells one marker edge, so each scan makes one at most.
 const MAX_PENDING: usize = 8;
@@ -134,13 +133,13 @@ mod tests {
     use protocol::Speed;
     use protocol::line::Line;
 
-    use super::super::wheel::Wheel;
     use super::*;
+    use crate::rig::train_side::Wheel;
 
     /// Each marker pulses once, and position minus distance since the edge is its place to 1 mm.
     #[test]
     fn markers_pulse_at_their_places() {
-        let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let (mut wheel, mut markers) = (Wheel::default(), Markers::default());
         let section = line.section(61).unwrap();
         markers.lay(section, 0.0);
@@ -165,7 +164,7 @@ mod tests {
     /// A marker that is moved pulses elsewhere, one that is missing not at all; laid anew all are back.
     #[test]
     fn a_marker_can_be_moved_and_missing() {
-        let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let section = line.section(61).unwrap();
         let mut markers = Markers::default();
         assert!(

@@ -6,11 +6,11 @@ use protocol::link::{End, Link};
 use protocol::message::{Identity, Message, Mode, StatusBits, StoreKind};
 use protocol::{Duration, Instant};
 
-use super::link_watch::LinkWatch;
 use super::store_reader::{StoreReader, StoreState, StoredData};
 use super::tester::Tester;
 use super::unit_clock::TimeOfDay;
 use crate::procedure::UnitEvent;
+use crate::rig::link::LinkWatch;
 
 /// Session number, for arming only: never said.
 const SESSION: u32 = 1;
