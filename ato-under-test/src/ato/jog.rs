@@ -45,8 +45,8 @@ pub struct JogInputs {
     pub aligned_m: f64,
     /// The section's last marker was seen: an overrun is one by more than wheels.
     pub last_marker: bool,
-    /// An injected fault: it does not jog.
-    pub dead: bool,
+    /// It jogs at all.
+    pub jogs: bool,
 }
 
 /// What came of a cycle.
@@ -124,7 +124,7 @@ impl Jog {
             };
         }
         let short = to_stop_m > 0.0;
-        let near = distance_m <= config.max_m && !inputs.dead;
+        let near = distance_m <= config.max_m && inputs.jogs;
         if short && distance_m > config.max_m {
             // An ordinary run leads there.
             self.phase = Phase::Idle;

@@ -32,8 +32,8 @@ pub struct Witness {
     pub acknowledge: bool,
     /// The speeds are of test signals, which change as a tester likes.
     pub tested: bool,
-    /// Nothing is compared: an injected fault.
-    pub dead: bool,
+    /// Nothing is compared.
+    pub unguarded: bool,
 }
 
 impl Witness {
@@ -87,7 +87,7 @@ impl Belief {
         log: &mut EventLog,
     ) {
         let speed = speeds[0].max(speeds[1]);
-        if witness.dead || witness.tested {
+        if witness.unguarded || witness.tested {
             *self = Self {
                 reference_mps: speed.mps(),
                 last_mps: speed.mps(),
@@ -381,11 +381,11 @@ mod tests {
 
     #[test]
     fn test_signals_and_a_dead_guard_are_not_compared() {
-        for (tested, dead) in [(true, false), (false, true)] {
+        for (tested, unguarded) in [(true, false), (false, true)] {
             let mut train = Train::at(60.0);
             let witness = Witness {
                 tested,
-                dead,
+                unguarded,
                 powers: true,
                 ..told(60.0)
             };

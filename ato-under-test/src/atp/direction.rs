@@ -14,18 +14,18 @@ pub enum Towards {
     Backward,
     /// In neutral, or its contacts contradict each other: no way is permitted.
     Nowhere,
-    /// Nothing is supervised: test signals in neutral, as a train in a depot is left, or an injected fault.
+    /// Nothing is supervised: test signals in neutral, as a train in a depot is left.
     Anywhere,
 }
 
 impl Towards {
-    pub fn of(lines: TrainLines, tested: [bool; 2], neutral_dead: bool) -> Self {
+    pub fn of(lines: TrainLines, tested: [bool; 2], supervised: bool) -> Self {
         let forward = lines.contains(TrainLines::FORWARD);
         let backward = lines.contains(TrainLines::BACKWARD);
         match (forward, backward) {
             (true, false) => Self::Forward,
             (false, true) => Self::Backward,
-            _ if neutral_dead || tested.contains(&true) => Self::Anywhere,
+            _ if !supervised || tested.contains(&true) => Self::Anywhere,
             _ => Self::Nowhere,
         }
     }

@@ -2,7 +2,6 @@
 //! than lets a train stand.
 
 use protocol::Instant;
-use protocol::injection::Place;
 use protocol::message::{Mode, Outputs};
 
 use super::Unit;
@@ -41,10 +40,10 @@ impl Unit {
         let tested = self.asked();
         let mut wanted = (train | tested) & EITHER | train & tested & BOTH;
         wanted |= tested & Outputs::CODE_VALID;
-        if self.faults.dead(Place::DoorBar) {
+        if !self.guards.door_bar {
             wanted |= tested & DOORS;
         }
-        if !self.faults.dead(Place::BrakeHold) {
+        if self.guards.brake_hold {
             wanted |= Outputs::FSB | Outputs::POWER_CUT;
             wanted.set(
                 Outputs::EB_RELAY,
@@ -65,13 +64,13 @@ impl Unit {
             return (effort, mode);
         }
         let (tested_effort, tested_mode) = of(self.tested());
-        let effort = match self.faults.dead(Place::TractionBar) {
-            true => tested_effort,
-            false => effort.min(0),
+        let effort = match self.guards.traction_bar {
+            true => effort.min(0),
+            false => tested_effort,
         };
-        let mode = match self.faults.dead(Place::StartBar) {
-            true => tested_mode,
-            false => mode,
+        let mode = match self.guards.start_bar {
+            true => mode,
+            false => tested_mode,
         };
         (effort, mode)
     }

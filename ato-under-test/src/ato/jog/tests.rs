@@ -48,7 +48,7 @@ impl Train {
                 to_stop_m: Some(self.to_stop_m),
                 aligned_m: 0.3,
                 last_marker: true,
-                dead: false,
+                jogs: true,
             },
             &self.config,
         );
@@ -153,7 +153,7 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         to_stop_m: Some(-1.0),
         aligned_m: 0.3,
         last_marker: true,
-        dead: false,
+        jogs: true,
     };
     let far = JogInputs {
         to_stop_m: Some(-5.1),
@@ -163,7 +163,10 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         last_marker: false,
         ..near
     };
-    let dead = JogInputs { dead: true, ..near };
+    let dead = JogInputs {
+        jogs: false,
+        ..near
+    };
     for (inputs, failed_m) in [(far, Some(-5.1)), (unproved, None), (dead, Some(-1.0))] {
         let mut jog = Jog::default();
         let outcome = jog.step(&inputs, &config().jog);

@@ -24,7 +24,7 @@ fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
         ahead_m: 0.0,
         aligned_m: 0.3,
         last_marker: false,
-        jog_dead: false,
+        jogs: true,
         speed: Speed::from_mps(10.0),
         standstill: false,
         power_cut: false,

@@ -22,10 +22,7 @@ const HELD: StationInputs = StationInputs {
     closed: true,
     departure: false,
     acknowledge: false,
-    dead: DeadOrders {
-        closing: false,
-        reopening: false,
-    },
+    guards: Guards::ALL,
 };
 const CYCLE: Duration = Duration::from_ms(50);
 
