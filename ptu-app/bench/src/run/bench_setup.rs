@@ -16,8 +16,9 @@ use protocol::{Duration, Instant};
 
 use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
+use super::run_control::RunControl;
 use super::session::Session;
-use super::{RunControl, unit_text};
+use super::unit_text;
 use crate::aboard::UnitAboard;
 use crate::data::DataFile;
 use crate::failure::Failure;
