@@ -254,11 +254,11 @@ impl MeasurementRun {
             (Verdict::Failed, Some(value), _) => {
                 let limits = super::describe::limits(measurement.low, measurement.high);
                 let uncertainty = measurement.uncertainty.map_or(String::new(), |off| {
-                    format!(" ± {}", super::describe::number(off))
+                    format!(" ± {}", crate::stimulus::text::number(off))
                 });
                 format!(
                     "{name} = {}{uncertainty}, allowed {limits} {}",
-                    super::describe::number(value),
+                    crate::stimulus::text::number(value),
                     measurement.unit
                 )
                 .trim_end()

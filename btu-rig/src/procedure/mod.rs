@@ -24,7 +24,6 @@ pub mod report;
 pub mod runner;
 mod step_run;
 mod step_verdict;
-mod stimulus_text;
 mod unit_clock;
 pub mod worst_case;
 

@@ -36,7 +36,7 @@ impl Rig {
     /// # Errors
     /// What the bench cannot do, in words for the technician.
     pub fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        if !self.harness.is_there() && !stimulus.by_tester() {
+        if !self.harness.is_there() && !stimulus.way().by_tester() {
             return Err(Refusal(format!(
                 "only the maintenance port is connected: the bench harness gives this ({stimulus})"
             )));

@@ -1,7 +1,7 @@
 //! Which manual stimuli are permitted in the present state of the unit.
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::stimulus::Stimulus;
+use btu_rig::stimulus::{Stimulus, Way};
 use protocol::signal::Signal;
 
 use super::{LiveData, Phase};
@@ -39,35 +39,15 @@ pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
     }
     let on = |signal| live.sample.get(signal) == Some(1.0);
     let alone = live.connection == Some(Connection::Ptu);
-    match stimulus {
-        Stimulus::PtuDisarm | Stimulus::PtuSilent { .. } => Ok(()),
-        Stimulus::PtuArm if !on(Signal::MaintenanceKey) => Err(Refused::KeyOff),
-        Stimulus::PtuArm | Stimulus::PtuAskToArm => Ok(()),
-        _ if stimulus.on_test_board() && !on(Signal::Armed) => Err(Refused::NotArmed),
-        _ if stimulus.on_test_board() => Ok(()),
-        _ if alone && in_cab(stimulus) => Err(Refused::InCab),
-        _ if alone => Err(Refused::NeedsHarness),
+    match stimulus.way() {
+        Way::Tester if *stimulus == Stimulus::PtuArm && !on(Signal::MaintenanceKey) => {
+            Err(Refused::KeyOff)
+        }
+        Way::TestBoard if !on(Signal::Armed) => Err(Refused::NotArmed),
+        Way::Cab if alone => Err(Refused::InCab),
+        Way::Harness if alone => Err(Refused::NeedsHarness),
         _ => Ok(()),
     }
-}
-
-/// What people do in the cab of a train.
-fn in_cab(stimulus: &Stimulus) -> bool {
-    matches!(
-        stimulus,
-        Stimulus::MaintenanceKey { .. }
-            | Stimulus::ModeSwitch(_)
-            | Stimulus::Hcr { .. }
-            | Stimulus::Controller { .. }
-            | Stimulus::Reverser { .. }
-            | Stimulus::Doors { .. }
-            | Stimulus::DoorObstacle { .. }
-            | Stimulus::SideDoors { .. }
-            | Stimulus::Switch { .. }
-            | Stimulus::CutOut { .. }
-            | Stimulus::Acknowledge
-            | Stimulus::Start
-    )
 }
 
 #[cfg(test)]
