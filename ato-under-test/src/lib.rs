@@ -32,7 +32,6 @@ mod guards;
 mod kernel;
 mod keyed;
 mod psm;
-mod random;
 #[cfg(feature = "serve")]
 pub mod serve;
 mod setup;

@@ -5,7 +5,6 @@
 //! * [`stimulus`]: everything that can be done to a unit, as typed values;
 //! * [`recorded`]: the stimuli of a run with their times, to repeat it;
 //! * [`lever`]: positions of the master controller;
-//! * [`random`]: the seeded generator of random numbers;
 //! * [`tcms`]: train control and monitoring system, from cabs and unit to each car's demands;
 //! * [`train`]: the train models;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
@@ -22,7 +21,7 @@ pub mod conditions;
 pub mod drive;
 pub mod lever;
 pub mod procedure;
-pub mod random;
+mod random;
 pub mod recorded;
 pub mod recorder;
 pub mod rig;

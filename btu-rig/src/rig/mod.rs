@@ -31,11 +31,10 @@ use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{IoInput, Message};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
-use crate::random::Random;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
 use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
@@ -134,7 +133,7 @@ impl Rig {
         let tachos = [0, 1].map(|channel| Tacho::new(channel, pulse_m, random.fork()));
         let wayside = Wayside::new(&line.sections[0], random.fork());
         // A session number is never 0.
-        let session = random.next_u64() as u32 | 1;
+        let session = random.bits() as u32 | 1;
         let antenna = Antenna::new(random.fork());
         let conditions = Conditions::default();
         let train_data = TrainData::line6();

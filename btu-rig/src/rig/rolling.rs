@@ -1,6 +1,6 @@
 //! Motion of the wheels: by the generators, or by the train model, whose true state the rig also reports.
 
-use protocol::{Duration, SCAN};
+use protocol::{Duration, Random, SCAN};
 
 use crate::conditions::{Conditions, Sensors};
 use crate::lever::Lever;
@@ -10,7 +10,6 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 use super::Rig;
 use super::tcms::pair_cars;
 use super::train_side::{PairEfforts, TrueMotion};
-use crate::random::Random;
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);

@@ -1,8 +1,9 @@
 //! Jogging with a train that is a mass, and conditions in which it must not begin or must end.
 
+use protocol::Random;
+
 use super::*;
 use crate::ato::tests::config;
-use crate::random::Random;
 
 const MASS_KG: f64 = 300e3;
 

@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
+use protocol::Random;
+
 use super::*;
-use crate::random::Random;
 
 const CONFIG: DriverlessConfig = DriverlessConfig {
     dwell_min_ms: 5000,

@@ -173,7 +173,7 @@ proptest! {
     #[test]
     fn a_device_of_any_content_is_mounted(seed in any::<u64>()) {
         let mut flash = RamFlash::default();
-        let mut random = crate::random::Random::new(seed);
+        let mut random = protocol::Random::new(seed);
         for block in 1..=BLOCKS {
             let whole = random.bits();
             for cell in flash.block_mut(block) {

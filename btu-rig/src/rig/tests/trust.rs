@@ -1,12 +1,12 @@
 //! What the rig must not believe: a log that is not answered or does not end, another unit, a bad line.
 
 use protocol::Instant;
+use protocol::Random;
 use protocol::link::{End, Link};
 use protocol::message::{Channel, IoInput, SelfTest};
 
 use super::{FakeUnit, bench, rig};
 use crate::procedure::{LineState, LogState};
-use crate::random::Random;
 use crate::rig::{Bench, LinkFailure, UnitLink};
 use crate::stimulus::{Stimulus, WaysideCondition};
 

@@ -1,12 +1,13 @@
 //! Two tachometers on one wheel: counts, and the exact age of each channel's last pulse.
 
+use protocol::Random;
 use protocol::SCAN;
 
 use crate::conditions::Sensors;
 use crate::stimulus::TachoCondition;
 
 use super::motion::Motion;
-use crate::random::Random;
+use crate::random::{normal, waiting_time_s};
 
 /// Where in its tooth space each channel starts, pulses: a quarter apart, and clear of an edge.
 const PHASES: [f64; 2] = [0.5, 0.75];
@@ -76,7 +77,7 @@ impl Tacho {
 
     /// Sets how a good channel with a wheel of so many teeth differs from an ideal one.
     pub fn set_sensors(&mut self, sensors: &Sensors, teeth: u32, random: &mut Random) {
-        let places = (0..teeth).map(|_| sensors.tooth_pitch * random.normal());
+        let places = (0..teeth).map(|_| sensors.tooth_pitch * normal(random));
         self.teeth = places
             .map(|place| place.clamp(-MAX_DISPLACED, MAX_DISPLACED))
             .collect();
@@ -88,7 +89,7 @@ impl Tacho {
     fn await_noise(&mut self) {
         let per_s = self.noise_per_s();
         self.noise_in_s = if per_s > 0.0 {
-            self.random.waiting_time_s(per_s)
+            waiting_time_s(&mut self.random, per_s)
         } else {
             f64::INFINITY
         };
@@ -165,7 +166,7 @@ impl Tacho {
             }
             self.count = self.count.wrapping_add(1);
             self.age_us = self.age_us.min((scan_s - self.noise_in_s) * 1e6);
-            self.noise_in_s += self.random.waiting_time_s(per_s);
+            self.noise_in_s += waiting_time_s(&mut self.random, per_s);
         }
         self.noise_in_s = (self.noise_in_s - scan_s).max(0.0);
     }

@@ -2,13 +2,11 @@
 //! TCMS sends.
 
 use protocol::injection::{Effect, FaultMode, OccurrenceState, Place};
-use protocol::{Duration, Instant, Speed};
+use protocol::{Duration, Instant, Random, Speed};
 use thiserror::Error;
 
 use crate::stimulus::TcmsCondition;
 use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
-
-use crate::random::Random;
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,12 +1,12 @@
 //! Speed code in the ATP antenna: carrier, code rate and level, steady or drifting.
 
 use protocol::message::Crosstalk;
-use protocol::{Duration, Instant, SCAN};
+use protocol::{Duration, Instant, Random, SCAN};
 
 use crate::conditions::Sensors;
 
 use crate::procedure::Refusal;
-use crate::random::Random;
+use crate::random::normal;
 use crate::stimulus::ranges::{U16_MAX, in_range};
 
 /// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
@@ -131,8 +131,8 @@ impl Antenna {
         wanted.rate_hz = (wanted.rate_hz + rate_hz_per_s * seconds).clamp(0.0, MAX_RATE_HZ);
         wanted.level_mv = (wanted.level_mv + level_mv_per_s * seconds).clamp(0.0, U16_MAX);
         if self.sensors != Sensors::default() {
-            self.rate_noise_hz = self.sensors.rate_jitter_hz * self.random.normal();
-            self.level_noise = self.sensors.level_noise * self.random.normal();
+            self.rate_noise_hz = self.sensors.rate_jitter_hz * normal(&mut self.random);
+            self.level_noise = self.sensors.level_noise * normal(&mut self.random);
         }
     }
 

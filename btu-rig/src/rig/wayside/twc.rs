@@ -3,12 +3,11 @@
 use protocol::line::Section;
 use protocol::link::Link;
 use protocol::message::{Message, TwcWayside};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
 use crate::stimulus::{StationData, WaysideCondition};
 
 use super::order_sender::OrderSender;
-use crate::random::Random;
 
 /// Period of the wayside's frames.
 pub const PERIOD: Duration = Duration::from_ms(250);

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::random::Random;
 use protocol::Duration;
+use protocol::Random;
 use protocol::injection::FaultMode;
 
 use super::*;
@@ -46,7 +46,7 @@ fn random_order(seeds: &[u64], times: usize) {
         procedures.retain(|procedure| !procedure.on_request);
         let mut random = Random::new(*seed);
         let order = (0..times).flat_map(|_| {
-            select::shuffle(&mut procedures, random.next_u64());
+            select::shuffle(&mut procedures, random.bits());
             let twice = |procedure: &Arc<Procedure>| (procedure.clone(), 1 + random.below(2));
             procedures.iter().map(twice).collect::<Vec<_>>()
         });
