@@ -206,7 +206,7 @@ impl Ato {
     }
 
     /// What has failed: the first failure of a run is kept until the train stands outside Automatic
-    /// Run; then ATO is inspected anew.
+    /// Run; then ATO is inspected again.
     fn failure_after(&self, inputs: &AtoInputs<'_>, findings: &Findings) -> AtoFailure {
         let run = inputs.mode == Mode::AutomaticRun;
         let kept = run || !inputs.standstill;

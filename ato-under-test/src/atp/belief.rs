@@ -28,7 +28,7 @@ pub struct Witness {
     pub tcms_speed: Option<Speed>,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
-    /// The start of the train is awaited anew: somebody acknowledges.
+    /// The start of the train is awaited again: a person acknowledges.
     pub acknowledge: bool,
     /// The speeds are of test signals, which change as a tester likes.
     pub tested: bool,
@@ -342,7 +342,7 @@ mod tests {
     }
 
     /// Both tachometers read low alike, which nothing else tells: a train at 60 km/h that measures 45. Less than 10 km/h
-    /// is what axles slip and slide, and nobody who is slower than the tachometers speaks against them.
+    /// is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
     #[test]
     fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
         for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {

@@ -303,7 +303,7 @@ mod tests {
             assert_eq!(receiver.hear(CODE_55, 400 - scan_ms), []);
             assert_eq!(receiver.hear(SILENCE, scan_ms), []);
         }
-        // Another code meanwhile begins the time anew, too.
+        // Another code meanwhile begins the time again, too.
         assert_eq!(receiver.hear(signal(3000.0, 12.0, 500.0), 300), []);
         assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
     }

@@ -77,7 +77,7 @@ impl EmergencyBrake {
         }
     }
 
-    /// What keeps the brake applied whoever acknowledges it; [`EbCause::None`] = the train moves.
+    /// What keeps the brake applied although it is acknowledged; [`EbCause::None`] = the train moves.
     fn holds(&self, inputs: &BrakeInputs) -> Option<EbCause> {
         let open = self.cause == EbCause::DoorOpen && !inputs.doors_closed;
         [

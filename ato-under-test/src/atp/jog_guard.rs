@@ -15,7 +15,7 @@ use crate::timer::{Edge, OnDelay};
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
 const TAIL: Duration = Duration::from_ms(1_000);
 
-/// Time for which a refusal lasts until it is told: a stray pulse of a tachometer makes none.
+/// Time for which a refusal lasts until it is reported: a stray pulse of a tachometer makes none.
 const REFUSAL_LASTS: Duration = Duration::from_ms(600);
 
 /// What the guard looks at in a scan.

@@ -180,11 +180,11 @@ impl Atp {
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
         // Way that was permitted is no roll back when the permission has gone.
-        let anew = still || self.jog.ended();
+        let from_zero = still || self.jog.ended();
         let towards = Towards::of(inputs.lines, inputs.test_speed, guards.neutral);
         let rollback = self
             .rollback
-            .step(now, moved_m, towards, anew, allowed_m, log);
+            .step(now, moved_m, towards, from_zero, allowed_m, log);
         let found = Found {
             rollback,
             wrong_way,

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_counts_once_and_what_bounces_longer_is_told_once() {
+    fn an_edge_counts_once_and_what_bounces_longer_is_reported_once() {
         assert_eq!(
             counted(&[(0, 1), (10, 1), (100, 1)]),
             (alloc::vec![(0, 1)], alloc::vec![])

@@ -23,7 +23,7 @@ pub(super) struct Ordered {
 }
 
 impl Twc {
-    /// Takes orders unless they are for another train or contradict the track database; the order that they give anew.
+    /// Takes orders unless they are for another train or contradict the track database; the order, if they give a new one.
     pub fn take_orders(
         &mut self,
         now: Instant,

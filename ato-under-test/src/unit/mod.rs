@@ -74,7 +74,7 @@ pub struct Unit {
     front_end: FrontEnd,
     output_stage: OutputStage,
     relay_watch: RelayWatch,
-    /// What the contacts were told in this scan, and what they do.
+    /// What was asked of the contacts in this scan, and what they do.
     commanded: Outputs,
     contacts: Outputs,
     /// Count of markers, and when it last changed, ms since power-up.
@@ -319,7 +319,7 @@ impl Unit {
         self.log.leave_out_repeats(None);
     }
 
-    /// Drives the contacts and tells the bench what they do.
+    /// Drives the contacts and reports to the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.commanded = self.wanted(now);
         let mut wanted = self.commanded;

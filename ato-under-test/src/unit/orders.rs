@@ -75,7 +75,7 @@ impl Unit {
             && self.test_mode.is_none()
     }
 
-    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers told of the wheels
+    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers showed of the wheels
     /// before is over. One that no wheel of the train has is refused.
     pub(super) fn take_wheel_entry(&mut self, now: Instant, entry: WheelEntry) {
         let frames = self.setup.config.orders.entry_frames;

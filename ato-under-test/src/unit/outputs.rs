@@ -1,4 +1,4 @@
-//! What the contacts do, and what TCMS is told: what the functions ask for, and while a tester is armed never more
+//! What the contacts do, and what TCMS is sent: what the functions ask for, and while a tester is armed never more
 //! than lets a train stand.
 
 use protocol::Instant;
@@ -53,7 +53,7 @@ impl Unit {
         wanted
     }
 
-    /// Effort for TCMS, −1024..1023, and the mode it is told.
+    /// Effort for TCMS, −1024..1023, and the mode that is sent to it.
     pub(super) fn commands(&self, now: Instant) -> (i16, Mode) {
         let of = |functions: &Functions| {
             let mode = functions.atp.sequence().mode();

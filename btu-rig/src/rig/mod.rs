@@ -87,7 +87,7 @@ pub struct Rig {
     /// Number of the train.
     train_number: u16,
     tcms: Tcms,
-    /// What TCMS told the train last.
+    /// What TCMS last sent to the train.
     train_orders: TrainInputs,
     tcms_port: TcmsPort,
     pair_cars: PairCars,
@@ -117,7 +117,7 @@ pub struct Rig {
     harness: HarnessWatch,
     subscription: Subscription,
     identity: IdentityCheck,
-    /// Restarts of the unit that were told as interventions.
+    /// Restarts of the unit that were reported as interventions.
     restarts_told: u32,
     now: Instant,
     /// When a frame of the unit came last, and its stamp.
@@ -358,7 +358,7 @@ impl Rig {
         self.tester.tell_time(time);
     }
 
-    /// The wheels do what they were last told to: speed reached, or distance run.
+    /// The wheels do what was last asked of them: speed reached, or distance run.
     pub fn motion_settled(&self) -> bool {
         self.train_driven || self.wheel.settled()
     }

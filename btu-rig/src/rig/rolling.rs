@@ -28,7 +28,7 @@ impl Rig {
         self.train_data = data;
     }
 
-    /// Changes how train and track differ from what the unit is told, from now on.
+    /// Changes how train and track differ from what the unit is configured for, from now on.
     pub fn set_conditions(&mut self, conditions: Conditions) {
         self.train.set_conditions(&conditions);
         self.markers.set_offsets(conditions.marker_offsets_m);
@@ -113,7 +113,7 @@ impl Rig {
         self.speeds.push(self.wheel.velocity_mps());
     }
 
-    /// What acts on the train besides what it is told.
+    /// What acts on the train besides its orders.
     fn on_track(&mut self, mut inputs: TrainInputs) -> TrainInputs {
         if inputs.load_kg != self.cars_load_kg {
             self.cars_load_kg = inputs.load_kg;

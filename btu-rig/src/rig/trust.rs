@@ -15,7 +15,7 @@ impl Rig {
     }
 
     /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
-    /// of the unit begin anew when it is started again.
+    /// of the unit begin from the start when it is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
         let mut events = self.tester.take_events();
         events.append(&mut self.tcms_events);

@@ -1,6 +1,6 @@
 //! Hostile streams: seeded mutations of sound frames and plain noise, fed to both ends.
 //!
-//! Goal: nothing is accepted that nobody sent, nothing panics, memory stays bounded. Method: frames
+//! Goal: nothing is accepted that was not sent, nothing panics, memory stays bounded. Method: frames
 //! of the vector files are cut, joined, repeated, flipped and mixed with noise; whatever a receiver
 //! accepts must be, byte for byte, a frame of the corpus.
 

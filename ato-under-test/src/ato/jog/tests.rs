@@ -7,7 +7,7 @@ use crate::ato::tests::config;
 
 const MASS_KG: f64 = 300e3;
 
-/// A train whose effort follows with a lag, brakes that give more or less, and a gradient nobody knows of.
+/// A train whose effort follows with a lag, brakes that give more or less, and a gradient that ATO does not know.
 struct Train {
     jog: Jog,
     config: JogConfig,

@@ -98,7 +98,7 @@ fn power_that_fails_at_any_byte_loses_the_entry_being_written_at_most() {
             }
             let mut ring = mounted(&flash);
             let found = kept(&flash, &ring);
-            // The oldest block may have been begun anew for it.
+            // The oldest block may have been erased for it.
             let expected = kept_before.iter().filter(|s| **s >= ring.oldest());
             assert!(
                 expected.clone().all(|s| found.contains(s)),

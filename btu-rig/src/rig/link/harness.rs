@@ -1,7 +1,7 @@
 //! Whether the bench harness is there: what the unit says shows it, or the user says so.
 //!
 //! A unit at a harness sends `IoOutput` every 10 ms. One on a train is heard at its maintenance port alone, and
-//! there it takes nothing but the tester's frames: whatever else a bench sends would be refused, and nobody may
+//! there it takes nothing but the tester's frames: whatever else a bench sends would be refused, and no bench may
 //! play a train that is there.
 
 use protocol::message::Channel;

@@ -21,7 +21,7 @@ use super::clock_rate::ClockRate;
 const SPAN: Duration = Duration::from_ms(10_000);
 /// How often counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
-/// What the unit does about lost frames may be told so much later: its time-outs, and reading its log.
+/// What the unit does about lost frames may be reported so much later: its time-outs, and reading its log.
 const LATELY: Duration = Duration::from_ms(12_000);
 /// After first contact and a restart both ends may refuse what is left of the time before.
 const SETTLES: Duration = Duration::from_ms(2_200);

@@ -12,7 +12,7 @@ use protocol::{Duration, Instant};
 
 /// Time a unit has to be heard for the first time: it may be starting.
 const FIRST_CONTACT: Duration = Duration::from_ms(3000);
-/// Silence that is an error: longer than the link takes to hear a unit again that was started anew.
+/// Silence that is an error: longer than the link takes to hear a unit that was started again.
 const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 
 /// Silence that is an error while frames of the unit come that do not continue those before them: it starts again, and
@@ -38,36 +38,36 @@ pub struct LinkWatch {
 #[derive(Clone, Copy, Debug, Default)]
 struct Refused {
     total: u64,
-    anew: u64,
+    restarted: u64,
 }
 
 impl Refused {
     fn until_now(counters: &Counters) -> Self {
         Self {
             total: counters.rejected_total(),
-            anew: counters.rejected(Reject::Sequence) + counters.rejected(Reject::Stamp),
+            restarted: counters.rejected(Reject::Sequence) + counters.rejected(Reject::Stamp),
         }
     }
 
     fn since(self, before: Self) -> Self {
         Self {
             total: self.total - before.total,
-            anew: self.anew - before.anew,
+            restarted: self.restarted - before.restarted,
         }
     }
 
     /// Most of them are of a unit that starts again.
     fn of_a_start(self) -> bool {
-        2 * self.anew > self.total
+        2 * self.restarted > self.total
     }
 
     /// What to say of them.
     fn said(self) -> Option<String> {
-        let Self { total, anew } = self;
+        let Self { total, restarted } = self;
         match total {
             0 => None,
             _ if self.of_a_start() => Some(format!(
-                "while {anew} frames did not continue those before them — the unit starts again and again: check its supply"
+                "while {restarted} frames did not continue those before them — the unit starts again and again: check its supply"
             )),
             _ => Some(format!(
                 "while {total} frames were refused — check the line between tester and unit"

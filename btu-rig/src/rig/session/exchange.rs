@@ -40,7 +40,7 @@ pub struct Exchange {
     /// Why the unit refused or ended arming, as it said last.
     refusal: ArmRefusal,
     failure: Option<Refusal>,
-    /// Why the unit ended the session though nobody asked it to.
+    /// Why the unit ended the session without being asked to.
     ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
     self_test: Vec<SelfTestItem>,

@@ -139,7 +139,7 @@ impl ExpectedIdentity {
 }
 
 impl Compared {
-    /// What the unit says beside what somebody says it should be, or why nobody does.
+    /// What the unit says beside what it should say, or why the latter is unknown.
     fn new(signal: Signal, unit: String, should: Result<(String, String), String>) -> Self {
         let (same, said) = match should {
             Ok((who, should)) => (

@@ -71,7 +71,7 @@ pub struct LogReader {
     probing: bool,
     /// Times it was asked for since.
     probes: u32,
-    /// Since when the next entry is wanted; `None` = there is none, or nobody takes it.
+    /// Since when the next entry is wanted; `None` = there is none, or it is not taken.
     wanted_since: Option<Instant>,
     /// The unit has said how much it has logged.
     contact: bool,
@@ -145,7 +145,7 @@ impl LogReader {
             self.asked = None;
         }
         if self.probes > PROBES {
-            // Not the line: the answer is waited out, asked again the unit would begin it anew.
+            // Not the line: the rest of the answer is awaited; if asked again, the unit would begin it from the start.
             self.asked = self.asked.map(|_| now);
         }
         if entry.index == self.next && self.events.len() < MAX_EVENTS {
@@ -262,7 +262,7 @@ mod tests {
     }
 
     /// Goal: a log that lost its beginning is read, however long the answer takes. Method: a unit that
-    /// sends an entry every 50 ms and begins anew when it is asked again.
+    /// sends an entry every 50 ms and begins from the start when it is asked again.
     #[test]
     fn a_long_log_that_lost_its_beginning_is_read_to_its_end() {
         let mut reader = LogReader::default();

@@ -1,6 +1,6 @@
 //! A tester that only listens: it reads the unit's identity, its log and what it has stored over power-ups. It
-//! gives no input, arms nothing and sends no stimulus, so a unit in a train is left as it was; it tells the unit the
-//! time, if it is told.
+//! gives no input, arms nothing and sends no stimulus, so a unit in a train is left as it was; it gives the unit the
+//! time, if it has it.
 
 use protocol::link::{End, Link};
 use protocol::message::{Identity, Message, Mode, StatusBits, StoreKind};
@@ -33,7 +33,7 @@ pub struct LogSession {
     begun: Option<Instant>,
     events: StoreReader,
     rows: Option<StoreReader>,
-    /// When the unit told its uptime, and what it was, ms.
+    /// When the unit reported its uptime, and what it was, ms.
     identified_at: Option<(Instant, u32)>,
 }
 
@@ -119,17 +119,17 @@ impl LogSession {
         self.tester.identity()
     }
 
-    /// When the unit last told its uptime, and what it was, ms.
+    /// When the unit last reported its uptime, and what it was, ms.
     pub fn uptime_ms(&self) -> Option<(Instant, u32)> {
         self.identified_at
     }
 
-    /// Its operating mode as it last told it.
+    /// Its operating mode as it last reported it.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
     }
 
-    /// The unit's states as it last told them.
+    /// The unit's states as it last reported them.
     pub fn status(&self) -> Option<StatusBits> {
         self.status
     }
@@ -152,7 +152,7 @@ impl LogSession {
             && read
     }
 
-    /// What the unit has stored, as far as it is read: events with the times it was told, and rows. `None` for a
+    /// What the unit has stored, as far as it is read: events with the times it was given, and rows. `None` for a
     /// unit without stored memory.
     pub fn stored(&self) -> Option<(&StoredData, Option<&StoredData>)> {
         let rows = self.rows.as_ref().map(StoreReader::data);

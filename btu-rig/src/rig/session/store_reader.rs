@@ -26,7 +26,7 @@ const MOST: u32 = 200_000;
 pub struct StoredData {
     /// Events, in order.
     pub entries: Vec<StoredEntry>,
-    /// Times that testers told, in order.
+    /// Times that testers sent, in order.
     pub clocks: Vec<StoredClock>,
     /// Rows of the run record, in order.
     pub rows: Vec<StoredRow>,

@@ -247,7 +247,7 @@ impl Tester {
         }
     }
 
-    /// The bench goes on to something else: what failed before is told.
+    /// The bench goes on to something else: what failed before is reported.
     pub fn forget_failure(&mut self) {
         self.exchange.forget_failure();
     }

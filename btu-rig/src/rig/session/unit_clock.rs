@@ -1,4 +1,4 @@
-//! Tells the unit the time once, so that what it logs in this power-up can be dated later.
+//! Sends the unit the time once, so that what it logs in this power-up can be dated later.
 
 use protocol::link::Link;
 use protocol::message::{SetClock, StimulusAnswer};
@@ -6,7 +6,7 @@ use protocol::{Duration, Instant};
 
 /// Time in which the unit answers.
 const ANSWER_TIME: Duration = Duration::from_ms(1_000);
-/// Times it is told without an answer: an older unit has none.
+/// Times it is sent without an answer: an older unit has none.
 const TRIES: usize = 2;
 
 /// A time of day at a time of the bench.
@@ -37,7 +37,7 @@ impl UnitClock {
         };
     }
 
-    /// Bench and unit both stood still for so long: the time of day went on, and is told again.
+    /// Bench and unit both stood still for so long: the time of day went on, and is sent again.
     pub fn put_off(&mut self, pause: Duration) {
         if let Some(time) = self.time {
             self.tell(TimeOfDay {

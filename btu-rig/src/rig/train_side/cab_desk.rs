@@ -327,7 +327,7 @@ mod tests {
         );
     }
 
-    /// A broken contact says what it says, whatever the doors do, and making safe does not mend it.
+    /// A broken contact stays as it is, whatever the doors do, and making safe does not repair it.
     #[test]
     fn a_broken_contact_outlives_a_reset() {
         let mut desk = CabDesk::default();

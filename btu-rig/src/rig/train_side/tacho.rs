@@ -13,7 +13,7 @@ use crate::random::{normal, waiting_time_s};
 const PHASES: [f64; 2] = [0.5, 0.75];
 /// Ages are sent in 16 bits.
 pub const MAX_AGE_US: f64 = u16::MAX as f64;
-/// Most spurious pulses in one scan; what lies beyond is not told apart by any counter input.
+/// Most spurious pulses in one scan; a counter input cannot count more.
 const MAX_NOISE_PER_SCAN: usize = 100;
 
 /// Farthest a tooth may lie from its place, pitches: never on the other side of its neighbour.

@@ -29,7 +29,7 @@ pub struct TcmsPort {
     pub ato_enable: bool,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// Passengers as long as nobody says otherwise, kg.
+    /// Passengers unless something else is set, kg.
     pub usual_load_kg: f64,
     alive: u8,
     next_due: Instant,
@@ -37,7 +37,7 @@ pub struct TcmsPort {
 }
 
 impl Default for TcmsPort {
-    /// In order, ATO permitted, nobody aboard.
+    /// In order, ATO permitted, no passengers.
     fn default() -> Self {
         Self {
             condition: TcmsCondition::Good,

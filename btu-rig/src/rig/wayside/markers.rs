@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// A marker that is moved pulses elsewhere, one that is missing not at all; laid anew all are back.
+    /// A marker that is moved pulses elsewhere, one that is missing not at all; when they are laid again all are back.
     #[test]
     fn a_marker_can_be_moved_and_missing() {
         let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();

@@ -17,7 +17,7 @@ pub struct OrderSender {
 }
 
 impl OrderSender {
-    /// Sends these from now on, `None` = none. A unit that reported to none is asked anew.
+    /// Sends these from now on, `None` = none. A unit that gave no report is asked again.
     pub fn set(&mut self, orders: Option<OrderData>) {
         self.orders = orders;
         self.unanswered = 0;
@@ -83,6 +83,6 @@ mod tests {
         assert_eq!(sent, usize::from(GIVEN_UP_AFTER));
         assert_eq!(sender.answered(), Some(false));
         sender.set(Some(ORDERS));
-        assert!(sender.due(8001).is_some(), "asked anew");
+        assert!(sender.due(8001).is_some(), "asked again");
     }
 }

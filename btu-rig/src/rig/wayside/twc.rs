@@ -94,7 +94,7 @@ impl Wayside {
     /// Flips bits between the frame's two flags, so that its neighbours stay whole.
     fn corrupt(&mut self) {
         let inside = self.frame.len().saturating_sub(2);
-        // Distinct bytes: two flips of the same bit would mend the frame.
+        // Distinct bytes: two flips of the same bit would restore the frame.
         let flips = 1 + self.random.below(MAX_FLIPS);
         let first = self.random.below(inside);
         for i in 0..flips.min(inside) {

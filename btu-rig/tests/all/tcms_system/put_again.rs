@@ -1,4 +1,4 @@
-//! A train put on the track anew knows nothing of its last drive.
+//! A train newly put on the track knows nothing of its last drive.
 
 #![allow(
     clippy::print_stdout,
@@ -89,7 +89,7 @@ impl Stand {
     }
 }
 
-/// What the first scan is told of a train put anew is what it is told of a new one.
+/// The first scan after a train is put on the track again gets what it gets of a new train.
 #[test]
 fn a_train_put_anew_reports_nothing_of_its_last_drive() {
     for data in [TrainData::line6(), TrainData::ideal()] {
@@ -137,7 +137,7 @@ fn the_last_drives_traction_releases_no_holding_brake() {
         stand.run(3000);
         assert_eq!(stand.value(Signal::TcmsHolding), 1.0);
         let rolled_m = from_m - stand.rig.truth().position_m;
-        println!("put on 35 ‰ anew: rolls back {rolled_m:.3} m");
+        println!("put on 35 ‰ again: rolls back {rolled_m:.3} m");
         assert!((0.0..0.15).contains(&rolled_m), "{rolled_m} m");
     }
 }

@@ -90,7 +90,7 @@ impl UnitLink for SimUnit {
 
 /// A unit that has been reached.
 pub enum Connected {
-    /// The embedded unit, made anew for each procedure.
+    /// The embedded unit, a new one for each procedure.
     Sim(Box<BenchSetup>),
     /// The unit on a port, and what TCMS found before the first procedure.
     Port(Box<Session<WireLink>>, Identity, Vec<FaultSeen>),

@@ -34,7 +34,7 @@ pub trait Listener {
     }
 }
 
-/// Nobody is told.
+/// Events are not shown.
 impl Listener for () {
     fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }

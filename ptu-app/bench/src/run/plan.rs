@@ -31,9 +31,9 @@ pub struct RunPlan {
     pub stop_on_fail: bool,
     /// Who tests.
     pub operator: String,
-    /// The train the unit is in, as the tester names it; empty if nobody said.
+    /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
-    /// What was wrong with the unit, as who brought it said: a name of `symptoms.toml`.
+    /// What was wrong with the unit, as the person who brought it said: a name of `symptoms.toml`.
     pub symptom: Option<String>,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,

@@ -108,7 +108,7 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
     );
 }
 
-/// Goal: a run of thousands of procedures keeps room for the events of a few. Method: nobody takes any.
+/// Goal: a run of thousands of procedures keeps room for the events of a few. Method: none is taken.
 #[test]
 fn workers_start_only_a_limited_number_of_procedures_ahead() {
     const JOBS: usize = 3;
