@@ -9,7 +9,8 @@
 //! * `driverless`: what ATO does in place of people: doors, turn-back, put-away and wake-up;
 //! * [`flash`]: event log and run record over power-ups;
 //! * `test_board`: test signals of an armed tester;
-//! * `front_end`: antennas, sensors and relays, where injected faults act.
+//! * `front_end`: antennas, sensors and relays, where injected faults act;
+//! * `guards`: what injected faults put out of action elsewhere.
 //!
 //! It has two ports ([`Port`]): the harness carries everything, the maintenance port a tester alone.
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
@@ -27,10 +28,10 @@ mod com;
 mod driverless;
 pub mod flash;
 mod front_end;
+mod guards;
 mod kernel;
 mod keyed;
 mod psm;
-mod random;
 #[cfg(feature = "serve")]
 pub mod serve;
 mod setup;

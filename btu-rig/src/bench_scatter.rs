@@ -2,13 +2,13 @@
 //! procedures.
 
 use protocol::Duration;
+use protocol::Random;
 use protocol::config::ConfigError;
 use serde::{Deserialize, Serialize};
 
 use crate::conditions::{Conditions, Sensors};
 use crate::drive::Scatter;
 use crate::drive::scatter::{Spread, check_spreads};
-use crate::rig::random::Random;
 
 /// Sets what is drawn here apart from the train and day that the same seed gives.
 const OWN_SEQUENCE: u64 = 0xBE7C_45CA_77E2_0B1D;
@@ -142,7 +142,7 @@ impl BenchScatter {
                 rate_offset_hz: sensors.rate_offset_hz.draw(random),
                 rate_jitter_hz: sensors.rate_jitter_hz.draw(random),
                 tooth_pitch: sensors.tooth_pitch.draw(random),
-                teeth_seed: random.next_u64(),
+                teeth_seed: random.bits(),
                 spurious_pulses_per_s: sensors.spurious_pulses_per_s.draw(random),
             },
             timing: Timing {

@@ -21,6 +21,7 @@ pub mod conditions;
 pub mod drive;
 pub mod lever;
 pub mod procedure;
+mod random;
 pub mod recorded;
 pub mod recorder;
 pub mod rig;

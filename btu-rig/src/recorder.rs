@@ -43,7 +43,7 @@ pub struct Ring<const ROWS: usize> {
 }
 
 impl<const ROWS: usize> Ring<ROWS> {
-    /// Takes a row in place of the oldest; one from before the last begins anew.
+    /// Takes a row in place of the oldest; one from before the last empties the ring first.
     pub fn push(&mut self, row: Row) {
         if self.rows.back().is_some_and(|last| row.at < last.at) {
             self.rows.clear();

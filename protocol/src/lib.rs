@@ -10,6 +10,7 @@
 //!   checked data;
 //! * [`lru`], [`Verdict`]: identifiers of replaceable parts and the verdict of a test, for the crates that
 //!   test and diagnose;
+//! * [`Random`]: the seeded generator of random numbers;
 //! * [`display_text`]: makes text from outside safe to display.
 //!
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
@@ -30,6 +31,7 @@ pub mod link;
 pub mod lru;
 pub mod message;
 mod pace;
+mod random;
 pub mod signal;
 mod speed;
 mod time;
@@ -38,6 +40,7 @@ mod verdict;
 pub use backlog::Backlog;
 pub use lru::LruId;
 pub use pace::ScanDeadlines;
+pub use random::Random;
 pub use speed::Speed;
 pub use time::{CYCLE, Duration, Instant, SCAN};
 pub use verdict::Verdict;

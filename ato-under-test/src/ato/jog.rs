@@ -45,8 +45,8 @@ pub struct JogInputs {
     pub aligned_m: f64,
     /// The section's last marker was seen: an overrun is one by more than wheels.
     pub last_marker: bool,
-    /// An injected fault: it does not jog.
-    pub dead: bool,
+    /// It jogs at all.
+    pub jogs: bool,
 }
 
 /// What came of a cycle.
@@ -104,7 +104,7 @@ impl Jog {
             return JogOutcome::default();
         }
         if !inputs.stands {
-            // Pushed while it was held: the rest begins anew.
+            // Pushed while it was held: the rest begins again.
             if self.phase != Phase::Idle {
                 self.phase = Phase::Rests(0);
             }
@@ -124,7 +124,7 @@ impl Jog {
             };
         }
         let short = to_stop_m > 0.0;
-        let near = distance_m <= config.max_m && !inputs.dead;
+        let near = distance_m <= config.max_m && inputs.jogs;
         if short && distance_m > config.max_m {
             // An ordinary run leads there.
             self.phase = Phase::Idle;
@@ -132,7 +132,7 @@ impl Jog {
         }
         let rested = matches!(self.phase, Phase::Rests(cycles) if cycles >= REST_CYCLES);
         let spent = rested && self.tries >= config.tries;
-        // Past it by wheels alone: where the stop point is nobody knows, and the missing marker is told.
+        // Past it by wheels alone: where the stop point is, is unknown, and the missing marker is reported.
         let unproved = !short && !inputs.last_marker;
         if !near || spent || unproved {
             self.phase = Phase::Rests(0);
@@ -219,7 +219,7 @@ impl Jog {
             };
         }
         if matches!(self.phase, Phase::Goes(_, false)) && self.may_go {
-            // The holding brake lets go late: a setpoint that ran ahead would be at its end before the train moves.
+            // The holding brake releases late: a setpoint that ran ahead would be at its end before the train moves.
             self.setpoint = Setpoint {
                 speed_mps: START_MPS,
                 accel_mps2: config.accel_mps2,

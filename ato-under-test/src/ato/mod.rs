@@ -70,8 +70,8 @@ pub struct AtoInputs<'a> {
     pub aligned_m: f64,
     /// The section's last marker was seen.
     pub last_marker: bool,
-    /// An injected fault: ATO does not jog.
-    pub jog_dead: bool,
+    /// ATO jogs at all.
+    pub jogs: bool,
     /// Measured speed.
     pub speed: Speed,
     /// Standstill as ATP means it, below 0.3 m/s.
@@ -165,7 +165,7 @@ impl Ato {
             to_stop_m,
             aligned_m: inputs.aligned_m,
             last_marker: inputs.last_marker,
-            dead: inputs.jog_dead,
+            jogs: inputs.jogs,
         };
         let jog = self.jog.step(&jog_inputs, &config.jog);
         let at_stop = |distance_m: f64| libm::fabs(distance_m) <= inputs.aligned_m;
@@ -206,7 +206,7 @@ impl Ato {
     }
 
     /// What has failed: the first failure of a run is kept until the train stands outside Automatic
-    /// Run; then ATO is inspected anew.
+    /// Run; then ATO is inspected again.
     fn failure_after(&self, inputs: &AtoInputs<'_>, findings: &Findings) -> AtoFailure {
         let run = inputs.mode == Mode::AutomaticRun;
         let kept = run || !inputs.standstill;

@@ -35,7 +35,7 @@ const SAME_MPS: f64 = 5e-4;
 const OUTSIDE_M: f64 = 100.0;
 /// Longest section, m [default].
 const LONGEST_M: f64 = 50e3;
-/// Distance past the stop point at which an overrun is told although the train still moves, m [default].
+/// Distance past the stop point at which an overrun is reported although the train still moves, m [default].
 const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
 const STANDS_S: f64 = 5.0;
@@ -73,11 +73,11 @@ pub struct Findings {
     pub absurd: AbsurdInputs,
     /// Speed less the speed effort should have made, m/s.
     pub not_following_mps: Option<f64>,
-    /// The same of a train that withholds effort, by TCMS's own word; told once until it is over.
+    /// The same of a train that withholds effort, by TCMS's own report; reported once until it is over.
     pub withheld_mps: Option<f64>,
-    /// Distance past the stop point, m; told once a run.
+    /// Distance past the stop point, m; reported once a run.
     pub overrun_m: Option<f64>,
-    /// Distance short of the stop point, m; told once a run.
+    /// Distance short of the stop point, m; reported once a run.
     pub short_m: Option<f64>,
 }
 

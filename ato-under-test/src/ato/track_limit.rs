@@ -8,7 +8,7 @@ use protocol::Speed;
 use protocol::config::SpeedCode;
 use protocol::line::Section;
 
-/// Where the train is, and what it is told there.
+/// Where the train is, and what it hears there.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
     /// Section of the track database.

@@ -28,12 +28,12 @@ pub struct Witness {
     pub tcms_speed: Option<Speed>,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
-    /// The start of the train is awaited anew: somebody acknowledges.
+    /// The start of the train is awaited again: a person acknowledges.
     pub acknowledge: bool,
     /// The speeds are of test signals, which change as a tester likes.
     pub tested: bool,
-    /// Nothing is compared: an injected fault.
-    pub dead: bool,
+    /// Nothing is compared.
+    pub unguarded: bool,
 }
 
 impl Witness {
@@ -87,7 +87,7 @@ impl Belief {
         log: &mut EventLog,
     ) {
         let speed = speeds[0].max(speeds[1]);
-        if witness.dead || witness.tested {
+        if witness.unguarded || witness.tested {
             *self = Self {
                 reference_mps: speed.mps(),
                 last_mps: speed.mps(),
@@ -342,7 +342,7 @@ mod tests {
     }
 
     /// Both tachometers read low alike, which nothing else tells: a train at 60 km/h that measures 45. Less than 10 km/h
-    /// is what axles slip and slide, and nobody who is slower than the tachometers speaks against them.
+    /// is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
     #[test]
     fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
         for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {
@@ -381,11 +381,11 @@ mod tests {
 
     #[test]
     fn test_signals_and_a_dead_guard_are_not_compared() {
-        for (tested, dead) in [(true, false), (false, true)] {
+        for (tested, unguarded) in [(true, false), (false, true)] {
             let mut train = Train::at(60.0);
             let witness = Witness {
                 tested,
-                dead,
+                unguarded,
                 powers: true,
                 ..told(60.0)
             };

@@ -1,4 +1,4 @@
-//! The limit in force, and what asks for the brakes.
+//! The limit in force, and what asks for the brakes: all causes of the emergency brake, and of the full service brake.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
@@ -8,6 +8,20 @@ use protocol::{Instant, Speed};
 use super::{Atp, Code, ScanContext};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
+
+/// Causes for the emergency brake that functions of ATP found in a scan.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// The train ran against the reverser.
+    pub rollback: bool,
+    /// It ran forward although ATO jogs it backward.
+    pub wrong_way: bool,
+    pub door_open: bool,
+    /// Faster than the limit for too long.
+    pub beyond: bool,
+    /// The service brake that is asked for slows the train too little.
+    pub ineffective: bool,
+}
 
 impl Atp {
     /// The mode is one in which the speed code counts.
@@ -34,13 +48,13 @@ impl Atp {
         (self.by_code() || self.sequence.mode() == Mode::Off) && self.limit == Speed::ZERO
     }
 
-    /// The first cause for the emergency brake that holds now.
+    /// The first cause for the emergency brake that holds now. One that is over stays in force until it is acknowledged.
     pub(super) fn emergency_cause(
         &mut self,
         now: Instant,
         inputs: &Inputs,
         context: ScanContext,
-        found: &[(bool, EbCause)],
+        found: Found,
         log: &mut EventLog,
     ) -> EbCause {
         let lost = context.ever_alive && !inputs.alive;
@@ -58,12 +72,26 @@ impl Atp {
             (context.started && !context.vital_passed, EbCause::SelfTest),
             (lost, EbCause::InputsLost),
             (self.tachometers.faulty(), EbCause::Tachometer),
+            (found.rollback, EbCause::Rollback),
+            (found.wrong_way, EbCause::Jog),
+            (found.door_open, EbCause::DoorOpen),
+            (found.beyond, EbCause::Overspeed),
+            (found.ineffective, EbCause::ServiceBrakeIneffective),
+            // As at power-up; not a fault, and released without an acknowledgement.
+            (
+                !context.vital_passed || self.sequence.mode() == Mode::Off,
+                EbCause::NotReleased,
+            ),
         ];
         causes
             .iter()
-            .chain(found)
             .find(|(holds, _)| *holds)
             .map_or(EbCause::None, |(_, cause)| *cause)
+    }
+
+    /// Test mode was broken: a cause that is over at once, and is acknowledged all the same.
+    pub fn brake_for_test_mode(&mut self) {
+        self.brake.latch(EbCause::TestMode);
     }
 
     /// What must hold whatever came in; the number of the first that does not. A processor that
@@ -106,6 +134,19 @@ impl Atp {
             .find(|(holds, _)| *holds)
             .map_or(FsbCause::None, |(_, cause)| *cause)
     }
+}
+
+/// The cause that a tester is shown: of the functions under test, else of the train's own, else test mode itself, which
+/// may hold the relay open.
+pub fn shown_cause(tested: &Atp, train: &Atp, held: bool) -> EbCause {
+    let held = if held {
+        EbCause::TestMode
+    } else {
+        EbCause::None
+    };
+    let causes = [tested.brake.cause(), train.brake.cause(), held];
+    let shown = causes.into_iter().find(|cause| *cause != EbCause::None);
+    shown.unwrap_or(EbCause::None)
 }
 
 #[cfg(test)]

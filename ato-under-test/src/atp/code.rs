@@ -68,12 +68,12 @@ impl CodeDecoder {
         }
     }
 
-    /// One scan. With `unconfirmed_holds`, an injected fault, a code in force is renewed by any scan in which it is heard.
+    /// One scan. Only if it `confirms` codes, a code in force is not renewed by any scan in which it is heard.
     pub fn step(
         &mut self,
         now: Instant,
         signal: AntennaSignal,
-        unconfirmed_holds: bool,
+        confirms: bool,
         config: &UnitConfig,
         log: &mut EventLog,
     ) {
@@ -88,7 +88,7 @@ impl CodeDecoder {
                 self.restricted = Some(now);
             }
             let comes_back = self.restricted.is_some_and(|at| now.since(at) < hold);
-            self.patience = match comes_back && stricter(self.code, match_) && !unconfirmed_holds {
+            self.patience = match comes_back && stricter(self.code, match_) && confirms {
                 true => hold,
                 false => detect,
             };
@@ -97,9 +97,9 @@ impl CodeDecoder {
         }
         let steady = self.steady.update(now, match_ != Code::None, self.patience);
         // A code that is steady is detected with the scan in which its time is over.
-        let enough = self.heard.time(match_) >= detect + SCAN || unconfirmed_holds;
+        let enough = self.heard.time(match_) >= detect + SCAN || !confirms;
         let takes_over = enough && match_ != Code::None && stricter(match_, self.code);
-        if steady || takes_over && !unconfirmed_holds {
+        if steady || takes_over && confirms {
             if stricter(match_, self.code) {
                 self.restricted = Some(now);
             }
@@ -249,7 +249,7 @@ mod tests {
         config: UnitConfig,
         log: EventLog,
         now: Instant,
-        unconfirmed_holds: bool,
+        confirms: bool,
     }
 
     impl Receiver {
@@ -260,7 +260,7 @@ mod tests {
                 config: UnitConfig::from_toml(text).unwrap(),
                 log: EventLog::default(),
                 now: Instant::from_ms(5000),
-                unconfirmed_holds: false,
+                confirms: true,
             }
         }
 
@@ -268,13 +268,8 @@ mod tests {
         fn hear(&mut self, signal: AntennaSignal, ms: u64) -> Vec<(u64, Code)> {
             let (begin, mut before, mut changes) = (self.now, self.decoder.code(), Vec::new());
             while self.now < begin + Duration::from_ms(ms) {
-                self.decoder.step(
-                    self.now,
-                    signal,
-                    self.unconfirmed_holds,
-                    &self.config,
-                    &mut self.log,
-                );
+                self.decoder
+                    .step(self.now, signal, self.confirms, &self.config, &mut self.log);
                 if self.decoder.code() != before {
                     before = self.decoder.code();
                     changes.push((self.now.since(begin).as_ms(), before));
@@ -308,7 +303,7 @@ mod tests {
             assert_eq!(receiver.hear(CODE_55, 400 - scan_ms), []);
             assert_eq!(receiver.hear(SILENCE, scan_ms), []);
         }
-        // Another code meanwhile begins the time anew, too.
+        // Another code meanwhile begins the time again, too.
         assert_eq!(receiver.hear(signal(3000.0, 12.0, 500.0), 300), []);
         assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
     }
@@ -399,7 +394,7 @@ mod tests {
             [(400, Code::Known(6))],
             "for long"
         );
-        receiver.unconfirmed_holds = true;
+        receiver.confirms = false;
         receiver.hear(CODE_75, 300);
         for _ in 0..20 {
             receiver.hear(CODE_25, 100);

@@ -14,18 +14,18 @@ pub enum Towards {
     Backward,
     /// In neutral, or its contacts contradict each other: no way is permitted.
     Nowhere,
-    /// Nothing is supervised: test signals in neutral, as a train in a depot is left, or an injected fault.
+    /// Nothing is supervised: test signals in neutral, as a train in a depot is left.
     Anywhere,
 }
 
 impl Towards {
-    pub fn of(lines: TrainLines, tested: [bool; 2], neutral_dead: bool) -> Self {
+    pub fn of(lines: TrainLines, tested: [bool; 2], supervised: bool) -> Self {
         let forward = lines.contains(TrainLines::FORWARD);
         let backward = lines.contains(TrainLines::BACKWARD);
         match (forward, backward) {
             (true, false) => Self::Forward,
             (false, true) => Self::Backward,
-            _ if neutral_dead || tested.contains(&true) => Self::Anywhere,
+            _ if !supervised || tested.contains(&true) => Self::Anywhere,
             _ => Self::Nowhere,
         }
     }
@@ -51,18 +51,18 @@ pub struct Rollback {
 
 impl Rollback {
     /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the way is
-    /// counted anew: the wheels stand still.
+    /// counted from 0 again: the wheels stand still.
     pub fn step(
         &mut self,
         now: Instant,
         moved_m: [f64; 2],
         towards: Towards,
-        anew: bool,
+        from_zero: bool,
         allowed_m: f64,
         log: &mut EventLog,
     ) -> bool {
         for (against_m, moved_m) in self.against_m.iter_mut().zip(moved_m) {
-            *against_m = match anew {
+            *against_m = match from_zero {
                 true => 0.0,
                 false => (*against_m + towards.wrong_m(moved_m)).max(0.0),
             };

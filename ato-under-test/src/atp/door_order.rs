@@ -65,7 +65,7 @@ mod tests {
         enable
     }
 
-    /// Every order against every enable: what passes, and what is told after the time to follow.
+    /// Every order against every enable: what passes, and what is logged after the time to follow.
     #[test]
     fn an_order_passes_on_enabled_sides_alone() {
         for ordered in SIDES {

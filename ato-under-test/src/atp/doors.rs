@@ -15,7 +15,7 @@ use crate::timer::{Edge, OnDelay};
 /// standstill.
 const SETTLES: Duration = Duration::from_ms(200);
 
-/// Doors that are told to open as often in this time are opened by nobody: a contact chatters.
+/// Doors ordered to open so often in this time are not opened by a person: a contact chatters.
 const CHATTER_OPENINGS: i32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 

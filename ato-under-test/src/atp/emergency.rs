@@ -19,15 +19,13 @@ pub struct BrakeInputs {
     /// Speed above the limit, cm/s.
     pub excess_cms: i32,
     pub proof: Proof,
-    /// Unit started, cab active, mode chosen, inputs alive.
-    pub may_release: bool,
     pub standstill: bool,
     /// No pulse, or a lone one, for the time of standstill.
     pub still: bool,
     pub doors_closed: bool,
     pub acknowledge: bool,
-    /// An acknowledgement is not compared with the cause: an injected fault.
-    pub release_guard_dead: bool,
+    /// An acknowledgement is compared with the cause.
+    pub compares_cause: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -52,8 +50,6 @@ impl EmergencyBrake {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
         if inputs.cause != EbCause::None {
             self.apply(now, &inputs, log);
-        } else if !inputs.may_release && self.cause == EbCause::None {
-            self.cause = EbCause::NotReleased;
         }
         if self.cause == EbCause::None {
             self.awaits_stillness = false;
@@ -61,9 +57,9 @@ impl EmergencyBrake {
         }
         let given_up = self.awaits_stillness && !inputs.acknowledge;
         let acknowledged = acknowledged || self.awaits_stillness;
-        let holds = match inputs.release_guard_dead && acknowledged {
-            true => None,
-            false => self.holds(&inputs),
+        let holds = match inputs.compares_cause || !acknowledged {
+            true => self.holds(&inputs),
+            false => None,
         };
         match holds {
             None if acknowledged || self.cause == EbCause::NotReleased => {
@@ -81,12 +77,11 @@ impl EmergencyBrake {
         }
     }
 
-    /// What keeps the brake applied whoever acknowledges it; [`EbCause::None`] = the train moves.
+    /// What keeps the brake applied although it is acknowledged; [`EbCause::None`] = the train moves.
     fn holds(&self, inputs: &BrakeInputs) -> Option<EbCause> {
         let open = self.cause == EbCause::DoorOpen && !inputs.doors_closed;
         [
             (inputs.cause != EbCause::None, inputs.cause),
-            (!inputs.may_release, EbCause::NotReleased),
             (open, EbCause::DoorOpen),
             (!inputs.still, EbCause::None),
         ]

@@ -15,7 +15,7 @@ use crate::timer::{Edge, OnDelay};
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
 const TAIL: Duration = Duration::from_ms(1_000);
 
-/// Time for which a refusal lasts until it is told: a stray pulse of a tachometer makes none.
+/// Time for which a refusal lasts until it is reported: a stray pulse of a tachometer makes none.
 const REFUSAL_LASTS: Duration = Duration::from_ms(600);
 
 /// What the guard looks at in a scan.
@@ -33,8 +33,8 @@ pub struct JogInputs {
     pub standstill: bool,
     /// No pulse for the time of standstill.
     pub still: bool,
-    /// The guard does not work.
-    pub dead: bool,
+    /// Jogging is supervised.
+    pub guarded: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -64,7 +64,7 @@ impl JogGuard {
         log: &mut EventLog,
     ) -> bool {
         let before = self.back_m.is_some();
-        if inputs.dead {
+        if !inputs.guarded {
             let back_m = (inputs.backward == Some(true)).then_some(f64::INFINITY);
             *self = Self {
                 back_m,
@@ -168,7 +168,7 @@ mod tests {
         speed: Speed::ZERO,
         standstill: true,
         still: true,
-        dead: false,
+        guarded: true,
     };
 
     struct Train {
@@ -330,10 +330,10 @@ mod tests {
     }
 
     #[test]
-    fn a_dead_guard_lets_everything_pass() {
+    fn a_guard_out_of_action_lets_everything_pass() {
         let mut train = Train::new();
         let fast = JogInputs {
-            dead: true,
+            guarded: false,
             ..moving(30.0, 1.0)
         };
         assert!(!train.run(2_000, fast));

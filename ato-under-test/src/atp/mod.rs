@@ -19,18 +19,21 @@ mod speedometer;
 mod tachometers;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
-use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
+use protocol::message::{DoorSide, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
 
+use crate::guards::Guards;
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
+use causes::Found;
 use direction::{Rollback, Towards};
 use door_order::{DoorOrders, enabled_sides};
 use jog_guard::{JogGuard, JogInputs};
 
 pub use belief::Witness;
 pub use brake_proof::{BrakeProof, Demand, Proof};
+pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
@@ -67,31 +70,7 @@ pub struct ScanContext {
     pub tcms_holds: bool,
     /// ATO asks for power.
     pub ato_powers: bool,
-    /// Guards that an injected fault has put out of action.
-    pub dead_guards: DeadGuards,
-}
-
-/// Guards of ATP that do not work.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DeadGuards {
-    /// A stop has the margins of a limit, and an absolute stop asks for no brake.
-    pub stop: bool,
-    /// Doors that open without being enabled are not noticed.
-    pub doors: bool,
-    /// Door enables go with the station data that gave them.
-    pub enables: bool,
-    /// An acknowledgement is not compared with the emergency brake's cause.
-    pub release: bool,
-    /// ATO jogs as fast and as far as it likes.
-    pub jog: bool,
-    /// A code in force is renewed whenever it is heard, however shortly.
-    pub code: bool,
-    /// Motion with the reverser in neutral is not noticed.
-    pub neutral: bool,
-    /// A speed that falls faster than a train can slow is believed.
-    pub speed: bool,
-    /// The emergency brake is released at a speed that counts as standing.
-    pub stillness: bool,
+    pub guards: Guards,
 }
 
 /// State of the protection functions from scan to scan.
@@ -148,9 +127,10 @@ impl Atp {
         config: &UnitConfig,
         log: &mut EventLog,
     ) {
-        let unconfirmed = context.dead_guards.code;
+        let guards = context.guards;
+        let confirmed = guards.code_confirmation;
         self.decoder
-            .step(now, inputs.signal, unconfirmed, config, log);
+            .step(now, inputs.signal, confirmed, config, log);
         let witness = self.witness(inputs, context);
         self.tachometers.step(now, inputs, witness, config, log);
         self.limit = self.limit_in_force(config);
@@ -158,7 +138,7 @@ impl Atp {
         let motion = SupervisedMotion {
             speed,
             limit: self.limit,
-            stop: self.must_stand() && !context.dead_guards.stop,
+            stop: self.must_stand() && guards.stop,
             standstill,
             moves: self.tachometers.moves(config),
         };
@@ -174,8 +154,8 @@ impl Atp {
         self.doors_open = door_lines.open();
         let door_inputs = DoorInputs {
             lines: inputs.alive.then_some(door_lines),
-            supervised: !context.dead_guards.doors && self.sequence.mode() != Mode::Off,
-            latched: !context.dead_guards.enables,
+            supervised: guards.doors && self.sequence.mode() != Mode::Off,
+            latched: guards.enable_latch,
             standstill,
             aligned: context.aligned,
             at_platform: context.at_platform,
@@ -195,34 +175,33 @@ impl Atp {
             speed,
             standstill,
             still,
-            dead: context.dead_guards.jog,
+            guarded: guards.jog,
         };
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
         // Way that was permitted is no roll back when the permission has gone.
-        let anew = still || self.jog.ended();
-        let towards = Towards::of(inputs.lines, inputs.test_speed, context.dead_guards.neutral);
+        let from_zero = still || self.jog.ended();
+        let towards = Towards::of(inputs.lines, inputs.test_speed, guards.neutral);
         let rollback = self
             .rollback
-            .step(now, moved_m, towards, anew, allowed_m, log);
-        let found = [
-            (rollback, EbCause::Rollback),
-            (wrong_way, EbCause::Jog),
-            (door_open, EbCause::DoorOpen),
-            (beyond, EbCause::Overspeed),
-            (proof.ineffective, EbCause::ServiceBrakeIneffective),
-        ];
-        let cause = self.emergency_cause(now, inputs, context, &found, log);
+            .step(now, moved_m, towards, from_zero, allowed_m, log);
+        let found = Found {
+            rollback,
+            wrong_way,
+            door_open,
+            beyond,
+            ineffective: proof.ineffective,
+        };
+        let cause = self.emergency_cause(now, inputs, context, found, log);
         let brake_inputs = BrakeInputs {
             cause,
             excess_cms: self.overspeed.excess_cms,
             proof,
-            may_release: context.vital_passed && self.sequence.mode() != Mode::Off,
             standstill,
-            still: still || context.dead_guards.stillness && standstill,
+            still: still || !guards.release_standstill && standstill,
             doors_closed: self.doors_closed,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
-            release_guard_dead: context.dead_guards.release,
+            compares_cause: guards.release,
         };
         self.brake.step(now, brake_inputs, log);
     }
@@ -254,11 +233,6 @@ impl Atp {
     /// The receiver was used for a test: what it decoded counts no more.
     pub fn forget_code(&mut self) {
         self.decoder = CodeDecoder::new();
-    }
-
-    /// Applies the emergency brake until it is acknowledged at standstill.
-    pub fn latch_brake(&mut self, cause: EbCause) {
-        self.brake.latch(cause);
     }
 
     /// One cycle of the mode sequence.
@@ -303,7 +277,7 @@ impl Atp {
             powers: notch && !held,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             tested: false,
-            dead: context.dead_guards.speed,
+            unguarded: !context.guards.speed,
         }
     }
 

@@ -36,7 +36,7 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::ATO_NOT_READY)
     .union(Refusals::SELF_TEST);
 
-/// Of these, what is kept until it is acknowledged: braking clears it, and driving on would make it anew.
+/// Of these, what is kept until it is acknowledged: braking clears it, and driving on would cause it again.
 const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
 
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ pub struct ModeSequence {
     acknowledge: Edge,
     /// Departure was heard withheld, and not given since.
     withheld: bool,
-    /// What ended a run and nobody has acknowledged, of [`KEPT`].
+    /// What ended a run and is not acknowledged, of [`KEPT`].
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
@@ -185,7 +185,7 @@ impl ModeSequence {
         self.stops
     }
 
-    /// ATO has failed in a run, or could not go on with it, and nobody has acknowledged it.
+    /// ATO has failed in a run, or could not go on with it, and it is not acknowledged.
     pub fn failed(&self) -> bool {
         !self.failed.is_empty()
     }

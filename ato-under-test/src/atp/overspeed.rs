@@ -96,7 +96,7 @@ impl OverspeedSupervision {
             };
             log.push(now, event, excess_cms);
         }
-        // What has set off braking is told before a train that is stopped counts as standing under a stop.
+        // What has set off braking is logged before a train that is stopped counts as standing under a stop.
         self.stood = motion.stop && (self.stood || motion.standstill);
         Overspeed {
             alarm: self.alarm,

@@ -120,7 +120,7 @@ impl Tachometers {
         let speeds = [0, 1].map(|i| self.meters[i].speed());
         self.belief
             .step(now, speeds, !silent, witness, &config.tacho, log);
-        let told = witness.tcms_moves(&config.tacho) && !witness.tested && !witness.dead;
+        let told = witness.tcms_moves(&config.tacho) && !witness.tested && !witness.unguarded;
         let doubted = self.belief.doubted().is_some();
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));

@@ -10,11 +10,10 @@ use protocol::message::{
     Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message, RunEnd,
     StimulusAnswer, StoreKind,
 };
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
 use crate::flash::{Memory, SetClockError};
 use crate::kernel::{EventLog, Ring, RunRecord};
-use crate::random::Random;
 use crate::test_board::TestBoard;
 
 /// Time in which a challenge must be answered.

@@ -84,7 +84,7 @@ impl Ports {
         }
     }
 
-    /// A scan begins: what nobody took of the last one's frames is lost, as on a line without a listener.
+    /// A scan begins: what was not taken of the last one's frames is lost, as on a line without a listener.
     pub fn begin_scan(&mut self) {
         self.to_maintenance.clear();
     }

@@ -7,4 +7,4 @@ mod station;
 
 pub use cabs::{CabInputs, Cabs};
 pub use stabling::{Stabling, StablingInputs};
-pub use station::{DeadOrders, Station, StationInputs};
+pub use station::{Station, StationInputs};

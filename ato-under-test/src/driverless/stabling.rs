@@ -6,7 +6,7 @@
 //! at power-up; with one that failed the train stays put away, until it is woken again or somebody at the cab takes it.
 //! An old departure counts no more.
 //!
-//! Who is put away stays so over a power-up: the stored event log says it.
+//! A train that is put away stays so over a power-up: the stored event log says it.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -202,7 +202,7 @@ mod tests {
         }
     }
 
-    /// A result of an earlier self-test wakes nobody.
+    /// A result of an earlier self-test wakes no train.
     #[test]
     fn the_self_test_that_counts_is_one_that_began_with_waking_up() {
         let mut stabling = stage(Stage::PutAway);

@@ -22,6 +22,7 @@ use protocol::event::Event;
 use protocol::message::DoorSide;
 use protocol::{Duration, Instant};
 
+use crate::guards::Guards;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -44,17 +45,7 @@ pub struct StationInputs {
     /// The wayside has given departure.
     pub departure: bool,
     pub acknowledge: bool,
-    /// Guards and orders that an injected fault has put out of action.
-    pub dead: DeadOrders,
-}
-
-/// What the sequence does not do.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DeadOrders {
-    /// Close doors.
-    pub closing: bool,
-    /// Open doors again that do not close.
-    pub reopening: bool,
+    pub guards: Guards,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -151,7 +142,7 @@ impl Station {
             State::Closing { .. } | State::Open | State::Obstructed if inputs.closed => {
                 State::Closed
             }
-            State::Open if inputs.departure && stood_open && !inputs.dead.closing => {
+            State::Open if inputs.departure && stood_open && inputs.guards.door_closing => {
                 State::Closing { tries: 1 }
             }
             State::Closing { .. } | State::Reopening { .. } if enabled && !inputs.departure => {
@@ -160,7 +151,7 @@ impl Station {
             State::Closing { tries } if lasted(config.close_ms) => {
                 if tries >= config.close_tries {
                     State::Obstructed
-                } else if enabled && !inputs.dead.reopening {
+                } else if enabled && inputs.guards.door_reopening {
                     State::Reopening { tries }
                 } else {
                     State::Closing { tries: tries + 1 }

@@ -1,4 +1,4 @@
-//! What the unit stores over power-ups: its event log with the times that testers told it, and its run record.
+//! What the unit stores over power-ups: its event log with the times that testers sent, and its run record.
 //!
 //! Both are kept in working memory first, in the rings of `kernel`; each scan stores what is new there, a few
 //! entries at most, so that a scan's time stays bounded. An entry that is not stored when the power fails is lost.
@@ -42,7 +42,7 @@ pub struct Memory {
     /// `None`: the device failed.
     rings: Option<Rings>,
     power_up: u32,
-    /// As the tester told it last.
+    /// As the tester sent it last.
     clock: Option<StoredClock>,
     clocks: u8,
     /// Index since power-up of the next event to store.
@@ -60,7 +60,7 @@ struct Rings {
 /// Why a time is not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetClockError {
-    /// It is none that can be, or too many were told.
+    /// It is none that can be, or too many were sent.
     OutOfRange,
     /// The device failed.
     Failed,
@@ -134,7 +134,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Each block of events says the time anew, because the one that said it may be erased.
+    /// Each block of events has the time again, because the one that had it may be erased.
     fn store_clock_in_new_block(&mut self) -> Result<(), FlashError> {
         let next = self
             .rings
@@ -152,7 +152,7 @@ impl Memory {
     /// # Errors
     /// Why it is not stored.
     pub fn set_clock(&mut self, now: Instant, told: SetClock) -> Result<(), SetClockError> {
-        // However many were told, one at most half as uncertain as the best is stored: at most 17 more.
+        // However many were sent, one at most half as uncertain as the best is stored: at most 17 more.
         let best = self.clock.map_or(u16::MAX, |clock| clock.uncertainty_ms);
         let is_too_many = self.clocks >= CLOCKS && told.uncertainty_ms >= best.div_ceil(2);
         if !UTC_MS.contains(&told.utc_ms) || is_too_many {

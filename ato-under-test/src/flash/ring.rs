@@ -1,6 +1,6 @@
 //! A log ring over erase blocks.
 //!
-//! Blocks are filled in turn and begun anew in turn, so no block is erased more than once more often than
+//! Blocks are filled in turn and erased in turn, so no block is erased more than once more often than
 //! another. The number of a block in the order of use, its **turn**, stands in its header; entries have a fixed
 //! size, so turn and place give an entry's **sequence number**, which goes on over power-ups and is never
 //! reused:

@@ -3,9 +3,7 @@
 use alloc::vec::Vec;
 
 use protocol::injection::{Effect, FaultMode, OccurrenceState, Place};
-use protocol::{Duration, Instant, SCAN, Speed};
-
-use crate::random::Random;
+use protocol::{Duration, Instant, Random, SCAN, Speed};
 
 /// Time over which the wheels' speed is felt: pulses of one scan are too few.
 const FELT_OVER: Duration = Duration::from_ms(200);

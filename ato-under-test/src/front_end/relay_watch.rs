@@ -8,7 +8,7 @@ use crate::kernel::EventLog;
 use crate::timer::OnDelay;
 
 /// The line must die with the relay, and live with it as long as it is fed: a button, the master controller,
-/// low air or a cab nobody is in opens it before the relay.
+/// low air or an empty cab opens it before the relay.
 #[derive(Debug)]
 pub struct RelayWatch {
     welded: OnDelay,
@@ -32,7 +32,7 @@ impl RelayWatch {
         }
     }
 
-    /// One scan: what the relay is told, and the lines, if they are read.
+    /// One scan: what is asked of the relay, and the lines, if they are read.
     pub fn step(
         &mut self,
         now: Instant,

@@ -101,7 +101,7 @@ impl SelfTester {
         }
     }
 
-    /// Ends a self-test on request and forgets its results: nobody waits for them.
+    /// Ends a self-test on request and forgets its results: they are not waited for.
     pub fn cancel(&mut self) {
         self.results.clear();
         if self.started {

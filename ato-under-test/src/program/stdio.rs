@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Write};
 use anyhow::{Context, Result};
 use protocol::display_text;
 
-/// Tells where the unit can be reached; somebody who has gone away knows it.
+/// Prints where the unit can be reached; a reader that has gone is no error.
 ///
 /// # Errors
 /// Standard output does not take it.
@@ -21,7 +21,7 @@ pub fn place(place: &str) -> Result<()> {
     }
 }
 
-/// Tells something beside; whoever does not listen misses it.
+/// Prints a remark; a reader that has gone is no error.
 #[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", display_text::lines(text));

@@ -29,19 +29,19 @@ struct Contact {
 }
 
 impl Debounce {
-    /// One scan: the pulse, if it is a marker's first edge. `dead`: an injected fault lets every edge through.
+    /// One scan: the pulse, if it is a marker's first edge. Unless it `works`, every edge counts.
     pub fn take(
         &mut self,
         now: Instant,
         pulse: Option<MarkerPulse>,
-        dead: bool,
+        works: bool,
         config: &MarkerConfig,
         log: &mut EventLog,
     ) -> Option<MarkerPulse> {
         let pulse = pulse?;
         let number = usize::from(pulse.marker).checked_sub(1);
         let contact = number.and_then(|number| self.contacts.get_mut(number));
-        let (Some(contact), false) = (contact, dead) else {
+        let (Some(contact), true) = (contact, works) else {
             return Some(pulse);
         };
         let at = now.back(Duration::from_us(u64::from(pulse.age_us)));
@@ -83,9 +83,7 @@ mod tests {
         let take = |&&(ms, marker): &&(u64, u8)| {
             let pulse = Some(MarkerPulse { marker, age_us: 0 });
             let now = Instant::from_ms(5_000 + ms);
-            debounce
-                .take(now, pulse, false, &config, &mut log)
-                .is_some()
+            debounce.take(now, pulse, true, &config, &mut log).is_some()
         };
         let first = edges.iter().filter(take).copied().collect();
         let entries = (0..).map_while(|index| log.entries().at_or_after(index));
@@ -93,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_counts_once_and_what_bounces_longer_is_told_once() {
+    fn an_edge_counts_once_and_what_bounces_longer_is_reported_once() {
         assert_eq!(
             counted(&[(0, 1), (10, 1), (100, 1)]),
             (alloc::vec![(0, 1)], alloc::vec![])

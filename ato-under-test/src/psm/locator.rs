@@ -45,7 +45,7 @@ pub struct Locator {
     pending: Option<MarkerDetection>,
     /// Distance run on sliding wheels since the fix, m.
     slid_m: f64,
-    /// Distance told when the position became unsure, m.
+    /// Distance measured when the position became unsure, m.
     unsure_since_m: Option<f64>,
     /// Distance by which a marker that was not believed came early, m.
     early_m: f64,

@@ -18,9 +18,9 @@ const REMEMBERED_M: f64 = 600.0;
 pub struct PositionFix {
     /// Where, m from the section's start.
     pub place_m: f64,
-    /// Distance the odometer told there, m.
+    /// Distance the odometer had there, m.
     pub distance_m: f64,
-    /// Marker that told it, 0 = the section's start.
+    /// Marker that gave it, 0 = the section's start.
     pub marker: u8,
 }
 

@@ -114,7 +114,7 @@ impl TachoCompare {
             self.differs = true;
             log.push(now, Event::TachoRatio, hundredths_of_percent(share));
         }
-        // Half of it, so that a share at the limit is told once.
+        // Half of it, so that a share at the limit is reported once.
         self.differs &= size > config.share / 2.0;
     }
 

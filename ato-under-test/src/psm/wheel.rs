@@ -36,7 +36,7 @@ impl WheelCalibration {
         Self::new(spread, self.scatter_m, self.bound)
     }
 
-    /// Takes a span of `track_m` between two markers that the wheel told as `wheel_m`.
+    /// Takes a span of `track_m` between two markers that the wheel measured as `wheel_m`.
     pub fn learn(&mut self, track_m: f64, wheel_m: f64) {
         if track_m < SHORTEST_M || wheel_m < SHORTEST_M / 2.0 {
             return;

@@ -26,7 +26,7 @@ pub trait Served {
     /// One scan: takes what came and appends what goes out. A break ends serving.
     fn scan(&mut self, received: &[u8], to_send: &mut Vec<u8>) -> ControlFlow<()>;
 
-    /// Frames accepted at this wire: a TCP client of which none is accepted is let go.
+    /// Frames accepted at this wire: a TCP client of which none is accepted is disconnected.
     fn frames_accepted(&self) -> u64;
 
     /// Another tester is connected from now on: nothing the last one sent is continued.

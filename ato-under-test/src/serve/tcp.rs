@@ -1,4 +1,4 @@
-//! Serves one TCP client at a time. A second one is told who has the unit and is disconnected: nothing that
+//! Serves one TCP client at a time. A second one gets a message that says who has the unit and is disconnected: nothing that
 //! it sent while it waited may act later as if it were fresh.
 
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,13 +11,13 @@ use protocol::message::Taken;
 use protocol::{Duration, Instant};
 use socket2::{SockRef, TcpKeepalive};
 
-/// A client of which no frame was accepted for so long is let go.
+/// A client of which no frame was accepted for so long is disconnected.
 const SILENT: Duration = Duration::from_ms(10_000);
 /// A connection on which nothing comes is probed after this time, and as often again.
 const PROBED_AFTER: std::time::Duration = std::time::Duration::from_secs(5);
 /// A second client waits this long before it is accepted: its predecessor's last bytes may still have to be read.
 const HANDS_OVER: Duration = Duration::from_ms(100);
-/// Who is turned away has so long to close, so that what it is told is not lost by a reset.
+/// A client that is turned away has so long to close, so that the message is not lost by a reset.
 const LEAVES_WITHIN: Duration = Duration::from_ms(1000);
 /// Newcomers attended to at once; others wait for them in the system's queue.
 const MOST_COMING: usize = 16;
@@ -174,7 +174,7 @@ impl Server {
 }
 
 impl Client {
-    /// What somebody else is told, as a frame.
+    /// What another client is sent, as a frame.
     fn taken(&self, now: Instant) -> Vec<u8> {
         let ip = match self.address.ip() {
             IpAddr::V4(ip) => ip.to_ipv6_mapped(),

@@ -71,7 +71,7 @@ impl Wire {
     /// Opens it.
     ///
     /// # Errors
-    /// The system has no such place, or somebody else has it.
+    /// The system has no such port, or another program has it.
     pub fn open(place: &Place) -> Result<Self, ServeError> {
         match place {
             Place::Pty => Self::open_pty(false),
@@ -148,7 +148,7 @@ impl Wire {
         read.map_err(ServeError::new("reading from the wire"))
     }
 
-    /// Writes what fits; as on a real line, nobody waits for a listener.
+    /// Writes what fits; as on a real line, a listener is not waited for.
     ///
     /// # Errors
     /// The port is gone.

@@ -3,19 +3,18 @@
 //! Data that contradict it are refused whole: one wrong number says that the rest cannot be trusted either.
 
 use protocol::event::Event;
-use protocol::injection::Place;
 use protocol::line::{Line, Section};
 use protocol::message::{DoorSide, TwcWayside};
 
-use crate::front_end::Faults;
+use crate::guards::Guards;
 
 /// What the data say that the track database does not: its event, with the parameter.
-pub fn contradiction(data: &TwcWayside, line: &Line, faults: &Faults) -> Option<(Event, i32)> {
+pub fn contradiction(data: &TwcWayside, line: &Line, guards: Guards) -> Option<(Event, i32)> {
     let unknown = (Event::TwcStationInvalid, i32::from(data.station));
     let Some(section) = line.section(data.section) else {
         return Some(unknown);
     };
-    let compared = !faults.dead(Place::StationGuard);
+    let compared = guards.station;
     let checks = [
         (compared && !stands_in(data, section), unknown),
         (
@@ -23,7 +22,7 @@ pub fn contradiction(data: &TwcWayside, line: &Line, faults: &Faults) -> Option<
             (Event::TwcWrongNext, i32::from(data.next_station)),
         ),
         (
-            !faults.dead(Place::SideGuard) && !has_platform(data, line, section),
+            guards.side && !has_platform(data, line, section),
             (Event::TwcWrongSide, i32::from(data.door_side.code())),
         ),
         (
@@ -116,7 +115,7 @@ mod tests {
     }
 
     fn found(data: TwcWayside, line: &Line) -> Option<Event> {
-        contradiction(&data, line, &Faults::new(&[], 1)).map(|(event, _)| event)
+        contradiction(&data, line, Guards::ALL).map(|(event, _)| event)
     }
 
     #[test]

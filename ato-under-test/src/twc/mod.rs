@@ -6,12 +6,11 @@ mod number;
 mod orders;
 
 use protocol::event::Event;
-use protocol::injection::Place;
 use protocol::line::Line;
 use protocol::message::{Mode, TwcTrain, TwcTrainBits, TwcWayside};
 use protocol::{Duration, Instant, Speed};
 
-use crate::front_end::Faults;
+use crate::guards::Guards;
 use crate::kernel::EventLog;
 use check::contradiction;
 use orders::Ordered;
@@ -98,10 +97,10 @@ impl Twc {
         data: TwcWayside,
         own: TrainNumber,
         line: &Line,
-        faults: &Faults,
+        guards: Guards,
         log: &mut EventLog,
     ) {
-        if self.passes_over(now, data.train_number, own, faults, log) {
+        if self.passes_over(now, data.train_number, own, guards, log) {
             return;
         }
         self.received = self.received.wrapping_add(1);
@@ -110,7 +109,7 @@ impl Twc {
         }
         self.heard = Some(now);
         self.up = true;
-        let refusal = contradiction(&data, line, faults);
+        let refusal = contradiction(&data, line, guards);
         self.valid = refusal.is_none();
         match refusal {
             None => {
@@ -132,10 +131,10 @@ impl Twc {
         now: Instant,
         number: u16,
         own: TrainNumber,
-        faults: &Faults,
+        guards: Guards,
         log: &mut EventLog,
     ) -> bool {
-        if own == 0 || number == own || faults.dead(Place::TrainGuard) {
+        if own == 0 || number == own || !guards.train_number {
             return false;
         }
         self.others = self.others.wrapping_add(1);
@@ -234,7 +233,6 @@ mod tests {
     struct Bench {
         twc: Twc,
         line: Line,
-        faults: Faults,
         log: EventLog,
         now: Instant,
     }
@@ -245,7 +243,6 @@ mod tests {
             Self {
                 twc: Twc::new(Duration::from_ms(1000)),
                 line: Line::from_toml(line).unwrap(),
-                faults: Faults::new(&[], 1),
                 log: EventLog::default(),
                 now: Instant::ZERO,
             }
@@ -266,9 +263,9 @@ mod tests {
         }
 
         fn take(&mut self, data: TwcWayside, own: TrainNumber) {
-            let (line, faults) = (&self.line, &self.faults);
+            let line = &self.line;
             self.twc
-                .take(self.now, data, own, line, faults, &mut self.log);
+                .take(self.now, data, own, line, Guards::ALL, &mut self.log);
             self.now += Duration::from_ms(250);
             self.twc.step(self.now, false, &mut self.log);
         }

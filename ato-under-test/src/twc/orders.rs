@@ -4,12 +4,11 @@
 use protocol::Instant;
 use protocol::config::OrdersConfig;
 use protocol::event::Event;
-use protocol::injection::Place;
 use protocol::line::Line;
 use protocol::message::{TrainOrder, TwcOrders};
 
 use super::{TrainNumber, Twc};
-use crate::front_end::Faults;
+use crate::guards::Guards;
 use crate::kernel::EventLog;
 
 /// Metres of the wire's unit of length.
@@ -24,22 +23,22 @@ pub(super) struct Ordered {
 }
 
 impl Twc {
-    /// Takes orders unless they are for another train or contradict the track database; the order that they give anew.
+    /// Takes orders unless they are for another train or contradict the track database; the order, if they give a new one.
     pub fn take_orders(
         &mut self,
         now: Instant,
         orders: &TwcOrders,
         own: TrainNumber,
         (line, config): (&Line, &OrdersConfig),
-        faults: &Faults,
+        guards: Guards,
         log: &mut EventLog,
     ) -> Option<TrainOrder> {
-        if self.passes_over(now, orders.train_number, own, faults, log) {
+        if self.passes_over(now, orders.train_number, own, guards, log) {
             return None;
         }
         self.received = self.received.wrapping_add(1);
         let route = self.data().map(|data| data.route);
-        let refusal = contradiction(orders, route, line, config, faults);
+        let refusal = contradiction(orders, route, line, config, guards);
         if let Some((event, parameter)) = refusal {
             self.refused = self.refused.wrapping_add(1);
             if self.orders_refusal != refusal {
@@ -79,7 +78,7 @@ fn contradiction(
     route: Option<u16>,
     line: &Line,
     config: &OrdersConfig,
-    faults: &Faults,
+    guards: Guards,
 ) -> Option<(Event, i32)> {
     let length_m = f64::from(orders.section_length_dm) * DECIMETRE_M;
     let section = line.section(orders.section);
@@ -90,7 +89,7 @@ fn contradiction(
         let ends = [section.from_station, section.to_station];
         route.is_none_or(|route| section.route == route) && ends.contains(&orders.destination)
     });
-    let compared = !faults.dead(Place::OrderGuard);
+    let compared = guards.orders;
     let length_dm = i32::try_from(orders.section_length_dm).unwrap_or(i32::MAX);
     let checks = [
         (
@@ -170,21 +169,20 @@ mod tests {
                 Some(Event::TwcWrongOrder),
             ),
         ];
-        let faults = Faults::new(&[], 1);
         for (orders, expected) in cases {
             for route in [None, Some(line.sections[0].route)] {
-                let found = contradiction(&orders, route, &line, &config, &faults);
+                let found = contradiction(&orders, route, &line, &config, Guards::ALL);
                 assert_eq!(found.map(|(event, _)| event), expected, "{orders:?}");
             }
         }
-        let other_route = contradiction(&good, Some(99), &line, &config, &faults);
+        let other_route = contradiction(&good, Some(99), &line, &config, Guards::ALL);
         assert!(matches!(other_route, Some((Event::TwcWrongDestination, _))));
     }
 
     #[test]
     fn an_order_is_given_once_for_as_long_as_it_is_sent() {
         let (line, config) = (line(), OrdersConfig::default());
-        let (faults, mut log) = (Faults::new(&[], 1), EventLog::default());
+        let mut log = EventLog::default();
         let mut twc = Twc::new(Duration::from_ms(1000));
         let mut at_ms = 0;
         let mut given = |pause_ms: u64, order, train_number| {
@@ -195,7 +193,7 @@ mod tests {
                 ..good(&line)
             };
             let now = Instant::from_ms(at_ms);
-            twc.take_orders(now, &orders, OWN, (&line, &config), &faults, &mut log)
+            twc.take_orders(now, &orders, OWN, (&line, &config), Guards::ALL, &mut log)
         };
         use TrainOrder::{None, PutAway, TurnBack, Unknown};
         let cases = [

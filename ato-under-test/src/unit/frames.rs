@@ -153,11 +153,11 @@ impl Unit {
         if !sender.is_test() {
             self.number.hear(data.train_number);
         }
-        let faults = &self.faults;
+        let guards = self.guards;
         let before = self.log.next_index();
         if let Some(mode) = &mut self.test_mode {
             let twc = &mut mode.functions.twc;
-            twc.take(now, data, own, line, faults, &mut self.log);
+            twc.take(now, data, own, line, guards, &mut self.log);
         }
         let functions = match (sender, &mut self.test_mode) {
             (StationSender::TestModem(_), Some(mode)) => &mut mode.functions,
@@ -165,13 +165,13 @@ impl Unit {
             (StationSender::Loop(_), _) => {
                 self.log.leave_out_repeats(Some(before));
                 let twc = &mut self.functions.twc;
-                twc.take(now, data, own, line, faults, &mut self.log);
+                twc.take(now, data, own, line, guards, &mut self.log);
                 self.log.leave_out_repeats(None);
                 &mut self.functions
             }
         };
         let train = functions.train_state();
-        let echoes = faults.at(Place::TwcAnswer).is_some();
+        let echoes = self.faults.at(Place::TwcAnswer).is_some();
         let told = if echoes { data.train_number } else { own };
         let answer = functions.twc.answer(sender, &data, told, train);
         if self.loses(Place::TwcAntenna) {
@@ -229,7 +229,7 @@ impl Unit {
         ArmConditions {
             started: self.self_tester.finished(),
             key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
-            standing: self.faults.dead(Place::ArmStandstill)
+            standing: !self.guards.arm_standstill
                 || tachometers.standstill() && !tachometers.faulty(),
             brakes_applied: self.brakes_proved(),
         }
@@ -240,7 +240,7 @@ impl Unit {
     pub(super) fn brakes_proved(&self) -> bool {
         let inputs = &self.functions.inputs;
         let line_dead = inputs.alive && !inputs.lines.contains(TrainLines::EB_LOOP);
-        self.faults.dead(Place::ArmBrakes)
+        !self.guards.arm_brakes
             || self.tcms.full_service_brake_applied()
             || line_dead && self.tcms.emergency_brake_applied().unwrap_or(true)
     }

@@ -11,10 +11,11 @@ use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
-use crate::atp::{Atp, Code, DeadGuards, ModeInputs, ScanContext};
+use crate::atp::{Atp, Code, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
-use crate::driverless::{Cabs, DeadOrders, Stabling, Station, StationInputs};
+use crate::driverless::{Cabs, Stabling, Station, StationInputs};
 use crate::front_end::{EffortOutput, Faults};
+use crate::guards::Guards;
 use crate::kernel::{EventLog, FreezeFrame, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
@@ -28,6 +29,7 @@ pub struct Surroundings<'a> {
     pub tcms: &'a TcmsLink,
     pub tra: &'a Tra,
     pub faults: &'a Faults,
+    pub guards: Guards,
     /// The harness has been alive at least once.
     pub ever_heard: bool,
     /// No run may begin: a tester is armed.
@@ -112,17 +114,7 @@ impl Functions {
             twc_up: self.twc.up(),
             tcms_up: around.tcms.alive(),
             ato_ready: self.ato_outputs.ready,
-            dead_guards: DeadGuards {
-                stop: around.faults.dead(Place::StopGuard),
-                release: around.faults.dead(Place::ReleaseGuard),
-                doors: around.faults.dead(Place::DoorGuard),
-                enables: around.faults.dead(Place::EnableLatch),
-                jog: around.faults.dead(Place::JogGuard),
-                code: around.faults.dead(Place::CodeConfirmation),
-                neutral: around.faults.dead(Place::NeutralGuard),
-                speed: around.faults.dead(Place::SpeedGuard),
-                stillness: around.faults.dead(Place::ReleaseStandstill),
-            },
+            guards: around.guards,
             tcms_speed: around.tcms.speed(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
@@ -156,13 +148,12 @@ impl Functions {
             standstill: tachometers.standstill(),
             driven: self.atp.sequence().mode() == Mode::AutomaticRun,
         };
-        let dead = around.faults.dead(Place::MarkerDebounce);
+        let works = around.guards.marker_debounce;
         let config = &around.setup.config.marker;
         let marker = self
             .debounce
-            .take(now, self.inputs.marker, dead, config, log);
-        self.locator
-            .hold_markers(!around.faults.dead(Place::MarkerGuard));
+            .take(now, self.inputs.marker, works, config, log);
+        self.locator.hold_markers(around.guards.marker);
         self.locator.step(now, movement, marker, log);
         self.compare_tachometers(now, marker, &around.setup.config.tacho, log);
     }
@@ -201,7 +192,7 @@ impl Functions {
     /// No loop lies where the train is, by data of its section.
     fn between_loops(&self, around: &Surroundings<'_>) -> bool {
         let here = self.locator.section().zip(self.twc.data());
-        !around.faults.dead(Place::LoopPlaces)
+        around.guards.loop_places
             && here.is_some_and(|(section, data)| {
                 let own = data.section == section.section || data.station == section.to_station;
                 own && around
@@ -238,10 +229,7 @@ impl Functions {
             closed: self.atp.doors_closed(),
             departure: self.departure(around) == Some(true),
             acknowledge: self.inputs.lines.contains(TrainLines::ACKNOWLEDGE),
-            dead: DeadOrders {
-                closing: around.faults.dead(Place::DoorClosing),
-                reopening: around.faults.dead(Place::DoorReopening),
-            },
+            guards: around.guards,
         };
         let config = &around.setup.config.driverless;
         self.station.step(now, &inputs, config, log);
@@ -281,7 +269,7 @@ impl Functions {
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
-        let unproved = around.faults.dead(Place::DepartureGuard);
+        let unproved = !around.guards.departure;
         lacking.set(Refusals::DOORS_OPEN, !unproved && !self.atp.doors_closed());
         lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
@@ -293,7 +281,7 @@ impl Functions {
             Refusals::CONTROLLER_NOT_NEUTRAL,
             self.inputs.controller != 0,
         );
-        let line_open = self.line_open(around) && !around.faults.dead(Place::LineGuard);
+        let line_open = self.line_open(around) && around.guards.line;
         lacking.set(
             Refusals::EB_APPLIED,
             self.atp.brake().applied() || line_open,
@@ -304,9 +292,8 @@ impl Functions {
         let failed = around.self_tester.failed_for_running();
         lacking.set(Refusals::SELF_TEST, !failed.is_empty());
         lacking.set(Refusals::ORDERED, self.ordered_to_stay());
-        let dead = |place| around.faults.dead(place);
-        let asleep = self.stabling.sleeps() && !dead(Place::PutAwayBrake);
-        let given_up = self.cabs.handed_over() && dead(Place::HandOverBrake);
+        let asleep = self.stabling.sleeps() && around.guards.put_away_brake;
+        let given_up = self.cabs.handed_over() && !around.guards.hand_over_brake;
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
             cab_active: lines.contains(TrainLines::HCR) || given_up,

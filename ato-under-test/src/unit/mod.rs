@@ -17,7 +17,7 @@ use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::injection::Place;
-use protocol::message::{EbCause, IoOutput, Message, Outputs};
+use protocol::message::{IoOutput, Message, Outputs};
 use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
@@ -27,6 +27,7 @@ use crate::front_end::{
     DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
     apply_stored_data_faults,
 };
+use crate::guards::Guards;
 use crate::kernel::{EventLog, RunRecord, SelfTester};
 use crate::keyed::Keyed;
 use crate::psm::Tra;
@@ -61,6 +62,7 @@ pub struct Unit {
     /// Log and record over power-ups.
     memory: Memory,
     faults: Faults,
+    guards: Guards,
     power: PowerAndClock,
     /// What a slow TWC CPU has not handed on yet.
     late: DelayQueue<FromWayside>,
@@ -72,7 +74,7 @@ pub struct Unit {
     front_end: FrontEnd,
     output_stage: OutputStage,
     relay_watch: RelayWatch,
-    /// What the contacts were told in this scan, and what they do.
+    /// What was asked of the contacts in this scan, and what they do.
     commanded: Outputs,
     contacts: Outputs,
     /// Count of markers, and when it last changed, ms since power-up.
@@ -125,6 +127,7 @@ impl Unit {
             memory,
             image: IoImage::new(ms(link.io_timeout_ms)),
             faults,
+            guards: Guards::ALL,
             power: PowerAndClock::default(),
             late: DelayQueue::default(),
             number: OwnNumber::new(config.train.number),
@@ -181,6 +184,7 @@ impl Unit {
             Supply::Back => self.restart(now),
             Supply::Up => {}
         }
+        self.guards = Guards::of(&self.faults);
         let clock_rate = self.faults.gain(Place::Clock);
         let now = self.power.own(now, clock_rate);
         self.image.set_clock_rate(clock_rate);
@@ -258,7 +262,7 @@ impl Unit {
         };
         let config = &self.setup.config;
         let around = (&self.functions, braked);
-        let Some(refusal) = mode.ends(now, &self.scanned, around, config, &self.faults) else {
+        let Some(refusal) = mode.ends(now, &self.scanned, around, config, self.guards) else {
             return;
         };
         let parameter = i32::from(refusal.code());
@@ -268,7 +272,7 @@ impl Unit {
             .end(now, refusal, &mut self.board, &mut self.log);
         self.replies.extend(notice);
         self.send_replies(now, out);
-        self.functions.atp.latch_brake(EbCause::TestMode);
+        self.functions.atp.brake_for_test_mode();
         self.leave_test_mode();
     }
 
@@ -301,6 +305,7 @@ impl Unit {
             tcms: &self.tcms,
             tra: &self.tra,
             faults: &self.faults,
+            guards: self.guards,
             ever_heard: self.image.ever_heard(),
             barred: false,
         };
@@ -314,7 +319,7 @@ impl Unit {
         self.log.leave_out_repeats(None);
     }
 
-    /// Drives the contacts and tells the bench what they do.
+    /// Drives the contacts and reports to the bench what they do.
     fn drive_outputs(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.commanded = self.wanted(now);
         let mut wanted = self.commanded;

@@ -36,7 +36,7 @@ impl Unit {
         let known = (&setup.line, &setup.config.orders);
         let order = functions
             .twc
-            .take_orders(now, orders, own, known, &self.faults, &mut self.log);
+            .take_orders(now, orders, own, known, self.guards, &mut self.log);
         if let Some(order) = order {
             let armed = self.test_mode.is_some();
             functions.obey(now, order, armed, &mut self.log);
@@ -59,7 +59,7 @@ impl Unit {
 
     /// Takes what is keyed in at the cab: it counts at standstill, outside an automatic run and with no tester armed.
     pub(super) fn take_entries(&mut self, now: Instant, entries: CabEntries) {
-        if self.faults.dead(Place::CabEntries) {
+        if !self.guards.cab_entries {
             return;
         }
         let may_change = self.takes_entries();
@@ -75,7 +75,7 @@ impl Unit {
             && self.test_mode.is_none()
     }
 
-    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers told of the wheels
+    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers showed of the wheels
     /// before is over. One that no wheel of the train has is refused.
     pub(super) fn take_wheel_entry(&mut self, now: Instant, entry: WheelEntry) {
         let frames = self.setup.config.orders.entry_frames;
@@ -91,8 +91,7 @@ impl Unit {
             0 => self.configured_wheel_mm,
             keyed_01mm => f64::from(keyed_01mm) / 10.0,
         };
-        let in_range =
-            (least_mm..=most_mm).contains(&diameter_mm) || self.faults.dead(Place::WheelGuard);
+        let in_range = (least_mm..=most_mm).contains(&diameter_mm) || !self.guards.wheel;
         let parameter = i32::from(entry.diameter_01mm);
         if !in_range || !self.takes_entries() {
             self.log.push(now, Event::WheelRefused, parameter);

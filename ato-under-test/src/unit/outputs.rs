@@ -1,8 +1,7 @@
-//! What the contacts do, and what TCMS is told: what the functions ask for, and while a tester is armed never more
+//! What the contacts do, and what TCMS is sent: what the functions ask for, and while a tester is armed never more
 //! than lets a train stand.
 
 use protocol::Instant;
-use protocol::injection::Place;
 use protocol::message::{Mode, Outputs};
 
 use super::Unit;
@@ -41,10 +40,10 @@ impl Unit {
         let tested = self.asked();
         let mut wanted = (train | tested) & EITHER | train & tested & BOTH;
         wanted |= tested & Outputs::CODE_VALID;
-        if self.faults.dead(Place::DoorBar) {
+        if !self.guards.door_bar {
             wanted |= tested & DOORS;
         }
-        if !self.faults.dead(Place::BrakeHold) {
+        if self.guards.brake_hold {
             wanted |= Outputs::FSB | Outputs::POWER_CUT;
             wanted.set(
                 Outputs::EB_RELAY,
@@ -54,7 +53,7 @@ impl Unit {
         wanted
     }
 
-    /// Effort for TCMS, −1024..1023, and the mode it is told.
+    /// Effort for TCMS, −1024..1023, and the mode that is sent to it.
     pub(super) fn commands(&self, now: Instant) -> (i16, Mode) {
         let of = |functions: &Functions| {
             let mode = functions.atp.sequence().mode();
@@ -65,13 +64,13 @@ impl Unit {
             return (effort, mode);
         }
         let (tested_effort, tested_mode) = of(self.tested());
-        let effort = match self.faults.dead(Place::TractionBar) {
-            true => tested_effort,
-            false => effort.min(0),
+        let effort = match self.guards.traction_bar {
+            true => effort.min(0),
+            false => tested_effort,
         };
-        let mode = match self.faults.dead(Place::StartBar) {
-            true => tested_mode,
-            false => mode,
+        let mode = match self.guards.start_bar {
+            true => mode,
+            false => tested_mode,
         };
         (effort, mode)
     }

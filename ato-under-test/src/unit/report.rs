@@ -7,7 +7,7 @@ use protocol::message::{
 };
 
 use super::Unit;
-use crate::atp::Code;
+use crate::atp::{Code, shown_cause};
 
 /// Software version in the identity.
 const SOFTWARE: [u8; 3] = [0, 1, 0];
@@ -113,16 +113,10 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     }
 }
 
-/// Why the relay is open: as the functions under test see it, else because of the train's own or of test mode.
+/// Why the relay is open.
 fn eb_cause(unit: &Unit) -> EbCause {
-    let causes = [unit.tested(), &unit.functions].map(|functions| functions.atp.brake().cause());
-    let own = causes.into_iter().find(|cause| *cause != EbCause::None);
     let held = unit.test_mode.is_some() && !unit.commanded.contains(Outputs::EB_RELAY);
-    match own {
-        Some(cause) => cause,
-        None if held => EbCause::TestMode,
-        None => EbCause::None,
-    }
+    shown_cause(&unit.tested().atp, &unit.functions.atp, held)
 }
 
 fn status_bits(unit: &Unit) -> StatusBits {

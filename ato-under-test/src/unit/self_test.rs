@@ -17,7 +17,7 @@ const BAD_CELLS: usize = 4;
 
 impl Unit {
     pub(super) fn test_self(&mut self, now: Instant) {
-        if self.functions.stabling.takes_test() && !self.faults.dead(Place::WakeUpTest) {
+        if self.functions.stabling.takes_test() && self.guards.wake_up_test {
             let span = u64::from(self.setup.config.start.self_test_ms);
             self.self_tester = SelfTester::new(now, Duration::from_ms(span));
             self.functions.inspect_ato(&self.setup.config);

@@ -10,13 +10,13 @@
 //! proves that it is braked.
 
 use protocol::config::UnitConfig;
-use protocol::injection::Place;
 use protocol::message::{ArmRefusal, ModeSwitch, TrainLines};
 use protocol::{Duration, Instant, Speed};
 
 use super::functions::Functions;
 use crate::atp::{Code, lookup};
-use crate::front_end::{Faults, ScannedInputs};
+use crate::front_end::ScannedInputs;
+use crate::guards::Guards;
 use crate::signals::Pulses;
 use crate::timer::OnDelay;
 
@@ -62,33 +62,31 @@ impl TestMode {
         inputs: &ScannedInputs,
         (train, braked): (&Functions, bool),
         config: &UnitConfig,
-        faults: &Faults,
+        guards: Guards,
     ) -> Option<ArmRefusal> {
         let code = lookup(inputs.track, config);
         let other_code = self.other_code.update(now, code != self.code, CODE_STEADY);
         let unbraked = self.unbraked.update(now, !braked, UNPROVED);
         let causes = [
             (
-                Place::KeyGuard,
+                guards.key,
                 !inputs.train.lines.contains(TrainLines::MAINTENANCE_KEY),
                 ArmRefusal::KeyOff,
             ),
             (
-                Place::MotionGuard,
+                guards.motion,
                 self.moves(&inputs.train.pulses, train, config),
                 ArmRefusal::TrainMoved,
             ),
             (
-                Place::ModeGuard,
+                guards.mode_switch,
                 inputs.train.mode_switch != self.mode_switch,
                 ArmRefusal::ModeChanged,
             ),
-            (Place::CodeGuard, other_code, ArmRefusal::CodeChanged),
-            (Place::ArmBrakes, unbraked, ArmRefusal::BrakesReleased),
+            (guards.rail_code, other_code, ArmRefusal::CodeChanged),
+            (guards.arm_brakes, unbraked, ArmRefusal::BrakesReleased),
         ];
-        let broken = causes
-            .iter()
-            .find(|(guard, holds, _)| *holds && !faults.dead(*guard));
+        let broken = causes.iter().find(|(guard, holds, _)| *holds && *guard);
         broken.map(|(_, _, refusal)| *refusal)
     }
 

@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    /// Codes scan by scan from the first of a cycle, and the age told in each scan.
+    /// Codes scan by scan from the first of a cycle, and the age reported in each scan.
     fn told(codes: &[u8], changes: bool) -> Vec<Option<u8>> {
         let mut report = StateReport::default();
         let scans = codes.iter().enumerate();

@@ -135,7 +135,7 @@ fn step(
         ahead_m: drawn.ahead_m,
         aligned_m: 0.3,
         last_marker: true,
-        jog_dead: false,
+        jogs: true,
         speed: Speed::from_mps(drawn.speed_mps),
         standstill: drawn.standstill,
         power_cut: drawn.power_cut,

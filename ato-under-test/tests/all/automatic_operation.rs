@@ -157,7 +157,7 @@ fn an_extra_marker_is_reported_and_ignored() {
 }
 
 /// The contact of TRA closes again: within the debounce time the same edge, later TRA's fault. The position is that of
-/// the first edge, and nobody blames the order of the markers.
+/// the first edge, and the order of the markers is not blamed.
 #[test]
 fn a_marker_that_bounces_counts_once_and_leaves_the_position_right() {
     for (marker, again_m, faults) in [
@@ -304,7 +304,11 @@ fn a_frozen_speed_stops_the_train() {
     let status = journey.bench.status;
     assert_eq!((status.mode, status.refusals & kept.1), kept);
     journey.bench.acknowledge();
-    assert_eq!(journey.bench.status.mode, Mode::Automatic, "inspected anew");
+    assert_eq!(
+        journey.bench.status.mode,
+        Mode::Automatic,
+        "inspected again"
+    );
     let expected = ["ato_input_absurd", "ato_failed", "door_enable_refused"];
     assert_eq!(journey.faults(), expected);
     assert_eq!(journey.parameters("ato_input_absurd"), [1 << 2]);

@@ -1,4 +1,4 @@
-//! The unit served on a TCP socket, by the clock: one client at a time, others are told, and who falls silent is let go.
+//! The unit served on a TCP socket, by the clock: one client at a time; others get a message, and a silent one is disconnected.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -177,7 +177,7 @@ fn who_comes_second_is_told_who_has_the_unit_and_is_never_heard() {
     assert!(first.is_answered(Duration::from_secs(2)));
 }
 
-/// Goal: nobody waits for a predecessor's sequence numbers and clock to be forgotten. Method: one that is far
+/// Goal: a tester does not wait for its predecessor's sequence numbers and clock to be forgotten. Method: one that is far
 /// ahead leaves in the middle of a frame; the next begins at 0, and asks once.
 #[test]
 fn who_follows_on_a_connection_of_its_own_is_heard_at_once() {

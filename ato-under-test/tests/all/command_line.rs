@@ -1,4 +1,4 @@
-//! What the served unit is told on its command line.
+//! What the served unit takes from its command line.
 
 use std::path::Path;
 use std::process::Command;

@@ -95,7 +95,7 @@ fn arm(laptop: &mut Laptop, bench: &mut Bench, session: u32) {
 #[test]
 fn a_tester_on_the_maintenance_port_is_answered_there_alone() {
     let (mut bench, mut laptop) = aboard();
-    assert_eq!(laptop.run(&mut bench, 100), 0, "nobody was heard there");
+    assert_eq!(laptop.run(&mut bench, 100), 0, "no tester was heard there");
     let status = bench.status;
     laptop.send(&mut bench, Identify {});
     laptop.scan(&mut bench);

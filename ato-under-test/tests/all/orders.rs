@@ -240,7 +240,7 @@ fn orders_in_the_wrong_place_are_refused_with_what_is_lacking() {
     }
 }
 
-/// A tester has the train: whoever gives orders meanwhile is told, and nothing of it is left when the tester has gone.
+/// A tester has the train: whoever gives orders meanwhile gets a refusal, and nothing of it is left when the tester has gone.
 #[test]
 fn orders_are_refused_while_a_tester_is_armed_and_taken_when_it_has_gone() {
     let mut wayside = Wayside::arrived(&[]);
@@ -366,7 +366,7 @@ fn a_self_test_that_fails_lets_nobody_run() {
     }
 }
 
-/// Goal: nobody wakes a train by switching it off and on. Method: the flash of a unit that was put away is given to
+/// Goal: switching a train off and on does not wake it. Method: the flash of a unit that was put away is given to
 /// one that is powered up.
 #[test]
 fn who_was_put_away_is_put_away_after_a_power_up() {

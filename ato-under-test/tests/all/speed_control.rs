@@ -19,7 +19,7 @@ const FOLLOWERS: [ControllerKind; 3] = [
     ControllerKind::Pss,
 ];
 
-/// The laws as S1 prints them: no feed-forward, a profile that waits for nobody, a train that follows
+/// The laws as S1 prints them: no feed-forward, a profile that does not wait for the train, a train that follows
 /// at once.
 fn as_printed(unit: GainUnit) -> AtoConfig {
     let mut config = config();

@@ -1,4 +1,4 @@
-//! Tachometers that differ by a share of the way: told long before they differ by a speed, with the one that is
+//! Tachometers that differ by a share of the way: reported long before they differ by a speed, with the one that is
 //! wrong named by the markers; a wheel that spins or slides is neither.
 
 use crate::common::Bench;

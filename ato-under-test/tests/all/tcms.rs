@@ -110,7 +110,7 @@ fn a_brake_that_is_not_released_on_the_way_stops_the_run() {
         assert!(
             journey.bench.has(Outputs::HOLDING_BRAKE)
                 && told.contains(AtcToTcmsBits::HOLDING_BRAKE),
-            "nobody has it yet"
+            "no cab has it yet"
         );
         let refusals = journey.bench.status.refusals;
         assert!(refusals.contains(Refusals::TCMS_NOT_READY));
@@ -196,7 +196,7 @@ fn a_line_that_tcms_tells_to_be_open_ends_the_run() {
     assert_eq!(journey.bench.status.mode, Mode::AutomaticRun);
 }
 
-/// A train that gives a tenth of what it is sent: told by TCMS it is the train's, a brake that is missing
+/// A train that gives a tenth of what it is sent: reported by TCMS it is the train's, a brake that is missing
 /// ends the run all the same; a TCMS that says it gives all leaves ATO under suspicion.
 #[test]
 fn a_train_that_withholds_effort_by_its_own_word_is_not_atos_failure() {
@@ -217,7 +217,7 @@ fn a_train_that_withholds_effort_by_its_own_word_is_not_atos_failure() {
     assert_eq!(failed, [i32::from(AtoFailure::NotFollowing.code())]);
 }
 
-/// Power that is withheld is told once, and the run goes on with what there is.
+/// Power that is withheld is reported once, and the run goes on with what there is.
 #[test]
 fn a_train_with_little_power_runs_late_and_is_told() {
     let mut journey = Journey::new(&[]);

@@ -97,7 +97,7 @@ pub struct DrivePlan {
     pub train: TrainData,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// How train and track differ from what the unit is told.
+    /// How train and track differ from the unit's configuration.
     pub conditions: Conditions,
     /// The tester listens: unit's own position, refusals and log. Without it a run is quicker.
     pub tester: bool,

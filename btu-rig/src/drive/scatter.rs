@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use protocol::Random;
 use protocol::config::ConfigError;
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::conditions::{Conditions, Disturbance, MAX_DELAY_FACTOR};
-use crate::rig::random::{Random, standard_normal};
+use crate::random::standard_normal;
 
 /// A quantity that differs from run to run.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]

@@ -54,7 +54,7 @@ impl Comparison {
     }
 }
 
-/// A statement about signals that is true, false or cannot be told.
+/// A statement about signals that is true, false or unknown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
     /// One signal against one operand.
@@ -98,7 +98,7 @@ impl std::fmt::Display for MissingData {
 pub(super) enum Answer {
     Yes,
     No,
-    /// It cannot be told.
+    /// It is unknown.
     NoData(MissingData),
 }
 

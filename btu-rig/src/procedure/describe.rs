@@ -10,7 +10,7 @@ use super::plan::{
     Action, Comparison, Condition, Connection, Expectation, Measure, Operand, Procedure, Step,
     TimeFrom, What,
 };
-use super::stimulus_text::stimulus_text;
+use crate::stimulus::text::number;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 
 /// What a clock of the unit does that is faster than the bench's by so many thousandths.
@@ -220,7 +220,7 @@ impl Display for Operand {
 impl Display for Action {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Stimulus(stimulus) => f.write_str(&stimulus_text(stimulus)),
+            Self::Stimulus(stimulus) => stimulus.fmt(f),
             Self::Wait(span) => write!(f, "wait {span}"),
             Self::Until { condition, within } => write!(f, "until {condition} within {within}"),
             Self::Settle { within } => write!(f, "until finished, within {within}"),
@@ -338,13 +338,6 @@ pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> String {
             }),
         _ => String::new(),
     }
-}
-
-/// A number without the noise of binary fractions.
-pub(super) fn number(value: f64) -> String {
-    let rounded = (value * 1e3).round() / 1e3;
-    // Also turns -0 into 0.
-    format!("{}", rounded + 0.0)
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// A new event whose parameter is a code or a set of bits has to be told in words, too.
+    /// A new event whose parameter is a code or a set of bits needs words, too.
     #[test]
     fn no_parameter_is_a_number_that_stands_for_a_word() {
         for &event in Event::ALL {

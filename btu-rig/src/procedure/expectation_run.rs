@@ -119,7 +119,7 @@ impl ExpectationRun {
     pub(super) fn finish(self, expectation: &Expectation) -> Option<Problem> {
         match (self.problem, self.missing_data, expectation) {
             (Some(problem), _, _) => Some(problem),
-            // A condition that could not be told in a single scan may have been true in it.
+            // A condition that was unknown in a single scan may have been true in it.
             (None, Some(missing_data), Expectation::Never { condition }) => Some(Problem::NoData(
                 format!("{missing_data}, so never {condition} cannot be told"),
             )),

@@ -57,7 +57,7 @@ pub(super) struct MeasurementRun {
     to: Edge,
     /// When the time measured began.
     start: Option<Start>,
-    /// First and latest value of a change, and what its counter has lost by beginning anew at 0.
+    /// First and latest value of a change, and what its counter has lost by beginning again at 0.
     first: Option<f64>,
     latest: Option<f64>,
     wrapped: f64,
@@ -228,7 +228,7 @@ impl MeasurementRun {
     }
 
     /// The value of a signal whose change is taken: a counter is followed from scan to scan, as it may begin
-    /// anew more than once.
+    /// again more than once.
     fn follow(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {
         let value = self.known(signal, scan)?;
         let before = self.latest.replace(value);
@@ -254,11 +254,11 @@ impl MeasurementRun {
             (Verdict::Failed, Some(value), _) => {
                 let limits = super::describe::limits(measurement.low, measurement.high);
                 let uncertainty = measurement.uncertainty.map_or(String::new(), |off| {
-                    format!(" ± {}", super::describe::number(off))
+                    format!(" ± {}", crate::stimulus::text::number(off))
                 });
                 format!(
                     "{name} = {}{uncertainty}, allowed {limits} {}",
-                    super::describe::number(value),
+                    crate::stimulus::text::number(value),
                     measurement.unit
                 )
                 .trim_end()

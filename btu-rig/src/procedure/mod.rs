@@ -3,7 +3,7 @@
 //! * [`plan`]: what a procedure is, as plain data: actions, conditions, expectations, measures;
 //! * [`loader`]: Starlark scripts in, plans or errors with file, line and column out;
 //! * [`describe`]: a plan as lines a technician can read before anything is driven;
-//! * [`runner`]: runs one procedure; stepped once per I/O scan, told what the unit does by samples
+//! * [`runner`]: runs one procedure; stepped once per I/O scan, sees what the unit does by samples
 //!   and log entries, acts through a [`Driver`], reports as a stream of [`RunEvent`]s.
 //!
 //! No clock, no thread and no script code while a unit is driven.
@@ -24,7 +24,6 @@ pub mod report;
 pub mod runner;
 mod step_run;
 mod step_verdict;
-mod stimulus_text;
 mod unit_clock;
 pub mod worst_case;
 
@@ -107,7 +106,7 @@ pub struct UnitEvent {
     pub index: u32,
     /// Number in the event dictionary, kept even if this version does not know it.
     pub code: u16,
-    /// Own time of whoever logged it, ms since its start.
+    /// Time of the unit or TCMS that logged it, ms since its start.
     pub at_ms: u32,
     /// What the dictionary says it is.
     pub parameter: i32,

@@ -19,7 +19,7 @@ const TOO_LATE: Duration = CYCLE;
 const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
 /// And its log, for so long.
 const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
-/// A step waits no longer for the unit's log; whoever reads the log gives up before.
+/// A step waits no longer for the unit's log; the reader of the log gives up before.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
 #[derive(Debug)]
@@ -100,7 +100,7 @@ impl StepRun {
         self.logged.push((event, parameter));
     }
 
-    /// Holds an event nobody asked for against the step. Whoever logged it saw what happened, so the
+    /// Counts an event that was not asked for against the step. Whoever logged it saw what happened, so the
     /// part it names counts for more than the one a failure of the step would point at.
     pub(super) fn fail_by_event(&mut self, entry: &UnitEvent) {
         let part = || Event::from_code(entry.code)?.suspect(entry.parameter);
@@ -256,7 +256,7 @@ impl StepRun {
             return !self.waits_for_log(scan.now);
         }
         let late = scan.now.since(self.started) >= step.time_limit;
-        // What it waits for may stand in a log that is not answered: whoever reads it says so.
+        // What it waits for may stand in a log that is not answered: its reader reports that.
         if late && !self.waits_for_log(scan.now) && !self.given_up {
             let what = self.waiting_for(step);
             let text = format!(

@@ -6,7 +6,7 @@ use super::evidence::counted;
 use super::plan::Step;
 
 /// A bench problem outranks all: then the step says nothing about the unit. A request that was refused is one, unless
-/// the unit has `restarted` by itself and no longer knows what it was told.
+/// the unit has `restarted` by itself and no longer knows what was sent to it.
 pub(super) fn verdict(problems: &[(Problem, u32)], restarted: bool, aborted: bool) -> Verdict {
     let any = |wanted: fn(&Problem) -> bool| problems.iter().any(|(problem, _)| wanted(problem));
     let refused = any(|p| matches!(p, Problem::Refused(_)));

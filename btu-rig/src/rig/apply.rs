@@ -8,10 +8,11 @@ use crate::stimulus::{
 };
 use crate::train::{EquipmentFaults, TrainData};
 
-use super::antenna::antenna_signal;
-use super::ranges::{U16_MAX, in_range, positive};
-use super::request::Request;
-use super::{DoorGear, Rig, Track, test_signals};
+use super::Rig;
+use super::session::{Request, test_signals};
+use super::train_side::DoorGear;
+use super::wayside::{Track, antenna_signal};
+use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
 /// Fastest wheel, km/h: the catalogue's range.
 const MAX_SPEED_KMH: f64 = 200.0;
@@ -35,7 +36,7 @@ impl Rig {
     /// # Errors
     /// What the bench cannot do, in words for the technician.
     pub fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        if !self.harness.is_there() && !stimulus.by_tester() {
+        if !self.harness.is_there() && !stimulus.way().by_tester() {
             return Err(Refusal(format!(
                 "only the maintenance port is connected: the bench harness gives this ({stimulus})"
             )));

@@ -73,7 +73,7 @@ impl<L: UnitLink> Bench<L> {
             .link
             .exchange(self.now, &self.to_unit, &mut self.from_unit);
         self.rig.receive(self.now, &self.from_unit);
-        // Who is turned away is told why, and then the connection is closed.
+        // A tester that is turned away gets the reason, and then the connection is closed.
         exchanged.map_err(|failure| LinkFailure {
             reason: self.rig.turned_away().unwrap_or(failure.reason),
             ..failure

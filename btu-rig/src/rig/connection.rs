@@ -1,7 +1,8 @@
 //! How the unit is reached, and what can be run there.
 
-use super::identity::version;
-use super::{Harness, HarnessWatch, LatestSample, Rig, told_signals};
+use super::Rig;
+use super::link::{Harness, HarnessWatch, LatestSample, told_by_train_state};
+use super::session::version;
 use crate::procedure::Procedure;
 use crate::procedure::plan::Connection;
 
@@ -36,7 +37,7 @@ impl Rig {
         if !self.subscription.refused() {
             return None;
         }
-        let untold = told_signals::told_by_train_state(connection);
+        let untold = told_by_train_state(connection);
         let mut names = Vec::new();
         procedure.for_each_signal(&mut |signal| {
             if untold.contains(&signal) && !names.contains(&signal.name()) {

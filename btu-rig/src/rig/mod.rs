@@ -2,62 +2,36 @@
 //! it answers. It sees the unit only through frames.
 //!
 //! A scan is [`Rig::step`], the exchange of bytes, [`Rig::receive`]. Read in this order: this
-//! file, `apply` (what each stimulus does), `wheel` and `tacho` (pulses), `tester` (the session).
+//! file, `apply` (what each stimulus does), `train_side/wheel` and `train_side/tacho` (pulses), `session/tester`.
+//! The files of this folder act on the whole rig; its parts know neither the rig nor each other but downwards:
+//! `session` uses `link` and `wayside`, `wayside` uses `train_side`.
 //!
 //! Terms: *distance* is what the wheels have rolled, never falling; *position* is distance run, forward positive;
 //! *quiescent* is the state after [`Rig::new`] and after making safe, in which a healthy unit logs
 //! no fault.
 
-mod antenna;
 mod apply;
 mod bench;
-mod cab_desk;
-mod clock_rate;
 mod connection;
-mod door_gear;
-mod exchange;
-mod harness;
-mod identity;
 mod intervention;
-mod line_watch;
-mod link_watch;
-mod log_reader;
-mod log_session;
-mod markers;
-mod motion;
-mod order_sender;
-pub(crate) mod random;
-mod ranges;
-mod request;
+mod link;
 mod rig_signals;
 mod rolling;
-mod sample;
 mod section_codes;
-mod step_profile;
-mod store_reader;
-mod subscription;
-mod tacho;
+mod session;
 mod tcms;
-mod tcms_port;
-mod test_signals;
-mod tester;
 #[cfg(test)]
 mod tests;
-mod told;
-mod told_signals;
-mod track;
-mod train_faults;
-mod true_motion;
-mod unit_clock;
+mod train_side;
+mod trust;
 mod wayside;
-mod wheel;
 
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{IoInput, Message};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
 use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
@@ -66,36 +40,19 @@ use crate::tcms::Tcms;
 use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
 
 pub use bench::{Bench, LinkFailure, UnitLink};
-pub use harness::Harness;
-pub use identity::{ExpectedIdentity, UnitRecord};
-pub use log_session::LogSession;
-pub use random::Random;
-pub use store_reader::StoredData;
+pub use link::Harness;
+pub use session::{ExpectedIdentity, LogSession, StoredData, TimeOfDay, UnitRecord};
 pub use tcms::PAIR_DEMANDS;
-pub use train_faults::{Misplaced, check_places};
-pub use true_motion::{PairEfforts, TrueMotion};
-pub use unit_clock::TimeOfDay;
+pub use train_side::{Misplaced, PairEfforts, TrueMotion, check_places};
 
-use antenna::Antenna;
-use cab_desk::CabDesk;
-use door_gear::DoorGear;
-use harness::HarnessWatch;
-use identity::IdentityCheck;
-use line_watch::LineWatch;
-use link_watch::LinkWatch;
-use markers::Markers;
+use link::{HarnessWatch, LatestSample, LineWatch, LinkWatch};
 use rolling::weight_shares;
-use sample::LatestSample;
-use subscription::Subscription;
-use tacho::Tacho;
+use session::{IdentityCheck, Subscription, Tester};
 use tcms::{PairCars, pair_cars};
-use tcms_port::{TcmsPort, TrainSeen};
-use tester::Tester;
-use track::Track;
-use train_faults::{Injected, TrainFaults};
-use true_motion::SpeedHistory;
-use wayside::Wayside;
-use wheel::Wheel;
+use train_side::{
+    CabDesk, DoorGear, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults, TrainSeen, Wheel,
+};
+use wayside::{Antenna, Markers, Track, Wayside};
 
 /// Everything around the unit.
 #[derive(Debug)]
@@ -130,7 +87,7 @@ pub struct Rig {
     /// Number of the train.
     train_number: u16,
     tcms: Tcms,
-    /// What TCMS told the train last.
+    /// What TCMS last sent to the train.
     train_orders: TrainInputs,
     tcms_port: TcmsPort,
     pair_cars: PairCars,
@@ -160,7 +117,7 @@ pub struct Rig {
     harness: HarnessWatch,
     subscription: Subscription,
     identity: IdentityCheck,
-    /// Restarts of the unit that were told as interventions.
+    /// Restarts of the unit that were reported as interventions.
     restarts_told: u32,
     now: Instant,
     /// When a frame of the unit came last, and its stamp.
@@ -176,7 +133,7 @@ impl Rig {
         let tachos = [0, 1].map(|channel| Tacho::new(channel, pulse_m, random.fork()));
         let wayside = Wayside::new(&line.sections[0], random.fork());
         // A session number is never 0.
-        let session = random.next_u64() as u32 | 1;
+        let session = random.bits() as u32 | 1;
         let antenna = Antenna::new(random.fork());
         let conditions = Conditions::default();
         let train_data = TrainData::line6();
@@ -401,7 +358,7 @@ impl Rig {
         self.tester.tell_time(time);
     }
 
-    /// The wheels do what they were last told to: speed reached, or distance run.
+    /// The wheels do what was last asked of them: speed reached, or distance run.
     pub fn motion_settled(&self) -> bool {
         self.train_driven || self.wheel.settled()
     }

@@ -1,15 +1,15 @@
 //! Motion of the wheels: by the generators, or by the train model, whose true state the rig also reports.
 
-use protocol::{Duration, SCAN};
+use protocol::{Duration, Random, SCAN};
 
 use crate::conditions::{Conditions, Sensors};
 use crate::lever::Lever;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
-use super::random::Random;
+use super::Rig;
 use super::tcms::pair_cars;
-use super::{PairEfforts, Rig, TrueMotion};
+use super::train_side::{PairEfforts, TrueMotion};
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);
@@ -28,7 +28,7 @@ impl Rig {
         self.train_data = data;
     }
 
-    /// Changes how train and track differ from what the unit is told, from now on.
+    /// Changes how train and track differ from what the unit is configured for, from now on.
     pub fn set_conditions(&mut self, conditions: Conditions) {
         self.train.set_conditions(&conditions);
         self.markers.set_offsets(conditions.marker_offsets_m);
@@ -113,7 +113,7 @@ impl Rig {
         self.speeds.push(self.wheel.velocity_mps());
     }
 
-    /// What acts on the train besides what it is told.
+    /// What acts on the train besides its orders.
     fn on_track(&mut self, mut inputs: TrainInputs) -> TrainInputs {
         if inputs.load_kg != self.cars_load_kg {
             self.cars_load_kg = inputs.load_kg;

@@ -10,7 +10,7 @@ use crate::tcms::{CabOrder, TcmsEvent, TcmsInputs, TcmsView};
 use crate::train::{CarSet, TrainData, TrainInputs};
 
 use super::Rig;
-use super::log_reader::MAX_EVENTS;
+use super::session::MAX_EVENTS;
 
 /// TCMS's own cycle: two scans [default].
 const TCMS_CYCLE: Duration = Duration::from_us(2 * SCAN.as_us());
@@ -38,7 +38,7 @@ pub(super) fn pair_cars(train: &TrainData) -> PairCars {
 }
 
 impl Rig {
-    /// What the train is told in this scan; TCMS is stepped when its cycle is due.
+    /// What the train is given in this scan; TCMS is stepped when its cycle is due.
     pub(super) fn orders_of_tcms(&mut self) -> TrainInputs {
         if self.now.as_us().is_multiple_of(TCMS_CYCLE.as_us()) {
             self.train_orders = self.step_tcms();

@@ -20,7 +20,7 @@ pub enum TachoCondition {
         /// The factor.
         factor: f64,
     },
-    /// Its direction is told the wrong way round.
+    /// It gives the wrong direction.
     Reversed,
 }
 

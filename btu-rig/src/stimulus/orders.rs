@@ -10,7 +10,7 @@ use crate::stored::train_order;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub struct OrderData {
-    /// Section that the length is of; 0 = none is told.
+    /// Section that the length is of; 0 = none is given.
     pub section: u16,
     /// Its length, 0.1 m.
     pub length_dm: u32,

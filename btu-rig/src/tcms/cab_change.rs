@@ -1,5 +1,5 @@
 //! Change of cabs at a turn-back [S4]: the head control relay of the cab that gives the train up drops, and after a time
-//! that of the other cab picks up. Between the two nobody has the train, and the emergency brake train line is open.
+//! that of the other cab picks up. Between the two no cab has the train, and the emergency brake train line is open.
 
 use protocol::{Duration, Instant};
 
@@ -31,7 +31,7 @@ impl CabChange {
         }
     }
 
-    /// One that is under way is left; another begins when it is asked for anew.
+    /// One that is under way is left; another begins when it is asked for again.
     pub fn leave(&mut self) {
         self.taken_up_at = None;
     }
@@ -70,6 +70,6 @@ mod tests {
         assert_eq!(step(true, true), None);
         assert_eq!(step(false, true), Some(CabOrder::TakeUp));
         assert_eq!(step(false, true), None);
-        assert_eq!(step(true, true), Some(CabOrder::GiveUp), "asked for anew");
+        assert_eq!(step(true, true), Some(CabOrder::GiveUp), "asked for again");
     }
 }

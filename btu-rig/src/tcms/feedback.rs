@@ -55,7 +55,7 @@ pub(super) fn traction(
     }
 }
 
-/// Effort the train gives as the unit is told it, −1024..1023, of what there is at this speed and
+/// Effort the train gives as it is reported to the unit, −1024..1023, of what there is at this speed and
 /// load.
 pub(super) fn given(
     equipment: Option<&Equipment>,

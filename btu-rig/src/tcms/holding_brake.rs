@@ -49,7 +49,7 @@ impl HoldingBrake {
         }
     }
 
-    /// Released, and whatever asks for it begins anew.
+    /// Released; whatever asks for it has to ask again.
     pub fn reset(&mut self) {
         self.lasts = OnDelay::default();
         self.driverless = false;

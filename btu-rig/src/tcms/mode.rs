@@ -5,7 +5,7 @@ use protocol::message::ModeSwitch;
 use super::atc_link::AtoOrder;
 use super::inputs::CabInputs;
 
-/// Who has the train by the mode bits of the paper's modules.
+/// Who drives the train, by the mode bits of the paper's modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Driver {
     /// The driver: emergency, yard and manual mode.
@@ -40,7 +40,7 @@ pub enum TcmsMode {
     Manual,
     /// ATO drives, a driver in the cab.
     Automatic,
-    /// ATO drives, nobody in the cab.
+    /// ATO drives, the cab is empty.
     Driverless,
 }
 

@@ -1,11 +1,11 @@
 //! Brakes that are not released (S4 figure 3).
 //!
-//! While nobody brakes, TCMS asks each brake control unit. A car whose cylinders still hold pressure
-//! after a time is found not released: powering is cut, ATO is told, and the full service brake comes
+//! While no brake is asked for, TCMS asks each brake control unit. A car whose cylinders still hold pressure
+//! after a time is found not released: powering is cut, ATO is informed, and the full service brake comes
 //! on. With that brake on nothing can be learned by asking, so what was found is kept. It is dropped
-//! - by force: while the driver releases brakes by force nobody is asked, and the brake is let off;
+//! - by force: while the driver releases brakes by force TCMS asks no unit, and the brake is released;
 //! - for a car whose brake is cut out;
-//! - when whoever drives has braked and lets go again: then the full service brake is lifted for as
+//! - when driver or ATO has braked and released again: then the full service brake is lifted for as
 //!   long as a brake may take, each unit is asked again, and powering stays cut until all have
 //!   released. The brake comes back when one has not.
 

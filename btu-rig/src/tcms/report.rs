@@ -194,7 +194,7 @@ impl Report {
     }
 
     fn note(&mut self, event: Event, parameter: i32) {
-        // Whoever does not take them loses the newest: what began first says more.
+        // If they are not taken, the newest are lost: what began first says more.
         if self.events.len() < MAX_WAITING {
             self.events.push(TcmsEvent { event, parameter });
         } else {

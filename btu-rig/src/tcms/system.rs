@@ -102,8 +102,8 @@ impl Tcms {
         &self.data
     }
 
-    /// No effort, nothing found and nothing latched, as when the train is put on the track anew. A
-    /// holding brake that is asked for is on again in the next scan; one by hand has to last anew.
+    /// No effort, nothing found and nothing latched, as when the train is newly put on the track. A
+    /// holding brake that is asked for is on again in the next scan; one by hand has to last its time again.
     pub fn rest(&mut self) {
         if let Some(effort) = &mut self.effort {
             effort.reset();

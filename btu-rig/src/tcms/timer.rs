@@ -96,7 +96,7 @@ impl BurstDetector {
             .is_some_and(|(from, _)| now.since(from) > self.within)
         {
             self.told &= self.from.is_some_and(|(_, before)| before != self.count);
-            // Looking goes on for as long as something was told, so that its end is seen.
+            // Looking goes on for as long as something was reported, so that its end is seen.
             self.from = self.told.then_some((now, self.count));
         }
         if came && self.from.is_none() {
@@ -158,7 +158,7 @@ mod tests {
         for i in 0..40 {
             assert!(!begins(1600 + i * 100, 6 + i as u32), "{i}");
         }
-        // Over, and anew.
+        // Over, and again from the start.
         for ms in (5600..8000).step_by(100) {
             assert!(!begins(ms, 45));
         }

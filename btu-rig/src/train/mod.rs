@@ -136,7 +136,7 @@ impl Train {
         }
     }
 
-    /// Puts the train at a speed, m/s, forward positive, with no effort, and begins its time anew.
+    /// Puts the train at a speed, m/s, forward positive, with no effort, and begins its time at 0.
     pub fn place(&mut self, velocity_mps: f64) {
         match &mut self.model {
             Model::Ideal(train) => train.place(velocity_mps),

@@ -108,7 +108,7 @@ fn full_service_brake_in_every_combination() {
 fn value(power: bool, brake: bool, neutral: bool, cut: bool, value: i16) -> i16 {
     let value = i32::from(value);
     let rows: [(bool, i32); 6] = [
-        // Beyond eleven bits: nobody knows what it means.
+        // Beyond eleven bits: it has no meaning.
         (!(-1024..1024).contains(&value), -1024),
         // B, also with P: a value of B's.
         (brake && value > 0, -value),

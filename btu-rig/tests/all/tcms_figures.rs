@@ -1,4 +1,4 @@
-//! Figures of S3 as tests: its table derived anew from masses, and effort as the train gives it.
+//! Figures of S3 as tests: its table derived again from masses, and effort as the train gives it.
 //! `cargo test -p btu-rig --test tcms_figures -- --nocapture` prints them beside the printed ones.
 
 #![allow(

@@ -37,8 +37,8 @@ impl FaultCatalogue {
     /// Reads and checks a catalogue file.
     ///
     /// # Errors
-    /// Syntax with line and column, a name used twice, a part that is not listed, or a mode that nobody
-    /// could carry out as it stands.
+    /// Syntax with line and column, a name used twice, a part that is not listed, or a mode that
+    /// cannot be carried out as it is written.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         let catalogue: Self =
             toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;

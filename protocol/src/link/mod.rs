@@ -194,7 +194,7 @@ mod tests {
     use crate::Duration;
     use crate::message::{Identify, IoInput, KeepAlive, Status, TcmsToAtc, TwcWayside};
 
-    /// A tester whose numbers and clock begin anew is heard at once on a connection of its own, and half a
+    /// A tester whose numbers and clock begin again is heard at once on a connection of its own, and half a
     /// frame of the one before it spoils none of its frames.
     #[test]
     fn after_a_reset_connection_every_channel_starts_fresh() {
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(counters.rejected_total(), 4);
     }
 
-    /// Goal: a line that gives frames twice is told from a sender that was started again. Method: each
+    /// Goal: a line that gives frames twice is distinguished from a sender that was started again. Method: each
     /// frame twice, then another sender with the numbers and the clock of a fresh start.
     #[test]
     fn repeated_frames_are_out_of_place_and_those_of_a_new_start_are_not() {

@@ -1,16 +1,16 @@
 //! Hostile streams: seeded mutations of sound frames and plain noise, fed to both ends.
 //!
-//! Goal: nothing is accepted that nobody sent, nothing panics, memory stays bounded. Method: frames
+//! Goal: nothing is accepted that was not sent, nothing panics, memory stays bounded. Method: frames
 //! of the vector files are cut, joined, repeated, flipped and mixed with noise; whatever a receiver
 //! accepts must be, byte for byte, a frame of the corpus.
 
 use std::collections::BTreeSet;
 
-use protocol::Instant;
 use protocol::frame::{self, Decoder, MAX_PENDING};
 use protocol::link::{End, Link};
+use protocol::{Instant, Random};
 
-use crate::common::{Random, corpus};
+use crate::common::corpus;
 
 const SEEDS: u64 = 400;
 const MUTATIONS: usize = 60;
@@ -62,7 +62,7 @@ fn nothing_is_accepted_that_nobody_sent() {
     let sound: BTreeSet<&[u8]> = corpus.iter().map(|frame| &frame[..]).collect();
     let (mut accepted, mut refused) = (0, 0);
     for seed in 0..SEEDS {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let stream = damaged(&mut random, &corpus);
         for end in [End::Unit, End::Bench] {
             let mut link = Link::new(end);
@@ -94,7 +94,7 @@ fn nothing_is_accepted_that_nobody_sent() {
 #[test]
 fn noise_is_never_a_frame() {
     for seed in 0..20 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut decoder = Decoder::new();
         for _ in 0..200 {
             // Noise rich in flags and escapes, so that many frames begin and end.
@@ -110,7 +110,7 @@ fn noise_is_never_a_frame() {
 
 #[test]
 fn a_flood_is_bounded() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for flagless in [true, false] {
         let mut decoder = Decoder::new();
         let flood: Vec<u8> = (0..100_000)

@@ -103,7 +103,7 @@ fn root(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The document with every generated section made anew.
+/// The document with every generated section made again.
 fn rewritten(old: &str) -> String {
     let mut new = String::new();
     let mut rest = old;

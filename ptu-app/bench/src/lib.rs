@@ -13,7 +13,7 @@
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
 //! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
-//! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person is told;
+//! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person reads;
 //!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`platform`]: what operating systems do
 //!   differently.
 

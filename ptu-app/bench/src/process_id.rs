@@ -8,7 +8,7 @@ pub fn this_process() -> String {
     format!("{pid}:{}", start_of(pid).unwrap_or_default())
 }
 
-/// Whether the process named by [`this_process`] still lives, as far as can be told.
+/// Whether the process named by [`this_process`] still lives, as far as it is known.
 pub fn is_alive(owner: &str) -> bool {
     let Some((pid, start)) = owner.split_once(':') else {
         return false;

@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::stdio;
 
-/// Lines told where there is no terminal.
+/// Lines written where there is no terminal.
 const LINES: usize = 10;
 
 /// Tells how far many runs are.

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use crate::platform::in_foreground;
 use crate::stdio;
 
-/// Lines that wait for the next scan; whoever writes more waits.
+/// Lines that wait for the next scan; a writer of more waits.
 const WAITING: usize = 16;
 /// Longest line, bytes; what is longer is no order.
 const LONGEST: u64 = 200;

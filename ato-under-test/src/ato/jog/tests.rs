@@ -1,12 +1,13 @@
 //! Jogging with a train that is a mass, and conditions in which it must not begin or must end.
 
+use protocol::Random;
+
 use super::*;
 use crate::ato::tests::config;
-use crate::random::Random;
 
 const MASS_KG: f64 = 300e3;
 
-/// A train whose effort follows with a lag, brakes that give more or less, and a gradient nobody knows of.
+/// A train whose effort follows with a lag, brakes that give more or less, and a gradient that ATO does not know.
 struct Train {
     jog: Jog,
     config: JogConfig,
@@ -48,7 +49,7 @@ impl Train {
                 to_stop_m: Some(self.to_stop_m),
                 aligned_m: 0.3,
                 last_marker: true,
-                dead: false,
+                jogs: true,
             },
             &self.config,
         );
@@ -153,7 +154,7 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         to_stop_m: Some(-1.0),
         aligned_m: 0.3,
         last_marker: true,
-        dead: false,
+        jogs: true,
     };
     let far = JogInputs {
         to_stop_m: Some(-5.1),
@@ -163,7 +164,10 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         last_marker: false,
         ..near
     };
-    let dead = JogInputs { dead: true, ..near };
+    let dead = JogInputs {
+        jogs: false,
+        ..near
+    };
     for (inputs, failed_m) in [(far, Some(-5.1)), (unproved, None), (dead, Some(-1.0))] {
         let mut jog = Jog::default();
         let outcome = jog.step(&inputs, &config().jog);

@@ -24,7 +24,7 @@ fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
         ahead_m: 0.0,
         aligned_m: 0.3,
         last_marker: false,
-        jog_dead: false,
+        jogs: true,
         speed: Speed::from_mps(10.0),
         standstill: false,
         power_cut: false,
@@ -83,7 +83,7 @@ fn a_speed_that_a_lone_pulse_makes_is_passed_over_and_one_that_stays_is_absurd()
     assert_eq!(found_inching(&again), AbsurdInputs::SPEED_JUMP);
 }
 
-/// Overruns that are told of a run through these distances past the stop point, m, at each of which it stands.
+/// Overruns that are reported of a run through these distances past the stop point, m, at each of which it stands.
 fn overruns_m(past_m: &[f64]) -> Vec<f64> {
     let mut told = Vec::new();
     with_run(|inputs, on| {

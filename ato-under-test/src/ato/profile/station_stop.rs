@@ -4,7 +4,7 @@
 //! between the markers and the speed at the beginning, so that 1.5 m/s is reached where PSM4 lies: the mean
 //! of W is 0.55, so t_a = distance / (0.55·v_end + 0.45·v_begin), 18.04 s for the printed 105 m, 11.1 and 1.5 m/s.
 //! Eq. (3), v = 1.5 − 0.33·t, stops in 3.409 m, 9.1 cm short of the 3.5 m; here the rate is the one that
-//! stops at the stop point, taken anew each cycle from speed and distance left, so that a train that is not where
+//! stops at the stop point, taken again each cycle from speed and distance left, so that a train that is not where
 //! the curve has it still arrives; and it is built up at a jerk that brakes can follow, half of it before
 //! PSM4.
 

@@ -67,7 +67,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
             ..given
         };
         assert_eq!(after(stands), (Mode::Automatic, false));
-        let anew = match start {
+        let again = match start {
             true => given,
             false => {
                 after(ModeInputs {
@@ -78,7 +78,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
                 stands
             }
         };
-        assert_eq!(after(anew).0, Mode::AutomaticRun);
+        assert_eq!(after(again).0, Mode::AutomaticRun);
     }
 }
 

@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
+use protocol::Random;
+
 use super::*;
-use crate::random::Random;
 
 const CONFIG: DriverlessConfig = DriverlessConfig {
     dwell_min_ms: 5000,
@@ -22,10 +23,7 @@ const HELD: StationInputs = StationInputs {
     closed: true,
     departure: false,
     acknowledge: false,
-    dead: DeadOrders {
-        closing: false,
-        reopening: false,
-    },
+    guards: Guards::ALL,
 };
 const CYCLE: Duration = Duration::from_ms(50);
 

@@ -98,7 +98,7 @@ fn power_that_fails_at_any_byte_loses_the_entry_being_written_at_most() {
             }
             let mut ring = mounted(&flash);
             let found = kept(&flash, &ring);
-            // The oldest block may have been begun anew for it.
+            // The oldest block may have been erased for it.
             let expected = kept_before.iter().filter(|s| **s >= ring.oldest());
             assert!(
                 expected.clone().all(|s| found.contains(s)),
@@ -173,7 +173,7 @@ proptest! {
     #[test]
     fn a_device_of_any_content_is_mounted(seed in any::<u64>()) {
         let mut flash = RamFlash::default();
-        let mut random = crate::random::Random::new(seed);
+        let mut random = protocol::Random::new(seed);
         for block in 1..=BLOCKS {
             let whole = random.bits();
             for cell in flash.block_mut(block) {

@@ -26,9 +26,7 @@ impl Functions {
                 .filter(|data| data.fixed_speed_kmh != u8::MAX)
                 .map(|data| Speed::from_kmh(f64::from(data.fixed_speed_kmh))),
             running_mode: match data.map(|data| data.running_mode) {
-                Some(RunningMode::Slow) if around.faults.dead(Place::SlowRunning) => {
-                    RunningMode::Normal
-                }
+                Some(RunningMode::Slow) if !around.guards.slow_running => RunningMode::Normal,
                 ordered => ordered.unwrap_or_default(),
             },
             section: self.locator.section(),
@@ -36,7 +34,7 @@ impl Functions {
             ahead_m: self.locator.ahead_m(),
             aligned_m: around.setup.config.doors.aligned_m,
             last_marker: self.locator.passed_last_marker(),
-            jog_dead: around.faults.dead(Place::Jog),
+            jogs: around.guards.jogging,
             speed: self.wheel_speed(),
             standstill: tachometers.standstill(),
             power_cut: self.atp.power_cut() || around.tcms.cuts_power(),

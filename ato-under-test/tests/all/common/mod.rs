@@ -52,7 +52,7 @@ pub struct Bench {
     pub tcms: Option<TcmsToAtc>,
     /// The unit says that it is armed.
     pub armed: bool,
-    /// What the unit told TCMS last.
+    /// What the unit last sent to TCMS.
     pub to_tcms: AtcToTcms,
     /// TCMS orders the full service brake when the unit asks for it.
     pub tcms_obeys: bool,

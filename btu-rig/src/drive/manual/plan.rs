@@ -20,7 +20,7 @@ pub enum ManualError {
     /// No such section or code.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The train has no cars whose effort could be told.
+    /// The train has no cars whose effort could be shown.
     #[error("train {0} has no cars: driving by hand shows what each MT pair does")]
     NoCars(String),
 }
@@ -44,7 +44,7 @@ pub struct Plan {
     pub train: CarsData,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// How train and track differ from what the unit is told.
+    /// How train and track differ from the unit's configuration.
     pub conditions: Conditions,
 }
 

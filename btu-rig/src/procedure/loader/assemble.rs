@@ -64,11 +64,13 @@ impl Declared {
     }
 
     fn step(&mut self, draft: StepDraft, line: u32, fail: impl Fn(String) -> LoadError) {
-        if self.steps.iter().any(|step| step.name == draft.name) {
-            self.errors
-                .push(fail(format!("two steps are called \"{}\"", draft.name)));
+        if self.steps.iter().any(|step| step.name == draft.step.name) {
+            self.errors.push(fail(format!(
+                "two steps are called \"{}\"",
+                draft.step.name
+            )));
         }
-        if draft.suspect.is_none() {
+        if !draft.says_suspect {
             self.without_suspect.push(self.steps.len());
         }
         match step(draft, line, &mut self.measurements) {
@@ -147,23 +149,7 @@ fn sha256(text: &str) -> String {
 }
 
 fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Result<Step, String> {
-    let mut step = Step {
-        name: draft.name,
-        line,
-        actions: draft.actions,
-        expectations: draft.expectations,
-        origin: draft.origin,
-        measures: draft.measures,
-        provokes: draft.provokes,
-        when: draft.when,
-        repeat: draft.repeat,
-        on_fail: draft.on_fail,
-        continues: draft.continues,
-        time_limit: Duration::ZERO,
-        worst_case: Duration::ZERO,
-        suspect: draft.suspect.flatten(),
-        note: draft.note,
-    };
+    let mut step = Step { line, ..draft.step };
     step.fill(&draft.sources);
     step.worst_case = step.compute_worst_case(draft.limit);
     step.time_limit = draft.limit.unwrap_or(step.worst_case + TIME_LIMIT_MARGIN);

@@ -20,7 +20,7 @@ use super::item::Item;
 use super::suggest::hint;
 use super::{LoadError, error_at};
 
-/// Expressions and blocks nested deeper than this are refused: nobody can read them, and walking
+/// Expressions and blocks nested deeper than this are refused: no person can read them, and walking
 /// them would need an endless stack.
 const DEEPEST: usize = 100;
 

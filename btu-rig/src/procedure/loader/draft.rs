@@ -1,10 +1,8 @@
 //! What `procedure()` and `step()` declare, before names are resolved and times computed.
 
-use protocol::event::Event;
 use protocol::{Duration, LruId};
 
-use crate::procedure::origin::Origin;
-use crate::procedure::plan::{Action, Condition, Connection, Expectation, Measure, OnFail};
+use crate::procedure::plan::{Action, Connection, Step};
 
 /// A call that declares something.
 #[derive(Clone, Debug)]
@@ -28,21 +26,11 @@ pub(super) struct ProcedureDraft {
 
 #[derive(Clone, Debug)]
 pub(super) struct StepDraft {
-    pub name: String,
-    pub actions: Vec<Action>,
-    pub expectations: Vec<Expectation>,
-    /// Where the numbers of its expectations come from.
-    pub origin: Origin,
-    pub measures: Vec<Measure>,
-    pub provokes: Vec<Event>,
-    pub when: Option<Condition>,
-    pub repeat: u32,
-    pub on_fail: OnFail,
-    pub continues: bool,
+    /// Without line and times; its suspect is that of the call.
+    pub step: Step,
     pub limit: Option<Duration>,
-    /// `Some(None)`: the call says that the step suspects no part.
-    pub suspect: Option<Option<LruId>>,
-    pub note: Option<String>,
+    /// The call says which part the step suspects, or that it suspects none.
+    pub says_suspect: bool,
     /// Of numbers that say none themselves.
     pub sources: Vec<String>,
 }

@@ -141,7 +141,7 @@ impl Quantity {
 
 impl std::fmt::Display for Quantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let number = crate::procedure::describe::number(self.value);
+        let number = crate::stimulus::text::number(self.value);
         write!(f, "{number} {}", self.dimension.unit())
     }
 }

@@ -83,7 +83,7 @@ impl Runner {
         self.phase = Phase::ReadLog { since: now };
     }
 
-    /// A procedure is over when all that the unit has logged meanwhile is read; nobody waits for that
+    /// A procedure is over when all that the unit has logged meanwhile is read; the bench does not wait for that
     /// after a stop, or where it cannot be.
     pub(super) fn read_log(&mut self, now: Instant, since: Instant) {
         let awaited = self.stop == Stop::No && !self.link_lost;

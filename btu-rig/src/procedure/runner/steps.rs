@@ -62,7 +62,7 @@ impl Runner {
         }
     }
 
-    /// Begins the next step; `false` if its condition lets it be skipped or cannot be told.
+    /// Begins the next step; `false` if its condition does not hold or is unknown.
     fn start_step(
         &mut self,
         step: &Step,

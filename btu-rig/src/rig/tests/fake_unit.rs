@@ -5,9 +5,8 @@ use protocol::message::{
     Answer, ArmChallenge, ArmRefusal, ArmState, AtcToTcms, Channel, Identity, IoOutput, LogEnd,
     LogEntry, Message, Outputs, SelfTest, Status, StatusBits, StimulusAnswer, TrainState, TwcTrain,
 };
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
-use crate::rig::random::Random;
 use crate::rig::{LinkFailure, UnitLink};
 
 const CHALLENGE: u32 = 0x7D7E_1234;

@@ -160,7 +160,7 @@ fn a_procedure_of_a_bench_is_not_run_on_a_train() {
     }
 }
 
-/// Goal: what people do to a unit on a train while it is tested is told, once, and is not taken for what a bench
+/// Goal: what people do to a unit on a train while it is tested is reported, once, and is not taken for what a bench
 /// did. Method: the unit ends the session; then it is powered off and on.
 #[test]
 fn what_others_do_to_the_unit_is_told() {

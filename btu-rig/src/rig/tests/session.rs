@@ -7,7 +7,7 @@ use protocol::signal::Signal;
 use super::{FakeUnit, bench};
 use crate::procedure::EventSource;
 use crate::procedure::Refusal;
-use crate::rig::log_reader::MAX_EVENTS;
+use crate::rig::session::MAX_EVENTS;
 use crate::stimulus::Stimulus;
 
 const TEST_SPEED: Stimulus = Stimulus::PtuSpeed {
@@ -32,7 +32,7 @@ fn a_unit_is_identified_and_its_signals_become_known() {
         .filter(|&&s| sample.get(s).is_none())
         .map(|s| s.name())
         .collect();
-    // No section lies along the way, and nobody gives orders.
+    // No section lies along the way, and no orders are given.
     let of_orders = [
         "orders_answered",
         "own_train",

@@ -6,7 +6,7 @@ use protocol::{Instant, LruId};
 
 use super::{FakeUnit, bench};
 use crate::rig::Bench;
-use crate::rig::log_reader::MAX_EVENTS;
+use crate::rig::session::MAX_EVENTS;
 use crate::stimulus::{Stimulus, TrainSwitch};
 
 /// A line that takes nothing is one event and no inverter's fault; one inverter is one event of its car.

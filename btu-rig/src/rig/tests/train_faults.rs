@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
 use super::{FakeUnit, bench};
-use crate::rig::train_faults::TrainFaults;
+use crate::rig::train_side::TrainFaults;
 use crate::rig::{Bench, Misplaced, check_places};
 use crate::stimulus::{Stimulus, TrainSwitch};
 use crate::tcms::EbSources;

@@ -1,12 +1,12 @@
 //! What the rig must not believe: a log that is not answered or does not end, another unit, a bad line.
 
 use protocol::Instant;
+use protocol::Random;
 use protocol::link::{End, Link};
 use protocol::message::{Channel, IoInput, SelfTest};
 
 use super::{FakeUnit, bench, rig};
 use crate::procedure::{LineState, LogState};
-use crate::rig::random::Random;
 use crate::rig::{Bench, LinkFailure, UnitLink};
 use crate::stimulus::{Stimulus, WaysideCondition};
 
@@ -105,7 +105,7 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
 }
 
 /// Goal: nothing that a unit or a bench does on a good line looks like a bad one. Method: everything that
-/// makes frames fail, fall silent or begin anew on purpose.
+/// makes frames fail, fall silent or start again on purpose.
 #[test]
 fn on_a_good_line_nothing_is_harmed() {
     let mut bench = bench(FakeUnit::default());

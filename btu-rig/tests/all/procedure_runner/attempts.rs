@@ -179,7 +179,7 @@ fn clean_up_is_begun_again() {
     assert_eq!(outcome.fake.applied, [OFF, OFF]);
 }
 
-/// Goal: a stop is obeyed at any time, and what is left is told as not run.
+/// Goal: a stop is obeyed at any time, and what is left is reported as not run.
 #[test]
 fn a_stop_ends_the_repetition() {
     let script = format!("{HEAD}step('a')\nstep('b', do = wait(s(2)))\nstep('c')");
@@ -231,7 +231,7 @@ fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
     assert_eq!(overall(&outcome), Verdict::Failed);
 }
 
-/// What the unit did before the computer stood still fails the procedure, and is told, although the step is repeated.
+/// What the unit did before the computer stood still fails the procedure, and is reported, although the step is repeated.
 #[test]
 fn what_came_before_the_pause_counts_and_is_told() {
     let script = format!("{HEAD}step('b', do = wait(s(2)))");

@@ -172,7 +172,7 @@ fn an_event_nobody_asked_for_fails_the_step() {
 }
 
 /// Whoever logs an event names its part for the step it comes in, and a part of the train for all that
-/// follow, since an inverter does not mend itself. What a step provokes names nothing.
+/// follow, since an inverter does not repair itself. What a step provokes names nothing.
 #[test]
 fn an_event_nobody_asked_for_names_the_part() {
     let suspects = |source, event, provokes: &str| {

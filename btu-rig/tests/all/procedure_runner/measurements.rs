@@ -144,7 +144,7 @@ step('c', expect = becomes(speed, above = measured('a/v')))"
     assert_eq!(outcome.summary(), [("b", Verdict::Error, message)]);
 }
 
-/// Goal: a counter that begins anew at 0 has gone on. Method: a count of 8 bits that goes up by one, from its
+/// Goal: a counter that begins again at 0 has gone on. Method: a count of 8 bits that goes up by one, from its
 /// greatest to 0 and once around, and a quantity that falls, which is no counter.
 #[test]
 fn the_change_of_a_counter_counts_on_where_it_begins_anew() {

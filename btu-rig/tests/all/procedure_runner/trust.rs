@@ -134,7 +134,7 @@ fn a_step_ends_when_the_log_of_its_time_is_read_and_is_an_error_if_it_cannot_be(
     assert_eq!(outcome.summary(), [("a", Verdict::Error, text.as_str())]);
     assert_eq!(outcome.finished(), (Verdict::Error, text.as_str()));
     let forever = run(&script, |world| silent(world, u32::MAX));
-    assert_eq!(forever.steps()[0].verdict, Verdict::Error, "nobody gave up");
+    assert_eq!(forever.steps()[0].verdict, Verdict::Error, "not given up");
     assert_eq!(forever.finished().0, Verdict::Error);
 }
 

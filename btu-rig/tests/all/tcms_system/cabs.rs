@@ -34,7 +34,7 @@ fn two_relays_are_none() {
     assert!(view.line.applied && view.line.sources == EbSources::HCR);
     assert_eq!(view.mode, TcmsMode::None);
     assert!(!bench.powers());
-    assert_eq!(bench.events(), [Event::TwoCabsActive], "told once");
+    assert_eq!(bench.events(), [Event::TwoCabsActive], "reported once");
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn old_orders_are_a_full_brake_in_automatic_only() {
     bench.inputs.cabs[0].mode_switch = ModeSwitch::Manual;
     bench.order = None;
     bench.run(2000);
-    assert!(!bench.full_service(), "by hand nobody waits for ATO");
+    assert!(!bench.full_service(), "by hand ATO is not needed");
 }
 
 #[test]

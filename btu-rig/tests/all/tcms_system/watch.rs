@@ -60,15 +60,19 @@ fn weak_cylinders_stay_found() {
     bench.lever(Lever::Neutral);
     bench.run(5000);
     assert!(bench.full_service(), "it brakes by itself");
-    assert_eq!(bench.events(), [Event::BrakeCylinderFailed], "told once");
+    assert_eq!(
+        bench.events(),
+        [Event::BrakeCylinderFailed],
+        "reported once"
+    );
     bench.weak = CarSet::NONE;
     bench.run(1900);
     assert!(bench.full_service());
     bench.run(200);
-    assert!(!bench.full_service(), "mended");
+    assert!(!bench.full_service(), "repaired");
 }
 
-/// Asked only while nothing brakes; powering is cut, the driver and ATO are told, the train brakes.
+/// Asked only while nothing brakes; powering is cut, the driver and ATO are informed, the train brakes.
 #[test]
 fn a_brake_that_does_not_release_stops_the_train() {
     let mut bench = Bench::new();
@@ -137,7 +141,7 @@ fn only_the_active_cab_releases_by_force() {
     assert!(!bench.full_service());
 }
 
-/// Braking and letting go again asks anew, with powering cut until the answer is there.
+/// Braking and letting go asks again, with powering cut until the answer is there.
 #[test]
 fn braking_and_letting_go_asks_again() {
     let mut bench = Bench::new();

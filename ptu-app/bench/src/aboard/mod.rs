@@ -131,7 +131,7 @@ impl UnitAboard {
         })
     }
 
-    /// Switches the unit's supply off, or on again: it is powered up anew then.
+    /// Switches the unit's supply off, or on again: it is powered up again then.
     pub fn set_power(&mut self, on: bool) {
         let now = self.train.now();
         self.train.link_mut().set_power(now, on);

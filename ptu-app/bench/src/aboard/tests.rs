@@ -179,7 +179,7 @@ fn a_pushed_train_moves_whatever_its_brakes_do() {
     assert_eq!(laptop.aboard.rig().truth().speed_mps, 0.0);
 }
 
-/// Goal: a unit without supply says nothing and lets the brake line open; it starts anew when it gets it back. Method:
+/// Goal: a unit without supply says nothing and lets the brake line open; it starts again when it gets it back. Method:
 /// for 3 s, then for as short a time as it can be.
 #[test]
 fn a_unit_that_loses_its_supply_starts_anew() {

@@ -150,7 +150,7 @@ impl BenchWorker {
         self.stop.press();
     }
 
-    /// How often the present run was told to stop.
+    /// How often the present run was asked to stop.
     pub fn stop_presses(&self) -> u32 {
         self.stop.presses()
     }

@@ -125,7 +125,7 @@ mod tests {
     impl Window {
         /// Frames since the last call, and the longest time a speed that was no longer true was shown.
         fn looks(&self) -> (usize, protocol::Duration) {
-            let mut looks = self.0.lock().expect("nobody panicked");
+            let mut looks = self.0.lock().expect("no thread panicked");
             let latest = std::mem::take(&mut looks.latest);
             (std::mem::take(&mut looks.count), latest)
         }
@@ -133,7 +133,7 @@ mod tests {
 
     impl RunControl for Window {
         fn after_cycle(&self, now: Instant, rig: &Rig) {
-            let mut looks = self.0.lock().expect("nobody panicked");
+            let mut looks = self.0.lock().expect("no thread panicked");
             let speed = rig.sample().get(Signal::TrainSpeed);
             if speed != looks.shown_speed {
                 looks.stale_since.get_or_insert(now);

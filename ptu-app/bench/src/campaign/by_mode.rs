@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use btu_rig::rig::Random;
+use protocol::Random;
 
 use super::evaluate::Assessment;
 use crate::drive::monte_carlo::percentile;

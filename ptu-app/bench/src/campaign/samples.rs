@@ -1,9 +1,9 @@
 //! Which runs a campaign makes: fault modes at all their levels, with different onset times, on different
 //! units.
 
-use btu_rig::rig::Random;
 use diagnosis::Shared;
 use protocol::LruId;
+use protocol::Random;
 use protocol::injection::{Effect, FaultKind, FaultMode, Occurrence};
 
 use serde_json::json;

@@ -12,9 +12,9 @@ use crate::failure::Failure;
 
 /// Least and greatest mass of an ideal train, kg.
 const IDEAL_KG: (f64, f64) = (1e4, 2e6);
-/// Highest base speed a unit can be told, km/h: none at all.
+/// Highest base speed a unit can be given, km/h: none at all.
 const NO_BASE_SPEED_KMH: f64 = 130.0;
-/// Highest jerk a unit can be told, m/s³: none at all.
+/// Highest jerk a unit can be given, m/s³: none at all.
 const NO_JERK_LIMIT_MPS3: f64 = 100.0;
 
 /// The train called `name` in `trains/`, or of a file.

@@ -15,7 +15,7 @@ const YOUNGER_MS: u64 = 60_000;
 /// The unit's clock beside ours.
 #[derive(Clone, Copy, Debug)]
 pub struct ClockPair {
-    /// Time since power-up as the unit told it, ms.
+    /// Time since power-up as the unit reported it, ms.
     pub uptime_ms: u32,
     /// Our own time when it did, µs UTC.
     pub at_us: i64,
@@ -24,14 +24,14 @@ pub struct ClockPair {
 /// Two oscillators may go apart by so much: 100 ppm.
 const DRIFT: i64 = 10_000;
 
-/// What a store of the unit says of the times it was told.
+/// What a store of the unit says of the times it was sent.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
     /// Those that are not disproved.
     clocks: Vec<StoredClock>,
     /// Our own, if it is known to be right.
     ours: Option<StoredClock>,
-    /// Power-ups whose times do not go together with others: nobody knows which is right.
+    /// Power-ups whose times contradict others: which is right is unknown.
     doubtful: BTreeSet<u32>,
     contradictions: Vec<String>,
 }
@@ -41,12 +41,12 @@ pub struct StoredClocks {
 pub struct StoredDate {
     /// µs UTC.
     pub at_us: i64,
-    /// It may be wrong by so much, µs; none where nobody knows: it may be of any other day.
+    /// It may be wrong by so much, µs; none where that is unknown: it may be of any other day.
     pub uncertainty_us: Option<i64>,
 }
 
 impl StoredClocks {
-    /// Clocks that the unit was told, and ours beside the present power-up's. What ours disproves, if it is known to
+    /// Clocks that the unit was sent, and ours beside the present power-up's. What ours disproves, if it is known to
     /// be right, dates nothing.
     pub fn new(told: &[StoredClock], ours: Option<StoredClock>) -> Self {
         let known = ours.filter(|ours| ours.uncertainty_ms != NOT_KNOWN_MS);
@@ -66,7 +66,7 @@ impl StoredClocks {
         }
     }
 
-    /// The date of an entry, by the clock of its power-up that says it best; none where nobody told the time, and
+    /// The date of an entry, by the clock of its power-up that says it best; none where no time was sent, and
     /// where the time that the unit is up since then disproves it.
     pub fn date(&self, power_up: u32, at_ms: u32) -> Option<StoredDate> {
         let of_power_up = self
@@ -83,7 +83,7 @@ impl StoredClocks {
             };
             (uncertainty_us.unwrap_or(i64::MAX), date)
         });
-        // Of equals the one told last.
+        // Of equals the one sent last.
         let best = dates.reduce(|best, date| match date.0 <= best.0 {
             true => date,
             false => best,
@@ -126,7 +126,7 @@ fn uncertainty_us(clock: &StoredClock) -> Option<i64> {
     known.map(|ms| i64::from(ms) * 1000)
 }
 
-/// How far two clocks, of which the second was told later, are apart, if that is more than they may be; negative of a
+/// How far two clocks, of which the second was sent later, are apart, if that is more than they may be; negative of a
 /// time that fell.
 fn apart_us(before: &StoredClock, clock: &StoredClock) -> Option<i64> {
     let told_later_us = utc_us(clock) - utc_us(before);
@@ -223,7 +223,7 @@ mod tests {
         let entries = [(Event::PowerUp, 0), (Event::TachoDead1, 4_000)];
         let seconds = |s: i64| Some(NOW_US - s * 1_000_000);
         assert_eq!(dated(&entries, 10_000), [seconds(10), seconds(6)]);
-        // Logged half a second after the unit told its uptime.
+        // Logged half a second after the unit reported its uptime.
         assert_eq!(
             dated(&[(Event::TwcLost, 10_500)], 10_000),
             [Some(NOW_US + 500_000)]

@@ -50,7 +50,7 @@ pub struct ExcludedEntries {
     pub too_old: u32,
     /// Made while a run of the same history tested the unit, which has judged them.
     pub under_test: u32,
-    /// Made while a tester had it armed, when it may do what it was told to; or a tester's own frames,
+    /// Made while a tester had it armed, when it may do what the tester asks; or a tester's own frames,
     /// refused.
     pub tester: u32,
     /// Silence of a unit that nothing is connected to.
@@ -157,9 +157,9 @@ fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
         let any_back = is(entry, Event::InputsRestored) || is(entry, Event::TcmsRestored);
         if any_back || is(entry, Event::PowerUp) {
             spans.extend(began.take().map(|from| from..place));
-            let anew = is(entry, Event::PowerUp);
-            inputs = inputs.filter(|_| !anew && !is(entry, Event::InputsRestored));
-            tcms = tcms.filter(|_| !anew && !is(entry, Event::TcmsRestored));
+            let powers_up = is(entry, Event::PowerUp);
+            inputs = inputs.filter(|_| !powers_up && !is(entry, Event::InputsRestored));
+            tcms = tcms.filter(|_| !powers_up && !is(entry, Event::TcmsRestored));
         } else if is(entry, Event::InputsLost) {
             inputs = Some(place);
         } else if is(entry, Event::TcmsLost) {

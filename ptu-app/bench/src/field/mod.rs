@@ -3,7 +3,7 @@
 //! ```text
 //! unit → LogSession → read (entries, dated) → judge (which are the unit's) → store (what is new)
 //! ```
-//! The unit is listened to and asked for its log, over all power-ups if it stores it; it is told the time, and given
+//! The unit is listened to and asked for its log, over all power-ups if it stores it; it is sent the time, and given
 //! no input and no stimulus, and nothing is armed.
 
 mod date;

@@ -37,7 +37,7 @@ pub struct StoredPlace {
     pub sequence: u32,
     /// It was made not later than this, µs UTC: the date of the next entry that has one.
     pub not_after_us: Option<i64>,
-    /// Its date may be wrong by so much, µs; none where nobody knows.
+    /// Its date may be wrong by so much, µs; none where that is unknown.
     pub uncertainty_us: Option<i64>,
 }
 
@@ -81,7 +81,7 @@ pub struct LogRead {
 }
 
 /// Reads the log of the unit on `link`, over all power-ups if it stores it; with `rows`, its stored run record,
-/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is told with its
+/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is sent with its
 /// uncertainty.
 ///
 /// # Errors
@@ -152,7 +152,7 @@ pub fn read_log<L: UnitLink>(
     };
     let stored = session.stored().map(|(events, rows)| {
         // Of a unit that started again meanwhile it is not known which power-up our clock stands beside: the time
-        // that it was told, and stored, is.
+        // that it was sent, and stored, is.
         let (dated, read) =
             from_store(events, rows, pair.filter(|_| restarts == 0), uncertainty_ms);
         entries = dated;

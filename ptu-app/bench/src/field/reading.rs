@@ -169,7 +169,7 @@ impl UnitReading {
         let unsure = judged.faults.iter().filter(is_unsure).count();
         if unsure > 0 {
             self.warnings.push(format!(
-                "{unsure} faults are dated before the time asked for by a clock that nobody knows to be right: they \
+                "{unsure} faults are dated before the time asked for by a clock that is not known to be right: they \
                  are not left out"
             ));
         }
@@ -212,7 +212,7 @@ fn of_reading(read: &LogRead) -> Vec<String> {
     let undated = read.entries.iter().filter(is_undated).count();
     if undated > 0 && read.stored.is_some() {
         warnings.push(format!(
-            "{undated} entries are of power-ups in which nobody told the unit the time: they have the power-up and \
+            "{undated} entries are of power-ups in which the unit was not given the time: they have the power-up and \
              the time since then, and stand under the date that they are not later than"
         ));
     } else if undated > 0 {

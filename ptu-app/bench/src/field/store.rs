@@ -32,7 +32,7 @@ pub struct Source {
     pub line: String,
     /// Who reads.
     pub operator: String,
-    /// The train the unit is in, as the tester names it; empty if nobody said.
+    /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
     /// When reading began, µs UTC.
     pub from_us: i64,
@@ -105,7 +105,7 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
 }
 
 /// The same on every laptop: from the unit, its power-up and the entry's number, and from the entry itself, because
-/// a unit whose flash was exchanged counts anew.
+/// a unit whose flash was exchanged counts from the start.
 fn entry_id(serial: &str, entry: &Entry, place: StoredPlace) -> Id {
     let event = &entry.event;
     let parts = [
@@ -186,7 +186,7 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
         (Some(_), None) => "the unit's clock".to_owned(),
         (Some(_), Some(place)) => {
             let within = place.uncertainty_us.map_or_else(
-                || "by a clock that nobody knows to be right".to_owned(),
+                || "by a clock that is not known to be right".to_owned(),
                 |us| format!("within {:.1} s", us as f64 / 1e6),
             );
             format!(
@@ -196,7 +196,7 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
         }
         (None, None) => "the time of reading".to_owned(),
         (None, Some(place)) => format!(
-            "power-up {} and {:.3} s after it, when nobody had told the unit the time: not later than this date",
+            "power-up {} and {:.3} s after it, when the unit had not been given the time: not later than this date",
             place.power_up,
             f64::from(event.at_ms) / 1000.0
         ),

@@ -42,7 +42,7 @@ impl<R> Default for KeptRuns<R> {
 }
 
 impl<R: DeserializeOwned> KeptRuns<R> {
-    /// Reads a file, which is made if it is not there, and opens it for more runs. What is damaged in it is told.
+    /// Reads a file, which is made if it is not there, and opens it for more runs. What is damaged in it is reported.
     ///
     /// # Errors
     /// It cannot be read or written, another process writes it, it is another file, or it holds runs of another

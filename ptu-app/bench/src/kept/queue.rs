@@ -95,7 +95,7 @@ pub(super) fn work<R: Serialize + Send>(
     if let Some(failure) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(failure);
     }
-    // Where this worker made the last run of all, nobody has asked since.
+    // Where this worker made the last run of all, no other has asked since.
     let is_done =
         over.into_inner() || (stop.may_begin() && matches!(asked().claim()?, Claim::Done));
     Ok(Worked {

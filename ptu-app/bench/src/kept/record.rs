@@ -2,7 +2,7 @@
 //! and another head where the file was gone on with by another plan.
 //!
 //! A record is [`MARK`], the length of its content (4 bytes, least first), CRC-32 over length and content (4 bytes),
-//! and its content, JSON compressed with zstd. A damaged record is left out and told by its number; the next one is
+//! and its content, JSON compressed with zstd. A damaged record is left out and reported by its number; the next one is
 //! found by its mark. So a file gives the runs that were put into it, or fewer, and what is missing is made again.
 //!
 //! A file whose runs are all there is in order: one head, and the runs by their names. So its bytes depend on the

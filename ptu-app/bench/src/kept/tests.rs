@@ -81,7 +81,7 @@ fn shards_in_any_order_are_the_file_of_one_process() {
     );
 }
 
-/// Goal: a shard that was killed goes on and ends with the bytes of one that was not; what it lacks until then is told.
+/// Goal: a shard that was killed goes on and ends with the bytes of one that was not; what it lacks until then is reported.
 #[test]
 fn a_killed_shard_goes_on_and_what_it_lacks_is_listed() {
     let folder = tempfile::tempdir().expect("a folder");

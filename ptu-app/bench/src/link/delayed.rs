@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 
 use btu_rig::bench_scatter::Timing;
-use btu_rig::rig::{LinkFailure, Random, UnitLink};
-use protocol::{Duration, Instant, SCAN};
+use btu_rig::rig::{LinkFailure, UnitLink};
+use protocol::{Duration, Instant, Random, SCAN};
 
 /// A unit at the other end of such a wire.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use protocol::{Duration, Instant};
 pub const SIM_SERIAL: &str = "SIM-0001";
 
 /// Shortest time without supply: its capacitors empty, relays fall, and the train notices that the unit is silent
-/// and hears it anew afterwards [default].
+/// and hears it again afterwards [default].
 const LEAST_OFF: Duration = Duration::from_ms(1_500);
 
 /// A unit that is powered up at a chosen time, reached at its harness.
@@ -42,7 +42,7 @@ impl SimLink {
         self.flash = Some(flash);
     }
 
-    /// Switches the supply off, or on if it was off: the unit is powered up anew then.
+    /// Switches the supply off, or on if it was off: the unit is powered up again then.
     pub(crate) fn set_power(&mut self, now: Instant, on: bool) {
         match (on, self.power_at) {
             (false, Some(_)) => {

@@ -35,7 +35,7 @@ pub struct RecordedRun {
     pub run: u16,
     /// Time since that power-up at its first row, ms.
     pub at_ms: u32,
-    /// When it began, µs UTC, and by how much that may be wrong; none where nobody told the unit the time.
+    /// When it began, µs UTC, and by how much that may be wrong; none where the unit was not given the time.
     pub date: Option<(i64, Option<i64>)>,
     /// Its rows.
     pub trace: TraceData,
@@ -47,7 +47,7 @@ pub struct RecordedRun {
 /// `under_way`.
 pub fn recorded_runs(serial: &str, read: &StoredRead, under_way: bool) -> Vec<RecordedRun> {
     let mut runs: BTreeMap<(usize, u32, u16), Vec<StoredRow>> = BTreeMap::new();
-    // A run number that comes again in a power-up has wrapped, or another flash counts anew.
+    // A run number that comes again in a power-up has wrapped, or another flash counts from the start.
     let mut turn = 0;
     let mut last: Option<&StoredRow> = None;
     for row in &read.rows {

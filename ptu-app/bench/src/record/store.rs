@@ -116,7 +116,7 @@ impl RecordedRun {
         }
         if self.date.is_none() {
             text += &format!(
-                "; not dated: {:.1} s after power-up, when nobody had told the unit the time",
+                "; not dated: {:.1} s after power-up, when the unit had not been given the time",
                 f64::from(self.at_ms) / 1000.0
             );
         }

@@ -82,7 +82,7 @@ fn a_sound_units_record_is_found_on_the_line_and_is_as_expected() {
     assert!(!run.is_cut && !run.trace.gaps, "{}", run.summary());
     assert!(
         run.date.is_some(),
-        "the unit was told the time while it was read"
+        "the unit was sent the time while it was read"
     );
     let line = &case.bench.line.content;
     assert_eq!(find_section(line, &run.trace).expect("found").section, 61);
@@ -100,7 +100,7 @@ fn a_sound_units_record_is_found_on_the_line_and_is_as_expected() {
     assert!((both.0 - both.1).abs() < 0.2, "{both:?}");
 }
 
-/// Goal: where a run parts, how it stops and how late it brakes is told. Method: a unit that brakes by another
+/// Goal: where a run parts, how it stops and how late it brakes is reported. Method: a unit that brakes by another
 /// profile, held against the one it should have driven.
 #[test]
 fn a_unit_that_drives_another_profile_parts_from_the_sound_one() {

@@ -25,7 +25,7 @@ const CLOCK_TOLERANCES: [(&str, f64); 6] = [
     ("mV", 2.0),
     ("%", 0.1),
 ];
-/// Units of what is left out there: efforts and their accelerations lag behind what the train was told
+/// Units of what is left out there: efforts and their accelerations lag behind what the train was asked for
 /// before the procedure began, and jump with every frame that is late. What TCMS orders is compared.
 const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
 /// The same for quantities without a unit: efforts of 1 024.
@@ -46,7 +46,7 @@ const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers
 pub struct Rule {
     /// A value that came so many rows sooner or later is the same.
     slack_rows: usize,
-    /// Numbers have the tolerances of a clock of its own, and counters begin anew at the first row.
+    /// Numbers have the tolerances of a clock of its own, and counters begin at 0 in the first row.
     wall_clock: bool,
     /// First row compared, from the trigger.
     from_row: i64,

@@ -6,7 +6,7 @@ use super::{Comparison, Deviation, Original, compare, good_twin, path};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 
-/// Signals and events told on the way from the first deviation to the brake.
+/// Signals and events named on the way from the first deviation to the brake.
 const LONGEST_CHAIN: usize = 12;
 
 /// What a trace shows.

@@ -135,7 +135,7 @@ const PATH: [&str; 120] = [
 /// Rows within which the unit has reported everything once.
 pub const REPORT_ROWS: usize = 2;
 
-/// Left out of every comparison: the number of log entries says nothing that the events themselves, told
+/// Left out of every comparison: the number of log entries says nothing that the events themselves, named
 /// by name, do not; and what the unit's identity is compared with is the tester's, not the unit's.
 pub const LEFT_OUT: [&str; 6] = [
     "events",

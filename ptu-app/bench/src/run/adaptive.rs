@@ -7,24 +7,14 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::Scope;
 
 use btu_rig::procedure::RunOptions;
-use diagnosis::{Dictionary, Model, Settings, Strategy};
-use protocol::LruId;
+use diagnosis::{Model, Strategy};
 
 use super::bench_setup::Connected;
+use super::event::SessionEvent;
 use super::observe::ObservationBuilder;
+use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, stream};
 use super::workers::Worker;
-use super::{ProcedureStream, RunPlan, SessionEvent, Task, stream};
 use crate::stop::Stop;
-
-/// What an adaptive run decides by.
-pub struct Adaptive {
-    /// What each fault does to each check.
-    pub dictionary: Dictionary,
-    /// Priors and thresholds.
-    pub settings: Settings,
-    /// What the unit's history says of its parts.
-    pub lru_factors: BTreeMap<LruId, f64>,
-}
 
 /// Starts the worker; procedures come as it chooses them.
 pub fn start<'scope>(

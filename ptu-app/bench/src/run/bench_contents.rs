@@ -12,7 +12,8 @@ use fault_db::{Recording, RecordingRecord};
 use protocol::Instant;
 use serde::{Deserialize, Serialize};
 
-use super::{BenchSetup, RecordedStimuli};
+use super::bench_setup::BenchSetup;
+use super::event::RecordedStimuli;
 use crate::data::{ScriptsDirectory, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};

@@ -16,8 +16,9 @@ use protocol::{Duration, Instant};
 
 use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
+use super::run_control::RunControl;
 use super::session::Session;
-use super::{RunControl, unit_text};
+use super::unit_text;
 use crate::aboard::UnitAboard;
 use crate::data::DataFile;
 use crate::failure::Failure;
@@ -89,7 +90,7 @@ impl UnitLink for SimUnit {
 
 /// A unit that has been reached.
 pub enum Connected {
-    /// The embedded unit, made anew for each procedure.
+    /// The embedded unit, a new one for each procedure.
     Sim(Box<BenchSetup>),
     /// The unit on a port, and what TCMS found before the first procedure.
     Port(Box<Session<WireLink>>, Identity, Vec<FaultSeen>),

@@ -12,7 +12,7 @@ use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
 use protocol::message::Identity;
 use serde::{Deserialize, Serialize};
 
-use super::BenchSetup;
+use super::bench_setup::BenchSetup;
 use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};

@@ -10,9 +10,10 @@ use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
+use super::fault_watch::FaultSeen;
+use super::plan::Task;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
-use super::{FaultSeen, Task};
 use crate::clock;
 use crate::failure::Exit;
 use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored};
@@ -33,7 +34,7 @@ pub trait Listener {
     }
 }
 
-/// Nobody is told.
+/// Events are not shown.
 impl Listener for () {
     fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }

@@ -165,7 +165,7 @@ impl BenchSetup {
         Ok(identity)
     }
 
-    /// Holds the unit's clock against the bench's, as long as there is doubt, from the `first` time it told
+    /// Holds the unit's clock against the bench's, as long as there is doubt, from the `first` time it reported
     /// on.
     fn check_clock(
         &self,

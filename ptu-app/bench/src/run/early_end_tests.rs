@@ -43,7 +43,7 @@ struct StopBeforeScan {
 struct Count {
     scans: usize,
     now: Instant,
-    /// Scans before each bench made anew.
+    /// Scans before each new bench.
     before: Vec<usize>,
 }
 
@@ -129,7 +129,7 @@ fn recorded(
     (outcome, detail)
 }
 
-/// The last scan of each procedure, counted in a run that nobody stops; in virtual time they are the same
+/// The last scan of each procedure, counted in a run that is not stopped; in virtual time they are the same
 /// in every run.
 fn ends(plan: &RunPlan) -> Vec<usize> {
     let counter = Arc::new(StopBeforeScan::default());
@@ -296,7 +296,7 @@ impl Listener for SlowListener {
     }
 }
 
-/// Goal: nobody drives a unit for a run that is not kept, however late who looks on hears of it. Method: a disk
+/// Goal: a unit is not driven for a run that is not kept, however late the listener hears of it. Method: a disk
 /// with room for the first steps only, then a step that takes ten minutes, on a bench in virtual time that
 /// takes two milliseconds for each scan; who looks on hears nothing until the bench is stopped.
 #[test]
@@ -366,7 +366,7 @@ impl Listener for Busy {
     }
 }
 
-/// Goal: who gives up reaching a unit has not found an error. Method: a port that is there, nobody on it,
+/// Goal: who gives up reaching a unit has not found an error. Method: a port that is there, no unit on it,
 /// and stop pressed before it is asked.
 #[test]
 fn a_run_stopped_before_its_unit_was_reached_is_aborted() {

@@ -9,8 +9,8 @@ use super::event::SessionEvent;
 
 /// The first procedure, in the order of the run, that did not pass.
 ///
-/// Whoever runs procedures notes it before the stream of that procedure ends, and asks before the next begins.
-/// Whoever records them asks when the streams of all before have ended, so that the record ends with that
+/// The worker that runs procedures notes it before the stream of that procedure ends, and asks before the next begins.
+/// The collector that records them asks when the streams of all before have ended, so that the record ends with that
 /// procedure however many benches work side by side: what one of them has begun after it is given up.
 pub(super) struct FirstFailure {
     ends_run: bool,

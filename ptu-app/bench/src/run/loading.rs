@@ -267,16 +267,16 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
              go too far?"
         );
     }
-    // The line before what a panic says names a place in a program, which helps nobody here.
+    // The line before what a panic says names a place in a program, which does not help here.
     let mut lines = (words.lines()).filter(|line| !line.is_empty() && !line.starts_with("thread "));
     let first = lines.next().unwrap_or("nothing was said");
     format!("the script language broke off ({status}): {first}")
 }
 
-/// What the process does: loads what it is told on its standard input, within its limits.
+/// What the process does: loads what its standard input names, within its limits.
 ///
 /// # Errors
-/// It was told nothing that it understands, or nobody listens any more.
+/// Its input is not understood, or its output is no longer read.
 pub fn serve() -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::bench(format!("{WORD}: {error}"));
     platform::limit_memory(MOST_MEMORY_MIB << 20).map_err(|error| failed(&error))?;

@@ -8,7 +8,8 @@ use diagnosis::{CheckName, Observation, ObservedStep, Sign, is_observed};
 use fault_db::{RunDetail, RunOccurrence, StepRecord};
 use protocol::lru;
 
-use super::{CHECK_FAILED, FaultSeen, SessionEvent};
+use super::event::SessionEvent;
+use super::fault_watch::{CHECK_FAILED, FaultSeen};
 use crate::stored::{from_stored, outside_of};
 
 /// Gathers the steps of a procedure, each with the signs that showed since the one before.

@@ -284,7 +284,7 @@ fn what_happens_to_the_train_meanwhile_is_an_error_and_no_fault() {
     }
 }
 
-/// Goal: a train that is not as a procedure needs it is told, before anything is tested.
+/// Goal: a train that is not as a procedure needs it is reported, before anything is tested.
 #[test]
 fn a_train_that_is_not_at_rest_is_refused_with_the_reason() {
     let laptop = Laptop::new(&[]);

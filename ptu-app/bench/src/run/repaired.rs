@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use fault_db::{FaultFilter, FaultState, Id, Store, StoreError};
 
-use super::Task;
+use super::plan::Task;
 use crate::failure::Failure;
 use crate::process_id;
 

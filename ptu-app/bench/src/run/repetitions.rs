@@ -3,7 +3,7 @@
 use btu_rig::procedure::{Outside, OutsideStep, RunEvent, Verdict};
 use protocol::Instant;
 
-/// Different messages of repetitions that are kept; what went wrong in thousands is told by the first few.
+/// Different messages of repetitions that are kept; what went wrong in thousands is clear from the first few.
 const MESSAGES: usize = 8;
 
 /// How many repetitions of a procedure have ended, and their common verdict.

@@ -5,10 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
-use btu_rig::rig::Random;
 use glob::Pattern;
 
 use script_files::Place;
+
+use protocol::Random;
 
 use crate::data::{self, ScriptsDirectory};
 use crate::failure::{Failure, did_you_mean};

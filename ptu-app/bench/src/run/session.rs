@@ -15,8 +15,8 @@ use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
 use self::in_step::InStep;
-use super::RunControl;
 use super::fault_watch::{self, FaultSeen};
+use super::run_control::RunControl;
 use super::trace_data::trace_data;
 use crate::link::Pace;
 use crate::stop::Stop;

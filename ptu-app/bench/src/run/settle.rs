@@ -17,7 +17,7 @@ const SETTLE: Duration = Duration::from_ms(500);
 const SETTLES: usize = 3;
 
 /// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
-/// but the train's equipment may break at any time, and nobody else would tell.
+/// but the train's equipment may break at any time, and nothing else would report it.
 pub(super) fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<FaultSeen> {
     let mut found = Vec::new();
     let mut seen = |entry: &UnitEvent, at, sample: &Sample| {

@@ -21,7 +21,7 @@ const QUEUE: usize = 4096;
 const FLUSH: Duration = Duration::from_millis(250);
 
 /// How long a run under way waits for another writer. It would lose all that is still to come, and its thread
-/// keeps nobody waiting but the bench.
+/// keeps only the bench waiting.
 #[derive(Clone, Copy)]
 struct BusyTimeout {
     /// After this time the bench is stopped: a unit is not driven for a run that may be lost.

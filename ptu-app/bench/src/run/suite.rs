@@ -8,7 +8,8 @@ use btu_rig::procedure::loader::Loaded;
 use protocol::injection::FaultCatalogue;
 
 use super::bench_contents::train_sha256;
-use super::{BenchSetup, loading, select};
+use super::bench_setup::BenchSetup;
+use super::{loading, select};
 use crate::data::{ScriptsDirectory, sha256};
 use crate::failure::{Failure, did_you_mean};
 

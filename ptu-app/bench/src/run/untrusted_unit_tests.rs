@@ -2,10 +2,10 @@
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::rig::{LinkFailure, Random, UnitLink};
+use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 use std::sync::Arc;
 
 use super::bench_setup::SWITCHED_OFF;

@@ -12,9 +12,9 @@ use super::bench_setup::{BenchSetup, Connected, SWITCHED_OFF};
 use super::event::SessionEvent;
 use super::fault_watch::FaultSeen;
 use super::first_failure::FirstFailure;
+use super::plan::{ProcedureStream, RunPlan, Task, stream};
 use super::session::Session;
 use super::settle::{READY_WITHIN, between_procedures, settled};
-use super::{ProcedureStream, RunPlan, Task, stream};
 use crate::link::keep_time;
 use crate::stop::Stop;
 

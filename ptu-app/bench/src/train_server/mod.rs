@@ -117,7 +117,7 @@ struct Train {
 }
 
 impl Train {
-    /// Does what is said in the cab; false when somebody quits.
+    /// Does what is said in the cab; false when that is to quit.
     fn obey(&mut self, line: &str) -> bool {
         let order = match self.cab.order(line) {
             Ok(order) => order,

@@ -62,7 +62,7 @@ fn steps(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({ "type": "array", "items": { "type": "object" } })
 }
 
-/// A text whose places are told as lines.
+/// A text whose places are given as lines.
 struct Lines<'a>(&'a str);
 
 impl Lines<'_> {

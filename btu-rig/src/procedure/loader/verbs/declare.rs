@@ -1,6 +1,6 @@
 //! `procedure()` and `step()`.
 
-use protocol::{LruId, lru};
+use protocol::{Duration, LruId, lru};
 
 use super::conditions::SOURCE;
 use crate::procedure::loader::args::Args;
@@ -10,7 +10,7 @@ use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::procedure::origin::Origin;
-use crate::procedure::plan::{Connection, Measure, OnFail};
+use crate::procedure::plan::{Connection, Measure, OnFail, Step};
 
 /// More repetitions than this are a slip of the finger.
 const MOST_REPETITIONS: i64 = 1000;
@@ -86,8 +86,10 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
             measures.push(measure.as_ref().clone());
         }
     }
-    declare(Declaration::Step(StepDraft {
+    let suspect = suspect(args)?;
+    let step = Step {
         name: named(args, "name")?,
+        line: 0,
         actions: args.actions("do"),
         expectations,
         origin,
@@ -102,9 +104,15 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
             _ => OnFail::Continue,
         },
         continues: args.flag("continues", false),
-        limit: args.time("limit")?,
-        suspect: suspect(args)?,
+        time_limit: Duration::ZERO,
+        worst_case: Duration::ZERO,
+        suspect: suspect.clone().flatten(),
         note: args.text("note").map(str::to_owned),
+    };
+    declare(Declaration::Step(StepDraft {
+        step,
+        limit: args.time("limit")?,
+        says_suspect: suspect.is_some(),
         sources: args.sources(),
     }))
 }

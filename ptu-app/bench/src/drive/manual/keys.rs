@@ -3,7 +3,7 @@
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{Stimulus, TrainSwitch};
 
-/// What a driver is told before the start.
+/// What a driver is shown before the start.
 pub const HELP: &str = "up + one notch up   down - one notch down   n neutral   b full brake   \
                         e emergency   r regeneration on/off   q quit";
 

@@ -84,7 +84,7 @@ fn a_log_is_read_to_its_end_and_reading_adds_nothing_to_it() {
     assert_eq!(codes(&second), codes(&first));
 }
 
-/// A unit that answers as told: what a real one does only after days.
+/// A unit that answers as the test says: what a real one does only after days.
 struct ScriptedUnit {
     link: Link,
     entries: Vec<LogEntry>,
@@ -287,8 +287,8 @@ fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
     assert!(why.contains("unit silent"), "{why}");
 }
 
-/// Goal: what the unit logged in every power-up is read, dated where somebody told the time. Method: a unit whose
-/// supply dips, and one that the time was told in between.
+/// Goal: what the unit logged in every power-up is read, dated where a tester sent the time. Method: a unit whose
+/// supply dips, and one that the time was sent to in between.
 #[test]
 fn the_log_of_all_power_ups_is_read() {
     let mut bench = bench(&["power_supply.dips"]);
@@ -316,7 +316,7 @@ fn the_log_of_all_power_ups_is_read() {
     assert_eq!(
         (first.at_us, first.event.at_ms),
         (None, 0),
-        "nobody told the time then"
+        "no time was sent then"
     );
     assert!(first.stored.expect("stored").not_after_us.is_some());
     assert!(

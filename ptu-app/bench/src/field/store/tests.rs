@@ -117,8 +117,9 @@ fn a_count_of_power_ups_that_falls_is_told_and_its_entries_are_others() {
         told.contains("counts 1 power-ups and had counted 3"),
         "{told}"
     );
-    let mut anew = entries(1);
-    anew[0].event.at_ms = 77;
-    let imported = import(&store, &source("serial:a", 2_200_000_000_000), &anew).expect("stored");
+    let mut from_start = entries(1);
+    from_start[0].event.at_ms = 77;
+    let imported =
+        import(&store, &source("serial:a", 2_200_000_000_000), &from_start).expect("stored");
     assert_eq!((imported.new.len(), imported.known), (1, 0));
 }

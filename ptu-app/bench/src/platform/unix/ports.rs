@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::link::open_port;
 
-    /// Goal: a second tester is told who has the port, and has it when the first has left it. Method: a
+    /// Goal: a second tester is shown who has the port, and has it when the first has left it. Method: a
     /// pseudo-terminal whose other end stays open.
     #[test]
     fn a_port_is_held_by_one_and_the_other_is_told_by_whom() {

@@ -56,7 +56,7 @@ pub fn columns() -> Option<usize> {
     Some(usize::from(columns)).filter(|columns| *columns > 0)
 }
 
-/// Reading a console stops nobody.
+/// Reading a console stops no process.
 pub fn in_foreground() -> bool {
     true
 }

@@ -58,7 +58,7 @@ pub enum Hazard {
     JogTooFast,
     /// Faster than any code lets it that was there long enough to be detected.
     UnconfirmedCode,
-    /// Power by ATO after the open brake line has ended its run, and nobody began another.
+    /// Power by ATO after the open brake line has ended its run, and no other was begun.
     DrivesOnByItself,
     /// Motion of a train that is put away, or was woken with a self-test that failed.
     SleepingMoves,
@@ -318,7 +318,7 @@ impl Monitor {
         ]
     }
 
-    /// A jog back does not count, nor does what its brake takes to stop the train, nor the way that no wheel has told.
+    /// A jog back does not count, nor does what its brake takes to stop the train, nor the way that no wheel has measured.
     fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool, blind: bool) -> bool {
         let jogs = jogs_back(seen) && (seen.kmh() <= JOG_KMH + SPEED_OFF_KMH || fsb);
         let way_m = match seen.reverser {
@@ -327,7 +327,7 @@ impl Monitor {
         };
         let against_m = if jogs { 0.0 } else { way_m };
         self.against_m = (self.against_m + against_m).max(0.0);
-        // A brake that was released at standstill begins anew.
+        // A brake that was released at standstill begins again.
         if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) || blind {
             self.against_m = 0.0;
         }

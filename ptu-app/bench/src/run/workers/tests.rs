@@ -4,8 +4,8 @@ use std::path::Path;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
-use btu_rig::rig::Random;
 use protocol::Duration;
+use protocol::Random;
 use protocol::injection::FaultMode;
 
 use super::*;
@@ -46,7 +46,7 @@ fn random_order(seeds: &[u64], times: usize) {
         procedures.retain(|procedure| !procedure.on_request);
         let mut random = Random::new(*seed);
         let order = (0..times).flat_map(|_| {
-            select::shuffle(&mut procedures, random.next_u64());
+            select::shuffle(&mut procedures, random.bits());
             let twice = |procedure: &Arc<Procedure>| (procedure.clone(), 1 + random.below(2));
             procedures.iter().map(twice).collect::<Vec<_>>()
         });
@@ -108,7 +108,7 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
     );
 }
 
-/// Goal: a run of thousands of procedures keeps room for the events of a few. Method: nobody takes any.
+/// Goal: a run of thousands of procedures keeps room for the events of a few. Method: none is taken.
 #[test]
 fn workers_start_only_a_limited_number_of_procedures_ahead() {
     const JOBS: usize = 3;

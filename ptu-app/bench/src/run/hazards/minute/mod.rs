@@ -4,13 +4,13 @@ mod acts;
 mod antenna;
 
 use btu_rig::lever::Lever;
-use btu_rig::rig::{Bench, Random};
+use btu_rig::rig::Bench;
 use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
 use protocol::injection::{FaultMode, Place};
 use protocol::line::Section;
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Random};
 
 use super::monitor::{Hazard, Monitor, Observed};
 use crate::link::SimLink;

@@ -1,0 +1,260 @@
+//! Counts frames between tester and unit that were lost or damaged on the line, in both directions.
+//!
+//! Counted here are only losses that no part of a unit can cause. From the unit: gaps in the sequence of
+//! the PTU and I/O channels, frames of theirs out of place, and refused bytes beyond what a modem of the
+//! other two channels may have damaged. To the unit: what it says it has refused, which is counted where
+//! its line ends, before any modem of its own. A unit whose clock goes wrong refuses good frames as late:
+//! what it refuses then is not counted.
+
+use std::collections::VecDeque;
+
+use protocol::frame::Reject;
+use protocol::link::{Counters, RESYNC};
+use protocol::message::Channel;
+use protocol::{CYCLE, Duration, Instant};
+
+use crate::procedure::LineState;
+
+use super::clock_rate::ClockRate;
+
+/// Span over which a line is bad or good, as the unit's own.
+const SPAN: Duration = Duration::from_ms(10_000);
+/// How often counts are kept.
+const EVERY: Duration = Duration::from_ms(500);
+/// What the unit does about lost frames may be reported so much later: its time-outs, and reading its log.
+const LATELY: Duration = Duration::from_ms(12_000);
+/// After first contact and a restart both ends may refuse what is left of the time before.
+const SETTLES: Duration = Duration::from_ms(2_200);
+/// A unit's clock that is off by more than this, and by more than one part in [`CLOCK_SHARE`], goes wrong.
+const CLOCK_OFF: Duration = Duration::from_ms(60);
+/// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
+const CLOCK_SHARE: u64 = 100;
+/// Channels no part of the unit damages.
+const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
+
+/// Counts since the line has settled.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    taken: u64,
+    /// Lost or damaged on the way from the unit.
+    from_unit: u64,
+    /// Refused by the unit.
+    to_unit: u64,
+}
+
+impl Counts {
+    fn lost_or_damaged(self) -> u64 {
+        self.from_unit + self.to_unit
+    }
+}
+
+#[derive(Debug)]
+pub struct LineWatch {
+    /// Frames lost within [`SPAN`] that make a line bad.
+    bad_at: u64,
+    settles_until: Option<Instant>,
+    /// What the rig's own counters said when the line had settled.
+    before: Counters,
+    /// What had been counted by then.
+    base: Counts,
+    counts: Counts,
+    /// Count of rejected frames in the unit's last status.
+    rejected_by_unit: Option<u16>,
+    /// When the line had settled, and the unit's clock then, ms.
+    clock: Option<(Instant, u32)>,
+    /// Whether the unit's clock goes as the bench's does.
+    clock_is_right: bool,
+    /// Its rate.
+    rate: ClockRate,
+    /// Until when the unit refuses what is damaged on purpose.
+    on_purpose_until: Instant,
+    /// Counts of the last seconds, oldest first.
+    past: VecDeque<(Instant, Counts)>,
+}
+
+impl LineWatch {
+    /// A line is bad that loses `bad_at` frames within ten seconds.
+    pub fn new(bad_at: u32) -> Self {
+        Self {
+            bad_at: u64::from(bad_at.max(1)),
+            settles_until: None,
+            before: Counters::default(),
+            base: Counts::default(),
+            counts: Counts::default(),
+            rejected_by_unit: None,
+            clock: None,
+            clock_is_right: true,
+            rate: ClockRate::default(),
+            on_purpose_until: Instant::ZERO,
+            past: VecDeque::new(),
+        }
+    }
+
+    /// The bench damages frames on purpose.
+    pub fn note_on_purpose(&mut self, now: Instant) {
+        self.on_purpose_until = now + RESYNC + RESYNC;
+    }
+
+    /// The unit was started again.
+    pub fn note_restart(&mut self, now: Instant) {
+        self.settles_until = Some(now + SETTLES);
+        self.rejected_by_unit = None;
+        self.clock = None;
+        self.rate = ClockRate::default();
+    }
+
+    /// This bench's own computer did not keep up: its frames left late and the unit's frames waited or were
+    /// lost here. Neither is counted against the line.
+    pub fn note_stalled(&mut self, now: Instant) {
+        self.settles_until = self.settles_until.map(|_| now + SETTLES);
+        self.clock = None;
+        self.rate = ClockRate::default();
+        self.past.clear();
+        self.past.push_back((now, self.counts));
+    }
+
+    /// Takes when a frame of the unit came, and the unit's clock when it was made, ms.
+    pub fn on_clock(&mut self, at: Instant, stamp_ms: u32) {
+        if !self.settled(at) {
+            return;
+        }
+        self.rate.take(at, stamp_ms);
+        let (since, first_ms) = *self.clock.get_or_insert((at, stamp_ms));
+        let by_bench = at.since(since).as_us();
+        let by_unit = u64::from(stamp_ms.wrapping_sub(first_ms)) * 1_000;
+        let off = by_bench.abs_diff(by_unit);
+        let wrong = off > CLOCK_OFF.as_us() && off > by_bench / CLOCK_SHARE;
+        // Before that a share this small cannot show: what was found before a stall stands.
+        if wrong || by_bench >= CLOCK_OFF.as_us() * CLOCK_SHARE {
+            self.clock_is_right = !wrong;
+        }
+    }
+
+    /// Takes the unit's own count, which wraps.
+    pub fn on_refused(&mut self, now: Instant, refused: u16) {
+        let more = self
+            .rejected_by_unit
+            .replace(refused)
+            .map_or(0, |before| refused.wrapping_sub(before));
+        // A count that falls is of a unit that was started again.
+        let fallen = more > u16::MAX / 2;
+        if !fallen && self.clock_is_right && self.settled(now) && now >= self.on_purpose_until {
+            self.counts.to_unit += u64::from(more);
+        }
+    }
+
+    /// Takes the rig's own counts, once a cycle.
+    pub fn step(&mut self, now: Instant, counters: &Counters) {
+        if !now.as_us().is_multiple_of(CYCLE.as_us()) {
+            return;
+        }
+        let heard = WHOLE.iter().any(|&channel| counters.accepted(channel) > 0);
+        if self.settles_until.is_none() && heard {
+            self.settles_until = Some(now + SETTLES);
+        }
+        if self.settled(now) {
+            let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
+            let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
+            let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
+            // Modems may catch up with what they may have damaged: what was counted stays counted.
+            let counts = &mut self.counts;
+            counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
+            counts.taken = self.base.taken + sum(taken);
+        } else {
+            self.before = *counters;
+            self.base = self.counts;
+        }
+        let due = |(at, _): &(Instant, Counts)| now.since(*at) >= EVERY;
+        if self.past.back().is_none_or(due) {
+            self.past.push_back((now, self.counts));
+        }
+        while self
+            .past
+            .front()
+            .is_some_and(|(at, _)| now.since(*at) > LATELY)
+        {
+            self.past.pop_front();
+        }
+    }
+
+    fn settled(&self, now: Instant) -> bool {
+        self.settles_until.is_some_and(|until| now >= until)
+    }
+
+    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    pub fn clock_wrong_by_permille(&self) -> Option<i32> {
+        self.rate.wrong_by_permille()
+    }
+
+    /// What got lost until now, and in the last seconds.
+    pub fn state(&self) -> LineState {
+        let before = self
+            .past
+            .front()
+            .map_or(0, |(_, counts)| counts.lost_or_damaged());
+        LineState {
+            lost_or_damaged: self.counts.lost_or_damaged(),
+            lost_or_damaged_lately: self.counts.lost_or_damaged().saturating_sub(before),
+        }
+    }
+
+    /// What is wrong with the line, if it is bad.
+    pub fn error(&self, now: Instant) -> Option<String> {
+        let within = |(at, _): &&(Instant, Counts)| now.since(*at) <= SPAN;
+        let before = self
+            .past
+            .iter()
+            .find(within)
+            .map_or(Counts::default(), |(_, counts)| *counts);
+        let from_unit = self.counts.from_unit.saturating_sub(before.from_unit);
+        let to_unit = self.counts.to_unit.saturating_sub(before.to_unit);
+        let came = self.counts.taken.saturating_sub(before.taken) + from_unit;
+        (from_unit + to_unit >= self.bad_at).then(|| {
+            format!(
+                "the line between tester and unit is bad: within {:.0} s {from_unit} of {came} frames from \
+                 the unit did not come through, and the unit refused {to_unit} — check the cable, its plugs \
+                 and whether another program uses the port",
+                SPAN.as_secs()
+            )
+        })
+    }
+}
+
+fn taken(counters: &Counters) -> u64 {
+    WHOLE
+        .iter()
+        .map(|&channel| counters.accepted(channel))
+        .sum()
+}
+
+fn lost(counters: &Counters) -> u64 {
+    WHOLE.iter().map(|&channel| counters.gaps(channel)).sum()
+}
+
+fn out_of_place(counters: &Counters) -> u64 {
+    WHOLE
+        .iter()
+        .map(|&channel| counters.out_of_place(channel))
+        .sum()
+}
+
+/// Refused as damaged or wrongly addressed, on a channel that no part of the unit damages, or on none.
+fn refused_whole(counters: &Counters) -> u64 {
+    refused(counters, &[Some(Channel::Ptu), Some(Channel::Io), None])
+}
+
+fn refused_of_modems(counters: &Counters) -> u64 {
+    refused(counters, &[Some(Channel::Tcms), Some(Channel::Twc)])
+}
+
+fn refused(counters: &Counters, channels: &[Option<Channel>]) -> u64 {
+    let reasons = Reject::ALL.into_iter();
+    reasons
+        .filter(|reason| !matches!(reason, Reject::Sequence | Reject::Stamp))
+        .flat_map(|reason| {
+            channels
+                .iter()
+                .map(move |channel| counters.rejected_for(reason, *channel))
+        })
+        .sum()
+}

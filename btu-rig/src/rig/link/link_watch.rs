@@ -1,0 +1,212 @@
+//! Reports what is wrong with the connection to the unit, in words a technician can act on.
+//!
+//! Only channels that no fault of the unit can silence are watched: a unit that does not answer
+//! TCMS or the wayside is a finding, not a bench error.
+
+use std::net::{Ipv6Addr, SocketAddr};
+
+use protocol::frame::Reject;
+use protocol::link::{Counters, Link, RESYNC};
+use protocol::message::{Channel, Taken};
+use protocol::{Duration, Instant};
+
+/// Time a unit has to be heard for the first time: it may be starting.
+const FIRST_CONTACT: Duration = Duration::from_ms(3000);
+/// Silence that is an error: longer than the link takes to hear a unit that was started again.
+const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
+
+/// Silence that is an error while frames of the unit come that do not continue those before them: it starts again, and
+/// may do so while it is about to be heard again.
+const STARTING: Duration = Duration::from_ms(10_000);
+
+/// Channels that are watched, by their names.
+const WATCHED: [(Channel, &str); 2] = [(Channel::Io, "I/O"), (Channel::Ptu, "PTU")];
+
+#[derive(Debug, Default)]
+pub struct LinkWatch {
+    begun: Option<Instant>,
+    bytes: u64,
+    taken: Option<Taken>,
+    /// The tester's own computer stood still until then.
+    stalled_until: Instant,
+    /// Frames refused until each of the watched channels was last heard.
+    refused: [Refused; WATCHED.len()],
+}
+
+/// Frames refused: all, and those for their sequence number or stamp, as the frames of a unit that starts
+/// again are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Refused {
+    total: u64,
+    restarted: u64,
+}
+
+impl Refused {
+    fn until_now(counters: &Counters) -> Self {
+        Self {
+            total: counters.rejected_total(),
+            restarted: counters.rejected(Reject::Sequence) + counters.rejected(Reject::Stamp),
+        }
+    }
+
+    fn since(self, before: Self) -> Self {
+        Self {
+            total: self.total - before.total,
+            restarted: self.restarted - before.restarted,
+        }
+    }
+
+    /// Most of them are of a unit that starts again.
+    fn of_a_start(self) -> bool {
+        2 * self.restarted > self.total
+    }
+
+    /// What to say of them.
+    fn said(self) -> Option<String> {
+        let Self { total, restarted } = self;
+        match total {
+            0 => None,
+            _ if self.of_a_start() => Some(format!(
+                "while {restarted} frames did not continue those before them — the unit starts again and again: check its supply"
+            )),
+            _ => Some(format!(
+                "while {total} frames were refused — check the line between tester and unit"
+            )),
+        }
+    }
+}
+
+impl LinkWatch {
+    /// Notes what arrived.
+    pub fn note(&mut self, bytes: usize) {
+        self.bytes += bytes as u64;
+    }
+
+    /// Notes that another client has the unit.
+    pub fn note_taken(&mut self, taken: Taken) {
+        self.taken = Some(taken);
+    }
+
+    /// Why the unit turned this client away, if it did.
+    pub fn turned_away(&self) -> Option<String> {
+        let taken = self.taken?;
+        let ip = Ipv6Addr::from(taken.address).to_canonical();
+        let by = SocketAddr::new(ip, taken.port);
+        let seconds = |ms: u32| Duration::from_ms(u64::from(ms)).as_secs();
+        let silence = match seconds(taken.silent_ms) {
+            silent_s if silent_s < SILENCE.as_secs() => String::new(),
+            silent_s => format!(", which has been silent for {silent_s:.0} s"),
+        };
+        Some(format!(
+            "the unit is taken by another tester, {by}, for {:.0} s{silence}",
+            seconds(taken.for_ms)
+        ))
+    }
+
+    /// Notes that the bench runs.
+    pub fn step(&mut self, now: Instant) {
+        self.begun.get_or_insert(now);
+    }
+
+    /// The tester's own computer stood still until now. Frames that came meanwhile may have been lost here, so silence counts
+    /// from now on.
+    pub fn note_stalled(&mut self, now: Instant) {
+        self.stalled_until = now;
+    }
+
+    /// Notes that a frame of a channel was taken.
+    pub fn note_frame(&mut self, channel: Channel, counters: &Counters) {
+        let place = WATCHED.iter().position(|(watched, _)| *watched == channel);
+        if let Some(refused) = place.and_then(|place| self.refused.get_mut(place)) {
+            *refused = Refused::until_now(counters);
+        }
+    }
+
+    /// What is wrong, if anything; `asks_since` = since when the tester speaks. The I/O channel is watched only with
+    /// a `harness`.
+    pub fn error(
+        &self,
+        now: Instant,
+        link: &Link,
+        asks_since: Option<Instant>,
+        harness: bool,
+    ) -> Option<String> {
+        if let Some(why) = self.turned_away() {
+            return Some(why);
+        }
+        let begun = self.begun?;
+        if now.since(begun) < FIRST_CONTACT {
+            return None;
+        }
+        let heard_any = Channel::ALL.iter().any(|&c| link.last_heard(c).is_some());
+        if !heard_any {
+            return Some(self.no_contact(now.since(begun), link.counters()));
+        }
+        let since = [harness.then_some(begun), asks_since];
+        let mut watched = WATCHED.iter().zip(since).zip(self.refused);
+        watched.find_map(|((&(channel, name), since), refused_before)| {
+            let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
+            let silence = now.since(heard.max(self.stalled_until));
+            let refused = Refused::until_now(link.counters()).since(refused_before);
+            let at_most = if refused.of_a_start() {
+                STARTING
+            } else {
+                SILENCE
+            };
+            (silence > at_most).then(|| {
+                let seconds = silence.as_secs();
+                let silent = format!("unit silent for {seconds:.1} s on the {name} channel");
+                match refused.said() {
+                    None => silent,
+                    Some(refused) => format!("{silent}, {refused}"),
+                }
+            })
+        })
+    }
+
+    fn no_contact(&self, waited: Duration, counters: &Counters) -> String {
+        if self.bytes == 0 {
+            return format!(
+                "unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power",
+                waited.as_secs()
+            );
+        }
+        let bytes = self.bytes;
+        let refused = |reason: &Reject| counters.rejected(*reason);
+        let most = Reject::ALL.into_iter().max_by_key(refused);
+        let garbage = match most.filter(|reason| refused(reason) > 0) {
+            Some(reason) => format!(
+                "garbage: {bytes} bytes, no valid frame, {} refused for {}",
+                refused(&reason),
+                reason.label()
+            ),
+            None => format!("garbage: {bytes} bytes, no valid frame"),
+        };
+        // A frame whose check sequence fits was read at the right rate.
+        let fitting = Reject::ALL
+            .into_iter()
+            .filter(|reason| !before_checksum(*reason));
+        match fitting
+            .max_by_key(refused)
+            .filter(|reason| refused(reason) > 0)
+        {
+            Some(Reject::Version) => format!(
+                "{} frames of another version of the wire — unit and bench programs differ",
+                counters.rejected(Reject::Version)
+            ),
+            Some(Reject::Address) => {
+                format!("{garbage} — the tester's own frames come back: is the unit on this port?")
+            }
+            Some(_) => format!("{garbage} — check the cable and what is connected to this port"),
+            None => format!("{garbage} — wrong baud rate?"),
+        }
+    }
+}
+
+/// Whether a frame refused for this may have had no check sequence that fits.
+fn before_checksum(reason: Reject) -> bool {
+    matches!(
+        reason,
+        Reject::TooShort | Reject::TooLong | Reject::Escape | Reject::Checksum
+    )
+}

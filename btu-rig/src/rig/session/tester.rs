@@ -1,0 +1,394 @@
+//! The tester's session on the PTU channel: who the unit is, keep-alive, requests, event log.
+
+use protocol::event::Event;
+use protocol::link::Link;
+use protocol::message::{
+    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, SelfTestItem, Status,
+    StatusBits,
+};
+use protocol::{Duration, Instant};
+
+use crate::procedure::{LogState, Refusal, UnitEvent};
+
+use super::exchange::Exchange;
+use super::log_reader::LogReader;
+use super::request::Request;
+use super::test_signals;
+use super::unit_clock::{TimeOfDay, UnitClock};
+
+/// Period of the keep-alive: the unit disarms after one second without.
+const KEEP_ALIVE: Duration = Duration::from_ms(200);
+/// Period in which an unanswered question for the identity is repeated.
+const IDENTIFY_AGAIN: Duration = Duration::from_ms(300);
+/// Period in which a known unit is asked again: its uptime tells whether it was started again.
+const IDENTIFY_CHECK: Duration = Duration::from_ms(2000);
+/// An uptime that falls by more than this is a wrapped counter, not a restart.
+const UPTIME_WRAP_MS: u32 = 1 << 31;
+
+#[derive(Debug)]
+pub struct Tester {
+    session: u32,
+    silent: bool,
+    speaks_since: Instant,
+    keep_alive_due: Instant,
+    identify_due: Instant,
+    identity: Option<Identity>,
+    /// Who it was when it was first asked.
+    first: Option<Identity>,
+    /// What another unit said otherwise.
+    changed: Option<String>,
+    self_test: SelfTest,
+    /// Count of events in the last status.
+    logged: Option<u32>,
+    events_at_contact: Option<u32>,
+    /// Those are not read.
+    leaves_old: bool,
+    restarts: u32,
+    /// Its log says that it restarted by itself, since it was started.
+    restarted_itself: bool,
+    exchange: Exchange,
+    log: LogReader,
+    /// The log is not read: what is stored is, instead.
+    holds_log: bool,
+    clock: UnitClock,
+    /// The log was to be cleared: what is gone from it then is gone on purpose.
+    clears_log: bool,
+    /// Entries logged since contact that were gone before they could be read.
+    missed: u64,
+}
+
+impl Tester {
+    /// A tester that listens; `session` must not be 0.
+    pub fn new(session: u32) -> Self {
+        Self {
+            session,
+            silent: false,
+            speaks_since: Instant::ZERO,
+            keep_alive_due: Instant::ZERO,
+            identify_due: Instant::ZERO,
+            identity: None,
+            first: None,
+            changed: None,
+            self_test: SelfTest::empty(),
+            logged: None,
+            events_at_contact: None,
+            leaves_old: false,
+            restarts: 0,
+            restarted_itself: false,
+            exchange: Exchange::new(session),
+            log: LogReader::default(),
+            holds_log: false,
+            clock: UnitClock::default(),
+            clears_log: false,
+            missed: 0,
+        }
+    }
+
+    /// Sends what is due.
+    pub fn step(&mut self, now: Instant, link: &mut Link, out: &mut Vec<u8>) {
+        if self.silent {
+            return;
+        }
+        if now >= self.identify_due {
+            let again = if self.identity.is_some() {
+                IDENTIFY_CHECK
+            } else {
+                IDENTIFY_AGAIN
+            };
+            self.identify_due = now + again;
+            link.send(now, &Identify {}.into(), out);
+        }
+        if now >= self.keep_alive_due {
+            self.keep_alive_due = now + KEEP_ALIVE;
+            let session = if self.exchange.armed() {
+                self.session
+            } else {
+                0
+            };
+            link.send(now, &KeepAlive { session }.into(), out);
+        }
+        self.exchange.step(now, link, out);
+        if self.identity.is_some() {
+            self.clock.step(now, link, out);
+        }
+        if !self.holds_log {
+            self.log.step(now, link, out);
+        }
+    }
+
+    /// Takes a message of the PTU channel.
+    pub fn receive(&mut self, now: Instant, message: &Message) {
+        match message {
+            Message::Identity(identity) => self.on_identity(now, identity),
+            Message::Status(status) => self.on_status(now, status),
+            Message::ArmChallenge(challenge) => self.exchange.on_challenge(challenge),
+            Message::ArmState(state) => self.exchange.on_arm_state(now, state),
+            Message::StimulusAnswer(answer) => {
+                self.clock.on_answer(answer);
+                self.exchange.on_answer(now, answer);
+            }
+            Message::SelfTestItem(item) => self.exchange.on_self_test_item(item),
+            Message::SelfTestEnd(end) => self.exchange.on_self_test_end(end),
+            // Nobody asked: what answers unasked is not believed to be the log.
+            Message::LogEntry(_) | Message::LogEnd(_) if self.holds_log => {}
+            Message::LogEntry(entry) => {
+                let event = Event::from_code(entry.code);
+                self.restarted_itself |= event.is_some_and(Event::restarts_unit);
+                self.log.on_entry(now, entry);
+            }
+            Message::LogEnd(end) => self.on_log_end(now, end),
+            _ => {}
+        }
+    }
+
+    fn on_log_end(&mut self, now: Instant, end: &LogEnd) {
+        let wanted = self.log.next_index();
+        self.log.on_end(now, end);
+        let since_contact = self.events_at_contact.unwrap_or(u32::MAX).max(wanted);
+        if !self.clears_log {
+            self.missed += u64::from(end.oldest_index.saturating_sub(since_contact));
+        }
+    }
+
+    fn on_identity(&mut self, now: Instant, identity: &Identity) {
+        let first = self.first.get_or_insert(*identity);
+        if self.changed.is_none() {
+            self.changed = difference(first, identity);
+        }
+        let before = self.identity.replace(*identity);
+        let fallen = before.map_or(0, |b| b.uptime_ms.saturating_sub(identity.uptime_ms));
+        if fallen > 0 && fallen < UPTIME_WRAP_MS {
+            self.on_restart(now);
+        }
+        self.self_test |= identity.self_test;
+    }
+
+    fn on_status(&mut self, now: Instant, status: &Status) {
+        if self.logged.is_some_and(|before| status.events < before) {
+            // The identity that follows has a lower uptime, too: that is the same restart.
+            self.identity = None;
+            self.on_restart(now);
+        }
+        self.self_test |= status.self_test;
+        self.logged = Some(status.events);
+        if self.events_at_contact.is_none() && self.leaves_old {
+            self.log.begin_at(status.events);
+        }
+        self.events_at_contact.get_or_insert(status.events);
+        self.log.note_logged(status.events);
+        self.exchange
+            .on_armed_bit(now, status.bits.contains(StatusBits::ARMED));
+    }
+
+    fn on_restart(&mut self, now: Instant) {
+        self.restarts += 1;
+        self.restarted_itself = false;
+        self.logged = None;
+        self.events_at_contact = Some(0);
+        self.identify_due = now;
+        self.self_test = SelfTest::empty();
+        self.exchange.on_restart();
+        self.clock.restart();
+        self.log.restart();
+    }
+
+    /// Asks something of the unit.
+    ///
+    /// # Errors
+    /// While the tester is silent, or when too much waits for an answer.
+    pub fn request(&mut self, request: Request) -> Result<(), Refusal> {
+        if self.silent {
+            return Err(Refusal(
+                "the tester is silent: let it speak first".to_owned(),
+            ));
+        }
+        if let Request::Stimulus { message, .. } = &request {
+            self.clears_log |= matches!(message, Message::ClearLog(_));
+        }
+        self.exchange.push(request)
+    }
+
+    /// Stops sending, dropping requests in progress, or starts again.
+    pub fn set_silent(&mut self, now: Instant, silent: bool) {
+        if silent && !self.silent {
+            self.exchange.replace([]);
+        }
+        if self.silent && !silent {
+            self.speaks_since = now;
+            self.log.pause();
+        }
+        self.silent = silent;
+    }
+
+    /// Listens, and disarms if there is anything to disarm.
+    pub fn make_safe(&mut self, now: Instant) {
+        self.set_silent(now, false);
+        if !self.exchange.may_be_armed() {
+            self.exchange.replace([]);
+        } else if !self.exchange.disarming() {
+            let release = test_signals::release(self.session);
+            self.exchange.replace([release, Request::Disarm]);
+        }
+    }
+
+    /// Why the unit refused or ended arming, as it said last.
+    pub fn arm_refusal(&self) -> ArmRefusal {
+        self.exchange.refusal()
+    }
+
+    /// Every request has its outcome.
+    ///
+    /// # Errors
+    /// What the unit refused or did not answer, until it is forgotten.
+    pub fn settled(&self) -> Result<bool, Refusal> {
+        match self.exchange.failure() {
+            Some(refusal) => Err(refusal.clone()),
+            None => Ok(self.exchange.idle()),
+        }
+    }
+
+    /// The bench goes on to something else: what failed before is reported.
+    pub fn forget_failure(&mut self) {
+        self.exchange.forget_failure();
+    }
+
+    /// Listening, not armed, nothing under way.
+    pub fn safe(&self) -> bool {
+        !self.silent && !self.exchange.armed() && self.exchange.idle()
+    }
+
+    /// Since when it sends; `None` while it is silent.
+    pub fn speaks_since(&self) -> Option<Instant> {
+        (!self.silent).then_some(self.speaks_since)
+    }
+
+    pub fn session(&self) -> u32 {
+        self.session
+    }
+
+    /// Who the unit is, once it has said so.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.identity.as_ref()
+    }
+
+    /// Entries the unit's log had when it was first heard.
+    pub fn events_at_contact(&self) -> Option<u32> {
+        self.events_at_contact
+    }
+
+    /// The log is not read, or from now on it is.
+    pub fn hold_log(&mut self, holds: bool) {
+        self.holds_log = holds;
+    }
+
+    /// Tells the unit the time, now and after each restart.
+    pub fn tell_time(&mut self, time: TimeOfDay) {
+        self.clock.tell(time);
+    }
+
+    /// Bench and unit both stood still for so long.
+    pub fn put_off_time(&mut self, pause: Duration) {
+        self.clock.put_off(pause);
+    }
+
+    /// The unit has the time, or does not take it.
+    pub fn time_settled(&self) -> bool {
+        self.clock.settled()
+    }
+
+    /// What the unit logged before it was first heard is not read.
+    pub fn leave_log_before_contact(&mut self) {
+        self.leaves_old = true;
+    }
+
+    /// Why the unit ended the session by itself, once; not while this tester is silent on purpose.
+    pub fn take_session_ended(&mut self) -> Option<ArmRefusal> {
+        self.exchange.take_ended().filter(|_| !self.silent)
+    }
+
+    /// Times the unit was started again.
+    pub fn restarts(&self) -> u32 {
+        self.restarts
+    }
+
+    /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
+    pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
+        let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
+        read.then_some(self.restarted_itself)
+    }
+
+    /// Log entries not yet taken.
+    pub fn take_events(&mut self) -> Vec<UnitEvent> {
+        self.log.take()
+    }
+
+    /// What the last self-test asked for found, as far as it came.
+    pub fn self_test_items(&self) -> &[SelfTestItem] {
+        self.exchange.self_test()
+    }
+
+    /// The log as read so far.
+    pub fn log(&self) -> &LogReader {
+        &self.log
+    }
+
+    /// How far the log is read.
+    pub fn log_state(&self, now: Instant) -> LogState {
+        match self.log.state(now) {
+            // It is not asked for.
+            LogState::Unanswered if self.silent => LogState::Behind,
+            state => state,
+        }
+    }
+
+    /// Self-test items that failed, as the unit has said since it was started.
+    pub fn self_test(&self) -> SelfTest {
+        self.self_test
+    }
+
+    /// Why nothing that is heard can be judged: another unit answers, or the log cannot be read.
+    pub fn error(&self, now: Instant) -> Option<String> {
+        let unread = || self.log.error(now).filter(|_| !self.silent);
+        self.changed.clone().or_else(unread)
+    }
+
+    /// Entries logged since contact that cannot be read any more.
+    pub fn missed(&self) -> Option<String> {
+        (self.missed > 0).then(|| {
+            format!(
+                "{} entries of the unit's log were overwritten before they could be read",
+                self.missed
+            )
+        })
+    }
+}
+
+/// What tells two units apart, in words.
+fn difference(first: &Identity, now: &Identity) -> Option<String> {
+    let changed = |what: &str, was: String, is: String| {
+        (was != is).then(|| format!("its {what} was {was} and is {is}"))
+    };
+    let name = |field: &[u8; 16]| {
+        let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
+        format!("\"{}\"", field[..end].escape_ascii())
+    };
+    let checksum = |crc: u32| format!("{crc:08x}");
+    let changes: Vec<_> = [
+        changed("serial number", name(&first.serial), name(&now.serial)),
+        changed("unit configuration", name(&first.config), name(&now.config)),
+        changed(
+            "configuration's checksum",
+            checksum(first.config_crc),
+            checksum(now.config_crc),
+        ),
+        changed(
+            "track database's checksum",
+            checksum(first.tdb_crc),
+            checksum(now.tdb_crc),
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    (!changes.is_empty()).then(|| format!("another unit answers: {}", changes.join(", ")))
+}

@@ -1,0 +1,108 @@
+//! What is known of the unit, and how far it can be trusted.
+
+use protocol::Instant;
+use protocol::link::Counters;
+use protocol::message::{Identity, SelfTest, SelfTestItem};
+use protocol::signal::{Sample, Signal};
+
+use super::Rig;
+use crate::procedure::{Evidence, UnitEvent};
+
+impl Rig {
+    /// The present value of every signal. What the unit has not said for 500 ms is not known.
+    pub fn sample(&self) -> &Sample {
+        &self.latest.sample
+    }
+
+    /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
+    /// of the unit begin from the start when it is started again.
+    pub fn take_events(&mut self) -> Vec<UnitEvent> {
+        let mut events = self.tester.take_events();
+        events.append(&mut self.tcms_events);
+        events
+    }
+
+    /// Entries the log had when the unit was first heard: those with a lower index are older than
+    /// this bench's work. 0 after a restart of the unit, `None` before it is heard.
+    pub fn events_at_contact(&self) -> Option<u32> {
+        self.tester.events_at_contact()
+    }
+
+    /// Every event the unit says it has logged has been read.
+    pub fn log_up_to_date(&self) -> bool {
+        self.tester.log().up_to_date()
+    }
+
+    /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
+    /// TCMS that were not taken in time.
+    pub fn events_overwritten(&self) -> u64 {
+        self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
+    }
+
+    /// Who the unit is, once it has said so.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.tester.identity()
+    }
+
+    /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.
+    pub fn unit_stamp_ms(&self) -> Option<(Instant, u32)> {
+        self.unit_stamp
+    }
+
+    /// Times the unit was started again since it was first heard.
+    pub fn unit_restarts(&self) -> u32 {
+        self.tester.restarts()
+    }
+
+    /// Why nothing that is heard can be judged, after a time allowed for first contact: what is wrong with
+    /// the connection, with who answers, or with reading the unit's log.
+    pub fn link_error(&self) -> Option<String> {
+        let line = self.line_watch.error(self.now);
+        let silence = || {
+            let asks_since = self.tester.speaks_since();
+            let harness = self.harness.is_there();
+            self.watch.error(self.now, &self.link, asks_since, harness)
+        };
+        line.or_else(silence)
+            .or_else(|| self.tester.error(self.now))
+            .or_else(|| self.tester.missed())
+    }
+
+    /// How far what is heard can be trusted.
+    pub fn evidence(&self) -> Evidence {
+        Evidence {
+            log: self.tester.log_state(self.now),
+            not_kept: self.tester.log().not_kept(),
+            line: self.line_watch.state(),
+            clock_wrong_by_permille: self.line_watch.clock_wrong_by_permille(),
+            self_test: self.tester.self_test(),
+            unit_time: self.subscription.unit_time(),
+        }
+    }
+
+    /// What the last self-test asked for found, item by item, as far as it came.
+    pub fn self_test_items(&self) -> &[SelfTestItem] {
+        self.tester.self_test_items()
+    }
+
+    /// What it found of an item.
+    pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
+        let items = self.self_test_items().iter();
+        items.copied().find(|one| one.item == item)
+    }
+
+    /// What is behind a signal that says only whether the unit is as it should be.
+    pub fn said(&self, signal: Signal) -> Option<&str> {
+        self.identity.said(signal)
+    }
+
+    /// Why the unit turned this bench away, if it did: another has it.
+    pub fn turned_away(&self) -> Option<String> {
+        self.watch.turned_away()
+    }
+
+    /// Frames taken and refused by the rig.
+    pub fn counters(&self) -> &Counters {
+        self.link.counters()
+    }
+}

@@ -1,0 +1,163 @@
+//! The section the train is on: gradient and curve under the whole train, the distance to the stop point
+//! and the speed code at the head.
+
+use protocol::line::Section;
+
+use super::step_profile::StepProfile;
+
+/// A section laid along the track ahead of the rig.
+#[derive(Clone, Debug)]
+pub struct Track {
+    section: Section,
+    /// Position of the section's start on the rig's own scale, m.
+    starts_at_m: f64,
+    /// Gradient, ‰, uphill positive; level before the first that is listed.
+    gradient: StepProfile,
+    /// Curvature, 1/m.
+    curvature: StepProfile,
+}
+
+/// What lies under the train, mean over its weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UnderTrain {
+    /// Gradient, ‰, uphill positive.
+    pub gradient_permille: f64,
+    /// Curvature, 1/m.
+    pub curvature_per_m: f64,
+}
+
+impl Track {
+    /// Lays a section so that it starts at `starts_at_m`.
+    pub fn new(section: Section, starts_at_m: f64) -> Self {
+        let gradients = section.gradients.iter().map(|g| (g.at_m, g.permille));
+        let bent = |radius_m: f64| if radius_m > 0.0 { 1.0 / radius_m } else { 0.0 };
+        let curves = section.curves.iter().map(|c| (c.at_m, bent(c.radius_m)));
+        Self {
+            gradient: StepProfile::new(gradients),
+            curvature: StepProfile::new(curves),
+            section,
+            starts_at_m,
+        }
+    }
+
+    pub fn section(&self) -> &Section {
+        &self.section
+    }
+
+    /// Position in the section of a position on the rig's own scale, m.
+    pub fn in_section_m(&self, position_m: f64) -> f64 {
+        position_m - self.starts_at_m + self.section.start_m
+    }
+
+    /// Distance from there to the stop point, m; negative past it.
+    pub fn to_stop_m(&self, position_m: f64) -> f64 {
+        self.section.stop_m - self.in_section_m(position_m)
+    }
+
+    /// What lies under a train of these cars, length in m and share of the train's weight, whose
+    /// head is at `position_m`.
+    pub fn under(&self, position_m: f64, cars: &[(f64, f64)]) -> UnderTrain {
+        let mut under = UnderTrain::default();
+        let (mut heights, mut turns) = (self.gradient.descend(), self.curvature.descend());
+        let mut front_m = self.in_section_m(position_m);
+        let (mut height, mut turn) = (heights.integral(front_m), turns.integral(front_m));
+        for &(length_m, weight_share) in cars {
+            front_m -= length_m;
+            let (lower, less) = (heights.integral(front_m), turns.integral(front_m));
+            let share_per_m = weight_share / length_m;
+            under.gradient_permille += (height - lower) * share_per_m;
+            under.curvature_per_m += (turn - less) * share_per_m;
+            (height, turn) = (lower, less);
+        }
+        under
+    }
+
+    /// Name of the speed code under a head at `position_m`; the first one before it begins.
+    pub fn speed_code(&self, position_m: f64) -> Option<&str> {
+        let at = self.in_section_m(position_m);
+        let codes = &self.section.speed_codes;
+        let passed = codes.iter().rev().find(|code| code.at_m <= at);
+        passed.or(codes.first()).map(|code| code.code.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::line::{Curve, Gradient, Line};
+
+    use super::*;
+
+    fn section() -> Section {
+        let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
+        let mut section = line.section(61).unwrap().clone();
+        section.gradients = vec![
+            Gradient {
+                at_m: 0.0,
+                permille: 0.0,
+            },
+            Gradient {
+                at_m: 200.0,
+                permille: -30.0,
+            },
+        ];
+        section.curves = vec![
+            Curve {
+                at_m: 400.0,
+                radius_m: 350.0,
+            },
+            Curve {
+                at_m: 500.0,
+                radius_m: 0.0,
+            },
+        ];
+        section
+    }
+
+    /// A step of the gradient is a ramp over the train: half of eight equal cars of 20 m lie on it
+    /// when the head is 80 m past it, 70 m of 160 when it is 70 m past.
+    #[test]
+    fn a_step_of_the_gradient_is_a_ramp_over_the_length_of_the_train() {
+        let track = Track::new(section(), 1000.0);
+        let cars = [(20.0, 0.125); 8];
+        for (head_m, permille) in [
+            (1200.0, 0.0),
+            (1270.0, -13.125),
+            (1280.0, -15.0),
+            (1360.0, -30.0),
+        ] {
+            let under = track.under(head_m, &cars);
+            assert!(
+                (under.gradient_permille - permille).abs() < 1e-9,
+                "{head_m}: {under:?}"
+            );
+        }
+        // 100 m of 160 bent at 350 m, and none once the last car is through.
+        let bent = track.under(1500.0, &cars).curvature_per_m;
+        assert!((bent - 100.0 / 160.0 / 350.0).abs() < 1e-12, "{bent}");
+        assert!(track.under(1660.0, &cars).curvature_per_m.abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_heavy_car_weighs_more() {
+        let track = Track::new(section(), 0.0);
+        let under = track.under(220.0, &[(20.0, 0.75), (20.0, 0.25)]);
+        assert!((under.gradient_permille + 22.5).abs() < 1e-9, "{under:?}");
+    }
+
+    #[test]
+    fn codes_change_where_the_head_is() {
+        let mut section = section();
+        let code = |at_m, code: &str| protocol::line::CodeFrom {
+            at_m,
+            code: code.to_owned(),
+        };
+        section.speed_codes = vec![code(0.0, "55"), code(235.0, "45")];
+        let track = Track::new(section, 100.0);
+        let at = [99.0, 100.0, 334.9, 335.0];
+        assert_eq!(
+            at.map(|m| track.speed_code(m)),
+            [Some("55"), Some("55"), Some("55"), Some("45")]
+        );
+        assert_eq!(track.to_stop_m(950.03), 0.0);
+    }
+}

@@ -1,0 +1,62 @@
+//! What a run is to do, and the streams of events in which it comes back.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use btu_rig::procedure::{Procedure, RunOptions};
+use diagnosis::{Dictionary, Settings};
+use protocol::LruId;
+
+use super::event::SessionEvent;
+
+/// Events of one procedure that may wait for the collector.
+const QUEUE: usize = 4096;
+
+/// A procedure and what of it is to be run.
+pub struct Task {
+    /// The procedure.
+    pub procedure: Arc<Procedure>,
+    /// Steps, repetitions, behaviour on failure.
+    pub options: RunOptions,
+}
+
+/// What stays the same for a whole run.
+pub struct RunPlan {
+    /// Procedures in order.
+    pub tasks: Vec<Task>,
+    /// Benches to run side by side; one on a port.
+    pub jobs: usize,
+    /// The run ends with the first procedure, in this order, that does not pass.
+    pub stop_on_fail: bool,
+    /// Who tests.
+    pub operator: String,
+    /// The train the unit is in, as the tester names it; empty if not given.
+    pub train: String,
+    /// What was wrong with the unit, as the person who brought it said: a name of `symptoms.toml`.
+    pub symptom: Option<String>,
+    /// SHA-256 over all scripts.
+    pub scripts_sha256: String,
+    /// Isolates a fault by itself, instead of running all tasks in order.
+    pub adaptive: Option<Adaptive>,
+    /// The earlier run whose open procedures these are.
+    pub continues: Option<fault_db::Id>,
+}
+
+/// A procedure and the events of its run.
+pub(super) type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
+
+/// What an adaptive run decides by.
+pub struct Adaptive {
+    /// What each fault does to each check.
+    pub dictionary: Dictionary,
+    /// Priors and thresholds.
+    pub settings: Settings,
+    /// What the unit's history says of its parts.
+    pub lru_factors: BTreeMap<LruId, f64>,
+}
+
+/// A stream's two ends.
+pub(super) fn stream() -> (mpsc::SyncSender<SessionEvent>, Receiver<SessionEvent>) {
+    mpsc::sync_channel(QUEUE)
+}

@@ -1,0 +1,262 @@
+//! A whole run: the unit is reached, the plan is worked through, and everything is recorded.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{self, Outside, OutsideStep};
+use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
+use protocol::Instant;
+
+use super::adaptive;
+use super::bench_contents::BenchContents;
+use super::bench_setup::{BenchSetup, Connected};
+use super::collector::{Collector, Listener, Outcome, steps_of};
+use super::first_failure::FirstFailure;
+use super::plan::{Adaptive, ProcedureStream, RunPlan, Task};
+use super::repaired::trace_repaired;
+use super::store_thread::RunStore;
+use super::workers;
+use crate::clock;
+use crate::failure::{Exit, Failure};
+use crate::stop::Stop;
+use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
+
+/// Runs the plan and records it; the store comes back for the report.
+///
+/// # Errors
+/// The unit cannot be reached or the database fails; what was recorded stays.
+pub fn run(
+    plan: &mut RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    let began = RunStart::now();
+    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
+    run_on(&mut connected, &began, plan, &setup, store, stop, listener)
+}
+
+/// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
+///
+/// # Errors
+/// The unit cannot be reached, it has no dictionary, or the database fails; what was recorded stays.
+pub fn search(
+    plan: &mut RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+    adaptive: impl FnOnce(&Store, &str, Connection) -> Result<Adaptive, Failure>,
+) -> Result<(Store, Outcome), Failure> {
+    let began = RunStart::now();
+    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    let connection = connected.connection();
+    trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
+    plan.adaptive = Some(adaptive(&store, &connected.serial(), connection)?);
+    run_on(&mut connected, &began, plan, &setup, store, stop, listener)
+}
+
+/// Reaches the unit; a run that cannot is recorded, too.
+fn reach(
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    store: Store,
+    stop: &Stop,
+    began: &RunStart,
+) -> Result<(Connected, Store), Failure> {
+    run_record(plan, setup, setup.expected_serial(), began.at_us).check()?;
+    match setup.connect(stop) {
+        Ok(connected) => Ok((connected, store)),
+        Err(failure) => {
+            let record = run_record(plan, setup, setup.expected_serial(), began.at_us);
+            let verdict = match failure.exit {
+                Exit::Aborted => Verdict::Aborted,
+                _ => Verdict::Error,
+            };
+            let run_store = RunStore::begin(store, record, None, stop)?;
+            run_store.step(outside_record(
+                WHOLE_RUN,
+                &OutsideStep {
+                    place: Outside::Bench,
+                    verdict: from_stored(verdict),
+                    message: failure.message.clone(),
+                    at: Instant::ZERO,
+                },
+                0,
+            ));
+            run_store.finish(began.end(verdict, 0))?;
+            Err(failure)
+        }
+    }
+}
+
+/// Runs the plan on a unit that has been reached and stays so.
+///
+/// # Errors
+/// The database fails; what was recorded stays.
+pub fn run_on(
+    connected: &mut Connected,
+    began: &RunStart,
+    plan: &RunPlan,
+    setup: &BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+) -> Result<(Store, Outcome), Failure> {
+    connected.set_stop(stop);
+    let connection = connected.connection();
+    let record = RunRecord {
+        connection: Some(connection.word().into()),
+        ..run_record(plan, setup, connected.serial(), began.at_us)
+    };
+    let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
+    let id = run_store.id;
+    let made = BenchContents::of(setup, connected.serial(), connection);
+    let mut collector = Collector::new(run_store, listener, made);
+    let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
+    let worked = catch_unwind(AssertUnwindSafe(|| {
+        std::thread::scope(|scope| match &plan.adaptive {
+            Some(adaptive) => {
+                let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
+                collect(
+                    procedures,
+                    &mut collector,
+                    &first_failure,
+                    &plan.tasks[..0],
+                    stop,
+                );
+            }
+            None => {
+                let procedures = workers::start(scope, plan, connected, &first_failure, stop);
+                collect(
+                    procedures,
+                    &mut collector,
+                    &first_failure,
+                    &plan.tasks,
+                    stop,
+                );
+            }
+        });
+    }));
+    if worked.is_err() {
+        collector.broken_off("the program failed in this run");
+    }
+    let searched = plan.adaptive.as_ref().map(|_| steps_of(&plan.tasks));
+    let (run_store, outcome) = collector.finish(id, left_out(stop), searched);
+    let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
+    if worked.is_err() {
+        // What was recorded stays, and the run is no pass.
+        run_store.finish(began.end(Verdict::Error, outcome.bench_time.as_us() as i64))?;
+        return Err(Failure::bench(format!(
+            "the program failed in run {}, which is recorded as an error; please report what stands before this",
+            id.short()
+        )));
+    }
+    Ok((run_store.finish(end)?, outcome))
+}
+
+/// The verdict on what was still due when stop was pressed.
+fn left_out(stop: &Stop) -> Option<procedure::Verdict> {
+    let verdict = match stop.reason() {
+        Some(_) => procedure::Verdict::Error,
+        None => procedure::Verdict::Aborted,
+    };
+    (stop.presses() > 0).then_some(verdict)
+}
+
+/// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
+/// what a bench does next. What was `due` and is in none of the streams, because the run was stopped, is recorded as
+/// not begun.
+fn collect(
+    procedures: impl IntoIterator<Item = ProcedureStream>,
+    collector: &mut Collector<'_>,
+    first_failure: &FirstFailure,
+    due: &[Task],
+    stop: &Stop,
+) {
+    let mut places = 0;
+    let not_begun = |collector: &mut Collector<'_>| {
+        if let Some(verdict) = left_out(stop) {
+            let why = stop.reason().unwrap_or("stopped by the operator");
+            collector.not_begun(verdict, &format!("not begun, {why}"));
+        }
+    };
+    for (place, (procedure, stream)) in procedures.into_iter().enumerate() {
+        if !first_failure.admits(place) {
+            return;
+        }
+        places = place + 1;
+        collector.begin(&procedure);
+        let mut events = stream.into_iter().peekable();
+        if events.peek().is_none() {
+            not_begun(collector);
+        }
+        events.for_each(|event| collector.take(event));
+    }
+    for (place, task) in due.iter().enumerate().skip(places) {
+        if first_failure.admits(place) && stop.presses() > 0 {
+            collector.begin(&task.procedure);
+            not_begun(collector);
+        }
+    }
+}
+
+fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us: i64) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial,
+            kind: "atc".into(),
+            config_name: setup.config.content.name.clone(),
+            sw_versions: std::collections::BTreeMap::new(),
+        },
+        line: setup.line.content.name.clone(),
+        train: plan.train.clone(),
+        seed: setup.seed,
+        operator: plan.operator.clone(),
+        source: setup.endpoint.to_string(),
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        scripts_sha256: plan.scripts_sha256.clone(),
+        unit_config_sha256: setup.config.sha256.clone(),
+        injected: setup.injected(),
+        owner: crate::process_id::this_process(),
+        continues: plan.continues,
+        connection: None,
+        symptom: plan.symptom.clone(),
+        scripts: plan
+            .tasks
+            .iter()
+            .map(|task| fault_db::ScriptRecord {
+                path: task.procedure.path.clone(),
+                sha256: task.procedure.sha256.clone(),
+            })
+            .collect(),
+    }
+}
+
+/// When a run began.
+pub struct RunStart {
+    at_us: i64,
+    at: std::time::Instant,
+}
+
+impl RunStart {
+    /// Now.
+    pub fn now() -> Self {
+        Self {
+            at_us: clock::now_us(),
+            at: std::time::Instant::now(),
+        }
+    }
+
+    fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
+        RunEnd {
+            verdict,
+            finished_at_us: clock::now_us(),
+            bench_time_us,
+            wall_time_us: i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX),
+        }
+    }
+}
