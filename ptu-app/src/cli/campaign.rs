@@ -73,9 +73,9 @@ pub struct CampaignArguments {
     /// Faults that come and go, too, a quarter of and four times as often as the catalogue says, to assess it
     #[arg(long)]
     other_spells: bool,
-    /// Other units: another number means other seeds for all of them
+    /// Lot of units: each number stands for other units, with other seeds for all of them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    units: u32,
+    lot: u32,
     #[command(flatten)]
     keep: KeepOptions,
     /// Embedded units to test side by side [default: one for each processor]
@@ -83,7 +83,7 @@ pub struct CampaignArguments {
     jobs: Option<u32>,
     /// Write the dictionary to a file, too
     #[arg(long, value_name = "FILE")]
-    save: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -127,14 +127,14 @@ impl CampaignArguments {
             pairs: self.pairs,
             common: self.common_causes,
             other_spells: self.other_spells,
-            units: self.units,
+            units: self.lot,
             keep: self.keep.keep()?,
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         let count = asked.keep.ours(count).count();
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             ptu_bench::data::check_writable(file)?;
         }
         // A shard makes no dictionary: nodes of a cluster need no database.
@@ -163,7 +163,7 @@ impl CampaignArguments {
         let (outcome, store) = outcome;
         let dictionary = &outcome.dictionary;
         let data = dictionary.to_bytes().map_err(Failure::bench)?;
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             ptu_bench::data::write(file, &data)?;
         }
         store.put_dictionary(&DictionaryRecord {

@@ -35,7 +35,7 @@ use ptu_report::drive::{self as report, Outcomes, Results, Target};
 ///   ptu drive --monte-carlo 10000 --shard 3/64 --runs shard-3.zst
 ///   ptu drive --set ato.servo.s_curve_s=12 --set 'ato.controller="pss"'
 ///   ptu drive --manual figure7 --report figure7.html
-///   ptu drive --manual keys --load full --save mine.toml
+///   ptu drive --manual keys --load full --out mine.toml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DriveArguments {
@@ -55,7 +55,7 @@ pub struct DriveArguments {
     manual: Option<String>,
     /// Write what was driven by keys as a sequence, to be driven again with --manual FILE
     #[arg(long, value_name = "FILE", requires = "manual")]
-    save: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Speed controller: servo, fuzzy, pi or pss [default: the configuration's]
     #[arg(long, value_name = "NAME", value_parser = controller)]
     controller: Option<ControllerKind>,
@@ -90,7 +90,7 @@ pub struct DriveArguments {
     wheel: Option<f64>,
     /// Speed code from start to end, in place of the line's
     #[arg(long, value_name = "NAME")]
-    code: Option<String>,
+    speed_code: Option<String>,
     /// Unit configuration key to change, as ato.servo.s_curve_s=12; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
@@ -167,13 +167,13 @@ impl DriveArguments {
 
     /// A sequence, or keys.
     fn by_hand(&self, directory: &ScriptsDirectory, source: &str) -> Result<Exit, Failure> {
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             if source != KEYS {
-                return Err(Failure::usage("--save goes with --manual keys"));
+                return Err(Failure::usage("--out goes with --manual keys"));
             }
             if file.extension().is_none_or(|ending| ending != "toml") {
                 return Err(Failure::usage(
-                    "--save: a sequence is a file ending in .toml",
+                    "--out: a sequence is a file ending in .toml",
                 ));
             }
             check_writable(file)?;
@@ -189,7 +189,7 @@ impl DriveArguments {
         let run = ManualRun { case, outcome };
         let done = !run.outcome.done.is_empty();
         let save = self
-            .save
+            .out
             .as_ref()
             .map(|file| (file, run.sequence().to_toml()));
         let answer = self.answer(
@@ -230,7 +230,7 @@ impl DriveArguments {
                 wheel_factor: self.wheel,
                 disturbance: self.disturbance,
             },
-            code: self.code.clone(),
+            code: self.speed_code.clone(),
             unit_config: self.unit_config.clone(),
             settings: self.set.clone(),
             seed: self.seed,

@@ -5,7 +5,6 @@ mod catalog;
 mod database;
 mod db;
 mod diagnose;
-mod diagnose_matrix;
 mod doctor;
 mod drive;
 mod faults;
@@ -17,6 +16,7 @@ mod gui;
 mod help;
 mod help_files;
 mod keep;
+mod matrix;
 mod new;
 mod output;
 mod ports;
@@ -30,6 +30,8 @@ mod saved;
 mod trace;
 mod train;
 mod unit_option;
+#[cfg(test)]
+mod words;
 
 use std::path::PathBuf;
 
@@ -85,6 +87,7 @@ enum Verb {
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
     Train(Box<train::TrainArguments>),
+    Matrix(matrix::MatrixArguments),
     /// List serial ports
     Ports(ports::PortsArguments),
     Doctor(doctor::DoctorArguments),
@@ -150,6 +153,7 @@ impl Cli {
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
             Verb::Train(arguments) => arguments.run(),
+            Verb::Matrix(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
             Verb::Doctor(arguments) => arguments.run(),
             Verb::New(arguments) => arguments.run(),

@@ -45,7 +45,7 @@ const SEED: u64 = 1;
 ///   ptu run ptu --unit serial:/dev/ttyUSB0      with a laptop alone, on a train
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
-///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
+///   ptu run --scattered --seed 7                  on a unit, train and bench as good ones differ
 ///   ptu run --repeat 10 --shuffle --seed 7      each procedure ten times, in an order drawn by the seed
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
@@ -89,7 +89,7 @@ pub struct RunArguments {
     train_no: String,
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
-    operator: String,
+    who: String,
     /// What was wrong with the unit, as who brought it says, see `ptu catalog symptoms`: a weak sign of the part
     #[arg(long, value_name = "SYMPTOM")]
     symptom: Option<String>,
@@ -102,7 +102,7 @@ pub struct RunArguments {
     /// Draw by the seed what differs between good units, trains and benches: sensor noise, wheels, load,
     /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
-    scatter: Option<Option<PathBuf>>,
+    scattered: Option<Option<PathBuf>>,
     /// Run the embedded unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
@@ -122,8 +122,8 @@ pub struct RunArguments {
     /// With --list, print JSON
     #[arg(long, requires = "list")]
     json: bool,
-    /// Only steps whose name matches
-    #[arg(long, value_name = "GLOB")]
+    /// Only steps whose name matches this glob
+    #[arg(long, value_name = "STEP")]
     step: Option<String>,
     /// Run each procedure so often, each time with its set-up and clean-up
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
@@ -145,7 +145,7 @@ pub struct RunArguments {
     events: Option<PathBuf>,
     /// Record every signal and event of the run, whatever its verdict, in an MCAP file for Foxglove, PlotJuggler and others
     #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["check", "list"])]
-    record: Option<PathBuf>,
+    mcap: Option<PathBuf>,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -206,14 +206,14 @@ impl RunArguments {
             tasks,
             jobs: self.jobs as usize,
             stop_on_fail: self.stop_on_fail,
-            operator: self.operator.clone(),
+            operator: self.who.clone(),
             train: self.train_no.clone(),
             symptom: self.symptom.clone(),
             scripts_sha256,
             adaptive: None,
             continues: earlier.map(|earlier| earlier.run.id),
         };
-        setup.record_whole = self.record.is_some();
+        setup.record_whole = self.mcap.is_some();
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
     }
@@ -245,8 +245,8 @@ impl RunArguments {
             train_no: self.train_no.clone(),
             faults: self.inject.clone(),
             seed: self.seed(),
-            scatter: self.scatter.is_some(),
-            scatter_file: self.scatter.clone().flatten(),
+            scatter: self.scattered.is_some(),
+            scatter_file: self.scattered.clone().flatten(),
             realtime: self.realtime,
             slower: self.slower,
         }
@@ -332,7 +332,7 @@ impl RunArguments {
         let stop = Stop::default();
         stop.listen();
         let console = EventStream::begin(Console::new(plan)?, self.events.as_deref())?;
-        let mut console = RunRecording::begin(console, self.record.as_deref())?;
+        let mut console = RunRecording::begin(console, self.mcap.as_deref())?;
         let result = match self.adaptive {
             false => run::run(plan, setup, store, &stop, &mut console),
             true => {

@@ -4,11 +4,9 @@ use clap::{Args, Subcommand};
 use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
-use super::{
-    Database, ScriptsOption, at_least_one, check_unit, print_json, print_out, since_argument,
-};
+use super::{Database, ScriptsOption, at_least_one, check_unit, print_json, print_out};
 use crate::console::verdict_table;
-use ptu_bench::clock;
+use ptu_bench::clock::{self, Span};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_bench::table::Table;
@@ -31,14 +29,14 @@ enum Verb {
     /// List runs, newest first
     List {
         /// Only of this unit (serial number)
-        #[arg(long, value_name = "SERIAL")]
-        unit: Option<String>,
+        #[arg(long, value_name = "TEXT")]
+        serial_no: Option<String>,
         /// Only with this verdict
         #[arg(long)]
         verdict: Option<fault_db::Verdict>,
-        /// Only since: 30d, 12h, 2026-03, 2026-03-21
-        #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
-        since: Option<i64>,
+        /// Only begun then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+        #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
+        when: Option<Span>,
         /// At most so many
         #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
@@ -91,7 +89,7 @@ enum Verb {
         /// What is to be said
         text: String,
         /// Who says it
-        #[arg(long, value_name = "NAME", default_value = "")]
+        #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
     },
 }
@@ -115,19 +113,21 @@ impl RunsArguments {
                 print_out(&format!("noted on run {}", run.short()))
             }
             Verb::List {
-                unit,
+                serial_no,
                 verdict,
-                since,
+                when,
                 limit,
                 json,
             } => {
-                if let Some(unit) = &unit {
+                if let Some(unit) = &serial_no {
                     check_unit(&store, unit)?;
                 }
+                let span = when.unwrap_or_default();
                 let filter = RunFilter {
-                    unit,
+                    unit: serial_no,
                     verdict,
-                    since_us: since,
+                    since_us: span.since_us,
+                    until_us: span.until_us,
                     limit: Some(limit),
                     ..RunFilter::default()
                 };

@@ -18,7 +18,7 @@ use ptu_bench::table::Table;
 /// of the database in use; options after its name are added to it, or replace its own.
 ///
 /// Examples:
-///   ptu faults stats --by lru --when 90d --save worst
+///   ptu faults stats --by part --when 90d --save worst
 ///   ptu saved worst
 ///   ptu saved worst --csv
 ///   ptu saved --forget worst
@@ -142,7 +142,7 @@ fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
         true => options,
         false => &[],
     };
-    let spans = drop_if_given(&["--when", "--since", "--since-repair"]);
+    let spans = drop_if_given(&["--when", "--since-repair"]);
     // Several states are one question: given now, they are another.
     let states = drop_if_given(&["--state"]);
     let forms = drop_if_given(&["--json", "--csv"]);
@@ -235,27 +235,21 @@ mod tests {
     #[test]
     fn a_question_is_kept_without_its_name_and_database() {
         let words =
-            "ptu faults --db a.db stats --save worst --by lru --db=b.db --save=x --when 90d";
+            "ptu faults --db a.db stats --save worst --by part --db=b.db --save=x --when 90d";
         let kept = asked(words.split(' ').map(str::to_owned));
-        assert_eq!(kept.join(" "), "faults stats --by lru --when 90d");
+        assert_eq!(kept.join(" "), "faults stats --by part --when 90d");
     }
 
     #[test]
     fn an_option_given_now_replaces_those_it_cannot_stand_beside() {
         let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
-        let saved = words("faults list --state open --when 90d --since=30d --json");
+        let saved = words("faults list --state open --when=90d --json");
         for (more, kept) in [
-            (
-                "--limit 2",
-                "faults list --state open --when 90d --since=30d --json",
-            ),
-            ("--csv", "faults list --state open --when 90d --since=30d"),
+            ("--limit 2", "faults list --state open --when=90d --json"),
+            ("--csv", "faults list --state open --when=90d"),
             ("--when=7d", "faults list --state open --json"),
-            ("--since 7d --json", "faults list --state open"),
-            (
-                "--state closed",
-                "faults list --when 90d --since=30d --json",
-            ),
+            ("--when 7d --json", "faults list --state open"),
+            ("--state closed", "faults list --when=90d --json"),
         ] {
             assert_eq!(
                 without_rivals(&saved, &words(more)).join(" "),
@@ -269,7 +263,7 @@ mod tests {
     fn a_damaged_file_of_saved_queries_is_reported() {
         let folder = tempfile::tempdir().expect("folder");
         let file = folder.path().join("questions.json");
-        let kept = r#"{"worst":["faults","stats","--by=lru","--when","90d"],"a b":[]}"#;
+        let kept = r#"{"worst":["faults","stats","--by=part","--when","90d"],"a b":[]}"#;
         let fuzz = fuzzing::Fuzz::new("questions", env!("CARGO_MANIFEST_DIR"), [kept]);
         fuzz.run(5_000, |bytes| {
             std::fs::write(&file, bytes).expect("written");

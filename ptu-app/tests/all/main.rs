@@ -17,7 +17,7 @@ mod case_page;
 mod cases;
 mod compare_runs;
 mod diagnose;
-mod diagnose_matrix;
+
 mod documents;
 mod drive;
 mod drive_by_hand;
@@ -36,6 +36,7 @@ mod layout;
 mod life;
 mod lock_step;
 mod locked_window;
+mod matrix;
 mod no_unit;
 mod on_ports;
 mod own_scripts;

@@ -209,7 +209,7 @@ pub const EVENTS: &[EventKeys] = &[
             AT,
             ("code", Whole, "its number"),
             ("name", Text, "its name"),
-            ("lru", TextOrNull, "part that it points at"),
+            ("part", TextOrNull, "part that it points at"),
             ("severity", Text, "critical, major, minor or info"),
             (
                 "step",

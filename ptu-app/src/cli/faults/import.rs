@@ -23,7 +23,7 @@ use ptu_bench::table::Table;
 ///
 /// Examples:
 ///   ptu faults import --unit serial:/dev/ttyUSB0
-///   ptu faults import --unit tcp:127.0.0.1:7000 --since 7d && ptu diagnose latest
+///   ptu faults import --unit tcp:127.0.0.1:7000 --when 7d && ptu diagnose latest
 ///
 /// Exit codes: 0 read, whether or not it holds faults; 2 wrong command; 3 no unit, another unit, or the
 /// link was lost, what was read is kept.
@@ -33,8 +33,8 @@ pub struct ImportArguments {
     #[command(flatten)]
     unit: UnitOption,
     /// Only what is dated since: 30d, 12h, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
-    since: Option<i64>,
+    #[arg(long, value_name = "SPAN", value_parser = since_argument, allow_hyphen_values = true)]
+    when: Option<i64>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -57,7 +57,7 @@ impl ImportArguments {
             .unit
             .asked()
             .read(&self.scripts.find()?, false, &stop)?;
-        let log = reading.import(&store, self.since)?;
+        let log = reading.import(&store, self.when)?;
         store.close()?;
         let outcome = Outcome { reading, log };
         let told = match self.json {
@@ -75,7 +75,7 @@ impl Outcome {
         let left_out = self.log.judged.left_out;
         let faults = self.log.imported.new.iter().map(|fault| {
             json!({
-                "code": fault.code, "name": fault.code_name, "lru": fault.lru,
+                "code": fault.code, "name": fault.code_name, "part": fault.lru,
                 "severity": fault.severity, "at": rfc3339(fault.at_us), "message": fault.message,
                 "unit_time_s": fault.bench_us as f64 / 1e6, "freeze_frame": fault.freeze,
             })

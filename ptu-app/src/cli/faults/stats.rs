@@ -67,8 +67,8 @@ const BARS: usize = 24;
 ///
 /// Examples:
 ///   ptu faults stats --when 2026
-///   ptu faults stats --by lru --when 2026
-///   ptu faults stats --by unit --lru eb_relay --back-within 14
+///   ptu faults stats --by part --when 2026
+///   ptu faults stats --by unit --part eb_relay --back-within 14
 ///   ptu faults stats --by month --line line8 --csv
 ///   ptu faults stats --by month --distances odometers.csv
 #[derive(Debug, Args)]
@@ -87,7 +87,7 @@ pub struct StatsArguments {
     #[arg(
         long,
         value_name = "FILE",
-        conflicts_with_all = ["unit", "serial", "line", "procedure", "run"]
+        conflicts_with_all = ["serial_no", "part_serial_no", "line", "procedure", "run"]
     )]
     distances: Option<PathBuf>,
     #[command(flatten)]
@@ -103,7 +103,7 @@ enum GroupBy {
     /// By fault code
     Code,
     /// By replaceable part
-    Lru,
+    Part,
     /// By unit
     Unit,
     /// By line
@@ -116,7 +116,7 @@ impl StatsArguments {
     pub fn stats(&self, store: &Store) -> Result<Exit, Failure> {
         let by = match self.by {
             GroupBy::Code => StatKey::Code,
-            GroupBy::Lru => StatKey::Lru,
+            GroupBy::Part => StatKey::Lru,
             GroupBy::Cause => StatKey::Cause,
             GroupBy::Unit => StatKey::Unit,
             GroupBy::Line => StatKey::Line,
@@ -192,7 +192,7 @@ impl StatsArguments {
     fn headings(&self) -> Vec<&'static str> {
         let heading = match self.by {
             GroupBy::Code => "CODE",
-            GroupBy::Lru => "PART",
+            GroupBy::Part => "PART",
             GroupBy::Cause => "CAUSE",
             GroupBy::Unit => "UNIT",
             GroupBy::Line => "LINE",

@@ -18,10 +18,10 @@ pub struct UndoArguments {
     /// The fault
     id: String,
     /// Who takes it back
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// Why
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
     /// Of this fault alone, not of the others of its case
     #[arg(long)]

@@ -38,7 +38,7 @@ pub struct ReplayArguments {
     inject: Vec<String>,
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
-    operator: String,
+    who: String,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -59,7 +59,7 @@ impl ReplayArguments {
             ));
         }
         self.reports.check()?;
-        limits::name("the operator's name", &self.operator)?;
+        limits::name("the operator's name", &self.who)?;
         // A trace that is not there must not make a database.
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
@@ -72,7 +72,7 @@ impl ReplayArguments {
         let rerunning = Rerunning {
             endpoint: self.unit.clone(),
             faults,
-            operator: self.operator.clone(),
+            operator: self.who.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
         let detail = store.run(rerun.run_id, &ptu_bench::process_id::is_alive)?;

@@ -115,6 +115,6 @@ fn trace_json(id: Id, trace: &TraceData, notes: &[TraceNote]) -> Value {
         "notes": notes.iter().map(|note| json!({
             "time_s": note.time_us as f64 / 1e6, "at": note.at, "who": note.who, "text": note.text,
         })).collect::<Vec<_>>(),
-        "channels": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
+        "signals": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
     })
 }
