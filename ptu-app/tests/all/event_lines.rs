@@ -59,7 +59,7 @@ fn the_stream_of_a_run_says_what_the_database_says() {
         "--inject",
         "eb_relay.slow",
     ];
-    let said = place.ptu(&[&run[..], &["--events", "-"]].concat()).exits(1);
+    let said = place.ptu(&[&run[..], &["--json"]].concat()).exits(1);
     let all = lines(&said.out);
     let seen = check(&all);
     for event in [
@@ -117,7 +117,7 @@ fn a_stream_that_cannot_be_written_is_told() {
         .exits(3)
         .explains(&["has not all events", "ptu runs show latest"]);
     // A reader that has read enough is none that missed something.
-    let mut run = place.command(&["run", "tcms/link", "--events", "-"]);
+    let mut run = place.command(&["run", "tcms/link", "--json"]);
     let mut run = run.stdout(Stdio::piped()).spawn().expect("started");
     drop(run.stdout.take());
     assert_eq!(run.wait().expect("over").code(), Some(0));

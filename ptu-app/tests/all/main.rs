@@ -45,6 +45,7 @@ mod repair_sheet;
 mod report;
 mod report_page;
 mod resume;
+mod run_output;
 mod saved_questions;
 mod scatter;
 mod server;
