@@ -53,7 +53,7 @@ use ptu_report::json_text;
 ///
 /// Examples:
 ///   ptu                                      the technician's window
-///   ptu run                                  whole acceptance suite on the embedded unit
+///   ptu run                                  whole acceptance suite on the simulated unit
 ///   ptu run atp/overspeed --unit serial:/dev/ttyUSB0
 ///   ptu run --inject eb_relay.slow --report result.json
 ///   ptu faults list --state open
@@ -67,31 +67,31 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    // A comment for users here would hide exit codes and examples, which these tell themselves.
+    // What an argument's own comment says stands in the help; one here would hide its exit codes and examples.
     Gui(Box<gui::GuiArguments>),
     Run(Box<run::RunArguments>),
-    Drive(Box<drive::DriveArguments>),
-    /// Show faults, signals, speed codes, lines or parts
-    Catalog(catalog::CatalogArguments),
-    Campaign(Box<campaign::CampaignArguments>),
     Diagnose(diagnose::DiagnoseArguments),
     /// Show recorded runs
     Runs(runs::RunsArguments),
+    Report(report::ReportArguments),
     /// Query and keep the fault history
     Faults(faults::FaultsArguments),
-    Record(record::RecordArguments),
-    Report(report::ReportArguments),
     Saved(saved::SavedArguments),
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
+    Record(record::RecordArguments),
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
-    Train(Box<train::TrainArguments>),
-    Matrix(matrix::MatrixArguments),
+    /// Show faults, signals, speed codes, lines or parts
+    Catalog(catalog::CatalogArguments),
     /// List serial ports
     Ports(ports::PortsArguments),
     Doctor(doctor::DoctorArguments),
+    Campaign(Box<campaign::CampaignArguments>),
+    Drive(Box<drive::DriveArguments>),
+    Matrix(matrix::MatrixArguments),
     New(new::NewArguments),
+    Train(Box<train::TrainArguments>),
     /// Write manual pages and shell completions, for packages
     #[command(name = "help-files", hide = true)]
     HelpFiles(help_files::HelpFilesArguments),
@@ -115,7 +115,7 @@ impl Cli {
                  here",
             ));
         }
-        let matches = help::flowing(Self::command()).try_get_matches();
+        let matches = help::sectioned(help::flowing(Self::command())).try_get_matches();
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
             .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
