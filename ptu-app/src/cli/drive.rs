@@ -8,7 +8,7 @@ use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
-use super::{ScriptsOption, answered, print_json, print_out};
+use super::{ScriptsOption, answered, made_by, print_json, print_out};
 use ptu_bench::data::{ScriptsDirectory, check_writable, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use ptu_bench::drive::{
@@ -103,7 +103,7 @@ pub struct DriveArguments {
     /// Draw train and day from scatter.toml by the seed, as one run of --monte-carlo does
     #[arg(long, conflicts_with = "monte_carlo")]
     scattered: bool,
-    /// So many runs with train and day drawn from scatter.toml, seeds from --seed on
+    /// N runs with train and day drawn from scatter.toml, seeds from --seed on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     monte_carlo: Option<u32>,
     /// Runs side by side [default: the cores of this machine]
@@ -161,6 +161,7 @@ impl DriveArguments {
             outcomes,
             list: !self.compare.is_empty()
                 || !matches!(self.section, None | Some(SectionChoice::One(_))),
+            made: Some(made_by()),
         };
         self.answer(&results, &stop)
     }
@@ -196,6 +197,7 @@ impl DriveArguments {
             &Results {
                 outcomes: Outcomes::ByHand(Box::new(run)),
                 list: false,
+                made: Some(made_by()),
             },
             &stop,
         );

@@ -211,6 +211,22 @@ fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
+/// When a report was made, and by which command.
+fn made_by() -> String {
+    let words: Vec<_> = std::env::args().skip(1).map(|word| quoted(&word)).collect();
+    let at = clock::local(clock::now_us());
+    format!("Made {at} by: ptu {}", words.join(" "))
+}
+
+/// An argument as a shell takes it back.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@+%".contains(c);
+    if !argument.is_empty() && argument.chars().all(plain) {
+        return argument.to_owned();
+    }
+    format!("'{}'", argument.replace('\'', "'\\''"))
+}
+
 /// Prints text for people.
 fn print_out(text: &str) -> Result<Exit, Failure> {
     stdio::answer(text)?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
-use super::{Cli, print_out};
+use super::{Cli, print_out, quoted};
 use ptu_bench::data::{self, LONGEST_FILE};
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::table::Table;
@@ -15,7 +15,7 @@ use ptu_bench::table::Table;
 /// Ask a saved question again, or list them all
 ///
 /// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. Each is asked
-/// of the database in use; options after its name are added to it, or replace its own.
+/// of the database in use. Options after its name are added to it, or replace its own.
 ///
 /// Examples:
 ///   ptu faults stats --by part --when 90d --save worst
@@ -27,7 +27,7 @@ use ptu_bench::table::Table;
 pub struct SavedArguments {
     /// The question's name; none = list all
     name: Option<String>,
-    /// Forget it
+    /// Remove the question of this name
     #[arg(long, value_name = "NAME", conflicts_with = "name")]
     forget: Option<String>,
     /// Options to add or to replace
@@ -61,7 +61,7 @@ impl SavedArguments {
             };
             if let Some(circle) = way.iter().position(|before| *before == name) {
                 return Err(Failure::usage(format!(
-                    "the saved question \"{name}\" asks itself: {} → {name}; mend {} or forget one with --forget",
+                    "the saved question \"{name}\" asks itself: {} → {name}; correct {} or remove one with --forget",
                     way[circle..].join(" → "),
                     file.display()
                 )));
@@ -190,16 +190,8 @@ fn list(questions: &Questions) -> String {
     }
     let mut table = Table::new(&["NAME", "QUESTION"]);
     for (name, words) in questions {
-        let quoted = words
-            .iter()
-            .map(|word| match word.contains([' ', '*', ';', '(']) {
-                true => format!("'{word}'"),
-                false => word.clone(),
-            });
-        table.row([
-            name.clone(),
-            format!("ptu {}", quoted.collect::<Vec<_>>().join(" ")),
-        ]);
+        let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+        table.row([name.clone(), format!("ptu {}", words.join(" "))]);
     }
     table.render()
 }
@@ -218,7 +210,7 @@ fn load(file: &Path) -> Result<Questions, Failure> {
     };
     serde_json::from_slice(&text).map_err(|error| {
         Failure::bench(format!(
-            "{} is damaged ({error}); mend or delete it",
+            "{} is damaged ({error}); correct or delete it",
             file.display()
         ))
     })
