@@ -27,7 +27,7 @@ pub struct FilterArguments {
     /// Only pointing at this part
     #[arg(long, value_name = "PART")]
     part: Option<String>,
-    /// Only coming from this part, as a diagnosis or a person has told; without either, pointing at it
+    /// Only coming from this part, as a diagnosis or a person found; without either, pointing at it
     #[arg(long, value_name = "PART")]
     pub cause: Option<String>,
     /// Only this severity

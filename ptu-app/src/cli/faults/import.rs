@@ -15,11 +15,11 @@ use ptu_bench::table::Table;
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///
-/// The unit is asked for its log, over all power-ups, and told the time: it is given no input and no
-/// stimulus, and nothing is armed. What it logged in runs of this history, armed for a tester, or because
-/// nothing is connected to it any more is no fault. Entries are dated by the times the unit was told; those
-/// of a power-up in which nobody told it have the power-up and the time since then, and a date that they are
-/// not later than. An older unit keeps the log of its present power-up alone.
+/// The unit is asked for its log of all power-ups, and receives the time. It gets no input and no stimulus,
+/// and nothing is armed. Entries that it logged in runs of this history, while it was armed, or because
+/// nothing was connected to it any more are no faults. The times that the unit received date its entries.
+/// Entries of a power-up without such a time show the power-up and the time since it; their date is the
+/// latest possible. An older unit keeps the log of its present power-up alone.
 ///
 /// Examples:
 ///   ptu faults import --unit serial:/dev/ttyUSB0
@@ -32,7 +32,7 @@ use ptu_bench::table::Table;
 pub struct ImportArguments {
     #[command(flatten)]
     unit: UnitOption,
-    /// Only what is dated since: 30d, 12h, 2026-03, 2026-03-21
+    /// Only entries that are not certainly older: 30d, 12h, 2026-03, 2026-03-21
     #[arg(long, value_name = "SPAN", value_parser = since_argument, allow_hyphen_values = true)]
     when: Option<i64>,
     /// Print JSON

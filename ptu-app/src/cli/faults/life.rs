@@ -22,7 +22,7 @@ use ptu_report::words::{Language, Words, fill};
 pub struct LifeArguments {
     /// Serial number of a unit or of a part that a repair put in or took out, or number of a train
     serial: String,
-    /// At most so many entries, the latest
+    /// At most N entries, the latest
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least_one())]
     limit: u32,
     /// Print JSON, with all entries

@@ -24,7 +24,7 @@ use ptu_report::{FAULT_KEYS, fault_json};
 pub struct ListArguments {
     #[command(flatten)]
     filter: FilterArguments,
-    /// At most so many
+    /// At most N faults
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]

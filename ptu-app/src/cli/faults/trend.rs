@@ -56,7 +56,7 @@ pub struct TrendArguments {
         conflicts_with = "when"
     )]
     since_repair: Option<String>,
-    /// At most so many values, months or units in a table: the last, and those farthest off
+    /// At most N values, months or units in a table: the last, and the units farthest off
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = at_least_one())]
     limit: u32,
     /// Draw it, too, on a page

@@ -36,7 +36,7 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
-    /// What trains ran in the months, or why their distances cannot be read; of one unit nobody knows them.
+    /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
     pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, String>>,
     pub parts: PartNames,
 }
