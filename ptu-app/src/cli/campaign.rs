@@ -60,8 +60,7 @@ pub struct CampaignArguments {
     /// Good units, to assess it
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     good: u32,
-    /// Diagnose each mode, too, by a dictionary without one in so many modes of each part, and by one without the
-    /// part
+    /// Diagnose each mode also by a dictionary without every K-th mode of each part, and by one without the part
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=20))]
     leave_out_modes: Option<u32>,
     /// Units with two random faults of different parts, to assess it
@@ -78,7 +77,7 @@ pub struct CampaignArguments {
     lot: u32,
     #[command(flatten)]
     keep: KeepOptions,
-    /// Embedded units to test side by side [default: one for each processor]
+    /// Simulated units to test side by side [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: Option<u32>,
     /// Write the dictionary to a file, too

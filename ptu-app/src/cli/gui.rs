@@ -19,7 +19,7 @@ use ptu_report::words::Language;
 ///   ptu gui                     as it was left
 ///   ptu gui --lang ko           in Korean
 ///   ptu gui --page traces       with the traces in front
-///   ptu gui --unit sim          connected to the embedded unit at once
+///   ptu gui --unit sim          connected to the simulated unit at once
 ///   ptu gui --create --db b.db     with a database that is made
 ///   ptu gui --db postgres://kim@depot/history   reads the history of a server
 #[derive(Debug, Args)]
@@ -36,7 +36,7 @@ pub struct GuiArguments {
     /// Whether the bench harness is connected: auto, none or bench [default: as it was left]
     #[arg(long, value_name = "WHICH")]
     harness: Option<Harness>,
-    /// Faults to inject into the embedded unit, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit, see `ptu catalog faults`
     #[arg(
         long,
         value_name = "FAULT[,FAULT]",

@@ -32,7 +32,7 @@ const LONGEST_FILE: u64 = 64 << 20;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct MatrixArguments {
-    /// Dependency matrix of states and tests; its format is in scripts/README.md
+    /// Dependency matrix of states and tests; its format is in docs/dictionaries.md
     file: PathBuf,
     /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
     #[arg(long, value_name = "OUTCOMES")]

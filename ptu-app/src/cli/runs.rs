@@ -37,7 +37,7 @@ enum Verb {
         /// Only begun then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
         #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
         when: Option<Span>,
-        /// At most so many
+        /// At most N runs
         #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
         /// Print JSON
@@ -58,7 +58,7 @@ enum Verb {
     },
     /// Compare two runs of a unit, before and after a repair: verdicts, values, and what changed
     ///
-    /// Runs of different units, scripts, configurations or lines are compared, too, and that is said.
+    /// Runs of different units, scripts, configurations or lines are compared, too; the answer says so.
     ///
     /// Exit codes: 0 compared, 1 a step that passed in the first run does not in the second, 2 no such run, 3 database.
     #[command(verbatim_doc_comment)]

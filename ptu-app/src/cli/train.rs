@@ -33,7 +33,7 @@ pub struct TrainArguments {
     /// Serve on a serial port [default rate: 115200]
     #[arg(long, value_name = "PATH[@BAUD]", value_parser = Place::serial)]
     serial: Option<Place>,
-    /// Serve one TCP client at a time; others are told that the unit is taken
+    /// Serve one TCP client at a time; others get the answer that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
     /// Line, lines/NAME.toml
@@ -63,7 +63,7 @@ pub struct TrainArguments {
     /// Keep the unit's event log and run record in this file from start to start; made if it is not there
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
-    /// Go so many times slower than the clock; the tester must do the same, `ptu run --slower`
+    /// Run N times slower than real time; the tester must do the same, `ptu run --slower`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     slower: u32,
     #[command(flatten)]

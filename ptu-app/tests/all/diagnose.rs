@@ -60,7 +60,7 @@ fn the_shipped_dictionary_is_of_these_scripts() {
     assert_eq!(
         list(&said["warnings"]),
         [] as [Value; 0],
-        "make it anew: `ptu campaign --out scripts/dictionary.zst`"
+        "make it again: `ptu campaign --out scripts/dictionary.zst`"
     );
 }
 

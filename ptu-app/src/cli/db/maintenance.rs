@@ -101,7 +101,7 @@ impl Database {
 
     pub(super) fn rebuild(&self) -> Result<Exit, Failure> {
         let differed = self.open()?.rebuild(clock::now_us())?;
-        let mut said = "counts by day and month, repairs, sums of measured values and search words made anew; \
+        let mut said = "counts by day and month, repairs, sums of measured values and search words made again; \
              runs, faults, traces and seals are as they were"
             .to_owned();
         if !differed.is_empty() {

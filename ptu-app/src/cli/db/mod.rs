@@ -31,7 +31,7 @@ enum Verb {
         #[arg(long)]
         json: bool,
     },
-    /// Make counts and search words anew from the rows they follow from
+    /// Compute counts and search words again from the rows they follow from
     Rebuild,
     /// Copy the database while it is in use
     Backup {

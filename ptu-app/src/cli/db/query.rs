@@ -29,7 +29,7 @@ pub struct QueryArguments {
     /// The question
     #[arg(value_name = "SELECT …")]
     sql: String,
-    /// Give the question up after so many seconds
+    /// Stop the question after this time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     max_time: u32,
     /// Memory it may take in a file, MB

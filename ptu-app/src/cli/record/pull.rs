@@ -14,7 +14,7 @@ use ptu_bench::stop::Stop;
 
 /// Read a unit's stored record of automatic runs: each run that is new becomes a trace
 ///
-/// The unit is asked for its record and its log, and told the time: it is given no input and no stimulus, and
+/// The unit is asked for its record and its log, and receives the time: it gets no input and no stimulus, and
 /// nothing is armed. A run that is under way is left for the next time. `ptu trace show ID` shows a trace,
 /// `ptu record compare ID` holds it against what it should have been.
 ///

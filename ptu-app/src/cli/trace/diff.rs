@@ -41,7 +41,7 @@ pub struct DiffArguments {
     /// Only these signals
     #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
     signals: Vec<String>,
-    /// Lay a file's samples so many seconds later; negative: sooner
+    /// Shift a file's samples to this many seconds later; negative: earlier
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
         allow_hyphen_values = true, value_parser = shift_argument)]
     shift: f64,

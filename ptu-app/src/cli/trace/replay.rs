@@ -15,14 +15,14 @@ use ptu_bench::link::Endpoint;
 use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
 use ptu_bench::stop::Stop;
 
-/// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
+/// Do again what was done in a trace, on the simulated unit or one on a port, and compare what comes
 ///
 /// The replay is kept as a run with a trace of its own. It is `reproduced` when it does as the trace, `not
 /// reproduced` when it does not; as the good twin, or as neither. Its verdict is on the unit: passed when
 /// it does as the good twin, a sound unit given the same.
 ///
 /// Examples:
-///   ptu trace replay latest                                on a sound embedded unit
+///   ptu trace replay latest                                on a sound simulated unit
 ///   ptu trace replay latest --inject eb_relay.slow         is it this fault?
 ///   ptu trace replay 59c2ce97 --unit serial:/dev/ttyUSB0   the unit on the bench
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub struct ReplayArguments {
     /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
-    /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Who tests
@@ -54,7 +54,7 @@ impl ReplayArguments {
         let faults = directory.chosen_faults(&self.inject)?;
         if self.unit != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
             return Err(Failure::usage(
-                "--inject puts faults of a unit into the embedded one only; inject into a served one with \
+                "--inject puts faults of a unit into the simulated one only; inject into a served one with \
                  `ato-under-test --inject`",
             ));
         }

@@ -151,7 +151,7 @@ fn without_a_unit_nothing_is_stored() {
     place
         .ptu(&["faults", "import", "--unit", "sim"])
         .exits(2)
-        .explains(&["embedded unit", "--unit"]);
+        .explains(&["simulated unit", "--unit"]);
     place
         .ptu(&["faults", "import", "--unit", "lockstep:/dev/pts/0"])
         .exits(2)
