@@ -3,16 +3,29 @@
 use clap::Command;
 use clap::builder::StyledStr;
 
-/// Verbs that a technician never needs: they have a section of their own, after the options.
-const MAKERS: [&str; 5] = ["campaign", "drive", "matrix", "new", "train"];
+/// Verbs that a technician never needs, in few words: they have a section of their own, after the options.
+const MAKERS: [(&str, &str); 5] = [
+    (
+        "campaign",
+        "Make a fault dictionary, and say what it is worth",
+    ),
+    ("drive", "Drive from station to station, or by hand"),
+    (
+        "matrix",
+        "Find the cheapest order of tests of a dependency matrix",
+    ),
+    (
+        "new",
+        "Begin a procedure, unit configuration, line or fault mode",
+    ),
+    ("train", "Serve a unit aboard a simulated train on a port"),
+];
 
 /// The same commands, the makers' verbs in a section of their own; each is called and explained as before.
 pub fn sectioned(mut command: Command) -> Command {
     let mut section = "For makers of procedures, dictionaries and controllers:".to_owned();
-    for name in MAKERS {
-        let verb = command.find_subcommand(name);
-        let about = verb.and_then(Command::get_about).map(StyledStr::to_string);
-        section += &format!("\n  {name:<9} {}", about.unwrap_or_default());
+    for (name, about) in MAKERS {
+        section += &format!("\n  {name:<9} {about}");
         command = command.mut_subcommand(name, |verb| verb.hide(true));
     }
     command.after_help(section)
@@ -69,7 +82,7 @@ mod tests {
         for verb in shown {
             let place = format!("\n  {verb:<9}");
             assert_eq!(screen.matches(&place).count(), 1, "{verb}: {screen}");
-            let is_makers = MAKERS.contains(&&*verb);
+            let is_makers = MAKERS.iter().any(|(name, _)| *name == verb);
             assert_eq!(screen.find(&place) > Some(options), is_makers, "{verb}");
         }
     }

@@ -122,7 +122,11 @@ fn stop(run: &Driven, words: &Words) -> String {
 fn of_many(many: &MonteCarlo, words: &Words) -> Vec<Block> {
     let (done, asked) = (many.trials.len(), many.asked);
     let percent = |metres| many.within(metres) * 100.0;
-    let within = format!("within ±10 cm {:.2} %, ±30 cm {:.2} %", percent(0.1), percent(0.3));
+    let within = format!(
+        "within ±10 cm {:.2} %, ±30 cm {:.2} %",
+        percent(0.1),
+        percent(0.3)
+    );
     let (past, failures) = (many.past_1m(), many.failures().count());
     let beside = format!("more than 1 m past: {past}, did not stop: {failures}");
     let tone = if many.passed() { Tone::Good } else { Tone::Bad };
@@ -290,10 +294,10 @@ mod tests {
     }
 
     /// Goal: a Korean reader meets no English in the report of a run. Method: runs of all controllers and of one alone; what is
-    /// left in small Latin letters are names of controllers, files and events, and units.
+    /// left in small Latin letters are names of controllers, files, events and keys of a configuration, and units.
     #[test]
     fn a_korean_report_of_automatic_runs_has_no_english() {
-        const NAMES: [&str; 3] = ["servo", "fuzzy", "pss"];
+        const NAMES: [&str; 5] = ["servo", "fuzzy", "pss", "ato", "controller"];
         for controllers in [&[ControllerKind::Servo][..], &ControllerKind::ALL] {
             let paper = sheet(controllers).paper(Language::Korean.words());
             let texts = texts(&paper.blocks);
