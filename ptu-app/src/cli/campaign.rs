@@ -12,7 +12,7 @@ use fault_db::DictionaryRecord;
 use glob::Pattern;
 
 use super::keep::KeepOptions;
-use super::{Database, ScriptsOption, print_json, print_out};
+use super::{Database, Json, ScriptsOption};
 use ptu_bench::campaign::{self, Ran, Request, Suite, figures, redundancy};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
@@ -83,9 +83,8 @@ pub struct CampaignArguments {
     /// Write the dictionary to a file, too
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -175,10 +174,8 @@ impl CampaignArguments {
         let figures = figures(&outcome.assessments, &outcome.good);
         let redundancy = redundancy(&outcome.dictionary);
         store.close()?;
-        if self.json {
-            print_json(&campaign_json(&outcome, &figures, &redundancy))
-        } else {
-            print_out(&campaign_text(&outcome, &figures, &redundancy))
-        }
+        let text = || campaign_text(&outcome, &figures, &redundancy);
+        self.json
+            .answer(|| campaign_json(&outcome, &figures, &redundancy), text)
     }
 }

@@ -8,7 +8,7 @@ use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
-use super::{ScriptsOption, print_json, print_out};
+use super::{Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::structure::Structure;
 use ptu_bench::symptoms;
@@ -26,9 +26,8 @@ pub struct CatalogArguments {
     /// Train whose cars to show: line6 or another trains/NAME.toml, or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -66,11 +65,7 @@ impl CatalogArguments {
             CatalogTopic::Symptoms => self.symptoms()?,
             CatalogTopic::Train => self.train()?,
         };
-        if self.json {
-            print_json(&entries)
-        } else {
-            print_out(&as_table(&entries))
-        }
+        self.json.answer(|| &entries, || as_table(&entries))
     }
 
     fn faults(&self) -> Result<Vec<Value>, Failure> {

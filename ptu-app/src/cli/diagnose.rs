@@ -3,7 +3,7 @@
 use clap::Args;
 use protocol::LruId;
 
-use super::{Database, ScriptsOption, print_json, print_out};
+use super::{Database, Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::run_diagnosis::{Question, diagnose};
 use ptu_bench::stdio;
@@ -32,9 +32,8 @@ pub struct DiagnoseArguments {
     /// All candidates and reasons, with what the dictionary has of each
     #[arg(long)]
     all: bool,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -60,10 +59,7 @@ impl DiagnoseArguments {
         for warning in &answer.warnings {
             stdio::note(warning);
         }
-        if self.json {
-            print_json(&diagnosis_json(&answer))
-        } else {
-            print_out(&diagnosis_text(&answer, self.all))
-        }
+        let text = || diagnosis_text(&answer, self.all);
+        self.json.answer(|| diagnosis_json(&answer), text)
     }
 }

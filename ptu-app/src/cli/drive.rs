@@ -1,6 +1,6 @@
 //! `ptu drive`: station-to-station automatic runs, and runs by hand.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
 use btu_rig::drive::{Ending, Load, Scatter, manual};
@@ -8,8 +8,8 @@ use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
-use super::{ScriptsOption, answered, made_by, print_json, print_out};
-use ptu_bench::data::{ScriptsDirectory, check_writable, write};
+use super::{Json, ScriptsOption, answered, made_by};
+use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use ptu_bench::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
@@ -100,9 +100,9 @@ pub struct DriveArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draw train and day from scatter.toml by the seed, as one run of --monte-carlo does
-    #[arg(long, conflicts_with = "monte_carlo")]
-    scattered: bool,
+    /// Draw train and day by the seed, as one run of --monte-carlo does; from scatter.toml or FILE
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with = "monte_carlo")]
+    scattered: Option<Option<PathBuf>>,
     /// N runs with train and day drawn from scatter.toml, seeds from --seed on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     monte_carlo: Option<u32>,
@@ -111,9 +111,8 @@ pub struct DriveArguments {
     jobs: Option<u32>,
     #[command(flatten)]
     keep: KeepOptions,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// Write a report, .html, .json or .csv; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<Target>,
@@ -138,7 +137,7 @@ impl DriveArguments {
         let jobs = self.jobs.map_or_else(cores, |jobs| jobs as usize);
         let outcomes = match self.monte_carlo {
             Some(count) => {
-                let scatter = scatter(&directory)?;
+                let scatter = scatter(&directory, None)?;
                 let count = count as usize;
                 let keep = self.keep.keep()?;
                 match monte_carlo::run(cases, count, &scatter, &keep, (jobs, &stop))? {
@@ -147,8 +146,8 @@ impl DriveArguments {
                 }
             }
             None => {
-                if self.scattered {
-                    let scatter = scatter(&directory)?;
+                if let Some(file) = &self.scattered {
+                    let scatter = scatter(&directory, file.as_deref())?;
                     cases = cases
                         .iter()
                         .map(|case| case.drawn(&scatter, self.seed))
@@ -240,10 +239,7 @@ impl DriveArguments {
     }
 
     fn answer(&self, results: &Results, stop: &Stop) -> Result<Exit, Failure> {
-        let told = match self.json {
-            true => print_json(&report::json(results)),
-            false => print_out(&report::text(results)),
-        };
+        let told = (self.json).answer(|| report::json(results), || report::text(results));
         for target in &self.report {
             target.write(results)?;
         }
@@ -275,10 +271,15 @@ fn no_bench_failure(ending: Option<&impl ToString>) -> Result<(), Failure> {
     ending.map_or(Ok(()), |ending| Err(Failure::bench(ending.to_string())))
 }
 
-fn scatter(directory: &ScriptsDirectory) -> Result<Scatter, Failure> {
-    let file = "scatter.toml";
-    Scatter::from_toml(&directory.text(file)?)
-        .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(file))))
+fn scatter(directory: &ScriptsDirectory, file: Option<&Path>) -> Result<Scatter, Failure> {
+    let (text, place) = match file {
+        Some(file) => (read(file)?, file.display().to_string()),
+        None => (
+            directory.text("scatter.toml")?,
+            directory.shown("scatter.toml"),
+        ),
+    };
+    Scatter::from_toml(&text).map_err(|error| Failure::usage(format!("{place}: {error}")))
 }
 
 fn controller(name: &str) -> Result<ControllerKind, String> {

@@ -9,7 +9,7 @@ use diagnosis::matrix::{
     Posterior, plan, read_outcomes,
 };
 
-use super::print_out;
+use super::{Json, print_out};
 use ptu_bench::data::read_within;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::stdio;
@@ -43,9 +43,8 @@ pub struct MatrixArguments {
     /// Probability that an answer must have where tests may err, above 0.5 and at most 1
     #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE)]
     confidence: f64,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -77,7 +76,7 @@ impl MatrixArguments {
             MatrixError::Confidence(_) => wrong(&"--confidence", &error),
             _ => wrong(&place, &error),
         })?;
-        if self.json {
+        if self.json.is_asked() {
             let text = plan
                 .to_json(&matrix, &known)
                 .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;

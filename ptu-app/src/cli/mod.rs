@@ -39,6 +39,7 @@ use clap::builder::RangedI64ValueParser;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use database::Database;
 use fault_db::{Address, Store};
+use output::Json;
 use serde::Serialize;
 
 use ptu_bench::clock;

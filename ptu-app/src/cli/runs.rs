@@ -4,7 +4,7 @@ use clap::{Args, Subcommand};
 use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
-use super::{Database, ScriptsOption, at_least_one, check_unit, print_json, print_out};
+use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
 use ptu_bench::clock::{self, Span};
 use ptu_bench::failure::{Exit, Failure};
@@ -40,17 +40,15 @@ enum Verb {
         /// At most N runs
         #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Show one run: an id, its beginning or end (at least 4 digits), or `latest`
     Show {
         /// The run
         id: String,
-        /// Print JSON, the same as `ptu run --report FILE.json`
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
         #[command(flatten)]
         reports: ReportOption,
         #[command(flatten)]
@@ -72,9 +70,8 @@ enum Verb {
         /// Also the steps that passed in both
         #[arg(long)]
         all: bool,
-        /// Print JSON, with every step
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
         /// Language: en or ko
         #[arg(long, value_name = "LANGUAGE", default_value = "en")]
         lang: Language,
@@ -132,10 +129,8 @@ impl RunsArguments {
                     ..RunFilter::default()
                 };
                 let runs = store.runs(&filter, &process_id::is_alive)?;
-                if json {
-                    return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
-                }
-                print_out(&table(&runs))
+                let document = || runs.iter().map(run_summary_json).collect::<Vec<_>>();
+                json.answer(document, || table(&runs))
             }
             Verb::Compare {
                 before,
@@ -149,10 +144,8 @@ impl RunsArguments {
                 let (a, b) = (store.resolve_run(&before)?, store.resolve_run(&after)?);
                 let of = RunComparison::gather(&store, a, b, all)?;
                 write_comparison(&report, &of, lang)?;
-                match json {
-                    true => print_json(&comparison_json(&of))?,
-                    false => print_out(&comparison_text(&of, lang.words()))?,
-                };
+                let text = || comparison_text(&of, lang.words());
+                json.answer(|| comparison_json(&of), text)?;
                 Ok(match of.tally().passed_before {
                     0 => Exit::Passed,
                     _ => Exit::Failed,
@@ -170,11 +163,8 @@ impl RunsArguments {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
                 }
-                if json {
-                    print_json(&run_json(&run))
-                } else {
-                    print_out(&(verdict_table(&run) + &notes(&run.notes)))
-                }
+                let text = || verdict_table(&run) + &notes(&run.notes);
+                json.answer(|| run_json(&run), text)
             }
         }
     }

@@ -433,7 +433,7 @@ fn files_that_are_wrong_are_told_with_the_place() {
         .explains(&["--shift"]);
 }
 
-/// An MCAP file: each message on a topic of its own with so many fields, all of other names.
+/// An MCAP file: each message on a topic of its own with this many fields, all of other names.
 fn wide_mcap(messages: usize, fields: usize, name: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
     let mut writer = mcap::WriteOptions::new().create(&mut file).expect("begun");

@@ -348,7 +348,7 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     VisibleRange::new(axis.whole(), least)
 }
 
-/// Its axis, with 0 so many rows before the trigger.
+/// Its axis, with 0 this many rows before the trigger.
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {

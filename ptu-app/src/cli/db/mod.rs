@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{Database, print_out};
+use super::{Database, Json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 
 /// Check, back up, prune, merge, sync or query the database
@@ -27,9 +27,8 @@ pub struct DbArguments {
 enum Verb {
     /// Look for damage and for what was changed by hand, in a file or on a server; writes nothing
     Check {
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Compute counts and search words again from the rows they follow from
     Rebuild,
@@ -46,9 +45,8 @@ enum Verb {
     Import {
         /// The other file
         from: PathBuf,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Add everything that is here to another database, or write it as Parquet files
     ///
@@ -62,9 +60,8 @@ enum Verb {
         /// Folder for Parquet files, made if need be
         #[arg(long, value_name = "DIR")]
         parquet: Option<PathBuf>,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Delete old traces that no open fault needs; runs and faults stay
     Prune(maintenance::PruneArguments),

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use super::maintenance::{rivals, told_refused};
-use crate::cli::{Database, answered, print_json, print_out};
+use crate::cli::{Database, Json, answered};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::platform::computer_name;
 use ptu_bench::stop::Stop;
@@ -30,9 +30,8 @@ pub struct SyncArguments {
     /// The file is a copy or a backup that is to be gone on with: it gets a name of its own
     #[arg(long)]
     as_copy: bool,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl SyncArguments {
@@ -74,10 +73,8 @@ impl SyncArguments {
         let outcome = outcome?;
         file.close()?;
         let took_s = begun.elapsed().as_secs_f64();
-        let told = match self.json {
-            true => print_json(&as_json(&outcome, &server, took_s)),
-            false => print_out(&text(&outcome, &server, took_s)),
-        };
+        let document = || as_json(&outcome, &server, took_s);
+        let told = (self.json).answer(document, || text(&outcome, &server, took_s));
         for warning in warnings(&outcome) {
             stdio::note(&warning);
         }

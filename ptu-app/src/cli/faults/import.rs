@@ -6,7 +6,7 @@ use protocol::message::Identity;
 use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
-use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
+use crate::cli::{Json, ScriptsOption, since_argument};
 use ptu_bench::clock::{local, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::field::{ImportedLog, UnitReading};
@@ -35,9 +35,8 @@ pub struct ImportArguments {
     /// Only entries that are not certainly older: 30d, 12h, 2026-03, 2026-03-21
     #[arg(long, value_name = "SPAN", value_parser = since_argument, allow_hyphen_values = true)]
     when: Option<i64>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -60,10 +59,7 @@ impl ImportArguments {
         let log = reading.import(&store, self.when)?;
         store.close()?;
         let outcome = Outcome { reading, log };
-        let told = match self.json {
-            true => print_json(&outcome.json()),
-            false => print_out(&outcome.text()),
-        };
+        let told = self.json.answer(|| outcome.json(), || outcome.text());
         outcome.reading.complete()?;
         told
     }

@@ -6,7 +6,7 @@ use btu_rig::drive::Load;
 use clap::Args;
 use fault_db::Store;
 
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::data::{check_writable, write};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::record::CompareRequest;
@@ -40,9 +40,8 @@ pub struct CompareArguments {
     /// Passengers of the sound unit's train: a mass, empty or full
     #[arg(long, value_name = "KG|empty|full")]
     load: Option<Load>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// Write the comparison to a file, .json or .txt; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<PathBuf>,
@@ -81,10 +80,7 @@ impl CompareArguments {
             };
             write(file, format!("{}\n", content.trim_end()))?;
         }
-        match self.json {
-            true => print_json(&document)?,
-            false => print_out(&text)?,
-        };
+        self.json.answer(|| &document, || text)?;
         Ok(match compared.comparison.is_as_expected() {
             true => Exit::Passed,
             false => Exit::Failed,

@@ -5,7 +5,7 @@ use fault_db::Store;
 use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::clock::rfc3339;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::field::UnitReading;
@@ -29,9 +29,8 @@ use ptu_bench::stop::Stop;
 pub struct PullArguments {
     #[command(flatten)]
     unit: UnitOption,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -44,10 +43,8 @@ impl PullArguments {
         let reading = self.unit.asked().read(&self.scripts.find()?, true, &stop)?;
         let pulled = pull_reading(&store, &reading)?;
         store.close()?;
-        let told = match self.json {
-            true => print_json(&document(&reading, &pulled)),
-            false => print_out(&text(&reading, &pulled)),
-        };
+        let document = || document(&reading, &pulled);
+        let told = self.json.answer(document, || text(&reading, &pulled));
         reading.complete()?;
         told
     }

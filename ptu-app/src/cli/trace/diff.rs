@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_report::trace_io::{beside, is_importable};
@@ -45,9 +45,8 @@ pub struct DiffArguments {
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
         allow_hyphen_values = true, value_parser = shift_argument)]
     shift: f64,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -84,15 +83,15 @@ impl DiffArguments {
         let is_asked = |name: &String| self.signals.is_empty() || self.signals.contains(name);
         let unknown = sides.unknown.iter().filter(|name| is_asked(name));
         comparison.missing.extend(unknown.cloned());
-        if self.json {
-            return print_json(&json!({
+        let document = || {
+            json!({
                 "a": a.to_string(), "b": sides.name,
                 "from_s": comparison.window_s.0, "to_s": comparison.window_s.1,
                 "missing_in_a": comparison.missing, "missing_in_b": comparison.missing_expected,
                 "deviations": deviations_json(&comparison),
-            }));
-        }
-        print_out(&text(a, &sides, &comparison))
+            })
+        };
+        self.json.answer(document, || text(a, &sides, &comparison))
     }
 
     fn with_file(

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
-use crate::cli::{Database, ScriptsOption, answered, print_json, print_out};
+use crate::cli::{Database, Json, ScriptsOption, answered};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
@@ -39,9 +39,8 @@ pub struct ReplayArguments {
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -76,10 +75,8 @@ impl ReplayArguments {
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
         let detail = store.run(rerun.run_id, &ptu_bench::process_id::is_alive)?;
-        let told = match self.json {
-            true => print_json(&rerun_json(&original, &rerun)),
-            false => print_out(&text(&original, &rerun)),
-        };
+        let document = || rerun_json(&original, &rerun);
+        let told = self.json.answer(document, || text(&original, &rerun));
         self.reports.write(&store, &directory, &detail)?;
         store.close()?;
         answered(told, rerun.exit)

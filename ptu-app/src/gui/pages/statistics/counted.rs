@@ -13,7 +13,7 @@ use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
 
-/// A repair after which the fault is seen again within so many days did not hold.
+/// A repair after which the fault is seen again within this many days did not hold.
 pub const BACK_WITHIN_DAYS: u32 = 30;
 
 /// Of what is asked.
