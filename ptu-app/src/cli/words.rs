@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use clap::{Command, CommandFactory as _};
+use clap::{Command, CommandFactory as _, Parser as _};
 
 use super::Cli;
 
@@ -61,4 +61,51 @@ fn the_table_of_words_names_options_that_exist() {
         }
     }
     assert!(seen.len() > 15, "{seen:?}");
+}
+
+/// The examples in the help of a command and of its verbs.
+fn examples(command: &Command, found: &mut Vec<String>) {
+    let about = command.get_long_about().or(command.get_about());
+    let text = about.map(ToString::to_string).unwrap_or_default();
+    let lines = text.lines().filter_map(|line| line.strip_prefix("  "));
+    found.extend(
+        lines
+            .filter(|line| line.starts_with("ptu"))
+            .map(str::to_owned),
+    );
+    for below in command.get_subcommands() {
+        examples(below, found);
+    }
+}
+
+/// The words of an example: quotes keep what they enclose together, and two spaces begin its explanation.
+fn shell_words(example: &str) -> Vec<String> {
+    let command = example.split("  ").next().unwrap_or_default();
+    let command = command.split(" && ").next().unwrap_or_default();
+    let mut words = vec![String::new()];
+    let mut quote = None;
+    for letter in command.chars() {
+        match (letter, quote) {
+            (_, Some(open)) if open == letter => quote = None,
+            ('\'' | '"', None) => quote = Some(letter),
+            (' ', None) => words.push(String::new()),
+            _ => words.last_mut().expect("the first").push(letter),
+        }
+    }
+    words
+}
+
+/// Goal: what the help shows can be typed. Method: every example of every verb is read by the program's own arguments.
+#[test]
+fn every_example_of_the_help_is_a_command_that_is_taken() {
+    let mut found = Vec::new();
+    examples(&Cli::command(), &mut found);
+    assert!(found.len() > 50, "{} examples", found.len());
+    let wrong: Vec<_> = (found.iter())
+        .filter_map(|example| {
+            let error = Cli::try_parse_from(shell_words(example)).err()?;
+            Some(format!("{example}\n{error}"))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -127,7 +127,7 @@ impl NewArguments {
                 if !parts.iter().any(|lru| lru.id.as_str() == part) {
                     let parts = parts.iter().map(|lru| lru.id.as_str());
                     return Err(Failure::usage(format!(
-                        "no part \"{part}\"{}; `ptu catalog lrus` lists them",
+                        "no part \"{part}\"{}; `ptu catalog parts` lists them",
                         ptu_bench::failure::did_you_mean(part, parts)
                     )));
                 }
