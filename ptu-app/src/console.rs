@@ -181,7 +181,8 @@ impl Listener for Console {
                 let more = after_colon(message);
                 Some(format!("{:<7} {}{more}", verdict.label(), procedure.id))
             }
-            SessionEvent::Fault(fault) => Some(format!(
+            // Quietly the failed step says it.
+            SessionEvent::Fault(fault) if self.detail != Detail::Quiet => Some(format!(
                 "fault   {} → {}: {}",
                 fault.name,
                 lru::stored(fault.lru.as_ref()),

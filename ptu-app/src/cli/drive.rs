@@ -22,9 +22,9 @@ use ptu_report::drive::{self as report, Outcomes, Results, Target};
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///
-/// Exit code 0 when the train stopped within the door tolerance, 1 when not; with --monte-carlo 0
-/// when 99.9 % of the runs did and none went more than 1 m too far; with --manual 0 when all steps
-/// were done and ATP did not brake.
+/// Exit codes: 0 the train stopped within the door tolerance, 1 it did not. With --monte-carlo, 0 if 99.9 %
+/// of the runs did and none went more than 1 m too far; with --manual, 0 if all steps were done and ATP did not
+/// brake.
 ///
 /// Examples:
 ///   ptu drive                                   line 8 section 61, empty line 6 train
@@ -65,7 +65,7 @@ pub struct DriveArguments {
     /// Train: line6, ideal or another trains/NAME.toml, or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
-    /// Total mass: of the ideal train, which the unit is told, or of a train of cars, as load
+    /// Total mass: of the ideal train, for which the unit is configured, or of a train of cars, as load
     #[arg(
         long,
         value_name = "KG",

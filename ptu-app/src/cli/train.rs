@@ -22,7 +22,7 @@ use super::ScriptsOption;
 ///   ptu train --pty
 ///   ptu train --pty --service 61,62,63          after three sections: with a log and a run record
 ///   ptu train --tcp 127.0.0.1:7000 --inject tra.dead
-///   ptu train --serial /dev/ttyUSB1 --section 61 at a station instead of in the depot
+///   ptu train --serial /dev/ttyUSB1 --section 61   at a station instead of in the depot
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 #[command(group(ArgGroup::new("port").required(true).args(["pty", "serial", "tcp"])))]
@@ -42,7 +42,7 @@ pub struct TrainArguments {
     /// Stand at the departure station of this section, over its loop and under its codes
     #[arg(long, value_name = "N", conflicts_with = "service")]
     section: Option<u16>,
-    /// Drive these sections before the port is opened, by the unit's ATO, as fast as it goes
+    /// Drive these sections by the unit's ATO, in virtual time, before the port is opened
     #[arg(long, value_name = "N,N|A-B|all", value_delimiter = ',')]
     service: Vec<SectionChoice>,
     /// Train, trains/NAME.toml or a file ending in .toml

@@ -16,7 +16,7 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stdio;
 use ptu_report::history_files::{Exported, export_history};
 
-/// Which traces may go; those of faults that are not closed never do.
+/// Which traces may be deleted; those of faults that are not closed never are.
 #[derive(Debug, Args)]
 pub(super) struct PruneArguments {
     /// Older than: 90d, 2026-03, 2026-03-21

@@ -39,9 +39,9 @@ enum Verb {
     },
     /// Add everything of another database that is not here yet
     ///
-    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3; the same of a run that does not fit its seal, and of a row that holds what no history holds: it
-    /// is left out, and the rest comes.
+    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3.
+    /// A run that does not fit its seal, and a row with impossible content, are named and left out, with the same exit
+    /// code; the rest is added.
     Import {
         /// The other file
         from: PathBuf,
@@ -50,8 +50,8 @@ enum Verb {
     },
     /// Add everything that is here to another database, or write it as Parquet files
     ///
-    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3. With --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
+    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3. With
+    /// --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
     /// each month; a month that has not changed is left as it is.
     Export {
         /// The other file, made if need be

@@ -18,7 +18,7 @@ const MAX_ROWS: usize = 10_000;
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
 
-/// Ask the database in SQL, reading only; `ptu db schema` says about what
+/// Ask the database in SQL, which only reads; `ptu db schema` lists the views
 ///
 /// Examples:
 ///   ptu db query "SELECT unit, count(*) FROM faults WHERE state = 'open' GROUP BY unit"

@@ -26,7 +26,7 @@ enum Verb {
     ///
     /// Exit codes: 0 done, 2 wrong address, 3 no server, or it may not be done.
     Init {
-        /// The server, as postgres://OWNER@HOST/DATABASE; a password belongs into ~/.pgpass
+        /// The server, as postgres://OWNER@HOST/DATABASE; write a password into ~/.pgpass
         #[arg(value_name = "ADDRESS")]
         server: String,
         /// The account laptops log in with; made if it is not there

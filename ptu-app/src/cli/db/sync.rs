@@ -14,20 +14,20 @@ use ptu_bench::platform::computer_name;
 use ptu_bench::stop::Stop;
 use ptu_bench::{clock, process_id, stdio};
 
-/// Bring this laptop's history to a server, and what others said about its faults back
+/// Send this laptop's history to a server, and receive what others recorded about its faults
 ///
-/// The laptop's file has everything at all times, so a sync that breaks off is taken up by the next.
+/// The laptop's file is complete at all times. The next sync continues one that broke off.
 ///
 /// Exit codes: 0 done, 2 wrong address, 3 no server, or something is damaged or differs, 130 stopped.
 #[derive(Debug, Args)]
 pub struct SyncArguments {
-    /// The server, as postgres://USER@HOST/DATABASE; a password belongs into ~/.pgpass
+    /// The server, as postgres://USER@HOST/DATABASE; write a password into ~/.pgpass
     #[arg(value_name = "ADDRESS")]
     server: String,
     /// Leave samples for a later sync
     #[arg(long)]
     no_traces: bool,
-    /// The file is a copy or a backup that is to be gone on with: it gets a name of its own
+    /// The file is a copy or a backup with which this laptop continues: it gets a name of its own
     #[arg(long)]
     as_copy: bool,
     #[command(flatten)]

@@ -17,7 +17,7 @@ use ptu_bench::failure::{Exit, Failure};
 ///   ptu doctor
 ///   ptu doctor --server postgres://kim@depot/history
 ///
-/// Exit codes: 0 nothing is in the way of testing units; 1 something is.
+/// Exit codes: 0 units can be tested; 1 they cannot.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DoctorArguments {

@@ -12,23 +12,23 @@ use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::record::CompareRequest;
 use ptu_report::{json_text, record};
 
-/// Hold a run of a unit's own record against its target and against a sound unit's run through the same section
+/// Compare a run of a unit's own record with its target, and with a sound unit's run through the same section
 ///
-/// Tells where the speed parts from the run's own target, where target and speed part from those of a sound
-/// unit that is driven for it (same line, section and unit configuration), the stop error, a late brake, and
-/// markers that were missed. Section, line and unit configuration are found out from the trace and its run.
+/// Shows where the speed deviates from the run's own target, and where target and speed deviate from those of a
+/// sound unit that drives the same section (same line and unit configuration). Also shows the stop error, a late
+/// brake, and missed markers. Section, line and unit configuration follow from the trace and its run.
 ///
 /// Examples:
 ///   ptu record compare latest
 ///   ptu record compare 59c2ce97 --load full --report compare.json
 ///
-/// Exit codes: 0 as expected; 1 something parts; 2 wrong command, or no run record.
+/// Exit codes: 0 as expected; 1 something deviates; 2 wrong command, or no run record.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CompareArguments {
     /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
     trace: String,
-    /// Section [default: the one whose markers and stop are where the run found them]
+    /// Section [default: the one whose markers and stop fit those of the run]
     #[arg(long, value_name = "N")]
     section: Option<u16>,
     /// Line, lines/NAME.toml [default: that of the trace's run]

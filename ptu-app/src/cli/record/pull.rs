@@ -16,7 +16,7 @@ use ptu_bench::stop::Stop;
 ///
 /// The unit is asked for its record and its log, and receives the time: it gets no input and no stimulus, and
 /// nothing is armed. A run that is under way is left for the next time. `ptu trace show ID` shows a trace,
-/// `ptu record compare ID` holds it against what it should have been.
+/// `ptu record compare ID` compares it with a sound unit's run.
 ///
 /// Examples:
 ///   ptu record pull --unit serial:/dev/ttyUSB0

@@ -16,14 +16,14 @@ use ptu_report::trace_io::{beside, is_importable};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
-/// Numbers differ beyond one step of their signal, words and bits at once; where one of the traces comes
-/// from a unit on a port, beyond what its clock explains (two rows, and a tolerance by the unit).
-/// The number of log entries (`events`) is left out; on a port also efforts, accelerations and counts of
-/// frames.
+/// Numbers differ if they are more than one step of their signal apart, words and bits if they are not the same. If
+/// one of the traces comes from a unit on a port, they differ only beyond what its clock explains (two rows, and a
+/// tolerance for each unit of measure). The number of log entries (`events`) is not compared; on a port neither are
+/// efforts, accelerations and counts of frames.
 ///
 /// B may be a .csv, .parquet or .mcap file: an export, or another program's table with seconds in its first
-/// column or messages in JSON. Seconds are from the trigger, messages at their time of day; each row is compared with
-/// the last sample until then, where they do not come at the trace's rows as with a unit on a port.
+/// column or messages in JSON. Seconds count from the trigger, messages have a time of day. Each row of the trace is
+/// compared with the last sample before it.
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest

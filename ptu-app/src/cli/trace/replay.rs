@@ -15,11 +15,11 @@ use ptu_bench::link::Endpoint;
 use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
 use ptu_bench::stop::Stop;
 
-/// Do again what was done in a trace, on the simulated unit or one on a port, and compare what comes
+/// Repeat the stimuli of a trace on the simulated unit or one on a port, and compare the responses
 ///
-/// The replay is kept as a run with a trace of its own. It is `reproduced` when it does as the trace, `not
-/// reproduced` when it does not; as the good twin, or as neither. Its verdict is on the unit: passed when
-/// it does as the good twin, a sound unit given the same.
+/// The replay is stored as a run with a trace of its own. The answer is `reproduced` if the unit responds as in the
+/// trace, and else `not reproduced`: as the good twin, or as neither. The verdict is on the unit: passed if it
+/// responds as the good twin, a sound unit with the same stimuli.
 ///
 /// Examples:
 ///   ptu trace replay latest                                on a sound simulated unit
