@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use btu_rig::procedure::{Procedure, RunEvent, Verdict};
+use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
 use fault_db::RunDetail;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
@@ -20,6 +20,7 @@ use ptu_bench::stdio;
 use ptu_bench::stored::{of_procedure, outside_of, standing, was_repeated};
 use ptu_bench::table::{Table, cell};
 use ptu_report::coverage_text;
+use ptu_report::limits::short;
 use ptu_report::words::Language;
 
 /// How often the bar's clock moves while nothing happens.
@@ -29,9 +30,23 @@ const WAITING: usize = 4096;
 /// Widest wording beside the bar, in columns.
 const BESIDE_BAR: usize = 100;
 
+/// How much is said of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// What did not pass.
+    Quiet,
+    /// And each procedure, and the step under way on a terminal.
+    Usual,
+    /// And each step and measurement.
+    Verbose,
+}
+
 /// Shows progress on stderr: a bar on a terminal, a line a procedure elsewhere. It has a thread of its own:
 /// neither the bench nor the store waits for whoever reads.
 pub struct Console {
+    detail: Detail,
+    /// Steps of the present procedure: begun, and all of it.
+    steps: (usize, usize),
     shown: SyncSender<Shown>,
     /// Lines that were not printed.
     left_out: Arc<AtomicUsize>,
@@ -50,15 +65,17 @@ impl Console {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn new(plan: &RunPlan) -> Result<Self, Failure> {
+    pub fn new(plan: &RunPlan, detail: Detail) -> Result<Self, Failure> {
         let steps = steps_of(&plan.tasks) as u64;
         let (shown, all) = mpsc::sync_channel(WAITING);
         let thread = std::thread::Builder::new()
             .name("console".into())
-            .spawn(move || show(&all, bar(steps).as_ref()));
+            .spawn(move || show(&all, bar(steps, detail).as_ref()));
         let thread =
             thread.map_err(|error| Failure::bench(format!("cannot start the console: {error}")))?;
         Ok(Self {
+            detail,
+            steps: (0, 0),
             shown,
             left_out: Arc::default(),
             thread,
@@ -79,8 +96,8 @@ impl Console {
     }
 }
 
-fn bar(steps: u64) -> Option<ProgressBar> {
-    stdio::draws().then(|| {
+fn bar(steps: u64, detail: Detail) -> Option<ProgressBar> {
+    (detail != Detail::Quiet && stdio::draws()).then(|| {
         let bar = ProgressBar::new(steps).with_message("bringing the unit up");
         bar.enable_steady_tick(TICK);
         let style = "{bar:30} {pos}/{len} steps  {elapsed} (left {eta})  {msg}";
@@ -107,8 +124,15 @@ fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
 
 impl Listener for Console {
     fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        match event {
+            SessionEvent::Run(RunEvent::ProcedureStarted { steps, .. }) => self.steps = (0, *steps),
+            SessionEvent::Run(RunEvent::StepStarted { .. }) => self.steps.0 += 1,
+            _ => {}
+        }
+        let (step, of) = self.steps;
         let present = |what: String| {
-            Shown::RunPosition(cell(&format!("{}: {what}", procedure.id), BESIDE_BAR))
+            let place = format!("{} {step}/{of}: {what}", procedure.id);
+            Shown::RunPosition(cell(&place, BESIDE_BAR))
         };
         let shown = match event {
             SessionEvent::Run(RunEvent::StepStarted { name, .. }) => present(name.clone()),
@@ -129,30 +153,36 @@ impl Listener for Console {
             SessionEvent::Run(RunEvent::Prompt { text, .. }) => {
                 Some(format!("asks    {}: {text} {HOW_TO_ANSWER}", procedure.id))
             }
+            SessionEvent::Run(RunEvent::Measured { measurement, .. })
+                if self.detail == Detail::Verbose =>
+            {
+                Some(format!("        {}", measured(measurement)))
+            }
             SessionEvent::Run(RunEvent::StepFinished(result))
                 if result.repeated
+                    || self.detail == Detail::Verbose
                     || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
             {
                 let verdict = match result.repeated {
                     true => "repeat",
                     false => result.verdict.label(),
                 };
+                let more = after_colon(&result.message);
                 Some(format!(
-                    "{verdict:<7} {}: {}: {}",
-                    procedure.id, result.name, result.message
+                    "{verdict:<7} {}: {}{more}",
+                    procedure.id, result.name
                 ))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict, message, ..
-            }) => {
-                let more = if message.is_empty() {
-                    String::new()
-                } else {
-                    format!(": {message}")
-                };
+            }) if self.detail != Detail::Quiet
+                || !matches!(verdict, Verdict::Passed | Verdict::Skipped) =>
+            {
+                let more = after_colon(message);
                 Some(format!("{:<7} {}{more}", verdict.label(), procedure.id))
             }
-            SessionEvent::Fault(fault) => Some(format!(
+            // Quietly the failed step says it.
+            SessionEvent::Fault(fault) if self.detail != Detail::Quiet => Some(format!(
                 "fault   {} → {}: {}",
                 fault.name,
                 lru::stored(fault.lru.as_ref()),
@@ -170,6 +200,31 @@ impl Listener for Console {
             }
         }))
     }
+}
+
+fn after_colon(message: &str) -> String {
+    match message {
+        "" => String::new(),
+        message => format!(": {message}"),
+    }
+}
+
+/// A value with its limits, in the words of a failed one.
+fn measured(measurement: &Measurement) -> String {
+    let value = measurement
+        .value
+        .map_or_else(|| "no value".to_owned(), short);
+    let limits = match (measurement.low, measurement.high) {
+        (None, None) => String::new(),
+        (Some(low), None) => format!(", allowed at least {}", short(low)),
+        (None, Some(high)) => format!(", allowed at most {}", short(high)),
+        (Some(low), Some(high)) => format!(", allowed {} to {}", short(low), short(high)),
+    };
+    let text = format!(
+        "{} = {value}{limits} {}",
+        measurement.name, measurement.unit
+    );
+    text.trim_end().to_owned()
 }
 
 /// Attempts at steps that were not tested, and made again.
@@ -211,24 +266,7 @@ pub fn verdict_table(run: &RunDetail) -> String {
         [] => format!("{}, no steps", run.run.source),
         _ => part(run) + &procedures(run).render(),
     };
-    let failed: Vec<_> = run
-        .steps
-        .iter()
-        .filter(|step| {
-            !matches!(
-                step.verdict,
-                fault_db::Verdict::Passed | fault_db::Verdict::Skipped
-            )
-        })
-        .collect();
-    if !failed.is_empty() {
-        let mut table = Table::new(&["VERDICT", "STEP", "WHY"]);
-        for step in failed {
-            let name = format!("{}: {}", step.procedure, step.name);
-            table.row([step.verdict.as_str().into(), name, step.message.clone()]);
-        }
-        text.push_str(&format!("\n\n{}", table.render()));
-    }
+    text.push_str(&not_passed(run));
     text.push_str(&repeated(run));
     text.push_str(&skipped(run));
     if !run.faults.is_empty() {
@@ -248,6 +286,36 @@ pub fn verdict_table(run: &RunDetail) -> String {
     }
     text.push_str(&format!("\n\n{}", summary(run)));
     text
+}
+
+/// What did not pass, and the verdict.
+pub fn failures(run: &RunDetail) -> String {
+    format!("{}\n\n{}", not_passed(run), summary(run))
+        .trim_start()
+        .to_owned()
+}
+
+/// Steps that did not pass, each with the reason.
+fn not_passed(run: &RunDetail) -> String {
+    let failed: Vec<_> = run
+        .steps
+        .iter()
+        .filter(|step| {
+            !matches!(
+                step.verdict,
+                fault_db::Verdict::Passed | fault_db::Verdict::Skipped
+            )
+        })
+        .collect();
+    if failed.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&["VERDICT", "STEP", "WHY"]);
+    for step in failed {
+        let name = format!("{}: {}", step.procedure, step.name);
+        table.row([step.verdict.as_str().into(), name, step.message.clone()]);
+    }
+    format!("\n\n{}", table.render())
 }
 
 fn procedures(run: &RunDetail) -> Table {

@@ -1,8 +1,9 @@
-//! `ptu run --events`: each event of a run as a JSON line, in a file or on standard output.
+//! `ptu run --json` and `--events FILE`: each event of a run as a JSON line, on standard output or in a file.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
 use std::thread::JoinHandle;
 
@@ -15,8 +16,23 @@ use ptu_report::event_lines::EventLines;
 
 /// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
 const WAITING: usize = 65_536;
-/// Standard output in place of a file.
-const STDOUT: &str = "-";
+
+/// Where the lines go.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// Standard output, which then has nothing else.
+    Stdout,
+    File(PathBuf),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stdout => f.write_str("--json: standard output"),
+            Self::File(file) => write!(f, "--events: {}", file.display()),
+        }
+    }
+}
 
 /// A listener that writes the stream and passes every event on.
 pub struct EventStream<L> {
@@ -28,14 +44,9 @@ struct Stream {
     lines: EventLines,
     to: Option<SyncSender<String>>,
     thread: JoinHandle<std::io::Result<()>>,
-    place: PathBuf,
+    place: Place,
     /// It took no more.
     is_cut: bool,
-}
-
-/// Whether the stream goes to standard output, which then has nothing else.
-pub fn is_stdout(place: &Path) -> bool {
-    place.as_os_str() == STDOUT
 }
 
 impl<L: Listener> EventStream<L> {
@@ -43,7 +54,7 @@ impl<L: Listener> EventStream<L> {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(listener: L, place: Option<&Path>) -> Result<Self, Failure> {
+    pub fn begin(listener: L, place: Option<Place>) -> Result<Self, Failure> {
         let stream = place.map(Stream::begin).transpose()?;
         Ok(Self { listener, stream })
     }
@@ -59,17 +70,14 @@ impl<L: Listener> EventStream<L> {
 }
 
 impl Stream {
-    fn begin(place: &Path) -> Result<Self, Failure> {
-        let cannot = |error: &dyn std::fmt::Display| {
-            Failure::usage(format!(
-                "--events: cannot write {}: {error}",
-                place.display()
-            ))
+    fn begin(place: Place) -> Result<Self, Failure> {
+        let cannot = |error: &dyn fmt::Display| {
+            Failure::usage(format!("{place} cannot be written: {error}"))
         };
-        let out: Box<dyn Write + Send> = match is_stdout(place) {
-            true => Box::new(stdio::stdout()),
-            // Not beside its place until it is whole: others read while it grows.
-            false => Box::new(File::create(place).map_err(|error| cannot(&error))?),
+        let out: Box<dyn Write + Send> = match &place {
+            Place::Stdout => Box::new(stdio::stdout()),
+            // Written in its place from the first line on: other programs read while it grows.
+            Place::File(file) => Box::new(File::create(file).map_err(|error| cannot(&error))?),
         };
         let (to, lines) = mpsc::sync_channel(WAITING);
         let thread = std::thread::Builder::new()
@@ -79,11 +87,12 @@ impl Stream {
                 Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                 written => written,
             });
+        let thread = thread.map_err(|error| cannot(&error))?;
         let mut stream = Self {
             lines: EventLines::default(),
             to: Some(to),
-            thread: thread.map_err(|error| cannot(&error))?,
-            place: place.to_owned(),
+            thread,
+            place,
             is_cut: false,
         };
         let first = stream.lines.started();
@@ -110,8 +119,8 @@ impl Stream {
         let written = self.thread.join();
         let failed = |why: &str| {
             Failure::bench(format!(
-                "--events: {} has not all events: {why}; `ptu runs show latest` has the run",
-                self.place.display()
+                "{} has not all events: {why}; `ptu runs show latest` has the run",
+                self.place
             ))
         };
         match written {

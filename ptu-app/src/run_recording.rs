@@ -1,4 +1,4 @@
-//! `ptu run --record`: all signals and events of a run in an MCAP file.
+//! `ptu run --mcap`: all signals and events of a run in an MCAP file.
 
 use std::path::{Path, PathBuf};
 

@@ -327,7 +327,7 @@ fn parquet_file() -> Vec<u8> {
     place
         .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
         .exits(1);
-    let export = ["trace", "export", "latest", "--to", "t.parquet"];
+    let export = ["trace", "export", "latest", "--out", "t.parquet"];
     let part = ["--signals", "speed,eb,mode", "--window", "-0.2..0.2"];
     place.ptu(&[&export[..], &part].concat()).exits(0);
     std::fs::read(place.path("t.parquet")).expect("written")

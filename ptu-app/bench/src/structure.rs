@@ -139,7 +139,9 @@ impl Structure {
             .chain(written.shared.iter().flat_map(|shared| &shared.reaches))
             .chain(written.shared.iter().map(|shared| &shared.part));
         if let Some(part) = named.find(|part| !parts.contains(part)) {
-            return Err(format!("no part \"{part}\"; `ptu catalog lrus` lists them"));
+            return Err(format!(
+                "no part \"{part}\"; `ptu catalog parts` lists them"
+            ));
         }
         let mut steps = BTreeMap::new();
         let mut events = Vec::new();

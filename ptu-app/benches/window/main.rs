@@ -95,7 +95,7 @@ impl Window {
         window
     }
 
-    /// The live page of the embedded unit on a moving train.
+    /// The live page of the simulated unit on a moving train.
     fn live() -> Self {
         let folder = TempDir::new().expect("folder");
         let database = folder.path().join("history.db");

@@ -254,7 +254,7 @@ fn list_shortfalls(text: &mut String, figures: &Figures) {
         &figures.not_isolated,
     );
     for group in &figures.ambiguous {
-        let _ = writeln!(text, "not told apart in some run: {}", group.join(", "));
+        let _ = writeln!(text, "not distinguished in some run: {}", group.join(", "));
     }
 }
 

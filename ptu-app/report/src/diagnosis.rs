@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use diagnosis::{Candidate, Reason};
+use diagnosis::{Candidate, PartProbability, Reason};
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
@@ -25,12 +25,14 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     };
     let candidate = |c: &Candidate| {
         json!({
-            "lru": c.lru, "fault": c.fault, "probability": c.probability,
+            "part": c.lru, "fault": c.fault, "probability": c.probability,
             "for": shown_reasons(&c.for_it), "against": shown_reasons(&c.against),
             "details": { "for": details(&c.for_it), "against": details(&c.against) },
             "text": c.text, "traces": traces(c.lru.as_str()),
         })
     };
+    let share =
+        |part: &PartProbability| json!({ "part": part.lru, "probability": part.probability });
     json!({
         "candidates": d.candidates.iter().map(candidate).collect::<Vec<_>>(),
         "why_not": answer.why_not.as_ref().map(candidate),
@@ -41,7 +43,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "group": d.group.as_ref().map(|group| json!({
             "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
         })),
-        "lrus": d.lrus.iter().filter(|part| part.probability >= 0.001).collect::<Vec<_>>(),
+        "parts": d.lrus.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,
         "warnings": answer.warnings,

@@ -29,7 +29,7 @@ fn figures_json(figures: &UnseenFigures) -> Value {
         "reliability": figures.reliability.map(share_json),
         "brier": figures.brier,
         "confused": figures.confused.iter().map(|(part, taken, runs)| {
-            json!({ "lru": part, "taken_for": taken, "runs": runs })
+            json!({ "part": part, "taken_for": taken, "runs": runs })
         }).collect::<Vec<_>>(),
         "wrong_answers": figures.wrong_answers.iter().map(|(fault, answer)| {
             json!({ "fault": fault, "answer": answer })

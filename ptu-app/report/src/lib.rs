@@ -25,6 +25,7 @@ pub mod life;
 pub mod limits;
 pub mod naming;
 pub mod plot;
+pub mod plot_page;
 mod proof;
 pub mod record;
 pub mod run;

@@ -1,4 +1,4 @@
-//! Notes at places in traces, as they are told and written.
+//! Notes at places in traces, as they are shown and written.
 
 use fault_db::{Id, RunNote, Store, StoreError};
 use serde::{Deserialize, Serialize};

@@ -12,7 +12,7 @@ use fault_db::DictionaryRecord;
 use glob::Pattern;
 
 use super::keep::KeepOptions;
-use super::{Database, ScriptsOption, print_json, print_out};
+use super::{Database, Json, ScriptsOption};
 use ptu_bench::campaign::{self, Ran, Request, Suite, figures, redundancy};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
@@ -60,8 +60,7 @@ pub struct CampaignArguments {
     /// Good units, to assess it
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     good: u32,
-    /// Diagnose each mode, too, by a dictionary without one in so many modes of each part, and by one without the
-    /// part
+    /// Diagnose each mode also by a dictionary without every K-th mode of each part, and by one without the part
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=20))]
     leave_out_modes: Option<u32>,
     /// Units with two random faults of different parts, to assess it
@@ -73,20 +72,19 @@ pub struct CampaignArguments {
     /// Faults that come and go, too, a quarter of and four times as often as the catalogue says, to assess it
     #[arg(long)]
     other_spells: bool,
-    /// Other units: another number means other seeds for all of them
+    /// Lot of units: each number stands for other units, with other seeds for all of them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    units: u32,
+    lot: u32,
     #[command(flatten)]
     keep: KeepOptions,
-    /// Embedded units to test side by side [default: one for each processor]
+    /// Simulated units to test side by side [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: Option<u32>,
     /// Write the dictionary to a file, too
     #[arg(long, value_name = "FILE")]
-    save: Option<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -127,14 +125,14 @@ impl CampaignArguments {
             pairs: self.pairs,
             common: self.common_causes,
             other_spells: self.other_spells,
-            units: self.units,
+            units: self.lot,
             keep: self.keep.keep()?,
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),
         };
         let modes = campaign::chosen(&suite, &asked)?;
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         let count = asked.keep.ours(count).count();
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             ptu_bench::data::check_writable(file)?;
         }
         // A shard makes no dictionary: nodes of a cluster need no database.
@@ -163,7 +161,7 @@ impl CampaignArguments {
         let (outcome, store) = outcome;
         let dictionary = &outcome.dictionary;
         let data = dictionary.to_bytes().map_err(Failure::bench)?;
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             ptu_bench::data::write(file, &data)?;
         }
         store.put_dictionary(&DictionaryRecord {
@@ -176,10 +174,8 @@ impl CampaignArguments {
         let figures = figures(&outcome.assessments, &outcome.good);
         let redundancy = redundancy(&outcome.dictionary);
         store.close()?;
-        if self.json {
-            print_json(&campaign_json(&outcome, &figures, &redundancy))
-        } else {
-            print_out(&campaign_text(&outcome, &figures, &redundancy))
-        }
+        let text = || campaign_text(&outcome, &figures, &redundancy);
+        self.json
+            .answer(|| campaign_json(&outcome, &figures, &redundancy), text)
     }
 }

@@ -8,7 +8,7 @@ use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
-use super::{ScriptsOption, print_json, print_out};
+use super::{Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::structure::Structure;
 use ptu_bench::symptoms;
@@ -26,9 +26,8 @@ pub struct CatalogArguments {
     /// Train whose cars to show: line6 or another trains/NAME.toml, or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -44,7 +43,7 @@ enum CatalogTopic {
     /// Lines and their sections
     Lines,
     /// Parts that can be replaced
-    Lrus,
+    Parts,
     /// Parts that each signal comes through, from the sensors on
     Structure,
     /// What may be wrong with a unit, and the parts it may come from
@@ -61,23 +60,19 @@ impl CatalogArguments {
             CatalogTopic::Signals => signals(),
             CatalogTopic::Codes => self.codes()?,
             CatalogTopic::Lines => self.lines()?,
-            CatalogTopic::Lrus => self.lrus()?,
+            CatalogTopic::Parts => self.parts()?,
             CatalogTopic::Structure => self.structure()?,
             CatalogTopic::Symptoms => self.symptoms()?,
             CatalogTopic::Train => self.train()?,
         };
-        if self.json {
-            print_json(&entries)
-        } else {
-            print_out(&as_table(&entries))
-        }
+        self.json.answer(|| &entries, || as_table(&entries))
     }
 
     fn faults(&self) -> Result<Vec<Value>, Failure> {
         let catalogue = self.scripts.find()?.faults()?;
         let entry = |fault: &protocol::injection::FaultMode| {
             json!({
-                "id": fault.id, "lru": fault.lru, "mode": fault.mode,
+                "id": fault.id, "part": fault.lru, "mode": fault.mode,
                 "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
                 "on": if fault.place.on_train() { "train" } else { "unit" }, "car": fault.car,
                 "kind": fault.kind().word(), "out_of_reach": fault.out_of_reach.map(OutOfReach::word),
@@ -86,7 +81,7 @@ impl CatalogArguments {
         Ok(catalogue.faults.iter().map(entry).collect())
     }
 
-    fn lrus(&self) -> Result<Vec<Value>, Failure> {
+    fn parts(&self) -> Result<Vec<Value>, Failure> {
         let catalogue = self.scripts.find()?.faults()?;
         let entry = |lru: &protocol::injection::Lru| json!({ "id": lru.id, "name": lru.name, "name_ko": lru.name_ko });
         Ok(catalogue.lrus.iter().map(entry).collect())

@@ -1,12 +1,9 @@
 //! `ptu diagnose`: the parts that the results of a run point to.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use protocol::LruId;
 
-use super::diagnose_matrix::{MatrixOptions, diagnose_matrix};
-use super::{Database, ScriptsOption, print_json, print_out};
+use super::{Database, Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::run_diagnosis::{Question, diagnose};
 use ptu_bench::stdio;
@@ -14,38 +11,29 @@ use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
-/// A run is compared with the fault dictionary (`ptu campaign`); a matrix stands for itself.
+/// A run is compared with the fault dictionary.
 ///
 /// Examples:
-///   ptu diagnose latest                                        the last run
+///   ptu diagnose latest                      the last run
 ///   ptu diagnose 7ae4aeef --json
-///   ptu diagnose latest 7ae4aeef                               two runs of one unit together
-///   ptu diagnose latest --why-not io_board                     what speaks against this part
-///   ptu diagnose --matrix pump.json                            cheapest order of tests
-///   ptu diagnose --matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
-///   ptu diagnose --matrix pump.json --outcomes found.json --json
+///   ptu diagnose latest 7ae4aeef             two runs of one unit together
+///   ptu diagnose latest --why-not io_board   what speaks against this part
 ///
-/// Exit codes: 0 answered, 2 no such run, no dictionary, wrong matrix or outcomes.
+/// Exit codes: 0 answered, 2 no such run, or no dictionary.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiagnoseArguments {
     /// The run: an id, its beginning or end (at least 4 digits), or `latest`; more runs of the unit are evidence, too
-    #[arg(value_name = "RUN", required_unless_present = "matrix")]
+    #[arg(value_name = "RUN", required = true)]
     runs: Vec<String>,
-    /// Dependency matrix of states and tests; its format is in scripts/README.md
-    #[arg(long, value_name = "FILE", conflicts_with = "runs")]
-    matrix: Option<PathBuf>,
     /// A part of which to say what speaks for it and against it, however unlikely it is
-    #[arg(long, value_name = "PART", requires = "runs")]
+    #[arg(long, value_name = "PART")]
     why_not: Option<LruId>,
     /// All candidates and reasons, with what the dictionary has of each
     #[arg(long)]
     all: bool,
     #[command(flatten)]
-    matrix_options: MatrixOptions,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    json: Json,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -55,14 +43,11 @@ pub struct DiagnoseArguments {
 impl DiagnoseArguments {
     /// Diagnoses.
     pub fn run(self) -> Result<Exit, Failure> {
-        if let Some(matrix) = &self.matrix {
-            return diagnose_matrix(matrix, &self.matrix_options, self.json);
-        }
         let store = self.database.open_read_only()?;
         let runs = self.runs.iter().map(|run| store.resolve_run(run));
         let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
         let Some((run, with)) = runs.split_first() else {
-            return Err(Failure::usage("name a run, or a matrix"));
+            return Err(Failure::usage("name a run"));
         };
         let directory = self.scripts.find()?;
         let question = Question {
@@ -74,10 +59,7 @@ impl DiagnoseArguments {
         for warning in &answer.warnings {
             stdio::note(warning);
         }
-        if self.json {
-            print_json(&diagnosis_json(&answer))
-        } else {
-            print_out(&diagnosis_text(&answer, self.all))
-        }
+        let text = || diagnosis_text(&answer, self.all);
+        self.json.answer(|| diagnosis_json(&answer), text)
     }
 }

@@ -1,6 +1,6 @@
 //! `ptu drive`: station-to-station automatic runs, and runs by hand.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
 use btu_rig::drive::{Ending, Load, Scatter, manual};
@@ -8,8 +8,8 @@ use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
-use super::{ScriptsOption, answered, print_json, print_out};
-use ptu_bench::data::{ScriptsDirectory, check_writable, write};
+use super::{Json, ScriptsOption, answered, made_by};
+use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
 use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
 use ptu_bench::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
@@ -22,9 +22,9 @@ use ptu_report::drive::{self as report, Outcomes, Results, Target};
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///
-/// Exit code 0 when the train stopped within the door tolerance, 1 when not; with --monte-carlo 0
-/// when 99.9 % of the runs did and none went more than 1 m too far; with --manual 0 when all steps
-/// were done and ATP did not brake.
+/// Exit codes: 0 the train stopped within the door tolerance, 1 it did not. With --monte-carlo, 0 if 99.9 %
+/// of the runs did and none went more than 1 m too far; with --manual, 0 if all steps were done and ATP did not
+/// brake.
 ///
 /// Examples:
 ///   ptu drive                                   line 8 section 61, empty line 6 train
@@ -35,7 +35,7 @@ use ptu_report::drive::{self as report, Outcomes, Results, Target};
 ///   ptu drive --monte-carlo 10000 --shard 3/64 --runs shard-3.zst
 ///   ptu drive --set ato.servo.s_curve_s=12 --set 'ato.controller="pss"'
 ///   ptu drive --manual figure7 --report figure7.html
-///   ptu drive --manual keys --load full --save mine.toml
+///   ptu drive --manual keys --load full --out mine.toml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DriveArguments {
@@ -55,7 +55,7 @@ pub struct DriveArguments {
     manual: Option<String>,
     /// Write what was driven by keys as a sequence, to be driven again with --manual FILE
     #[arg(long, value_name = "FILE", requires = "manual")]
-    save: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Speed controller: servo, fuzzy, pi or pss [default: the configuration's]
     #[arg(long, value_name = "NAME", value_parser = controller)]
     controller: Option<ControllerKind>,
@@ -65,7 +65,7 @@ pub struct DriveArguments {
     /// Train: line6, ideal or another trains/NAME.toml, or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
-    /// Total mass: of the ideal train, which the unit is told, or of a train of cars, as load
+    /// Total mass: of the ideal train, for which the unit is configured, or of a train of cars, as load
     #[arg(
         long,
         value_name = "KG",
@@ -90,7 +90,7 @@ pub struct DriveArguments {
     wheel: Option<f64>,
     /// Speed code from start to end, in place of the line's
     #[arg(long, value_name = "NAME")]
-    code: Option<String>,
+    speed_code: Option<String>,
     /// Unit configuration key to change, as ato.servo.s_curve_s=12; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
@@ -100,10 +100,10 @@ pub struct DriveArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draw train and day from scatter.toml by the seed, as one run of --monte-carlo does
-    #[arg(long, conflicts_with = "monte_carlo")]
-    scattered: bool,
-    /// So many runs with train and day drawn from scatter.toml, seeds from --seed on
+    /// Draw train and day by the seed, as one run of --monte-carlo does; from scatter.toml or FILE
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with = "monte_carlo")]
+    scattered: Option<Option<PathBuf>>,
+    /// N runs with train and day drawn from scatter.toml, seeds from --seed on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     monte_carlo: Option<u32>,
     /// Runs side by side [default: the cores of this machine]
@@ -111,9 +111,8 @@ pub struct DriveArguments {
     jobs: Option<u32>,
     #[command(flatten)]
     keep: KeepOptions,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// Write a report, .html, .json or .csv; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<Target>,
@@ -138,7 +137,7 @@ impl DriveArguments {
         let jobs = self.jobs.map_or_else(cores, |jobs| jobs as usize);
         let outcomes = match self.monte_carlo {
             Some(count) => {
-                let scatter = scatter(&directory)?;
+                let scatter = scatter(&directory, None)?;
                 let count = count as usize;
                 let keep = self.keep.keep()?;
                 match monte_carlo::run(cases, count, &scatter, &keep, (jobs, &stop))? {
@@ -147,8 +146,8 @@ impl DriveArguments {
                 }
             }
             None => {
-                if self.scattered {
-                    let scatter = scatter(&directory)?;
+                if let Some(file) = &self.scattered {
+                    let scatter = scatter(&directory, file.as_deref())?;
                     cases = cases
                         .iter()
                         .map(|case| case.drawn(&scatter, self.seed))
@@ -161,19 +160,20 @@ impl DriveArguments {
             outcomes,
             list: !self.compare.is_empty()
                 || !matches!(self.section, None | Some(SectionChoice::One(_))),
+            made: Some(made_by()),
         };
         self.answer(&results, &stop)
     }
 
     /// A sequence, or keys.
     fn by_hand(&self, directory: &ScriptsDirectory, source: &str) -> Result<Exit, Failure> {
-        if let Some(file) = &self.save {
+        if let Some(file) = &self.out {
             if source != KEYS {
-                return Err(Failure::usage("--save goes with --manual keys"));
+                return Err(Failure::usage("--out goes with --manual keys"));
             }
             if file.extension().is_none_or(|ending| ending != "toml") {
                 return Err(Failure::usage(
-                    "--save: a sequence is a file ending in .toml",
+                    "--out: a sequence is a file ending in .toml",
                 ));
             }
             check_writable(file)?;
@@ -189,13 +189,14 @@ impl DriveArguments {
         let run = ManualRun { case, outcome };
         let done = !run.outcome.done.is_empty();
         let save = self
-            .save
+            .out
             .as_ref()
             .map(|file| (file, run.sequence().to_toml()));
         let answer = self.answer(
             &Results {
                 outcomes: Outcomes::ByHand(Box::new(run)),
                 list: false,
+                made: Some(made_by()),
             },
             &stop,
         );
@@ -230,7 +231,7 @@ impl DriveArguments {
                 wheel_factor: self.wheel,
                 disturbance: self.disturbance,
             },
-            code: self.code.clone(),
+            code: self.speed_code.clone(),
             unit_config: self.unit_config.clone(),
             settings: self.set.clone(),
             seed: self.seed,
@@ -238,10 +239,7 @@ impl DriveArguments {
     }
 
     fn answer(&self, results: &Results, stop: &Stop) -> Result<Exit, Failure> {
-        let told = match self.json {
-            true => print_json(&report::json(results)),
-            false => print_out(&report::text(results)),
-        };
+        let told = (self.json).answer(|| report::json(results), || report::text(results));
         for target in &self.report {
             target.write(results)?;
         }
@@ -273,10 +271,15 @@ fn no_bench_failure(ending: Option<&impl ToString>) -> Result<(), Failure> {
     ending.map_or(Ok(()), |ending| Err(Failure::bench(ending.to_string())))
 }
 
-fn scatter(directory: &ScriptsDirectory) -> Result<Scatter, Failure> {
-    let file = "scatter.toml";
-    Scatter::from_toml(&directory.text(file)?)
-        .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(file))))
+fn scatter(directory: &ScriptsDirectory, file: Option<&Path>) -> Result<Scatter, Failure> {
+    let (text, place) = match file {
+        Some(file) => (read(file)?, file.display().to_string()),
+        None => (
+            directory.text("scatter.toml")?,
+            directory.shown("scatter.toml"),
+        ),
+    };
+    Scatter::from_toml(&text).map_err(|error| Failure::usage(format!("{place}: {error}")))
 }
 
 fn controller(name: &str) -> Result<ControllerKind, String> {

@@ -14,7 +14,7 @@ mod undo;
 
 use clap::{Args, Subcommand};
 
-use super::{Database, ScriptsOption};
+use super::{Database, Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_report::naming::PartNames;
 use ptu_report::words::Language;
@@ -35,9 +35,8 @@ enum Verb {
     Show {
         /// The fault: an id, its beginning or end (at least 4 digits), or `latest`
         id: String,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
         /// Language of the freeze frame and of messages: en or ko
         #[arg(long, value_name = "LANGUAGE", default_value = "en")]
         lang: Language,

@@ -19,14 +19,14 @@ use ptu_report::words::Language;
 ///   ptu gui                     as it was left
 ///   ptu gui --lang ko           in Korean
 ///   ptu gui --page traces       with the traces in front
-///   ptu gui --unit sim          connected to the embedded unit at once
-///   ptu gui --new --db b.db     with a database that is made
+///   ptu gui --unit sim          connected to the simulated unit at once
+///   ptu gui --create --db b.db     with a database that is made
 ///   ptu gui --db postgres://kim@depot/history   reads the history of a server
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct GuiArguments {
     /// Language, en or ko [default: as it was left]
-    #[arg(long, value_name = "LANG")]
+    #[arg(long, value_name = "LANGUAGE")]
     lang: Option<Language>,
     #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
     page: Option<Page>,
@@ -36,7 +36,7 @@ pub struct GuiArguments {
     /// Whether the bench harness is connected: auto, none or bench [default: as it was left]
     #[arg(long, value_name = "WHICH")]
     harness: Option<Harness>,
-    /// Faults to inject into the embedded unit, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit, see `ptu catalog faults`
     #[arg(
         long,
         value_name = "FAULT[,FAULT]",
@@ -46,7 +46,7 @@ pub struct GuiArguments {
     inject: Vec<String>,
     /// Make the database that --db names if it is not there
     #[arg(long)]
-    new: bool,
+    create: bool,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -69,9 +69,9 @@ impl GuiArguments {
 
     /// Opens it and stays until it is closed.
     pub fn run(self) -> Result<Exit, Failure> {
-        if !self.new {
+        if !self.create {
             self.database.check_named().map_err(|failure| {
-                Failure::bench(format!("{failure}; `ptu gui --new` makes it"))
+                Failure::bench(format!("{failure}; `ptu gui --create` makes it"))
             })?;
         }
         let settings_file = Settings::usual_file();

@@ -1,7 +1,35 @@
-//! Wraps help texts to the width of the terminal.
+//! Help texts: wrapped to the width of the terminal, and in two sections on the first screen.
 
 use clap::Command;
 use clap::builder::StyledStr;
+
+/// Verbs that a technician never needs, in few words: they have a section of their own, after the options.
+const MAKERS: [(&str, &str); 5] = [
+    (
+        "campaign",
+        "Make a fault dictionary, and say what it is worth",
+    ),
+    ("drive", "Drive from station to station, or by hand"),
+    (
+        "matrix",
+        "Find the cheapest order of tests of a dependency matrix",
+    ),
+    (
+        "new",
+        "Begin a procedure, unit configuration, line or fault mode",
+    ),
+    ("train", "Serve a unit aboard a simulated train on a port"),
+];
+
+/// The same commands, the makers' verbs in a section of their own; each is called and explained as before.
+pub fn sectioned(mut command: Command) -> Command {
+    let mut section = "For makers of procedures, dictionaries and controllers:".to_owned();
+    for (name, about) in MAKERS {
+        section += &format!("\n  {name:<9} {about}");
+        command = command.mut_subcommand(name, |verb| verb.hide(true));
+    }
+    command.after_help(section)
+}
 
 /// The same commands, their texts without the line ends of the source: those within a paragraph, where the
 /// next line does not begin with spaces, as an example does.
@@ -34,7 +62,30 @@ fn joined(text: &StyledStr) -> String {
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory as _;
+
     use super::*;
+    use crate::cli::Cli;
+
+    /// Goal: the first screen shows a technician what he uses, and hides no verb from those who make procedures. Method:
+    /// each verb stands there once, and those of makers after the options.
+    #[test]
+    fn each_verb_is_on_the_first_screen_once() {
+        let command = flowing(Cli::command());
+        let shown: Vec<_> = (command.get_subcommands())
+            .filter(|verb| !verb.is_hide_set())
+            .map(|verb| verb.get_name().to_owned())
+            .collect();
+        assert!(shown.len() > 15, "{shown:?}");
+        let screen = sectioned(command).render_help().to_string();
+        let options = screen.find("Options:").expect("options");
+        for verb in shown {
+            let place = format!("\n  {verb:<9}");
+            assert_eq!(screen.matches(&place).count(), 1, "{verb}: {screen}");
+            let is_makers = MAKERS.iter().any(|(name, _)| *name == verb);
+            assert_eq!(screen.find(&place) > Some(options), is_makers, "{verb}");
+        }
+    }
 
     #[test]
     fn lines_of_a_paragraph_are_one_and_examples_stay() {

@@ -5,7 +5,6 @@ mod catalog;
 mod database;
 mod db;
 mod diagnose;
-mod diagnose_matrix;
 mod doctor;
 mod drive;
 mod faults;
@@ -17,6 +16,7 @@ mod gui;
 mod help;
 mod help_files;
 mod keep;
+mod matrix;
 mod new;
 mod output;
 mod ports;
@@ -30,6 +30,8 @@ mod saved;
 mod trace;
 mod train;
 mod unit_option;
+#[cfg(test)]
+mod words;
 
 use std::path::PathBuf;
 
@@ -37,6 +39,7 @@ use clap::builder::RangedI64ValueParser;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use database::Database;
 use fault_db::{Address, Store};
+use output::Json;
 use serde::Serialize;
 
 use ptu_bench::clock;
@@ -51,7 +54,7 @@ use ptu_report::json_text;
 ///
 /// Examples:
 ///   ptu                                      the technician's window
-///   ptu run                                  whole acceptance suite on the embedded unit
+///   ptu run                                  whole acceptance suite on the simulated unit
 ///   ptu run atp/overspeed --unit serial:/dev/ttyUSB0
 ///   ptu run --inject eb_relay.slow --report result.json
 ///   ptu faults list --state open
@@ -65,30 +68,31 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    // A comment for users here would hide exit codes and examples, which these tell themselves.
+    // What an argument's own comment says stands in the help; one here would hide its exit codes and examples.
     Gui(Box<gui::GuiArguments>),
     Run(Box<run::RunArguments>),
-    Drive(Box<drive::DriveArguments>),
-    /// Show faults, signals, speed codes, lines or parts
-    Catalog(catalog::CatalogArguments),
-    Campaign(Box<campaign::CampaignArguments>),
     Diagnose(diagnose::DiagnoseArguments),
     /// Show recorded runs
     Runs(runs::RunsArguments),
+    Report(report::ReportArguments),
     /// Query and keep the fault history
     Faults(faults::FaultsArguments),
-    Record(record::RecordArguments),
-    Report(report::ReportArguments),
     Saved(saved::SavedArguments),
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
+    Record(record::RecordArguments),
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
-    Train(Box<train::TrainArguments>),
+    /// Show faults, signals, speed codes, lines or parts
+    Catalog(catalog::CatalogArguments),
     /// List serial ports
     Ports(ports::PortsArguments),
     Doctor(doctor::DoctorArguments),
+    Campaign(Box<campaign::CampaignArguments>),
+    Drive(Box<drive::DriveArguments>),
+    Matrix(matrix::MatrixArguments),
     New(new::NewArguments),
+    Train(Box<train::TrainArguments>),
     /// Write manual pages and shell completions, for packages
     #[command(name = "help-files", hide = true)]
     HelpFiles(help_files::HelpFilesArguments),
@@ -112,7 +116,7 @@ impl Cli {
                  here",
             ));
         }
-        let matches = help::flowing(Self::command()).try_get_matches();
+        let matches = help::sectioned(help::flowing(Self::command())).try_get_matches();
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
             .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
@@ -150,6 +154,7 @@ impl Cli {
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
             Verb::Train(arguments) => arguments.run(),
+            Verb::Matrix(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
             Verb::Doctor(arguments) => arguments.run(),
             Verb::New(arguments) => arguments.run(),
@@ -205,6 +210,22 @@ fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
 fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
     stdio::document(&json_text(value)?)?;
     Ok(Exit::Passed)
+}
+
+/// When a report was made, and by which command.
+fn made_by() -> String {
+    let words: Vec<_> = std::env::args().skip(1).map(|word| quoted(&word)).collect();
+    let at = clock::local(clock::now_us());
+    format!("Made {at} by: ptu {}", words.join(" "))
+}
+
+/// An argument as a shell takes it back.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@+%".contains(c);
+    if !argument.is_empty() && argument.chars().all(plain) {
+        return argument.to_owned();
+    }
+    format!("'{}'", argument.replace('\'', "'\\''"))
 }
 
 /// Prints text for people.

@@ -1,12 +1,40 @@
 //! Writes an answer as a table, as JSON or as CSV; the latter two come from one list of rows.
 
 use clap::Args;
+use serde::Serialize;
 use serde_json::Value;
 
 use super::{print_json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stdio;
 use ptu_report::csv::Cell;
+
+/// `--json`, and the answer in the form asked for.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Json {
+    /// Print JSON, with all there is
+    #[arg(long)]
+    json: bool,
+}
+
+impl Json {
+    /// JSON is asked for.
+    pub fn is_asked(self) -> bool {
+        self.json
+    }
+
+    /// Prints one JSON document, or text for people.
+    pub fn answer<T: Serialize>(
+        self,
+        document: impl FnOnce() -> T,
+        text: impl FnOnce() -> String,
+    ) -> Result<Exit, Failure> {
+        match self.json {
+            true => print_json(&document()),
+            false => print_out(&text()),
+        }
+    }
+}
 
 /// How an answer is printed.
 #[derive(Clone, Debug, Args)]

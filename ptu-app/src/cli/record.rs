@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use super::Database;
 use ptu_bench::failure::{Exit, Failure};
 
-/// Read a unit's own record of automatic runs, and hold a run against what it should have been
+/// Read a unit's own record of automatic runs, and compare a run with a sound unit's
 #[derive(Debug, Args)]
 pub struct RecordArguments {
     #[command(subcommand)]

@@ -20,7 +20,7 @@ use ptu_report::{Target, write_case};
 ///   ptu report 5f8b --out case.pdf --lang ko                    the case of fault 5f8b
 ///   ptu report latest --case --out case.html --annex            of the fault seen last, with both runs in full
 ///
-/// Exit codes: 0 written, 2 no such run or fault, or a file name that does not serve, 3 database.
+/// Exit codes: 0 written, 2 no such run or fault, or a file name with an unknown ending, 3 database.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ReportArguments {
@@ -33,10 +33,10 @@ pub struct ReportArguments {
     /// Language of sheets: en or ko
     #[arg(long, value_name = "LANGUAGE", default_value = "en")]
     lang: Language,
-    /// The id is a fault's; `latest` is the fault seen last
+    /// The id is that of a fault; `latest` is the fault seen last
     #[arg(long)]
     case: bool,
-    /// With all that both runs say, behind the sheet of a case
+    /// Add the full sheets of both runs behind the sheet of a case
     #[arg(long)]
     annex: bool,
     /// Where the unit is kept, on the sheet of a case; without it, a line to write on

@@ -1,21 +1,22 @@
 //! `ptu run`: check procedures.
 
 mod check;
+mod choose;
 mod conclusion;
 mod resume;
+mod show;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use btu_rig::rig::Harness;
 use clap::Args;
 use fault_db::Store;
 
 use super::reports::ReportOption;
 use super::{Database, ScriptsOption, answered, print_out, run_list};
-use crate::console::{Console, verdict_table};
-use crate::event_stream::{EventStream, is_stdout};
+use crate::console::Console;
+use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
 use ptu_bench::data::ScriptsDirectory;
@@ -23,8 +24,7 @@ use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
-    self, BenchChoice, BenchSetup, RunControl, RunPlan, Suite, Task, check_serial, select,
-    software_version,
+    self, BenchChoice, BenchSetup, RunControl, RunPlan, Suite, check_serial, software_version,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_bench::stdio;
@@ -39,18 +39,19 @@ const SEED: u64 = 1;
 /// Run check procedures; by default all under scripts/ but those on request only
 ///
 /// Examples:
-///   ptu run                                     everything, on the embedded unit
+///   ptu run                                     everything, on the simulated unit
 ///   ptu run door 'atp/over*'                    by folder or glob
 ///   ptu run --unit serial:/dev/ttyUSB0@115200   on a unit on a port
 ///   ptu run ptu --unit serial:/dev/ttyUSB0      with a laptop alone, on a train
 ///   ptu run --check                             all script errors, nothing driven
 ///   ptu run --list atp/overspeed                what would be done
-///   ptu run --scatter --seed 7                  on a unit, train and bench as good ones differ
+///   ptu run --scattered --seed 7                  on a unit, train and bench as good ones differ
 ///   ptu run --repeat 10 --shuffle --seed 7      each procedure ten times, in an order drawn by the seed
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
 ///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
 ///   ptu run --report out.json --report out.junit.xml
-///   ptu run --events -                           each event as a JSON line, for other programs
+///   ptu run --json                               each event as a JSON line, for other programs
+///   ptu run --exclude tcms --exclude '*/self_test'   all but these
 ///   ptu run --resume latest                     what the latest run left without a verdict
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -62,7 +63,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "UNIT")]
     unit: Option<Endpoint>,
     /// Whether the bench harness is connected: auto (found out), none (a laptop on a train) or bench; with `sim`,
-    /// none is the embedded unit aboard a simulated train
+    /// none is the simulated unit aboard a simulated train
     #[arg(long, value_name = "WHICH", default_value = "auto")]
     harness: Harness,
     /// Line, lines/NAME.toml [default: line8]
@@ -77,7 +78,7 @@ pub struct RunArguments {
     /// Unit configuration key to change, as ato.controller=pi; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
-    /// Serial number: of the embedded unit, or expected of a real one
+    /// Serial number: of the simulated unit, or expected of a real one
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
     /// Software version the unit should have, compared by `ptu/identity` in place of the record's
@@ -89,11 +90,11 @@ pub struct RunArguments {
     train_no: String,
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
-    operator: String,
-    /// What was wrong with the unit, as who brought it says, see `ptu catalog symptoms`: a weak sign of the part
+    who: String,
+    /// What was wrong with the unit when it was brought, see `ptu catalog symptoms`: a weak sign of the part
     #[arg(long, value_name = "SYMPTOM")]
     symptom: Option<String>,
-    /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Seed of everything random [default: 1]
@@ -102,15 +103,15 @@ pub struct RunArguments {
     /// Draw by the seed what differs between good units, trains and benches: sensor noise, wheels, load,
     /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
-    scatter: Option<Option<PathBuf>>,
-    /// Run the embedded unit at the wall clock's pace
+    scattered: Option<Option<PathBuf>>,
+    /// Run the simulated unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
-    /// Go so many times slower than the clock, for a computer too busy for real time; a served unit must do
-    /// the same, `ato-under-test --slower`
+    /// Run N times slower than real time, on a computer too busy for it; a served unit must do the same,
+    /// `ato-under-test --slower`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     slower: u32,
-    /// Embedded units to test side by side
+    /// Simulated units to test side by side
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     jobs: u32,
     /// Report all errors of all scripts, limits that name no source and texts without Korean, and drive nothing
@@ -119,13 +120,13 @@ pub struct RunArguments {
     /// Show what would be run and drive nothing
     #[arg(long)]
     list: bool,
-    /// With --list, print JSON
-    #[arg(long, requires = "list")]
-    json: bool,
-    /// Only steps whose name matches
-    #[arg(long, value_name = "GLOB")]
+    /// Leave these procedures out: a path, folder or glob; repeatable
+    #[arg(long, value_name = "PATH|GLOB")]
+    exclude: Vec<String>,
+    /// Only steps whose name matches this glob
+    #[arg(long, value_name = "STEP")]
     step: Option<String>,
-    /// Run each procedure so often, each time with its set-up and clean-up
+    /// Run each procedure N times, each time with its set-up and clean-up
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
     repeat: u32,
     /// Run the procedures in an order drawn by the seed
@@ -140,12 +141,8 @@ pub struct RunArguments {
     adaptive: bool,
     #[command(flatten)]
     resume: resume::ResumeOption,
-    /// Write each event of the run as a JSON line (docs/events.md); - for standard output, which then has nothing else
-    #[arg(long, value_name = "FILE|-", conflicts_with_all = ["check", "list"])]
-    events: Option<PathBuf>,
-    /// Record every signal and event of the run, whatever its verdict, in an MCAP file for Foxglove, PlotJuggler and others
-    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["check", "list"])]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    show: show::ShowOptions,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -194,26 +191,26 @@ impl RunArguments {
         if self.check {
             return check::show(&procedures, directory.check_data()?);
         }
-        let procedures = self.asked_for(procedures);
+        let procedures = self.asked_for(procedures)?;
         let asks = procedures.iter().any(|procedure| procedure.asks());
         let drives = asks && !self.list && self.jobs == 1;
         let operator = drives.then(Operator::at_terminal).flatten();
         let tasks = self.tasks(procedures, operator.is_some())?;
         if self.list {
-            return run_list::show(&tasks, self.harness, self.json);
+            return run_list::show(&tasks, self.harness, self.show.json);
         }
         let mut plan = RunPlan {
             tasks,
             jobs: self.jobs as usize,
             stop_on_fail: self.stop_on_fail,
-            operator: self.operator.clone(),
+            operator: self.who.clone(),
             train: self.train_no.clone(),
             symptom: self.symptom.clone(),
             scripts_sha256,
             adaptive: None,
             continues: earlier.map(|earlier| earlier.run.id),
         };
-        setup.record_whole = self.record.is_some();
+        setup.record_whole = self.show.mcap.is_some();
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
     }
@@ -222,7 +219,7 @@ impl RunArguments {
         let unit = self.unit.clone().unwrap_or(Endpoint::Sim);
         if unit != Endpoint::Sim && self.jobs > 1 {
             return Err(Failure::usage(
-                "--jobs works on embedded units only; one port is one unit",
+                "--jobs works on simulated units only; one port is one unit",
             ));
         }
         if self.slower > 1 && unit == Endpoint::Sim && !self.realtime {
@@ -245,8 +242,8 @@ impl RunArguments {
             train_no: self.train_no.clone(),
             faults: self.inject.clone(),
             seed: self.seed(),
-            scatter: self.scatter.is_some(),
-            scatter_file: self.scatter.clone().flatten(),
+            scatter: self.scattered.is_some(),
+            scatter_file: self.scattered.clone().flatten(),
             realtime: self.realtime,
             slower: self.slower,
         }
@@ -259,57 +256,6 @@ impl RunArguments {
 
     fn seed(&self) -> u64 {
         self.seed.unwrap_or(SEED)
-    }
-
-    /// All when some are named, else those that are not run on request only.
-    fn asked_for(&self, mut procedures: Vec<Arc<Procedure>>) -> Vec<Arc<Procedure>> {
-        if self.procedures.is_empty() {
-            let (left_out, run) = procedures.into_iter().partition(|p| p.on_request);
-            procedures = run;
-            let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
-            if !names.is_empty() {
-                stdio::note(&format!("run only when named: {}", names.join(", ")));
-            }
-        }
-        procedures
-    }
-
-    /// Procedures with the steps chosen; those with none are left out.
-    fn tasks(&self, procedures: Vec<Arc<Procedure>>, operator: bool) -> Result<Vec<Task>, Failure> {
-        let pattern = select::step_pattern(self.step.as_deref())?;
-        let task = |procedure: Arc<Procedure>| {
-            let chosen = pattern.as_ref().map(|pattern| {
-                let steps = procedure.steps.iter().enumerate();
-                steps
-                    .filter(|(_, step)| pattern.matches(&step.name))
-                    .map(|(i, _)| i)
-                    .collect()
-            });
-            let options = RunOptions {
-                chosen,
-                repeat: self.repeat,
-                stop_on_fail: self.stop_on_fail,
-                prompts: match operator {
-                    true => PromptPolicy::Ask,
-                    false => PromptPolicy::Refuse,
-                },
-                ..RunOptions::default()
-            };
-            Task { procedure, options }
-        };
-        let mut tasks: Vec<_> = procedures.into_iter().map(task).collect();
-        if let Some(glob) = &self.step {
-            tasks.retain(|task| task.options.chosen.as_ref().is_none_or(|c| !c.is_empty()));
-            if tasks.is_empty() {
-                return Err(Failure::usage(format!(
-                    "no step matches \"{glob}\"; `ptu run --list` shows all steps"
-                )));
-            }
-        }
-        if self.shuffle {
-            select::shuffle(&mut tasks, self.seed());
-        }
-        Ok(tasks)
     }
 
     fn execute(
@@ -331,8 +277,9 @@ impl RunArguments {
         }
         let stop = Stop::default();
         stop.listen();
-        let console = EventStream::begin(Console::new(plan)?, self.events.as_deref())?;
-        let mut console = RunRecording::begin(console, self.record.as_deref())?;
+        let console = Console::new(plan, self.show.detail())?;
+        let console = EventStream::begin(console, self.show.events())?;
+        let mut console = RunRecording::begin(console, self.show.mcap.as_deref())?;
         let result = match self.adaptive {
             false => run::run(plan, setup, store, &stop, &mut console),
             true => {
@@ -361,17 +308,17 @@ impl RunArguments {
             Exit::Passed => prove_repairs(&store, directory, outcome.id),
             _ => Ok(Vec::new()),
         };
-        // What the faults come from is stored before they are told of, and whatever a terminal takes.
+        // The causes of the faults are stored before the answer is printed, and even if the terminal takes none of it.
         if let Some(Ok(answer)) = &answer
             && let Err(failure) = answer.attribute(&store)
         {
             failure.tell();
         }
         let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
-        // The database and the reports have it: what a terminal does not take changes no verdict.
-        let said = match self.events.as_deref().is_some_and(is_stdout) {
+        // Database and reports have the result: a terminal that takes no output changes no verdict.
+        let said = match self.show.json {
             true => Ok(()),
-            false => print_out(&verdict_table(&detail))
+            false => print_out(&self.show.verdict(&detail))
                 .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
                 .and_then(|()| conclusion::say_proofs(&proofs?)),
         };

@@ -4,11 +4,9 @@ use clap::{Args, Subcommand};
 use fault_db::{RunFilter, RunNote};
 
 use super::reports::ReportOption;
-use super::{
-    Database, ScriptsOption, at_least_one, check_unit, print_json, print_out, since_argument,
-};
+use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
-use ptu_bench::clock;
+use ptu_bench::clock::{self, Span};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_bench::table::Table;
@@ -31,28 +29,26 @@ enum Verb {
     /// List runs, newest first
     List {
         /// Only of this unit (serial number)
-        #[arg(long, value_name = "SERIAL")]
-        unit: Option<String>,
+        #[arg(long, value_name = "TEXT")]
+        serial_no: Option<String>,
         /// Only with this verdict
         #[arg(long)]
         verdict: Option<fault_db::Verdict>,
-        /// Only since: 30d, 12h, 2026-03, 2026-03-21
-        #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
-        since: Option<i64>,
-        /// At most so many
+        /// Only begun then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+        #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
+        when: Option<Span>,
+        /// At most N runs
         #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Show one run: an id, its beginning or end (at least 4 digits), or `latest`
     Show {
         /// The run
         id: String,
-        /// Print JSON, the same as `ptu run --report FILE.json`
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
         #[command(flatten)]
         reports: ReportOption,
         #[command(flatten)]
@@ -60,7 +56,7 @@ enum Verb {
     },
     /// Compare two runs of a unit, before and after a repair: verdicts, values, and what changed
     ///
-    /// Runs of different units, scripts, configurations or lines are compared, too, and that is said.
+    /// Runs of different units, scripts, configurations or lines are compared, too; the answer says so.
     ///
     /// Exit codes: 0 compared, 1 a step that passed in the first run does not in the second, 2 no such run, 3 database.
     #[command(verbatim_doc_comment)]
@@ -74,9 +70,8 @@ enum Verb {
         /// Also the steps that passed in both
         #[arg(long)]
         all: bool,
-        /// Print JSON, with every step
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
         /// Language: en or ko
         #[arg(long, value_name = "LANGUAGE", default_value = "en")]
         lang: Language,
@@ -91,7 +86,7 @@ enum Verb {
         /// What is to be said
         text: String,
         /// Who says it
-        #[arg(long, value_name = "NAME", default_value = "")]
+        #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
     },
 }
@@ -115,27 +110,27 @@ impl RunsArguments {
                 print_out(&format!("noted on run {}", run.short()))
             }
             Verb::List {
-                unit,
+                serial_no,
                 verdict,
-                since,
+                when,
                 limit,
                 json,
             } => {
-                if let Some(unit) = &unit {
+                if let Some(unit) = &serial_no {
                     check_unit(&store, unit)?;
                 }
+                let span = when.unwrap_or_default();
                 let filter = RunFilter {
-                    unit,
+                    unit: serial_no,
                     verdict,
-                    since_us: since,
+                    since_us: span.since_us,
+                    until_us: span.until_us,
                     limit: Some(limit),
                     ..RunFilter::default()
                 };
                 let runs = store.runs(&filter, &process_id::is_alive)?;
-                if json {
-                    return print_json(&runs.iter().map(run_summary_json).collect::<Vec<_>>());
-                }
-                print_out(&table(&runs))
+                let document = || runs.iter().map(run_summary_json).collect::<Vec<_>>();
+                json.answer(document, || table(&runs))
             }
             Verb::Compare {
                 before,
@@ -149,10 +144,8 @@ impl RunsArguments {
                 let (a, b) = (store.resolve_run(&before)?, store.resolve_run(&after)?);
                 let of = RunComparison::gather(&store, a, b, all)?;
                 write_comparison(&report, &of, lang)?;
-                match json {
-                    true => print_json(&comparison_json(&of))?,
-                    false => print_out(&comparison_text(&of, lang.words()))?,
-                };
+                let text = || comparison_text(&of, lang.words());
+                json.answer(|| comparison_json(&of), text)?;
                 Ok(match of.tally().passed_before {
                     0 => Exit::Passed,
                     _ => Exit::Failed,
@@ -170,11 +163,8 @@ impl RunsArguments {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
                 }
-                if json {
-                    print_json(&run_json(&run))
-                } else {
-                    print_out(&(verdict_table(&run) + &notes(&run.notes)))
-                }
+                let text = || verdict_table(&run) + &notes(&run.notes);
+                json.answer(|| run_json(&run), text)
             }
         }
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
-use super::{Cli, print_out};
+use super::{Cli, print_out, quoted};
 use ptu_bench::data::{self, LONGEST_FILE};
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::table::Table;
@@ -15,10 +15,10 @@ use ptu_bench::table::Table;
 /// Ask a saved question again, or list them all
 ///
 /// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. Each is asked
-/// of the database in use; options after its name are added to it, or replace its own.
+/// of the database in use. Options after its name are added to it, or replace its own.
 ///
 /// Examples:
-///   ptu faults stats --by lru --when 90d --save worst
+///   ptu faults stats --by part --when 90d --save worst
 ///   ptu saved worst
 ///   ptu saved worst --csv
 ///   ptu saved --forget worst
@@ -27,7 +27,7 @@ use ptu_bench::table::Table;
 pub struct SavedArguments {
     /// The question's name; none = list all
     name: Option<String>,
-    /// Forget it
+    /// Remove the question of this name
     #[arg(long, value_name = "NAME", conflicts_with = "name")]
     forget: Option<String>,
     /// Options to add or to replace
@@ -61,7 +61,7 @@ impl SavedArguments {
             };
             if let Some(circle) = way.iter().position(|before| *before == name) {
                 return Err(Failure::usage(format!(
-                    "the saved question \"{name}\" asks itself: {} → {name}; mend {} or forget one with --forget",
+                    "the saved question \"{name}\" asks itself: {} → {name}; correct {} or remove one with --forget",
                     way[circle..].join(" → "),
                     file.display()
                 )));
@@ -142,7 +142,7 @@ fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
         true => options,
         false => &[],
     };
-    let spans = drop_if_given(&["--when", "--since", "--since-repair"]);
+    let spans = drop_if_given(&["--when", "--since-repair"]);
     // Several states are one question: given now, they are another.
     let states = drop_if_given(&["--state"]);
     let forms = drop_if_given(&["--json", "--csv"]);
@@ -190,16 +190,8 @@ fn list(questions: &Questions) -> String {
     }
     let mut table = Table::new(&["NAME", "QUESTION"]);
     for (name, words) in questions {
-        let quoted = words
-            .iter()
-            .map(|word| match word.contains([' ', '*', ';', '(']) {
-                true => format!("'{word}'"),
-                false => word.clone(),
-            });
-        table.row([
-            name.clone(),
-            format!("ptu {}", quoted.collect::<Vec<_>>().join(" ")),
-        ]);
+        let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+        table.row([name.clone(), format!("ptu {}", words.join(" "))]);
     }
     table.render()
 }
@@ -218,7 +210,7 @@ fn load(file: &Path) -> Result<Questions, Failure> {
     };
     serde_json::from_slice(&text).map_err(|error| {
         Failure::bench(format!(
-            "{} is damaged ({error}); mend or delete it",
+            "{} is damaged ({error}); correct or delete it",
             file.display()
         ))
     })
@@ -235,27 +227,21 @@ mod tests {
     #[test]
     fn a_question_is_kept_without_its_name_and_database() {
         let words =
-            "ptu faults --db a.db stats --save worst --by lru --db=b.db --save=x --when 90d";
+            "ptu faults --db a.db stats --save worst --by part --db=b.db --save=x --when 90d";
         let kept = asked(words.split(' ').map(str::to_owned));
-        assert_eq!(kept.join(" "), "faults stats --by lru --when 90d");
+        assert_eq!(kept.join(" "), "faults stats --by part --when 90d");
     }
 
     #[test]
     fn an_option_given_now_replaces_those_it_cannot_stand_beside() {
         let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
-        let saved = words("faults list --state open --when 90d --since=30d --json");
+        let saved = words("faults list --state open --when=90d --json");
         for (more, kept) in [
-            (
-                "--limit 2",
-                "faults list --state open --when 90d --since=30d --json",
-            ),
-            ("--csv", "faults list --state open --when 90d --since=30d"),
+            ("--limit 2", "faults list --state open --when=90d --json"),
+            ("--csv", "faults list --state open --when=90d"),
             ("--when=7d", "faults list --state open --json"),
-            ("--since 7d --json", "faults list --state open"),
-            (
-                "--state closed",
-                "faults list --when 90d --since=30d --json",
-            ),
+            ("--when 7d --json", "faults list --state open"),
+            ("--state closed", "faults list --when=90d --json"),
         ] {
             assert_eq!(
                 without_rivals(&saved, &words(more)).join(" "),
@@ -269,7 +255,7 @@ mod tests {
     fn a_damaged_file_of_saved_queries_is_reported() {
         let folder = tempfile::tempdir().expect("folder");
         let file = folder.path().join("questions.json");
-        let kept = r#"{"worst":["faults","stats","--by=lru","--when","90d"],"a b":[]}"#;
+        let kept = r#"{"worst":["faults","stats","--by=part","--when","90d"],"a b":[]}"#;
         let fuzz = fuzzing::Fuzz::new("questions", env!("CARGO_MANIFEST_DIR"), [kept]);
         fuzz.run(5_000, |bytes| {
             std::fs::write(&file, bytes).expect("written");

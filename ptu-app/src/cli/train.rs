@@ -22,7 +22,7 @@ use super::ScriptsOption;
 ///   ptu train --pty
 ///   ptu train --pty --service 61,62,63          after three sections: with a log and a run record
 ///   ptu train --tcp 127.0.0.1:7000 --inject tra.dead
-///   ptu train --serial /dev/ttyUSB1 --section 61 at a station instead of in the depot
+///   ptu train --serial /dev/ttyUSB1 --section 61   at a station instead of in the depot
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 #[command(group(ArgGroup::new("port").required(true).args(["pty", "serial", "tcp"])))]
@@ -33,7 +33,7 @@ pub struct TrainArguments {
     /// Serve on a serial port [default rate: 115200]
     #[arg(long, value_name = "PATH[@BAUD]", value_parser = Place::serial)]
     serial: Option<Place>,
-    /// Serve one TCP client at a time; others are told that the unit is taken
+    /// Serve one TCP client at a time; others get the answer that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
     /// Line, lines/NAME.toml
@@ -42,7 +42,7 @@ pub struct TrainArguments {
     /// Stand at the departure station of this section, over its loop and under its codes
     #[arg(long, value_name = "N", conflicts_with = "service")]
     section: Option<u16>,
-    /// Drive these sections before the port is opened, by the unit's ATO, as fast as it goes
+    /// Drive these sections by the unit's ATO, in virtual time, before the port is opened
     #[arg(long, value_name = "N,N|A-B|all", value_delimiter = ',')]
     service: Vec<SectionChoice>,
     /// Train, trains/NAME.toml or a file ending in .toml
@@ -63,7 +63,7 @@ pub struct TrainArguments {
     /// Keep the unit's event log and run record in this file from start to start; made if it is not there
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
-    /// Go so many times slower than the clock; the tester must do the same, `ptu run --slower`
+    /// Run N times slower than real time; the tester must do the same, `ptu run --slower`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     slower: u32,
     #[command(flatten)]

@@ -25,7 +25,7 @@ pub struct UnitOption {
     train_no: String,
     /// Who reads
     #[arg(long, value_name = "TEXT", default_value = "")]
-    operator: String,
+    who: String,
 }
 
 impl UnitOption {
@@ -37,7 +37,7 @@ impl UnitOption {
             unit_config: self.unit_config.clone(),
             line: self.line.clone(),
             train: self.train_no.clone(),
-            operator: self.operator.clone(),
+            operator: self.who.clone(),
         }
     }
 }

@@ -97,7 +97,7 @@ impl Stamp {
 mod tests {
     use super::*;
 
-    /// Goal: reading wakes nobody, or the window would read for ever. Method: the stamp before and after a reader, and
+    /// Goal: reading is no change, or the window would read for ever. Method: the stamp before and after a reader, and
     /// after a writer.
     #[test]
     fn a_reader_leaves_the_stamp_and_a_writer_does_not() {

@@ -143,7 +143,7 @@ impl Settings {
         settings
     }
 
-    /// Takes the name away when it was written in another shift, so that nobody signs for somebody else.
+    /// Takes the name away when it was written in another shift, so that a person cannot sign for another by mistake.
     pub fn forget_operator(&mut self, now_us: i64) {
         let since_us = now_us.saturating_sub(self.operator_at_us);
         if !(0..SHIFT_US).contains(&since_us) {

@@ -18,7 +18,7 @@ fn an_adaptive_run_finds_the_part_in_fewer_steps() {
         said.all()
     );
     assert_eq!(
-        place.json(&["diagnose", "latest", "--json"])["candidates"][0]["lru"],
+        place.json(&["diagnose", "latest", "--json"])["candidates"][0]["part"],
         "tra"
     );
 }

@@ -508,7 +508,7 @@ fn an_answer_that_cannot_be_written_is_no_answer() {
         "catalog faults --json",
         "db check --json",
         "db schema",
-        "faults stats --by lru --csv",
+        "faults stats --by part --csv",
         "drive --line line8 --section 61 --json",
         "--help",
     ] {

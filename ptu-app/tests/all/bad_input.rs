@@ -24,7 +24,7 @@ fn a_text_longer_than_is_kept_is_refused_before_anything_is_driven() {
     let (name, note) = (&*"가".repeat(256), &*"a".repeat(4_001));
     for (arguments, words) in [
         (
-            ["run", "tcms/link", "--operator", name],
+            ["run", "tcms/link", "--who", name],
             ["the operator's name has 256", "at most 255"],
         ),
         (
@@ -66,14 +66,7 @@ fn what_others_wrote_acts_on_no_terminal() {
     );
     let reports = ["r.html", "r.csv", "r.json", "r.junit.xml"];
     let reports: Vec<_> = reports.iter().flat_map(|file| ["--report", file]).collect();
-    let run = [
-        "run",
-        "says.star",
-        "--serial-no",
-        serial,
-        "--operator",
-        ACTS,
-    ];
+    let run = ["run", "says.star", "--serial-no", serial, "--who", ACTS];
     let all = &[&run[..], &["--train-no", ACTS], &reports].concat();
     let said = place.ptu(all).exits(1);
     assert!(
@@ -111,7 +104,7 @@ fn what_others_wrote_acts_on_no_terminal() {
         (&["db", "query", &sql, "--json"], 0),
         (&["saved"], 0),
         (&["saved", serial], 2),
-        (&["runs", "list", "--unit", ACTS], 2),
+        (&["runs", "list", "--serial-no", ACTS], 2),
         (&["run", "--list", "says.star"], 0),
         (&["run", "--line", ACTS], 2),
         (&["trace", "diff", "latest", ACTS], 2),
@@ -251,7 +244,7 @@ fn unknown_records_and_wrong_times_are_refused() {
             &["\"good\"", "passed"],
         ),
         (
-            &["runs", "list", "--since", "last week"],
+            &["runs", "list", "--when", "last week"],
             &["last week", "30d", "2026-03-21"],
         ),
         (&["faults", "show", "abcd1234"], &["no fault \"abcd1234\""]),
@@ -269,11 +262,11 @@ fn unknown_records_and_wrong_times_are_refused() {
             ],
         ),
         (
-            &["faults", "trend", "loss_time", "--unit", "X-1"],
+            &["faults", "trend", "loss_time", "--serial-no", "X-1"],
             &["no unit \"X-1\"", "`ptu runs list`"],
         ),
         (&["trace", "show", "latest"], &["no trace"]),
-        (&["trace", "export", "latest", "--to", "x.txt"], &[".csv"]),
+        (&["trace", "export", "latest", "--out", "x.txt"], &[".csv"]),
         (
             &["db", "query", "DELETE FROM run"],
             &["only one reading statement", "SELECT"],
@@ -314,11 +307,11 @@ fn pipes_and_devices_are_refused_wherever_a_file_is_named() {
         &["run", "p.star"][..],
         &["run", "--check", "--scripts", "scripts"],
         &["run", "--train", "p.toml"],
-        &["run", "--scatter=p.toml", "tcms/link"],
+        &["run", "--scattered=p.toml", "tcms/link"],
         &["drive", "--manual", "p.toml"],
         &["drive", "--train", "p.toml"],
-        &["diagnose", "--matrix", "p.json"],
-        &["diagnose", "--matrix", "/dev/zero"],
+        &["matrix", "p.json"],
+        &["matrix", "/dev/zero"],
     ] {
         place.ptu(arguments).exits(2).explains(&["no regular file"]);
     }

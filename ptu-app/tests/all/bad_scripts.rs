@@ -124,7 +124,7 @@ fn a_part_that_is_none_cannot_be_suspected() {
         "wrong.star:1:",
         "no part \"atp_cqu\"",
         "\"atp_cpu\"",
-        "`ptu catalog lrus`",
+        "`ptu catalog parts`",
     ]);
 }
 

@@ -39,7 +39,7 @@ fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one(
     assert_eq!(repairs[0]["who"], "Lee");
     assert_eq!(repairs[0]["repair"]["serial_new"], "SN-2");
     record_bad_unit(&place);
-    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let faults = place.json(&["faults", "list", "--part", "eb_relay", "--json"]);
     let states: Vec<_> = list(&faults).iter().map(|f| text(&f["state"])).collect();
     assert_eq!(states, ["open", "closed"]);
     assert_ne!(faults[0]["id"], *id);
@@ -173,7 +173,7 @@ fn old_traces_are_pruned_unless_a_fault_still_needs_them() {
     }
     for fault in list(&place.json(&["faults", "list", "--json"])) {
         let id = text(&fault["id"]);
-        let repair = ["--part", text(&fault["lru"])];
+        let repair = ["--part", text(&fault["part"])];
         place
             .ptu(&[&["faults", "repair", id, "--only"], &repair[..]].concat())
             .exits(0);

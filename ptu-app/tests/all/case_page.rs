@@ -41,7 +41,7 @@ impl Counted {
     }
 }
 
-/// A window on the case page, small or as a laptop has it, and an embedded unit with these faults.
+/// A window on the case page, small or as a laptop has it, and a simulated unit with these faults.
 fn window(language: Language, size: [f32; 2], density: Density, faults: &str) -> Counted {
     let mut settings = Settings {
         language,

@@ -7,14 +7,14 @@ use crate::common::{Place, list, text};
 /// Part pointed at, cause and state of each fault, in order.
 fn faults(place: &Place, more: &[&str]) -> Vec<[String; 3]> {
     let all = place.json(&[&["faults", "list", "--json"], more].concat());
-    let told = |fault: &Value| ["lru", "cause", "state"].map(|key| text(&fault[key]).to_owned());
+    let told = |fault: &Value| ["part", "cause", "state"].map(|key| text(&fault[key]).to_owned());
     let mut told: Vec<_> = list(&all).iter().map(told).collect();
     told.sort();
     told
 }
 
 fn id_of(place: &Place, lru: &str) -> String {
-    let all = place.json(&["faults", "list", "--lru", lru, "--json"]);
+    let all = place.json(&["faults", "list", "--part", lru, "--json"]);
     text(&list(&all).first().expect("a fault")["id"]).to_owned()
 }
 
@@ -88,7 +88,7 @@ fn the_repair_of_one_part_settles_what_it_explains_and_no_other_case() {
         (&of_relay["faults"], &of_relay["repairs"]),
         (&1.into(), &1.into())
     );
-    let parts = place.json(&["faults", "stats", "--by", "lru", "--json"]);
+    let parts = place.json(&["faults", "stats", "--by", "part", "--json"]);
     let keys: Vec<_> = list(&parts).iter().map(|row| text(&row["key"])).collect();
     assert!(
         keys.contains(&"atp_cpu"),
@@ -123,7 +123,7 @@ fn what_a_person_says_stands_before_the_next_diagnosis() {
         "eb_relay.slow",
     ];
     place.ptu(&run).exits(1);
-    assert_eq!(faults(&place, &["--lru", "atp_cpu"])[0][1], "atp_cpu");
+    assert_eq!(faults(&place, &["--part", "atp_cpu"])[0][1], "atp_cpu");
     place
         .ptu(&["faults", "cause", &cpu, "eb_relais"])
         .exits(0)
@@ -169,7 +169,7 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     let confirmed = confirmed.unwrap_or_else(|| panic!("not among {candidates:#?}"));
     assert_eq!(confirmed["text"], "as in 1 confirmed case, of BAD-1");
     // One case shows where to look, and makes nothing certain.
-    let share = |of: &Value| of["lrus"][0]["probability"].as_f64().expect("a share");
+    let share = |of: &Value| of["parts"][0]["probability"].as_f64().expect("a share");
     assert!(share(&known) > share(&first), "{}", known["conclusion"]);
     assert_eq!(known["finding"], "one_of", "{}", known["conclusion"]);
 }

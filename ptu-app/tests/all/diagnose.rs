@@ -29,7 +29,7 @@ fn diagnosis(place: &Place) -> Value {
         has_shape(
             candidate,
             &[
-                ("lru", "text"),
+                ("part", "text"),
                 ("fault", "text"),
                 ("probability", "number"),
                 ("for", "list"),
@@ -60,7 +60,7 @@ fn the_shipped_dictionary_is_of_these_scripts() {
     assert_eq!(
         list(&said["warnings"]),
         [] as [Value; 0],
-        "make it anew: `ptu campaign --save scripts/dictionary.zst`"
+        "make it again: `ptu campaign --out scripts/dictionary.zst`"
     );
 }
 
@@ -71,7 +71,7 @@ fn a_whole_run_names_the_part_with_reasons() {
         place.ptu(&["run", "--inject", fault]).exits(1);
         let said = diagnosis(&place);
         let first = &said["candidates"][0];
-        assert_eq!(first["lru"], lru, "{fault}: {said:#}");
+        assert_eq!(first["part"], lru, "{fault}: {said:#}");
         assert_eq!(said["finding"], "found", "{fault}: {}", said["conclusion"]);
         assert!(!list(&first["for"]).is_empty(), "{fault}");
         assert!(text(&said["conclusion"]).contains(lru), "{fault}");
@@ -113,9 +113,9 @@ fn the_record_of_what_was_injected_is_not_looked_at() {
         ])
         .exits(0);
     let said = diagnosis(&place);
-    let cpu = list(&said["lrus"])
+    let cpu = list(&said["parts"])
         .iter()
-        .find(|part| part["lru"] == "ato_cpu")
+        .find(|part| part["part"] == "ato_cpu")
         .map_or(0.0, |part| number(&part["probability"]));
     assert!(cpu < 0.3, "{said:#}");
 }
@@ -221,8 +221,8 @@ fn a_part_that_is_not_the_answer_is_told_with_what_speaks_against_it() {
         .exits(1);
     let said = place.json(&["diagnose", "latest", "--why-not", "door_contact", "--json"]);
     let (asked, answer) = (&said["why_not"], &said["candidates"][0]);
-    assert_eq!(asked["lru"], "door_contact");
-    assert_eq!(answer["lru"], "eb_relay");
+    assert_eq!(asked["part"], "door_contact");
+    assert_eq!(answer["part"], "eb_relay");
     assert!(number(&asked["probability"]) < 0.01, "{asked}");
     assert!(!list(&asked["against"]).is_empty(), "{asked}");
     place
@@ -302,7 +302,7 @@ fn a_campaign_on_the_maintenance_port_says_what_needs_the_bench_and_serves_its_r
     place.ptu(&run).exits(1);
     let diagnosis = place.json(&["diagnose", "latest", "--json"]);
     assert_eq!(
-        diagnosis["candidates"][0]["lru"], "twc_antenna",
+        diagnosis["candidates"][0]["part"], "twc_antenna",
         "{diagnosis}"
     );
     let warnings = diagnosis["warnings"].to_string();
@@ -316,7 +316,7 @@ fn a_campaign_that_is_killed_goes_on_where_it_was() {
     let place = Place::with_database();
     let campaign = |runs: &str, dictionary: &str| {
         let (runs, dictionary) = (place.text_path(runs), place.text_path(dictionary));
-        let kept = ["--runs", &runs, "--save", &dictionary, "--jobs", "2"];
+        let kept = ["--runs", &runs, "--out", &dictionary, "--jobs", "2"];
         let sizes = ["--seeds", "2", "--held-out", "1", "--good", "4", "--json"];
         let which = ["campaign", "--harness", "none", "--faults", "eb_relay.*"];
         place.command(&[&which[..], &sizes, &kept].concat())
@@ -370,7 +370,7 @@ fn a_laptops_run_that_passed_is_compared_with_laptops() {
     // What a laptop at a standing train cannot see, as a sensor that gives no pulses, stays possible.
     let healthy = said["no_fault"].as_f64().expect("a probability");
     let suspected = |part: &str| {
-        let of_part = |one: &&Value| one["lru"] == part;
+        let of_part = |one: &&Value| one["part"] == part;
         let each = list(&said["candidates"]).iter().filter(of_part);
         each.filter_map(|one| one["probability"].as_f64())
             .sum::<f64>()

@@ -178,7 +178,11 @@ fn help_tells_exit_codes_and_examples() {
         assert!(said.out.contains("Examples:\n  ptu"), "{}", said.out);
     }
     let said = place.ptu(&["drive", "--help"]);
-    assert!(said.out.contains("Exit code 0 when"), "{}", said.out);
+    assert!(
+        said.out.contains("Exit codes: 0 the train stopped"),
+        "{}",
+        said.out
+    );
 }
 
 /// Gradients, adhesion and delays do not act on the ideal train, so no report says they differed.

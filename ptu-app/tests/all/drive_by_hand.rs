@@ -264,10 +264,10 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
             "--manual keys needs a terminal; drive a sequence instead",
         ),
         (
-            &["figure5", "--save", "mine.toml"],
-            "--save goes with --manual keys",
+            &["figure5", "--out", "mine.toml"],
+            "--out goes with --manual keys",
         ),
-        (&["keys", "--save", "mine.txt"], "a file ending in .toml"),
+        (&["keys", "--out", "mine.txt"], "a file ending in .toml"),
         (&["figure5", "--monte-carlo", "3"], "--monte-carlo"),
         (&["figure5", "--controller", "pss"], "--controller"),
         (&["figure5", "--train", "ideal"], "train ideal has no cars"),

@@ -59,7 +59,7 @@ fn the_stream_of_a_run_says_what_the_database_says() {
         "--inject",
         "eb_relay.slow",
     ];
-    let said = place.ptu(&[&run[..], &["--events", "-"]].concat()).exits(1);
+    let said = place.ptu(&[&run[..], &["--json"]].concat()).exits(1);
     let all = lines(&said.out);
     let seen = check(&all);
     for event in [
@@ -93,7 +93,7 @@ fn the_stream_of_a_run_says_what_the_database_says() {
         .map(|step| (text(&step["name"]), text(&step["verdict"])))
         .collect();
     assert_eq!(steps, stored_steps);
-    assert!(of("fault").iter().any(|line| line["lru"] == "eb_relay"));
+    assert!(of("fault").iter().any(|line| line["part"] == "eb_relay"));
 
     let jobs = ["--events", "events.jsonl", "--jobs", "2"];
     place
@@ -117,7 +117,7 @@ fn a_stream_that_cannot_be_written_is_told() {
         .exits(3)
         .explains(&["has not all events", "ptu runs show latest"]);
     // A reader that has read enough is none that missed something.
-    let mut run = place.command(&["run", "tcms/link", "--events", "-"]);
+    let mut run = place.command(&["run", "tcms/link", "--json"]);
     let mut run = run.stdout(Stdio::piped()).spawn().expect("started");
     drop(run.stdout.take());
     assert_eq!(run.wait().expect("over").code(), Some(0));
@@ -144,7 +144,7 @@ fn a_recorded_run_has_every_row_and_every_event() {
     let place = Place::new();
     let [record, stream] = ["run.mcap", "run.jsonl"].map(|name| place.text_path(name));
     let run = ["run", "atp/overspeed", "twc/exchange", "--jobs", "2"];
-    let to = ["--record", &*record, "--events", &*stream];
+    let to = ["--mcap", &*record, "--events", &*stream];
     place
         .ptu(&[&run[..], &["--inject", "eb_relay.slow"], &to].concat())
         .exits(1);
@@ -176,6 +176,6 @@ fn a_recorded_run_has_every_row_and_every_event() {
 #[test]
 fn a_recording_that_has_no_place_is_refused_first() {
     let place = Place::new();
-    let told = place.ptu(&["run", "tcms/link", "--record", "nowhere/run.mcap"]);
+    let told = place.ptu(&["run", "tcms/link", "--mcap", "nowhere/run.mcap"]);
     told.exits(2).explains(&["cannot write nowhere/run.mcap"]);
 }

@@ -176,7 +176,7 @@ fn count_all_that_was_done_in_them() {
     assert!(last.out.contains(&format!("\n{this} ")), "{}", last.out);
     assert_eq!(number(&march["mtbf_days"]), 31.0, "the whole of March");
     assert_eq!(number(&march["mttr_hours"]), 5.0 * 24.0);
-    let all = &stats("lru", &[])[0];
+    let all = &stats("part", &[])[0];
     for key in ["faults", "repairs", "closed", "occurrences"] {
         let sum: f64 = months.iter().map(|month| number(&month[key])).sum();
         assert_eq!(sum, number(&all[key]), "{key}");
@@ -291,6 +291,6 @@ fn told_for_each_10_000_km() {
     let by_cause = ["faults", "stats", "--distances", &file];
     place.ptu(&by_cause).exits(2).explains(&["--by month"]);
     place
-        .ptu(&[&stats[..], &["--unit", "U-1"]].concat())
+        .ptu(&[&stats[..], &["--serial-no", "U-1"]].concat())
         .exits(2);
 }

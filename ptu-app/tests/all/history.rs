@@ -9,7 +9,7 @@ const FAULT: [(&str, &str); 10] = [
     ("id", "text"),
     ("code", "number"),
     ("name", "text"),
-    ("lru", "text"),
+    ("part", "text"),
     ("severity", "text"),
     ("first_at", "text"),
     ("last_at", "text"),
@@ -57,11 +57,11 @@ fn runs_are_listed_newest_first_and_filtered() {
         );
     }
     for (filter, count) in [
-        (["--unit", "GOOD-1"], 1),
+        (["--serial-no", "GOOD-1"], 1),
         (["--verdict", "failed"], 1),
-        (["--since", "1d"], 2),
+        (["--when", "1d"], 2),
         (["--limit", "1"], 1),
-        (["--since", "2999-01"], 0),
+        (["--when", "2999-01"], 0),
     ] {
         let found = place.json(&[&["runs", "list", "--json"], &filter[..]].concat());
         assert_eq!(list(&found).len(), count, "{filter:?}");
@@ -85,16 +85,16 @@ fn faults_are_listed_and_filtered() {
     }
     let all = list(&faults).len();
     for (filter, count) in [
-        (["--unit", "BAD-1"], all),
-        (["--unit", "GOOD-1"], 0),
+        (["--serial-no", "BAD-1"], all),
+        (["--serial-no", "GOOD-1"], 0),
         (["--code", "check_failed"], all),
         (["--code", "9000"], all),
-        (["--lru", "eb_relay"], 1),
+        (["--part", "eb_relay"], 1),
         (["--severity", "minor"], 0),
         (["--state", "open"], all),
         (["--state", "closed"], 0),
         (["--run", "latest"], all),
-        (["--since", "12h"], all),
+        (["--when", "12h"], all),
         (["--limit", "1"], 1),
     ] {
         let found = place.json(&[&["faults", "list", "--json"], &filter[..]].concat());
@@ -150,7 +150,7 @@ fn a_fault_is_shown_with_its_occurrences_and_freeze_frame() {
 fn faults_are_counted_by_code_and_by_part() {
     let place = history();
     let faults = place.json(&["faults", "list", "--json"]);
-    for (by, key) in [("lru", "eb_relay"), ("code", "9000")] {
+    for (by, key) in [("part", "eb_relay"), ("code", "9000")] {
         let stats = place.json(&["faults", "stats", "--by", by, "--json"]);
         for stat in list(&stats) {
             has_shape(
@@ -185,7 +185,14 @@ fn faults_are_counted_by_code_and_by_part() {
 fn a_measurement_is_shown_over_time() {
     let place = history();
     let mean = |unit: &str| {
-        let trend = place.json(&["faults", "trend", "eb_reaction", "--unit", unit, "--json"]);
+        let trend = place.json(&[
+            "faults",
+            "trend",
+            "eb_reaction",
+            "--serial-no",
+            unit,
+            "--json",
+        ]);
         let overspeed: Vec<_> = list(&trend["points"])
             .iter()
             .filter(|p| (450.0..600.0).contains(&number(&p["high"])))
@@ -223,11 +230,11 @@ fn a_trace_is_shown_and_exported() {
             ("rows", "number"),
             ("trigger_row", "number"),
             ("partial", "bool"),
-            ("channels", "list"),
+            ("signals", "list"),
         ],
     );
     let two = place.json(&["trace", "show", "latest", "--signals", "speed,eb", "--json"]);
-    let names: Vec<_> = list(&two["channels"])
+    let names: Vec<_> = list(&two["signals"])
         .iter()
         .map(|c| text(&c["name"]))
         .collect();
@@ -239,13 +246,13 @@ fn a_trace_is_shown_and_exported() {
     );
 
     place
-        .ptu(&["trace", "export", "latest", "--to", "trace.csv"])
+        .ptu(&["trace", "export", "latest", "--out", "trace.csv"])
         .exits(0);
     let csv = place.read("trace.csv");
     let mut lines = csv.lines();
     let headings: Vec<_> = lines.next().expect("headings").split(',').collect();
     assert_eq!(headings[0], "time_s");
-    assert_eq!(headings.len(), list(&trace["channels"]).len() + 1);
+    assert_eq!(headings.len(), list(&trace["signals"]).len() + 1);
     assert!(headings.contains(&"limit_kmh"), "{headings:?}");
     let times: Vec<f64> = lines
         .map(|line| {
@@ -267,11 +274,11 @@ fn a_trace_is_shown_and_exported() {
 fn what_there_is_to_name_is_catalogued() {
     let place = Place::new();
     for (what, keys) in [
-        ("faults", &["id", "lru", "mode", "severity"][..]),
+        ("faults", &["id", "part", "mode", "severity"][..]),
         ("signals", &["name", "unit", "kind", "from", "about"]),
         ("codes", &["name"]),
         ("lines", &["line"]),
-        ("lrus", &["id", "name", "name_ko"]),
+        ("parts", &["id", "name", "name_ko"]),
         ("train", &["name", "role"]),
     ] {
         let entries = place.json(&["catalog", what, "--json"]);

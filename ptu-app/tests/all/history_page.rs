@@ -36,7 +36,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");
     window.wait_for_part("1 of ");
-    let of_relay = ["faults", "list", "--lru", "eb_relay", "--json"];
+    let of_relay = ["faults", "list", "--part", "eb_relay", "--json"];
     let fault: Value = window.place.json(&of_relay)[0].clone();
     window.click_part("EB relay · ");
     window.wait_for("what was done");
@@ -84,7 +84,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
             Language::Korean => "비상제동 계전기 · ",
         };
         window.wait_for_part(relay);
-        let of_relay = ["faults", "list", "--lru", "eb_relay", "--json"];
+        let of_relay = ["faults", "list", "--part", "eb_relay", "--json"];
         let id = window.place.json(&of_relay)[0]["id"].clone();
         let show = ["faults", "show", id.as_str().expect("an id"), "--json"];
         let before = window.place.json(&show);
@@ -168,7 +168,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
 fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
     let faults = place.json(&["faults", "list", "--json"]);
-    let part = |fault: &Value| fault["lru"].as_str().expect("a part").to_owned();
+    let part = |fault: &Value| fault["part"].as_str().expect("a part").to_owned();
     let faults = faults.as_array().expect("faults");
     let other = faults
         .iter()
@@ -286,7 +286,7 @@ fn three_parts_are_shown_and_the_other_candidates_on_demand() {
     // Of each part its likeliest fault.
     let parts: BTreeSet<_> = candidates
         .iter()
-        .map(|one| one["lru"].to_string())
+        .map(|one| one["part"].to_string())
         .collect();
     let at_once = parts.len().min(3);
     assert_eq!(shown(&window), at_once);
@@ -330,7 +330,7 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
 #[test]
 fn a_double_click_changes_a_fault_once() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
-    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let faults = place.json(&["faults", "list", "--part", "eb_relay", "--json"]);
     let id = faults[0]["id"].as_str().expect("an id").to_owned();
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");

@@ -68,7 +68,7 @@ fn every_answer_has_the_keys_that_are_promised() {
         "eb_relay.slow",
     ];
     let by = [
-        "--operator",
+        "--who",
         "Kim",
         "--train-no",
         "612",
@@ -88,7 +88,7 @@ fn every_answer_has_the_keys_that_are_promised() {
         &["runs", "show", "latest"],
         &["faults", "list"],
         &["faults", "show", &fault],
-        &["faults", "stats", "--by", "lru"],
+        &["faults", "stats", "--by", "part"],
         &["faults", "life", "SIM-0001"],
         &["trace", "show", "latest"],
         &["diagnose", "latest"],
@@ -96,7 +96,7 @@ fn every_answer_has_the_keys_that_are_promised() {
         &["catalog", "signals"],
         &["catalog", "codes"],
         &["catalog", "lines"],
-        &["catalog", "lrus"],
+        &["catalog", "parts"],
         &["catalog", "symptoms"],
         &["db", "check"],
         &["run", "tcms/link", "--list"],

@@ -46,7 +46,7 @@ fn a_served_unit_with_a_slow_relay_fails() {
     let failed = |step: &&serde_json::Value| step["verdict"] == "failed";
     assert!(list(&report["steps"]).iter().any(|step| failed(&step)));
     let fault = &list(&report["faults"])[0];
-    assert_eq!(fault["lru"], "eb_relay");
+    assert_eq!(fault["part"], "eb_relay");
     let trace = place.json(&["trace", "show", text(&fault["trace_id"]), "--json"]);
     assert!(number(&trace["trigger_row"]) >= 40.0, "two seconds before");
 }
@@ -63,12 +63,12 @@ fn a_served_unit_with_a_fast_clock_is_measured_and_named() {
     let mut faults = list(&report["faults"]).iter();
     let measured = faults.find(|fault| fault["code"] == 9002);
     assert_eq!(
-        measured.expect("a measured clock")["lru"],
+        measured.expect("a measured clock")["part"],
         "atp_cpu",
         "{report}"
     );
     let said = place.json(&["diagnose", "latest", "--json"]);
-    assert_eq!(said["candidates"][0]["lru"], "atp_cpu", "{said}");
+    assert_eq!(said["candidates"][0]["part"], "atp_cpu", "{said}");
 }
 
 /// Goal: a unit without a serial number is no unknown one. Method: its run, and one that reached nobody.

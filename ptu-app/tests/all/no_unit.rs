@@ -1,4 +1,4 @@
-//! Links at whose end no unit is: an unknown port, nobody there, a silent peer, garbage, an echo, one that hangs up. The
+//! Links without a unit at their end: an unknown port, one that no program opens, a silent peer, garbage, an echo, one that hangs up. The
 //! run is recorded as an error, and earlier ones stay.
 
 use std::io::{Read, Write};

@@ -54,7 +54,7 @@ fn a_repair_is_verified_by_the_run_that_passes_and_then_closed() {
         .ptu(&["faults", "state", id, "closed", "--who", "Lee"])
         .exits(0);
     let stats = place.json(&[
-        "faults", "stats", "--by", "lru", "--lru", "eb_relay", "--json",
+        "faults", "stats", "--by", "part", "--part", "eb_relay", "--json",
     ]);
     let relay = &stats[0];
     for (key, value) in [
@@ -82,7 +82,7 @@ fn a_repair_is_verified_by_the_run_that_passes_and_then_closed() {
         ])
         .exits(1);
     let stats = place.json(&[
-        "faults", "stats", "--by", "lru", "--lru", "eb_relay", "--json",
+        "faults", "stats", "--by", "part", "--part", "eb_relay", "--json",
     ]);
     assert_eq!(
         (
@@ -116,7 +116,9 @@ fn are_found_by_what_people_know() {
     let place = mended();
     let found = |options: &[&str]| {
         let faults = place.json(&[&["faults", "list", "--json"], options].concat());
-        list(&faults).iter().any(|fault| fault["lru"] == "eb_relay")
+        list(&faults)
+            .iter()
+            .any(|fault| fault["part"] == "eb_relay")
     };
     let today = ["--when", "today"];
     let relay = relay_fault(&place);
@@ -131,12 +133,12 @@ fn are_found_by_what_people_know() {
         &["--note", "교체"],
         &["--note", "비상제동 교체"],
         &["--note", "R-17"],
-        &["--serial", "R-17"],
-        &["--serial", "R/99_b"],
-        &["--train", "8203"],
-        &["--lru", "EB_RELAY"],
+        &["--part-serial-no", "R-17"],
+        &["--part-serial-no", "R/99_b"],
+        &["--train-no", "8203"],
+        &["--part", "EB_RELAY"],
         &["--procedure", "atp/overspeed"],
-        &["--unit", "BAD-1", "--state", "verified"],
+        &["--serial-no", "BAD-1", "--state", "verified"],
         &["--state", "open,verified"],
         &["--code", &codes],
         &["--severity", &severity.to_uppercase()],
@@ -164,7 +166,7 @@ fn counts_come_as_table_json_and_csv() {
 
 fn come_as_table_json_and_csv() {
     let place = mended();
-    for by in ["code", "lru", "unit", "line", "month"] {
+    for by in ["code", "part", "unit", "line", "month"] {
         let json = place.json(&["faults", "stats", "--by", by, "--json"]);
         let csv = place
             .ptu(&["faults", "stats", "--by", by, "--csv"])
@@ -239,7 +241,7 @@ fn a_trend_says_where_a_measurement_is_going() {
         "--procedure",
         "atp/overspeed",
     ];
-    let trend = place.json(&[&of_overspeed[..], &["--unit", "BAD-1", "--json"]].concat());
+    let trend = place.json(&[&of_overspeed[..], &["--serial-no", "BAD-1", "--json"]].concat());
     let points = list(&trend["points"]).len() as f64;
     assert!(points >= 8.0, "{trend}");
     assert_eq!(number(&trend["process"]["n"]), points);
@@ -253,7 +255,7 @@ fn a_trend_says_where_a_measurement_is_going() {
     assert_eq!(fleet["process"]["mean"], trend["process"]["mean"]);
     assert_eq!(list(&fleet["units"]).len(), 1);
     let step = ["--step", text(&trend["steps"][0]["step"])];
-    let of_step = [&of_overspeed[..], &step, &["--unit", "BAD-1"]].concat();
+    let of_step = [&of_overspeed[..], &step, &["--serial-no", "BAD-1"]].concat();
     let trend = place.json(&[&of_step[..], &["--json"]].concat());
     assert!(number(&trend["capability"]["cpk"]).is_finite(), "{trend}");
     let text = place.ptu(&[&of_step[..], &["--plot", "creep.html"]].concat());
@@ -266,7 +268,13 @@ fn a_trend_says_where_a_measurement_is_going() {
     let since = place.json(
         &[
             &of_overspeed[..],
-            &["--unit", "BAD-1", "--since-repair", "eb_relay", "--json"],
+            &[
+                "--serial-no",
+                "BAD-1",
+                "--since-repair",
+                "eb_relay",
+                "--json",
+            ],
         ]
         .concat(),
     );
@@ -330,7 +338,7 @@ fn a_trend_is_of_one_step_where_one_is_asked_for() {
                 "faults",
                 "trend",
                 "eb_reaction",
-                "--unit",
+                "--serial-no",
                 "BAD-1",
                 "--json",
             ],
@@ -425,18 +433,21 @@ fn what_cannot_be_asked_is_named() {
             &["ends before it begins"],
         ),
         (&["stats", "--when", ".."], &["a beginning or an end"]),
-        (&["stats", "--by", "colour"], &["colour", "lru"]),
+        (&["stats", "--by", "colour"], &["colour", "part"]),
         (&["stats", "--back-within", "0"], &["0"]),
         (&["list", "--note", "\"*"], &["no word to search for"]),
         (&["list", "--state", "broken"], &["broken", "acknowledged"]),
-        (&["list", "--unit", "BAD-2"], &["no unit \"BAD-2\""]),
-        (&["list", "--unit", "bad1"], &["did you mean \"BAD-1\"?"]),
+        (&["list", "--serial-no", "BAD-2"], &["no unit \"BAD-2\""]),
+        (
+            &["list", "--serial-no", "bad1"],
+            &["did you mean \"BAD-1\"?"],
+        ),
         (&["list", "--limit", "0"], &["0", "1.."]),
         (&["stats", "--limit", "0"], &["0", "1.."]),
         (&["trend", "eb_reaction", "--limit", "0"], &["0", "1.."]),
         (&["list", "--severity", "huge"], &["huge", "critical"]),
         (&["list", "--when", "-30d"], &["\"-30d\" is no time"]),
-        (&["stats", "--since", "-30d"], &["\"-30d\" is no time"]),
+        (&["stats", "--when", "-30d"], &["\"-30d\" is no time"]),
         (
             &["list", "--code", "check_failed,foo"],
             &["no fault \"foo\""],
@@ -446,7 +457,7 @@ fn what_cannot_be_asked_is_named() {
             &["out.png", ".html"],
         ),
         (
-            &["trend", "eb_reaction", "--unit", "bad-1"],
+            &["trend", "eb_reaction", "--serial-no", "bad-1"],
             &["did you mean \"BAD-1\"?"],
         ),
         (
@@ -457,13 +468,12 @@ fn what_cannot_be_asked_is_named() {
             &["trend", "eb_reaction", "--procedure", "tcms/link"],
             &["measured by atp/overspeed"],
         ),
-        (&["list", "--run", "latest", "--since", "x"], &["\"x\""]),
-        (&["list", "--since", "2026-03..2026-05"], &["is a span"]),
+        (&["list", "--run", "latest", "--when", "x"], &["\"x\""]),
         (
             &[
                 "trend",
                 "eb_reaction",
-                "--unit",
+                "--serial-no",
                 "BAD-1",
                 "--since-repair",
                 "tra",
@@ -472,7 +482,7 @@ fn what_cannot_be_asked_is_named() {
         ),
         (
             &["trend", "eb_reaction", "--since-repair", "tra"],
-            &["--unit"],
+            &["--serial-no"],
         ),
         (&["repair", "latest", "--part", " "], &["--part"]),
         (&["note", "latest", " "], &["says something"]),
@@ -492,28 +502,28 @@ fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
     let place = mended();
     for (option, asked, said) in [
         (
-            "--lru",
+            "--part",
             "eb_rely",
             "part \"eb_rely\" (did you mean \"eb_relay\"?)",
         ),
-        ("--lru", "EB_RELY", "(did you mean \"eb_relay\"?)"),
+        ("--part", "EB_RELY", "(did you mean \"eb_relay\"?)"),
         ("--code", "4711", "no fault \"4711\" was ever recorded\n"),
         (
             "--line",
             "line99",
             "line \"line99\" (did you mean \"line8\"?)",
         ),
-        ("--train", "99", "train \"99\" was ever recorded\n"),
-        ("--train", "203", "(did you mean \"8203\"?)"),
+        ("--train-no", "99", "train \"99\" was ever recorded\n"),
+        ("--train-no", "203", "(did you mean \"8203\"?)"),
         ("--procedure", "foo", "procedure \"foo\"\n"),
         (
             "--procedure",
             "overspeed",
             "(did you mean \"atp/overspeed\"?)",
         ),
-        ("--serial", "S-4", "serial number \"S-4\" was ever"),
-        ("--serial", "r17", "(did you mean \"R-17\"?)"),
-        ("--unit", "bad-1", "(did you mean \"BAD-1\"?)"),
+        ("--part-serial-no", "S-4", "serial number \"S-4\" was ever"),
+        ("--part-serial-no", "r17", "(did you mean \"R-17\"?)"),
+        ("--serial-no", "bad-1", "(did you mean \"BAD-1\"?)"),
     ] {
         for verb in ["list", "stats"] {
             for format in [&[][..], &["--json"]] {
@@ -524,14 +534,14 @@ fn a_name_that_nothing_has_is_told_with_the_one_that_is_near() {
         }
     }
     for format in [&[][..], &["--json"]] {
-        let asked = [&["runs", "list", "--unit", "bad-1"], format].concat();
+        let asked = [&["runs", "list", "--serial-no", "bad-1"], format].concat();
         let runs = place.ptu(&asked).exits(2).err;
         assert!(runs.contains("did you mean \"BAD-1\"?"), "{runs}");
     }
     // What there is, and has had no fault, is a name that is known.
     for (option, asked) in [
         ("--state", "closed"),
-        ("--lru", "tra"),
+        ("--part", "tra"),
         ("--code", "rollback"),
         ("--procedure", "twc/exchange"),
     ] {
@@ -557,7 +567,7 @@ fn help_is_broken_where_the_terminal_ends() {
         assert!(two[0].len() + 1 + word.len() > COLUMNS, "{two:?} in {help}");
     }
     assert!(
-        help.contains("\n  ptu faults stats --by lru --when 2026\n"),
+        help.contains("\n  ptu faults stats --by part --when 2026\n"),
         "{help}"
     );
 }

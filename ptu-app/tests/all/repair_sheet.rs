@@ -37,7 +37,7 @@ fn proved() -> (Place, String) {
         "atp/overspeed",
         "--serial-no",
         "BAD-1",
-        "--operator",
+        "--who",
         "Lee",
     ];
     let said = place.ptu(&run).exits(0).out;

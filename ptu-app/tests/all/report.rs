@@ -19,7 +19,7 @@ fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
         "atp/overspeed",
         "--inject",
         "eb_relay.slow",
-        "--operator",
+        "--who",
         "A. Tester",
     ];
     let reports = ["--report", html, "--report", pdf, "--report", csv];

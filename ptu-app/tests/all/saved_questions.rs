@@ -8,7 +8,7 @@ fn a_question_is_saved_and_asked_again() {
     let place = mended();
     let said = place
         .ptu(&[
-            "faults", "stats", "--by", "lru", "--when", "30d", "--save", "worst",
+            "faults", "stats", "--by", "part", "--when", "30d", "--save", "worst",
         ])
         .exits(0);
     assert!(
@@ -16,7 +16,7 @@ fn a_question_is_saved_and_asked_again() {
             .ptu(&["saved"])
             .exits(0)
             .out
-            .contains("ptu faults stats --by lru --when 30d")
+            .contains("ptu faults stats --by part --when 30d")
     );
     assert_eq!(place.ptu(&["saved", "worst"]).exits(0).out, said.out);
     let csv = place.ptu(&["saved", "worst", "--csv"]).exits(0).out;
@@ -39,7 +39,7 @@ fn a_question_is_saved_and_asked_again() {
         let csv = place.ptu(&[&["saved", "one"], more].concat()).exits(0).out;
         csv.lines().count() - 1
     };
-    let one = "faults list --limit 1 --csv --since 30d --save one";
+    let one = "faults list --limit 1 --csv --when 30d --save one";
     place.ptu(&one.split(' ').collect::<Vec<_>>()).exits(0);
     assert_eq!(rows(&[]), 1);
     assert!(rows(&["--limit", "3"]) > 1, "what is given now replaces it");

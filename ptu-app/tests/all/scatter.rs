@@ -14,7 +14,7 @@ const SEEDS: [&str; 10] = [
 #[test]
 fn good_units_that_differ_pass_every_step() {
     for seed in SEEDS {
-        let (said, report) = Place::new().run(&["--scatter", "--seed", seed, "--jobs", "2"]);
+        let (said, report) = Place::new().run(&["--scattered", "--seed", seed, "--jobs", "2"]);
         let failed: Vec<_> = list(&report["steps"])
             .iter()
             .filter(|step| step["verdict"] != "passed")
@@ -30,7 +30,7 @@ fn good_units_that_differ_pass_every_step() {
 fn the_same_seed_gives_the_same_unit_and_another_seed_another_one() {
     let report = |seed, jobs| {
         let chosen = ["atp/speed_input", "ato/station_run"];
-        let options = ["--scatter", "--seed", seed, "--jobs", jobs];
+        let options = ["--scattered", "--seed", seed, "--jobs", jobs];
         let (said, report) = Place::new().run(&[&chosen[..], &options[..]].concat());
         said.exits(0);
         normalised(report)
@@ -51,7 +51,7 @@ fn faults_are_found_on_units_that_differ() {
         ("brake_cylinder.weak", "tcms/not_released"),
     ] {
         for seed in ["1", "2"] {
-            let arguments = [procedure, "--scatter", "--seed", seed, "--inject", fault];
+            let arguments = [procedure, "--scattered", "--seed", seed, "--inject", fault];
             Place::new().run(&arguments).0.exits(1);
         }
     }
@@ -63,13 +63,13 @@ fn a_wrong_file_is_told_by_name_and_key() {
     let scatter = std::fs::read_to_string(crate::common::scripts().join("bench_scatter.toml"));
     let wrong = scatter.expect("the file").replace("tooth_pitch", "teeth");
     let file = place.write("wrong.toml", &wrong);
-    let option = format!("--scatter={file}");
+    let option = format!("--scattered={file}");
     place
         .ptu(&["run", &option])
         .exits(2)
         .explains(&["wrong.toml", "teeth"]);
     place
-        .ptu(&["run", "--scatter=gone.toml"])
+        .ptu(&["run", "--scattered=gone.toml"])
         .exits(2)
         .explains(&["gone.toml"]);
 }

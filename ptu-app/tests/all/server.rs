@@ -35,7 +35,7 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
         &["runs", "show", "latest", "--json"],
         &["faults", "list", "--json"],
         &["faults", "show", "latest", "--json"],
-        &["faults", "stats", "--by", "lru", "--json"],
+        &["faults", "stats", "--by", "part", "--json"],
         &["faults", "stats", "--by", "month", "--json"],
         &["faults", "trend", "eb_reaction", "--json"],
         &["trace", "show", "latest", "--json"],
@@ -51,7 +51,7 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
     record_bad_unit(&two);
     two.ptu(&["db", "sync", &server]).exits(0);
     let faults = two.json(&[
-        "faults", "list", "--lru", "eb_relay", "--json", "--db", &server,
+        "faults", "list", "--part", "eb_relay", "--json", "--db", &server,
     ]);
     assert_eq!(list(&faults).len(), 1, "{faults}");
     let fault = text(&faults[0]["id"]);

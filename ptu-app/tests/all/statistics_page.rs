@@ -19,7 +19,13 @@ fn depot() -> Place {
         place.ptu(&run).exits(1);
     }
     let of_relay = [
-        "faults", "list", "--cause", "eb_relay", "--unit", "A-1", "--json",
+        "faults",
+        "list",
+        "--cause",
+        "eb_relay",
+        "--serial-no",
+        "A-1",
+        "--json",
     ];
     let fault = text(&list(&place.json(&of_relay))[0]["id"]).to_owned();
     let repair = [

@@ -1,4 +1,4 @@
-//! The whole acceptance suite on the embedded unit: it passes, it is recorded as it was planned, and
+//! The whole acceptance suite on the simulated unit: it passes, it is recorded as it was planned, and
 //! the same seed gives the same record.
 
 use std::collections::BTreeSet;

@@ -7,7 +7,7 @@ use crate::common::{Place, list, number, text};
 /// Probability of a part among the candidates, and what speaks for it.
 fn candidate(diagnosis: &Value, part: &str) -> (f64, String) {
     let mut candidates = list(&diagnosis["candidates"]).iter();
-    let found = candidates.find(|candidate| candidate["lru"] == part);
+    let found = candidates.find(|candidate| candidate["part"] == part);
     let found = found.unwrap_or_else(|| panic!("no {part} in {diagnosis}"));
     (number(&found["probability"]), found["for"].to_string())
 }
@@ -34,7 +34,7 @@ fn a_symptom_is_kept_in_the_run_and_weighs_a_little() {
     let against = [&steps[..], &["--symptom", "no_communication"]].concat();
     place.ptu(&against).exits(1);
     let other = place.json(&["diagnose", "latest", "--json"]);
-    assert_eq!(other["candidates"][0]["lru"], "eb_relay", "{other}");
+    assert_eq!(other["candidates"][0]["part"], "eb_relay", "{other}");
 }
 
 #[test]

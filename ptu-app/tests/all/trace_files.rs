@@ -162,7 +162,7 @@ fn each_formats_own_reader_finds_what_was_recorded() {
     let id = kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
         let said = place
-            .ptu(&["trace", "export", "latest", "--to", file])
+            .ptu(&["trace", "export", "latest", "--out", file])
             .exits(0);
         assert!(said.out.contains("9000 rows of 6 signals"), "{}", said.out);
         let found = run_python("read_trace.py", &[&place.text_path(file)]);
@@ -217,7 +217,7 @@ fn a_part_has_its_signals_and_its_span() {
     kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
         let part = ["--signals", "mode,speed", "--window", "-0.5..1"];
-        let all = [&["trace", "export", "latest", "--to", file][..], &part].concat();
+        let all = [&["trace", "export", "latest", "--out", file][..], &part].concat();
         place.ptu(&all).exits(0);
         let found = run_python("read_trace.py", &[&place.text_path(file)]);
         let found: Value = serde_json::from_str(&found).expect("JSON");
@@ -240,7 +240,7 @@ fn a_part_has_its_signals_and_its_span() {
     }
     // A part that does not have the trigger.
     let late = [
-        "trace", "export", "latest", "--to", "late.csv", "--window", "5..6",
+        "trace", "export", "latest", "--out", "late.csv", "--window", "5..6",
     ];
     place.ptu(&late).exits(0);
     let said = place.ptu(&["trace", "diff", "latest", "late.csv"]).exits(0);
@@ -274,7 +274,7 @@ fn a_file_that_is_there_stays_unless_force_is_said() {
     ] {
         let there = also.unwrap_or(file);
         place.write(there, "mine");
-        let export = ["trace", "export", "latest", "--to", file];
+        let export = ["trace", "export", "latest", "--out", file];
         place
             .ptu(&export)
             .exits(2)
@@ -284,18 +284,18 @@ fn a_file_that_is_there_stays_unless_force_is_said() {
         assert_ne!(std::fs::read(place.path(there)).expect("read"), b"mine");
     }
     place
-        .ptu(&["trace", "export", "latest", "--to", "none/t.csv"])
+        .ptu(&["trace", "export", "latest", "--out", "none/t.csv"])
         .exits(2)
         .explains(&["none/t.csv"]);
     place
         .ptu(&[
-            "trace", "export", "latest", "--to", "x.mcap", "--window", "7..9",
+            "trace", "export", "latest", "--out", "x.mcap", "--window", "7..9",
         ])
         .exits(2)
         .explains(&["no row in that span", "-10.000 to 4.950 s"]);
     place
         .ptu(&[
-            "trace", "export", "latest", "--to", "x.mcap", "--window", "9..7",
+            "trace", "export", "latest", "--out", "x.mcap", "--window", "9..7",
         ])
         .exits(2)
         .explains(&["9..7", "ends before it begins"]);
@@ -380,7 +380,7 @@ fn files_that_are_wrong_are_told_with_the_place() {
     let place = Place::new();
     kept(&place, &trace(600));
     place
-        .ptu(&["trace", "export", "latest", "--to", "t.mcap"])
+        .ptu(&["trace", "export", "latest", "--out", "t.mcap"])
         .exits(0);
     let whole = std::fs::read(place.path("t.mcap")).expect("read");
     let diff = |file: &str| place.ptu(&["trace", "diff", "latest", file]);
@@ -433,7 +433,7 @@ fn files_that_are_wrong_are_told_with_the_place() {
         .explains(&["--shift"]);
 }
 
-/// An MCAP file: each message on a topic of its own with so many fields, all of other names.
+/// An MCAP file: each message on a topic of its own with this many fields, all of other names.
 fn wide_mcap(messages: usize, fields: usize, name: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
     let mut writer = mcap::WriteOptions::new().create(&mut file).expect("begun");
@@ -522,7 +522,7 @@ fn a_file_that_breaks_off_leaves_the_one_before_it() {
     place
         .ptu(&["runs", "show", "latest", "--report", "s.html"])
         .exits(0);
-    let export = |to: &'static str| ["trace", "export", "latest", "--force", "--to", to];
+    let export = |to: &'static str| ["trace", "export", "latest", "--force", "--out", to];
     let names = |place: &Place| {
         let entries = std::fs::read_dir(place.path("")).expect("read");
         let names = entries.map(|entry| entry.expect("an entry").file_name());

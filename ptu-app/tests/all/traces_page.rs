@@ -320,7 +320,7 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     ] {
         let file = window.place.path(name);
         let to = window.place.text_path(name);
-        let export = [&["trace", "export", &open, "--to", &to][..], part].concat();
+        let export = [&["trace", "export", &open, "--out", &to][..], part].concat();
         window.place.ptu(&export).exits(0);
         drop(&mut window, &file);
         window.wait_for("no signal deviates");
@@ -383,7 +383,7 @@ fn a_note_at_the_cursor_is_kept_with_its_place() {
     }
     let to = place_of.text_path("noted.csv");
     place_of
-        .ptu(&["trace", "export", &open, "--to", &to])
+        .ptu(&["trace", "export", &open, "--out", &to])
         .exits(0);
     let beside = place_of.path("noted.csv-metadata.json");
     let beside = std::fs::read_to_string(beside).expect("written");

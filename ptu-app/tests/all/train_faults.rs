@@ -66,7 +66,7 @@ fn what_tcms_finds_is_a_fault_with_its_car_and_what_stood_around_it() {
         said.exits(1);
         assert_eq!(report["run"]["injected"], mode);
         let found = fault(&report, event);
-        assert_eq!(found["lru"], part, "{found}");
+        assert_eq!(found["part"], part, "{found}");
         assert!(found["trace_id"].is_string(), "{found}");
 
         let shown = place.json(&["faults", "show", text(&found["id"]), "--json"]);
@@ -83,7 +83,7 @@ fn what_tcms_finds_is_a_fault_with_its_car_and_what_stood_around_it() {
             assert!(table.contains(words), "{words} in {table}");
         }
         let trace = place.json(&["trace", "show", text(&found["trace_id"]), "--json"]);
-        let channels = list(&trace["channels"]);
+        let channels = list(&trace["signals"]);
         assert!(channels.iter().any(|channel| channel["name"] == "tcms_fsb"));
     }
 }
@@ -105,10 +105,10 @@ fn faults_of_the_train_work_around_a_unit_on_a_port() {
     );
     said.exits(1);
     assert_eq!(
-        fault(&report, "controller_failed")["lru"],
+        fault(&report, "controller_failed")["part"],
         "master_controller"
     );
-    assert_eq!(fault(&report, "check_failed")["lru"], "door_contact");
+    assert_eq!(fault(&report, "check_failed")["part"], "door_contact");
     place
         .ptu(
             &[
@@ -125,7 +125,7 @@ fn faults_of_the_train_work_around_a_unit_on_a_port() {
 #[test]
 fn parts_and_modes_of_the_train_are_in_the_catalogue() {
     let place = Place::new();
-    let parts = place.json(&["catalog", "lrus", "--json"]);
+    let parts = place.json(&["catalog", "parts", "--json"]);
     let modes = place.json(&["catalog", "faults", "--json"]);
     for part in [
         "inverter",
@@ -137,7 +137,7 @@ fn parts_and_modes_of_the_train_are_in_the_catalogue() {
         "tcms",
     ] {
         let known = list(&parts).iter().any(|lru| lru["id"] == part);
-        let broken = list(&modes).iter().any(|mode| mode["lru"] == part);
+        let broken = list(&modes).iter().any(|mode| mode["part"] == part);
         assert!(known && broken, "{part}");
     }
     let weak = list(&modes)

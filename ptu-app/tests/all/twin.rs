@@ -82,7 +82,7 @@ fn the_twin_of_a_good_unit_is_its_trace_bit_by_bit() {
     let script = place.write("impossible.star", PULLS_AWAY);
     for arguments in [
         &["--seed", "7"][..],
-        &["--seed", "8", "--scatter"],
+        &["--seed", "8", "--scattered"],
         &[
             "--seed",
             "9",

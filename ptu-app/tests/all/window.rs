@@ -8,7 +8,7 @@ use ptu_app::gui::{Page, Settings};
 use ptu_bench::bench_worker::Phase;
 use ptu_report::words::Language;
 
-/// Runs on the embedded unit take as long as on a real one.
+/// Runs on the simulated unit take as long as on a real one.
 fn realtime(page: Page) -> Settings {
     let mut settings = settings(page);
     settings.unit.realtime = true;

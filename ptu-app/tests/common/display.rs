@@ -126,7 +126,7 @@ impl Drop for Display {
 
 impl<'a> Shown<'a> {
     pub fn open(place: &Place, display: &'a Display, arguments: &[&str]) -> Self {
-        let ptu = place.command(&[&["gui", "--new"], arguments].concat());
+        let ptu = place.command(&[&["gui", "--create"], arguments].concat());
         // A hang-up acts whether or not whoever runs the tests ignores it.
         let mut command = Command::new("env");
         command

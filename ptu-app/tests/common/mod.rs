@@ -184,7 +184,7 @@ impl Said {
 
 /// A unit with a slow relay, tested by someone.
 pub fn record_bad_unit(place: &Place) {
-    let who = ["--serial-no", "BAD-1", "--operator", "Kim"];
+    let who = ["--serial-no", "BAD-1", "--who", "Kim"];
     let arguments = [
         &["run", "atp/overspeed", "--inject", "eb_relay.slow"],
         &who[..],
@@ -195,7 +195,7 @@ pub fn record_bad_unit(place: &Place) {
 
 /// The fault of the relay in this database.
 pub fn relay_fault(place: &Place) -> Value {
-    let faults = place.json(&["faults", "list", "--lru", "eb_relay", "--json"]);
+    let faults = place.json(&["faults", "list", "--part", "eb_relay", "--json"]);
     assert_eq!(list(&faults).len(), 1, "{faults}");
     faults[0].clone()
 }

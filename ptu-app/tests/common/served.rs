@@ -165,7 +165,7 @@ impl<'a> Running<'a> {
         Self { child, place }
     }
 
-    /// Waits until so many steps are recorded, and gives them; attempts that are repeated do not count.
+    /// Waits until this many steps are recorded, and gives them; attempts that are repeated do not count.
     pub fn recorded_steps(&mut self, count: usize) -> Vec<Value> {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {

@@ -73,7 +73,7 @@ impl Request {
             Connection::Btu => "",
         };
         let mut what = format!(
-            "ptu campaign{alone} --seeds {} --held-out {} --good {} --units {}",
+            "ptu campaign{alone} --seeds {} --held-out {} --good {} --lot {}",
             self.seeds, self.held_out, self.good, self.units
         );
         if let Some(faults) = &self.faults {

@@ -133,7 +133,7 @@ impl AskedUnit {
 
     fn check(&self) -> Result<(), Failure> {
         let undatable = match &self.endpoint {
-            Endpoint::Sim => Some("the embedded unit keeps no log from run to run"),
+            Endpoint::Sim => Some("the simulated unit keeps no log from run to run"),
             Endpoint::LockStep(_) => {
                 Some("the clock of a unit in lock step stands between scans, which dates no entry")
             }

@@ -103,7 +103,7 @@ fn wrong_suspects(procedures: &[Arc<Procedure>], catalogue: &FaultCatalogue) -> 
         for (line, part) in std::iter::once((1, of_procedure)).chain(of_steps) {
             if let Some(part) = part.filter(|part| !known().any(|known| **part == known)) {
                 errors.push(format!(
-                    "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog lrus` lists them",
+                    "{}:{line}:1: no part \"{part}\" to suspect{}; `ptu catalog parts` lists them",
                     procedure.path,
                     did_you_mean(part.as_str(), known())
                 ));

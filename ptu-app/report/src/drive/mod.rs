@@ -1,10 +1,9 @@
-//! Reports of drive runs: plain text, JSON, CSV, and HTML with plots; of automatic runs, of many of them, and of
-//! runs by hand. `facts` and `tables` are what text and page share; `plots` are drawn on the page, and `paper` has all of
-//! them in either language for the window.
+//! Reports of drive runs: plain text, JSON, CSV, and a sheet with plots; of automatic runs, of many of them, and of
+//! runs by hand. `facts` and `tables` are what text and sheet share. `paper` makes the blocks of the sheet, in either
+//! language, which the HTML page and the window are made from.
 
 mod csv;
 mod facts;
-mod html;
 mod json;
 mod paper;
 mod plots;
@@ -14,12 +13,11 @@ mod text;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-pub use html::page;
 pub use json::json;
-pub use paper::DriveSheet;
 pub use text::text;
 
-use crate::json_text;
+use crate::words::Language;
+use crate::{json_text, run};
 use ptu_bench::data;
 use ptu_bench::drive::Driven;
 use ptu_bench::drive::manual::ManualRun;
@@ -32,6 +30,19 @@ pub struct Results {
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.
     pub list: bool,
+    /// By which command the report was made, and when; the window says neither.
+    pub made: Option<String>,
+}
+
+impl Results {
+    /// Of automatic runs; those of one section stand side by side.
+    pub fn of_runs(runs: Vec<Driven>) -> Self {
+        Self {
+            outcomes: Outcomes::Single(runs),
+            list: true,
+            made: None,
+        }
+    }
 }
 
 /// What was driven.
@@ -90,7 +101,7 @@ impl Target {
     /// The file cannot be written.
     pub fn write(&self, results: &Results) -> Result<(), Failure> {
         let text = match self.format {
-            Format::Html => html::html(results),
+            Format::Html => run::html(results, Language::English.words()),
             Format::Json => json_text(&json(results))? + "\n",
             Format::Csv => csv::csv(results),
         };

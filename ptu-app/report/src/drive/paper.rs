@@ -1,50 +1,58 @@
-//! Automatic runs as printed pages, which the window shows: the tables, facts and plots of the other reports, in either
-//! language.
+//! Runs as printed blocks, which page and window show: verdict, train and day, figures, plots, and what happened.
 
-use ptu_bench::drive::{Case, Driven};
+use ptu_bench::drive::manual::ManualRun;
+use ptu_bench::drive::monte_carlo::MonteCarlo;
+use ptu_bench::drive::{Case, DriveBench, Driven};
 
-use super::facts::{conditions, off};
-use super::plots::plots;
-use super::tables;
+use super::facts::{Fact, by_hand, conditions, off, title};
+use super::plots::{plots, plots_by_hand, plots_of_many};
+use super::{Outcomes, Results, tables};
 use crate::plot::Plot;
 use crate::run::block::{Block, Tone, sentence};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
 
-/// Runs that were driven, to be shown or printed.
-pub struct DriveSheet {
-    runs: Vec<Driven>,
-}
-
-impl DriveSheet {
-    /// Of these runs; those of one section stand side by side.
-    pub fn new(runs: Vec<Driven>) -> Self {
-        Self { runs }
-    }
-}
-
-impl Printed for DriveSheet {
+impl Printed for Results {
     fn paper(&self, words: &Words) -> Paper {
-        let case = self.runs.first().map(|run| &run.case);
-        let config = case.map(|case| case.bench.config.content.name.clone());
-        let seed = case.map_or(0, |case| case.seed);
-        let mut blocks = vec![Block::Title(
-            words.drive.report.into(),
-            words.report.simulated_unit.into(),
-        )];
-        let groups = self
-            .runs
-            .chunk_by(|a, b| a.case.plan.section.section == b.case.plan.section.section);
-        for (place, group) in groups.enumerate() {
-            if place > 0 {
-                blocks.push(Block::NewPage);
+        let said = &words.drive;
+        let (name, bench, seed) = match &self.outcomes {
+            Outcomes::Single(runs) => {
+                let case = runs.first().map(|run| &run.case);
+                let seed = case.map_or(0, |case| case.seed);
+                (said.report, case.map(|case| &case.bench), seed)
             }
-            blocks.extend(of_section(group, words));
+            Outcomes::Many(many) => {
+                let case = many.first().map(|many| &many.case);
+                let seed = case.map_or(0, |case| case.seed);
+                (said.many, case.map(|case| &case.bench), seed)
+            }
+            Outcomes::ByHand(run) => (said.by_hand, Some(&run.case.bench), run.case.seed),
+        };
+        let unit = words.report.simulated_unit;
+        let mut blocks = vec![Block::Title(name.into(), unit.into())];
+        match &self.outcomes {
+            Outcomes::Single(runs) => {
+                let section = |run: &Driven| run.case.plan.section.section;
+                let groups = runs.chunk_by(|a, b| section(a) == section(b));
+                for (place, group) in groups.enumerate() {
+                    if place > 0 {
+                        blocks.push(Block::NewPage);
+                    }
+                    blocks.extend(of_section(group, words));
+                }
+            }
+            Outcomes::Many(many) => {
+                blocks.extend(many.iter().flat_map(|many| of_many(many, words)));
+            }
+            Outcomes::ByHand(run) => blocks.extend(of_run_by_hand(run, words)),
+        }
+        if let Some(made) = &self.made {
+            blocks.push(Block::Text(Tone::Soft, made.clone()));
         }
         Paper {
-            name: words.drive.report,
-            unit: config.unwrap_or_default(),
-            short: words.drive.title.into(),
+            name,
+            unit: bench.map_or_else(String::new, |bench| bench.config.content.name.clone()),
+            short: said.title.into(),
             number: format!("{} {seed}", words.content("Seed")),
             program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
             at_us: 0,
@@ -67,12 +75,8 @@ fn of_section(runs: &[Driven], words: &Words) -> Vec<Block> {
     }
     let mut blocks = vec![Block::Heading(heading)];
     blocks.extend(runs.iter().map(|run| verdict(run, runs.len() == 1, words)));
-    blocks.push(Block::Facts(facts(case, words)));
-    blocks.push(Block::Heading(said.figures.into()));
-    blocks.push(Block::Table(tables::of_runs(runs).printed(words)));
-    blocks.push(Block::Heading(said.plots.into()));
-    let plots = plots(runs).into_iter();
-    blocks.extend(plots.map(|plot| Block::Plot(Box::new(in_words(plot, words)))));
+    blocks.push(facts(conditions(case), case, words));
+    blocks.extend(measured(&tables::of_runs(runs), plots(runs), words));
     blocks.push(Block::Heading(said.on_the_way.into()));
     for run in runs {
         if runs.len() > 1 {
@@ -114,28 +118,103 @@ fn stop(run: &Driven, words: &Words) -> String {
     fill(wording, &[("error", &size), ("tolerance", &tolerance_cm)])
 }
 
-/// Train and day, and what the bench was made of.
-fn facts(case: &Case, words: &Words) -> Vec<(String, String)> {
-    let bench = &case.bench;
-    let section = &case.plan.section;
-    let file = |name: &str, crc: u32| format!("{name}, {crc:08x}");
-    let more = [
-        (
-            "Unit configuration",
-            file(&bench.config.content.name, bench.config.crc),
-        ),
-        (
-            "Track database",
-            file(&bench.line.content.name, bench.line.crc),
-        ),
-        (
-            "Length to the stop point",
-            format!("{:.2} m", section.stop_m - section.start_m),
-        ),
+/// Many runs of one case.
+fn of_many(many: &MonteCarlo, words: &Words) -> Vec<Block> {
+    let (done, asked) = (many.trials.len(), many.asked);
+    let percent = |metres| many.within(metres) * 100.0;
+    let within = format!(
+        "within ±10 cm {:.2} %, ±30 cm {:.2} %",
+        percent(0.1),
+        percent(0.3)
+    );
+    let (past, failures) = (many.past_1m(), many.failures().count());
+    let beside = format!("more than 1 m past: {past}, did not stop: {failures}");
+    let tone = if many.passed() { Tone::Good } else { Tone::Bad };
+    let heading = format!("{}, {done} of {asked} runs", title(&many.case));
+    let mut blocks = vec![
+        Block::Heading(heading),
+        Block::Verdict(tone, within, beside),
+        facts(conditions(&many.case), &many.case, words),
     ];
-    let all = conditions(case).into_iter().chain(more);
-    all.map(|(name, value)| (words.content(name).into_owned(), value))
-        .collect()
+    blocks.extend(measured(&tables::of_many(many), plots_of_many(many), words));
+    blocks.extend([
+        Block::Heading("Worst runs".into()),
+        Block::Text(
+            Tone::Soft,
+            "Repeat one with --scattered --seed SEED in place of --monte-carlo.".into(),
+        ),
+        Block::Table(tables::worst(many).printed(words)),
+    ]);
+    blocks
+}
+
+fn of_run_by_hand(run: &ManualRun, words: &Words) -> Vec<Block> {
+    let (case, outcome) = (&run.case, &run.outcome);
+    let tone = if run.passed() { Tone::Good } else { Tone::Bad };
+    let mut known = vec![("Sequence", case.name.clone())];
+    known.extend(by_hand(run));
+    known.extend(made_of(&case.bench, case.seed));
+    let mut blocks = vec![
+        Block::Heading(case.plan.sequence.title.clone()),
+        Block::Verdict(tone, sentence(&outcome.ending.to_string()), String::new()),
+        Block::Facts(in_language(known, words)),
+    ];
+    let figures = tables::of_run_by_hand(run);
+    blocks.extend(measured(&figures, plots_by_hand(run), words));
+    blocks.extend([
+        Block::Heading("What was done".into()),
+        Block::Table(tables::steps(run).printed(words)),
+        Block::Text(
+            Tone::Soft,
+            "Efforts are those of MT pair 1, 3 s later or before the next step.".into(),
+        ),
+        Block::Heading(words.drive.on_the_way.into()),
+        Block::Table(tables::events(&outcome.landmarks).printed(words)),
+    ]);
+    blocks
+}
+
+/// Figures and plots, each under its heading.
+fn measured(figures: &tables::Table, plots: Vec<Plot>, words: &Words) -> Vec<Block> {
+    let said = &words.drive;
+    let mut blocks = vec![
+        Block::Heading(said.figures.into()),
+        Block::Table(figures.printed(words)),
+        Block::Heading(said.plots.into()),
+    ];
+    let plots = plots.into_iter();
+    blocks.extend(plots.map(|plot| Block::Plot(Box::new(in_words(plot, words)))));
+    blocks
+}
+
+/// Train and day, the way, and what the bench was made of.
+fn facts(mut known: Vec<Fact>, case: &Case, words: &Words) -> Block {
+    let section = &case.plan.section;
+    let length_m = section.stop_m - section.start_m;
+    known.push(("Length to the stop point", format!("{length_m:.2} m")));
+    known.extend(made_of(&case.bench, case.seed));
+    Block::Facts(in_language(known, words))
+}
+
+/// The files that a bench was made of, with their check sums, the keys changed, and the seed.
+fn made_of(bench: &DriveBench, seed: u64) -> Vec<Fact> {
+    let file = |name: &str, crc: u32| format!("{name}, {crc:08x}");
+    let (config, line) = (&bench.config, &bench.line);
+    let mut made = vec![
+        ("Unit configuration", file(&config.content.name, config.crc)),
+        ("Track database", file(&line.content.name, line.crc)),
+    ];
+    if !bench.settings.is_empty() {
+        let settings: Vec<_> = bench.settings.iter().map(ToString::to_string).collect();
+        made.push(("Keys changed", settings.join("; ")));
+    }
+    made.push(("Seed", seed.to_string()));
+    made
+}
+
+fn in_language(facts: Vec<Fact>, words: &Words) -> Vec<(String, String)> {
+    let said = |(name, value): Fact| (words.content(name).into_owned(), value);
+    facts.into_iter().map(said).collect()
 }
 
 /// A plot with all its words in one language.
@@ -163,7 +242,7 @@ mod tests {
     use crate::run::block::Cell;
     use crate::words::Language;
 
-    fn sheet(controllers: &[ControllerKind]) -> DriveSheet {
+    fn sheet(controllers: &[ControllerKind]) -> Results {
         let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
         let scripts = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
         let request = Request {
@@ -180,7 +259,7 @@ mod tests {
             seed: 1,
         };
         let cases = request.cases(&scripts).expect("cases");
-        DriveSheet::new(drive_all(cases, 2, &Stop::default(), &mut |_| {}))
+        Results::of_runs(drive_all(cases, 2, &Stop::default(), &mut |_| {}))
     }
 
     /// Everything that is read on the pages.
@@ -215,10 +294,10 @@ mod tests {
     }
 
     /// Goal: a Korean reader meets no English in the report of a run. Method: runs of all controllers and of one alone; what is
-    /// left in small Latin letters are names of controllers, files and events, and units.
+    /// left in small Latin letters are names of controllers, files, events and keys of a configuration, and units.
     #[test]
     fn a_korean_report_of_automatic_runs_has_no_english() {
-        const NAMES: [&str; 3] = ["servo", "fuzzy", "pss"];
+        const NAMES: [&str; 5] = ["servo", "fuzzy", "pss", "ato", "controller"];
         for controllers in [&[ControllerKind::Servo][..], &ControllerKind::ALL] {
             let paper = sheet(controllers).paper(Language::Korean.words());
             let texts = texts(&paper.blocks);

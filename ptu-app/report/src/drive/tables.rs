@@ -1,9 +1,8 @@
-//! The tables of a report, the same in text and on a page.
+//! The tables of a report, the same in text and on printed pages.
 
 use btu_rig::drive::manual::{StepDone, settled};
 use btu_rig::drive::{Figure, Landmark, Metrics};
 use btu_rig::rig::PairEfforts;
-use maud::{Markup, html};
 
 use super::facts::{conditions, off, stop};
 use crate::run::block::{self, Align, Column, RowKind};
@@ -23,13 +22,11 @@ const SHORTEST: usize = 8;
 const UNKNOWN: &str = "–";
 
 pub struct Table {
-    /// Headings in text, and on a page; a page without headings has none.
+    /// Headings in text, and on a page; where all of a page are empty it has no line of headings.
     headings: Vec<(String, String)>,
     rows: Vec<Vec<String>>,
     /// Columns of words on a page; all others are numbers.
     words: Vec<usize>,
-    /// The first column names what stands in the others.
-    named: bool,
 }
 
 impl Table {
@@ -39,7 +36,6 @@ impl Table {
             headings: headings.iter().map(owned).collect(),
             rows: Vec::new(),
             words: words.into(),
-            named: false,
         }
     }
 
@@ -56,27 +52,6 @@ impl Table {
         table.render()
     }
 
-    /// As a part of a page.
-    pub fn html(&self) -> Markup {
-        let class = |at: usize| (!self.words.contains(&at)).then_some("number");
-        html! {
-            table {
-                @if self.headings.iter().any(|heading| !heading.1.is_empty()) {
-                    tr { @for (at, heading) in self.headings.iter().enumerate() { th class=[class(at)] { (heading.1) } } }
-                }
-                @for row in &self.rows {
-                    tr {
-                        @for (at, cell) in row.iter().enumerate() {
-                            @if self.named && at == 0 { th { (cell) } } @else { td class=[class(at)] { (cell) } }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl Table {
     /// For printed pages, in one language.
     pub fn printed(&self, words: &Words) -> block::Table {
         let columns = self.headings.len();
@@ -128,7 +103,6 @@ fn figures<F>(table: &[Figure<F>], values: &[Option<&F>]) -> Vec<Vec<String>> {
 fn one_run(rows: Vec<Vec<String>>) -> Table {
     Table {
         rows,
-        named: true,
         ..Table::new(&[("FIGURE", ""), ("VALUE", ""), ("", "")], [0, 2])
     }
 }
@@ -188,7 +162,6 @@ pub fn of_many(many: &MonteCarlo) -> Table {
         rows: std::iter::once(errors)
             .chain(Metrics::ALL.iter().map(figure))
             .collect(),
-        named: true,
         ..Table::new(&headings, [0])
     }
 }

@@ -37,7 +37,7 @@ impl EventLines {
                 "fault",
                 json!({
                     "at_us": fault.at.as_us(), "code": fault.code, "name": fault.name,
-                    "lru": fault.lru.as_ref().map(|part| lru::stored(Some(part))),
+                    "part": fault.lru.as_ref().map(|part| lru::stored(Some(part))),
                     "severity": fault.severity.label(), "step": fault.step,
                     "message": fault.message, "freeze": fault.freeze,
                 }),

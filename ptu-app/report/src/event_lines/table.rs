@@ -106,7 +106,7 @@ pub const EVENTS: &[EventKeys] = &[
     ),
     (
         "waiting",
-        "something is waited for; told twice a second",
+        "something is waited for; sent twice a second",
         &[
             ("what", Text, "what is waited for"),
             ("left_us", Whole, "how long it may still take"),
@@ -199,7 +199,7 @@ pub const EVENTS: &[EventKeys] = &[
     ),
     (
         "procedure_finished",
-        "a procedure is over, and outputs are safe or an error is told",
+        "a procedure is over, and outputs are safe, or an error says that they are not",
         &[AT, VERDICT, MESSAGE],
     ),
     (
@@ -209,7 +209,7 @@ pub const EVENTS: &[EventKeys] = &[
             AT,
             ("code", Whole, "its number"),
             ("name", Text, "its name"),
-            ("lru", TextOrNull, "part that it points at"),
+            ("part", TextOrNull, "part that it points at"),
             ("severity", Text, "critical, major, minor or info"),
             (
                 "step",
@@ -298,7 +298,7 @@ pub fn schema() -> Value {
     };
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": format!("A line of `ptu run --events`, version {VERSION}"),
+        "title": format!("A line of `ptu run --json`, version {VERSION}"),
         "oneOf": EVENTS.iter().map(of_event).collect::<Vec<_>>(),
     })
 }

@@ -55,7 +55,7 @@ pub struct Column {
     pub align: Align,
 }
 
-/// A table whose heading is repeated on every page.
+/// A table whose heading, if it has one, is repeated on every page.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     pub columns: Vec<Column>,
@@ -107,6 +107,13 @@ impl Gauge {
             value,
             good,
         })
+    }
+}
+
+impl Table {
+    /// Whether any column has a name.
+    pub fn has_headings(&self) -> bool {
+        self.columns.iter().any(|column| !column.name.is_empty())
     }
 }
 

@@ -63,9 +63,11 @@ fn table(table: &Table) -> Markup {
             colgroup { @for column in &table.columns {
                 col style=(format!("width:{:.0}%", 100.0 * column.share));
             } }
-            thead { tr { @for column in &table.columns {
-                th class=[side(column)] scope="col" { (column.name) }
-            } } }
+            @if table.has_headings() {
+                thead { tr { @for column in &table.columns {
+                    th class=[side(column)] scope="col" { (column.name) }
+                } } }
+            }
             tbody { @for row in &table.rows { (line(row, &table.columns)) } }
         }
     }

@@ -24,7 +24,7 @@ impl<'a> Sources<'a> {
         Self(all)
     }
 
-    /// The number under which a source is listed; empty where nobody said one.
+    /// The number under which a source is listed; empty where none is given.
     pub fn number(&self, source: Option<&str>) -> String {
         let place = source.and_then(|source| self.0.iter().position(|one| *one == source));
         place.map_or_else(String::new, |place| (place + 1).to_string())

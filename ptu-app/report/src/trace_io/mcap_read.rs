@@ -20,11 +20,11 @@ use ptu_bench::failure::Failure;
 const MAX_RECORD: usize = 32 << 20;
 /// All records together, unpacked: several times what the samples allowed take as text.
 const MAX_BYTES: usize = 512 << 20;
-/// A longer message is none of signals, bytes.
+/// Longest message of signals, bytes; a longer one is refused.
 const MAX_MESSAGE: usize = 1 << 20;
-/// A longer name is none of a topic or a signal, bytes.
+/// Longest name of a topic or signal, bytes; a longer one is refused.
 const MAX_NAME: usize = 256;
-/// A longer description is none of ours, bytes.
+/// Longest description that this program writes, bytes; a longer one is passed over.
 const MAX_ABOUT: usize = 4 << 20;
 /// Fields within fields are looked at this deep.
 const MAX_DEPTH: usize = 8;

@@ -9,7 +9,7 @@ use super::about::TraceInfo;
 use super::{csv_read, mcap_read, parquet_read};
 use ptu_bench::failure::Failure;
 
-/// A file has at most so many signals; a trace of ours has a few hundred.
+/// A file has at most this many signals; a trace of ours has a few hundred.
 const MOST_SIGNALS: usize = 4096;
 
 /// Signals that were sampled together.

@@ -163,7 +163,7 @@ impl Axis {
         }
     }
 
-    /// Sets the first rows of so many columns.
+    /// Sets the first rows of this many columns.
     pub fn edges(&self, window: Window, columns: usize, edges: &mut Edges) {
         let place = |column: usize| window.at(column as f64 / columns.max(1) as f64);
         edges.rows.clear();

@@ -41,7 +41,7 @@ impl Column {
 }
 
 /// Columns of samples in order of time, each of which holds until the next: for plots of a few thousand
-/// rows that move. `columns` is filled anew, as many as are asked for.
+/// rows that move. `columns` is filled again, as many as are asked for.
 pub fn of_samples(
     samples: impl Iterator<Item = (f64, f64)>,
     window: Window,

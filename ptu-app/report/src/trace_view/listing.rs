@@ -166,7 +166,7 @@ fn text(run: &RunSummary, began: &str, trace: Id, faults: &[ListedFault]) -> Str
 }
 
 impl ListedTrace {
-    /// Every word of the filter is somewhere in it.
+    /// Whether each word of the filter occurs in it.
     pub fn fits(&self, filter: &str) -> bool {
         let filter = filter.to_lowercase();
         filter

@@ -111,7 +111,7 @@ impl Overlay {
     }
 }
 
-/// The trace with nothing known outside these rows, laid so many rows later.
+/// The trace with nothing known outside these rows, laid this many rows later.
 fn only(came: &TraceData, rows: &Range<usize>, later: i64) -> TraceData {
     let mut came = came.clone();
     let all = came.rows();

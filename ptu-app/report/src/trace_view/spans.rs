@@ -68,7 +68,7 @@ pub fn add_busy(spans: &mut Vec<Span>, (from, to): (f64, f64)) {
 }
 
 /// Stretches of samples in order of time, each of which holds until the next: for plots of a few thousand
-/// rows that move. `spans` is filled anew.
+/// rows that move. `spans` is filled again.
 pub fn of_samples(
     samples: impl Iterator<Item = (f64, f64)>,
     window: Window,

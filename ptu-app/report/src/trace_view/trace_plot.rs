@@ -1,14 +1,17 @@
 //! The view of a trace: lanes, the part in view, cursors, and the trace behind.
 
+mod behind;
+
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::listing::OpenTrace;
-use super::overlay::{FirstDifference, Overlay, OverlaySource};
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
 use super::{Axis, Kind, VisibleRange, Window, choose};
 use crate::ticks;
+pub use behind::OverlayTrace;
+use behind::behind_axis;
 
 /// Fewest rows in view.
 const FEWEST_ROWS: f64 = 8.0;
@@ -54,19 +57,6 @@ pub fn toggled(entry: &str) -> String {
         Some(alone) => alone.to_owned(),
         None => format!("{JOINED}{entry}"),
     }
-}
-
-/// The trace that is drawn behind for comparison.
-#[derive(Debug)]
-pub struct OverlayTrace {
-    /// Its samples.
-    pub overlay: Arc<Overlay>,
-    /// Where its rows lie.
-    pub axis: Axis,
-    /// Rows by which it is laid later.
-    pub shift_rows: i64,
-    /// The first difference; `None` until it is computed.
-    pub parting: Option<FirstDifference>,
 }
 
 /// A trace as it is looked at.
@@ -348,64 +338,6 @@ impl TracePlot {
         }
         &self.said.1
     }
-
-    /// Lays something behind the trace.
-    pub fn lay_behind(&mut self, overlay: Arc<Overlay>) {
-        self.behind = Some(OverlayTrace {
-            axis: behind_axis(&overlay.view, self.axis.kind(), 0),
-            overlay,
-            shift_rows: 0,
-            parting: None,
-        });
-    }
-
-    /// Removes the trace behind.
-    pub fn lay_nothing_behind(&mut self) {
-        self.behind = None;
-    }
-
-    /// Lays what is behind so many rows later; where they part has to be told anew.
-    pub fn shift(&mut self, rows: i64) {
-        let kind = self.axis.kind();
-        if let Some(behind) = &mut self.behind
-            && behind.shift_rows != rows
-        {
-            behind.shift_rows = rows;
-            behind.axis = behind_axis(&behind.overlay.view, kind, rows);
-        }
-    }
-
-    /// Takes the first difference from the trace behind.
-    pub fn told(&mut self, against: &OverlaySource, parting: FirstDifference) {
-        if let Some(behind) = &mut self.behind
-            && behind.overlay.against == *against
-        {
-            behind.parting = Some(parting);
-        }
-    }
-
-    /// Shows the signals that deviate, the first one first, and where they begin to.
-    pub fn show_deviating(&mut self, most: usize) {
-        let parting = self.behind.as_ref().and_then(|b| b.parting.as_ref());
-        let Some(parting) = parting else {
-            return;
-        };
-        let mut signals: Vec<_> = parting.stretches.iter().collect();
-        signals.sort_by_key(|(_, stretches)| stretches.first().map(|rows| rows.start));
-        let first = parting.first.as_ref();
-        let row = first.map(|first| first.row);
-        let mut names: Vec<String> = first.map(|f| f.signal.clone()).into_iter().collect();
-        names.extend(signals.into_iter().map(|(name, _)| name.clone()));
-        let mut known = std::collections::BTreeSet::new();
-        names.retain(|name| known.insert(name.clone()));
-        names.truncate(most);
-        if !names.is_empty() {
-            self.set_signals(&names);
-        }
-        if let Some(row) = row {
-            self.camera.centre(self.axis.at(row));
-        }
-    }
 }
 
 fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
@@ -416,22 +348,13 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     VisibleRange::new(axis.whole(), least)
 }
 
-/// Its axis, with 0 so many rows before the trigger.
+/// Its axis, with 0 this many rows before the trigger.
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {
         Kind::Time => Some(Axis::time(view.data(), zero_row)),
         Kind::Distance => Axis::distance(view.data(), zero_row),
     }
-}
-
-/// The same for the trace behind; one without distance has none of its rows in view.
-fn behind_axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Axis {
-    axis(view, kind, shift_rows).unwrap_or_else(|| Axis::Distance {
-        at_m: Vec::new(),
-        rows_back: 0,
-        back_m: 0.0,
-    })
 }
 
 #[cfg(test)]

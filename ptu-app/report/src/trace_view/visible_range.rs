@@ -38,7 +38,7 @@ impl VisibleRange {
         self.window = self.whole;
     }
 
-    /// Shows so many times as much, and what lies at this share of the view stays there.
+    /// Shows this many times as much; the point at this share of the view stays in place.
     pub fn zoom(&mut self, share: f64, times: f64) {
         let fixed = self.window.at(share);
         let length = (self.window.length() * times).clamp(self.least, self.whole.length());

@@ -6,7 +6,7 @@ wordings! {
     /// Automatic runs of a whole train.
     Drive {
         title: "Drive", "자동 주행";
-        explained: "An embedded unit drives a whole train from station to station in virtual time. A connected unit takes no part in it, and nothing is recorded.", "내장된 모의 장치가 가상 시간으로 열차를 역에서 역까지 운전합니다. 연결된 장치는 관여하지 않으며, 기록도 남지 않습니다.";
+        explained: "A simulated unit drives a whole train from station to station in virtual time. A connected unit takes no part in it, and nothing is recorded.", "내장된 모의 장치가 가상 시간으로 열차를 역에서 역까지 운전합니다. 연결된 장치는 관여하지 않으며, 기록도 남지 않습니다.";
 
         // What is asked for.
         line: "line", "노선";
@@ -30,6 +30,8 @@ wordings! {
         stopped: "Stopped: {done} of {of} were driven.", "정지함: {of}건 중 {done}건을 주행했습니다.";
         cannot_drive: "It cannot be driven", "주행할 수 없습니다";
         report: "Report of automatic runs", "자동 주행 보고서";
+        many: "Monte Carlo of automatic runs", "자동 주행 몬테카를로 보고서";
+        by_hand: "Report of a run by hand", "수동 운전 보고서";
         section_of: "{line}, section {section}", "{line} 노선 {section} 구간";
         before_within: "{error} before the stop point, within ±{tolerance} cm", "정위치 {error} 미달, 허용 ±{tolerance} cm 이내";
         before_outside: "{error} before the stop point, outside ±{tolerance} cm", "정위치 {error} 미달, 허용 ±{tolerance} cm 초과";

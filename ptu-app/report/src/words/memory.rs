@@ -15,7 +15,7 @@ wordings! {
         pulled: "{unit}: {rows} rows read, {new} new runs, {known} known already", "{unit}: 주행 기록 {rows}행 읽음, 새 주행 {new}건, 이미 아는 주행 {known}건";
         failed: "The unit's memory was not read to its end", "장치 저장 기록을 끝까지 읽지 못했습니다";
         not_compared: "The run was not compared", "주행을 비교하지 못했습니다";
-        on_port_only: "choose a unit on a port: the embedded one keeps nothing from run to run", "포트에 연결된 장치를 고르십시오. 내장 장치는 시험이 끝나면 기록을 남기지 않습니다";
+        on_port_only: "choose a unit on a port: the simulated one keeps nothing from run to run", "포트에 연결된 장치를 고르십시오. 내장 장치는 시험이 끝나면 기록을 남기지 않습니다";
         disconnect_first: "disconnect the unit first: its port has one reader at a time", "먼저 장치 연결을 끊으십시오. 포트는 한 번에 한 곳에서만 읽습니다";
     }
 }

@@ -152,7 +152,7 @@ pub struct Words {
 
 impl Words {
     /// A text of scripts, catalogues or the runner, which is made and stored in English: a step's name, a fault mode, a
-    /// message. What nobody has put into this language is as it was written.
+    /// message. A text without a translation stays as it was written.
     pub fn content<'a>(&self, text: &'a str) -> Cow<'a, str> {
         match self.language {
             Language::English => names::english(text),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::super::{answered, print_json, print_out};
+use super::super::{Json, answered};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::kept::{Missing, missing};
 
@@ -24,19 +24,15 @@ pub struct MissingArguments {
     /// Number of shards [default: that of the files]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     shards: Option<u32>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl MissingArguments {
     /// Lists.
     pub fn run(self) -> Result<Exit, Failure> {
         let missing = missing(&self.files, self.shards)?;
-        let told = match self.json {
-            true => print_json(&missing),
-            false => print_out(&text(&missing)),
-        };
+        let told = self.json.answer(|| &missing, || text(&missing));
         let exit = if missing.missing == 0 {
             Exit::Passed
         } else {

@@ -4,29 +4,25 @@ use std::path::{Path, PathBuf};
 
 use fault_db::{CheckReport, SealHead, Store, StoreError};
 
-use crate::cli::{Database, answered, print_json, print_out};
+use crate::cli::{Database, Json, answered};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
 
 impl Database {
-    pub(super) fn check(&self, json: bool) -> Result<Exit, Failure> {
+    pub(super) fn check(&self, json: Json) -> Result<Exit, Failure> {
         let report = match self.open_read_only() {
             Err(failure) if self.has_older_schema() => self.check_updated_copy(failure)?,
             store => store?.check()?,
         };
-        let told = if json {
-            print_json(&report)
-        } else if report.problems.is_empty() {
-            print_out(&format!(
-                "no damage; {} traces read, {} runs fit their seals{}",
-                report.traces,
-                report.runs,
-                besides(&report)
-            ))
-        } else {
-            print_out(&(text(&report) + &besides(&report)))
+        let found = || match report.problems.is_empty() {
+            true => format!(
+                "no damage; {} traces read, {} runs fit their seals",
+                report.traces, report.runs
+            ),
+            false => text(&report),
         };
+        let told = json.answer(|| &report, || found() + &besides(&report));
         let exit = match report.problems.is_empty() {
             true => Exit::Passed,
             false => Exit::Bench,

@@ -10,13 +10,13 @@ use serde_json::{json, to_value};
 
 use super::check::sealed;
 use crate::cli::database::only_file;
-use crate::cli::{Database, answered, print_json, print_out, since_argument};
+use crate::cli::{Database, Json, answered, print_json, print_out, since_argument};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stdio;
 use ptu_report::history_files::{Exported, export_history};
 
-/// Which traces may go; those of faults that are not closed never do.
+/// Which traces may be deleted; those of faults that are not closed never are.
 #[derive(Debug, Args)]
 pub(super) struct PruneArguments {
     /// Older than: 90d, 2026-03, 2026-03-21
@@ -50,7 +50,7 @@ impl Database {
         ))
     }
 
-    pub(super) fn import(&self, from: &Path, json: bool) -> Result<Exit, Failure> {
+    pub(super) fn import(&self, from: &Path, json: Json) -> Result<Exit, Failure> {
         let from = only_file(from)?;
         let store = self.open_or_make()?;
         let counts = store.import(from);
@@ -63,7 +63,7 @@ impl Database {
         tell_merged(&counts, &conflicts, json)
     }
 
-    pub(super) fn export(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
+    pub(super) fn export(&self, to: &Path, json: Json) -> Result<Exit, Failure> {
         let to = only_file(to)?;
         let store = self.open_read_only()?;
         let counts = store.export(to, clock::open_options());
@@ -71,20 +71,20 @@ impl Database {
         tell_merged(&counts, &[], json)
     }
 
-    pub(super) fn export_parquet(&self, to: &Path, json: bool) -> Result<Exit, Failure> {
+    pub(super) fn export_parquet(&self, to: &Path, json: Json) -> Result<Exit, Failure> {
         let done = export_history(&self.open_read_only()?, to)?;
-        if json {
-            return print_json(&done);
-        }
-        let Exported {
-            written,
-            unchanged,
-            removed,
-        } = done;
-        print_out(&format!(
-            "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
-            to.display()
-        ))
+        let text = || {
+            let Exported {
+                written,
+                unchanged,
+                removed,
+            } = &done;
+            format!(
+                "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
+                to.display()
+            )
+        };
+        json.answer(|| &done, text)
     }
 
     pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {
@@ -101,7 +101,7 @@ impl Database {
 
     pub(super) fn rebuild(&self) -> Result<Exit, Failure> {
         let differed = self.open()?.rebuild(clock::now_us())?;
-        let mut said = "counts by day and month, repairs, sums of measured values and search words made anew; \
+        let mut said = "counts by day and month, repairs, sums of measured values and search words made again; \
              runs, faults, traces and seals are as they were"
             .to_owned();
         if !differed.is_empty() {
@@ -133,9 +133,9 @@ fn of_named_file(file: &Path, error: StoreError) -> Failure {
 fn tell_merged(
     counts: &MergeCounts,
     conflicts: &[StateConflict],
-    json: bool,
+    json: Json,
 ) -> Result<Exit, Failure> {
-    let told = if json {
+    let told = if json.is_asked() {
         let mut all = to_value(counts).map_err(|error| Failure::bench(error.to_string()))?;
         all["conflicts"] = json!(conflicts);
         print_json(&all)

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{Database, print_out};
+use super::{Database, Json, print_out};
 use ptu_bench::failure::{Exit, Failure};
 
 /// Check, back up, prune, merge, sync or query the database
@@ -27,11 +27,10 @@ pub struct DbArguments {
 enum Verb {
     /// Look for damage and for what was changed by hand, in a file or on a server; writes nothing
     Check {
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
-    /// Make counts and search words anew from the rows they follow from
+    /// Compute counts and search words again from the rows they follow from
     Rebuild,
     /// Copy the database while it is in use
     Backup {
@@ -40,20 +39,19 @@ enum Verb {
     },
     /// Add everything of another database that is not here yet
     ///
-    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3; the same of a run that does not fit its seal, and of a row that holds what no history holds: it
-    /// is left out, and the rest comes.
+    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3.
+    /// A run that does not fit its seal, and a row with impossible content, are named and left out, with the same exit
+    /// code; the rest is added.
     Import {
         /// The other file
         from: PathBuf,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Add everything that is here to another database, or write it as Parquet files
     ///
-    /// A run that is over in both stays as it is. If it does not say the same, it is named, and the exit
-    /// code is 3. With --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
+    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3. With
+    /// --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
     /// each month; a month that has not changed is left as it is.
     Export {
         /// The other file, made if need be
@@ -62,9 +60,8 @@ enum Verb {
         /// Folder for Parquet files, made if need be
         #[arg(long, value_name = "DIR")]
         parquet: Option<PathBuf>,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
     /// Delete old traces that no open fault needs; runs and faults stay
     Prune(maintenance::PruneArguments),

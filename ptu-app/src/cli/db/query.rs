@@ -18,7 +18,7 @@ const MAX_ROWS: usize = 10_000;
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
 
-/// Ask the database in SQL, reading only; `ptu db schema` says about what
+/// Ask the database in SQL, which only reads; `ptu db schema` lists the views
 ///
 /// Examples:
 ///   ptu db query "SELECT unit, count(*) FROM faults WHERE state = 'open' GROUP BY unit"
@@ -29,7 +29,7 @@ pub struct QueryArguments {
     /// The question
     #[arg(value_name = "SELECT …")]
     sql: String,
-    /// Give the question up after so many seconds
+    /// Stop the question after this time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     max_time: u32,
     /// Memory it may take in a file, MB

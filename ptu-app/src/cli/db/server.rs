@@ -3,7 +3,7 @@
 use clap::{Args, Subcommand};
 use fault_db::{Address, ServerSetup, Store};
 
-use crate::cli::{print_json, print_out};
+use crate::cli::Json;
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 
@@ -26,15 +26,14 @@ enum Verb {
     ///
     /// Exit codes: 0 done, 2 wrong address, 3 no server, or it may not be done.
     Init {
-        /// The server, as postgres://OWNER@HOST/DATABASE; a password belongs into ~/.pgpass
+        /// The server, as postgres://OWNER@HOST/DATABASE; write a password into ~/.pgpass
         #[arg(value_name = "ADDRESS")]
         server: String,
         /// The account laptops log in with; made if it is not there
         #[arg(long, value_name = "ACCOUNT", default_value = LAPTOPS)]
         laptops: String,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        json: Json,
     },
 }
 
@@ -47,10 +46,7 @@ impl ServerArguments {
         } = self.verb;
         let address: Address = server.parse()?;
         let done = Store::set_up_server(&address, clock::ids(), &laptops)?;
-        match json {
-            true => print_json(&done),
-            false => print_out(&told(&done, &address)),
-        }
+        json.answer(|| &done, || told(&done, &address))
     }
 }
 

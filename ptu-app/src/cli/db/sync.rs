@@ -8,31 +8,30 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use super::maintenance::{rivals, told_refused};
-use crate::cli::{Database, answered, print_json, print_out};
+use crate::cli::{Database, Json, answered};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::platform::computer_name;
 use ptu_bench::stop::Stop;
 use ptu_bench::{clock, process_id, stdio};
 
-/// Bring this laptop's history to a server, and what others said about its faults back
+/// Send this laptop's history to a server, and receive what others recorded about its faults
 ///
-/// The laptop's file has everything at all times, so a sync that breaks off is taken up by the next.
+/// The laptop's file is complete at all times. The next sync continues one that broke off.
 ///
 /// Exit codes: 0 done, 2 wrong address, 3 no server, or something is damaged or differs, 130 stopped.
 #[derive(Debug, Args)]
 pub struct SyncArguments {
-    /// The server, as postgres://USER@HOST/DATABASE; a password belongs into ~/.pgpass
+    /// The server, as postgres://USER@HOST/DATABASE; write a password into ~/.pgpass
     #[arg(value_name = "ADDRESS")]
     server: String,
     /// Leave samples for a later sync
     #[arg(long)]
     no_traces: bool,
-    /// The file is a copy or a backup that is to be gone on with: it gets a name of its own
+    /// The file is a copy or a backup with which this laptop continues: it gets a name of its own
     #[arg(long)]
     as_copy: bool,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 impl SyncArguments {
@@ -74,10 +73,8 @@ impl SyncArguments {
         let outcome = outcome?;
         file.close()?;
         let took_s = begun.elapsed().as_secs_f64();
-        let told = match self.json {
-            true => print_json(&as_json(&outcome, &server, took_s)),
-            false => print_out(&text(&outcome, &server, took_s)),
-        };
+        let document = || as_json(&outcome, &server, took_s);
+        let told = (self.json).answer(document, || text(&outcome, &server, took_s));
         for warning in warnings(&outcome) {
             stdio::note(&warning);
         }

@@ -79,7 +79,7 @@ pub(super) fn ports() -> Vec<Finding> {
     if found.is_empty() {
         return vec![Finding::ok(
             SUBJECT,
-            "none found; the embedded unit and units over TCP need none",
+            "none found; the simulated unit and units over TCP need none",
         )];
     }
     let mut findings = Vec::new();

@@ -6,7 +6,7 @@ use clap::Args;
 use fault_db::Address;
 use serde::Serialize;
 
-use super::{Database, ScriptsOption, answered, print_json, print_out};
+use super::{Database, Json, ScriptsOption, answered};
 use ptu_bench::failure::{Exit, Failure};
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
@@ -17,16 +17,15 @@ use ptu_bench::failure::{Exit, Failure};
 ///   ptu doctor
 ///   ptu doctor --server postgres://kim@depot/history
 ///
-/// Exit codes: 0 nothing is in the way of testing units; 1 something is.
+/// Exit codes: 0 units can be tested; 1 they cannot.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DoctorArguments {
     /// Server that this computer syncs with: postgres://USER@HOST/DATABASE
     #[arg(long, value_name = "ADDRESS")]
     server: Option<Address>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -130,12 +129,8 @@ impl DoctorArguments {
             true => Exit::Failed,
             false => Exit::Passed,
         };
-        let told = if self.json {
-            print_json(&findings)
-        } else {
-            let lines: Vec<_> = findings.iter().map(Finding::line).collect();
-            print_out(&lines.join("\n"))
-        };
+        let lines = || findings.iter().map(Finding::line).collect::<Vec<_>>();
+        let told = self.json.answer(|| &findings, || lines().join("\n"));
         answered(told, exit)
     }
 }

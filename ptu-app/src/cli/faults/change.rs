@@ -18,10 +18,10 @@ pub struct StateArguments {
     /// The new state
     state: FaultState,
     /// Who decides
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// Why
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
     /// This fault alone, not the others of its case
     #[arg(long)]
@@ -34,7 +34,7 @@ pub struct RepairArguments {
     /// The fault
     id: String,
     /// Part changed or worked on
-    #[arg(long)]
+    #[arg(long, value_name = "PART")]
     part: String,
     /// Serial number of the part taken out
     #[arg(long, value_name = "TEXT")]
@@ -43,10 +43,10 @@ pub struct RepairArguments {
     #[arg(long, value_name = "TEXT")]
     new: Option<String>,
     /// What was done
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
     /// Who did it
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// This fault alone, not the others of its case
     #[arg(long)]
@@ -61,10 +61,10 @@ pub struct CauseArguments {
     /// The part that explains it; `none`: the fault stands alone
     part: String,
     /// Who says it
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// Why
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
 }
 
@@ -76,7 +76,7 @@ pub struct NoteArguments {
     /// What is to be said
     text: String,
     /// Who says it
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
 }
 

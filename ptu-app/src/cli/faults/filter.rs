@@ -4,7 +4,7 @@ use clap::Args;
 use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::{Event, Severity};
 
-use crate::cli::{check_unit, since_argument};
+use crate::cli::check_unit;
 use ptu_bench::clock::Span;
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
@@ -13,21 +13,21 @@ use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
 #[derive(Debug, Args)]
 pub struct FilterArguments {
     /// Only of this unit (serial number)
-    #[arg(long, value_name = "SERIAL")]
-    pub unit: Option<String>,
+    #[arg(long, value_name = "TEXT")]
+    pub serial_no: Option<String>,
     /// Only repaired with a part of this serial number, taken out or put in
-    #[arg(long, value_name = "SERIAL")]
-    serial: Option<String>,
+    #[arg(long, value_name = "TEXT")]
+    part_serial_no: Option<String>,
     /// Only of units in this train
-    #[arg(long, value_name = "TRAIN")]
-    pub train: Option<String>,
+    #[arg(long, value_name = "TEXT")]
+    pub train_no: Option<String>,
     /// Only this code, number or name; several with commas between
     #[arg(long, value_name = "CODE[,CODE]")]
     code: Option<String>,
     /// Only pointing at this part
-    #[arg(long)]
-    lru: Option<String>,
-    /// Only coming from this part, as a diagnosis or a person has told; without either, pointing at it
+    #[arg(long, value_name = "PART")]
+    part: Option<String>,
+    /// Only coming from this part, as a diagnosis or a person found; without either, pointing at it
     #[arg(long, value_name = "PART")]
     pub cause: Option<String>,
     /// Only this severity
@@ -40,40 +40,29 @@ pub struct FilterArguments {
     #[arg(long, value_name = "PROCEDURE")]
     procedure: Option<String>,
     /// Only on this line
-    #[arg(long, value_name = "LINE")]
+    #[arg(long, value_name = "NAME")]
     pub line: Option<String>,
     /// Only seen in this run
     #[arg(long, value_name = "RUN")]
     run: Option<String>,
     /// Only seen then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
     // A hyphen before it is a slip that the span itself answers.
-    #[arg(
-        long,
-        value_name = "SPAN",
-        conflicts_with = "since",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub when: Option<Span>,
-    /// Only seen since: 30d, 12h, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
-    pub since: Option<i64>,
     /// Only with these words in a note on it, on its repair, or on a run that saw it
-    #[arg(long, value_name = "WORDS")]
+    #[arg(long, value_name = "TEXT")]
     note: Option<String>,
 }
 
 impl FilterArguments {
     /// The span of time it asks for.
     pub fn span(&self) -> Span {
-        self.when.unwrap_or(Span {
-            since_us: self.since,
-            until_us: None,
-        })
+        self.when.unwrap_or_default()
     }
 
     /// As the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
-        if let Some(unit) = &self.unit {
+        if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;
         }
         // Of several the others would hide it.
@@ -85,11 +74,11 @@ impl FilterArguments {
         let run = self.run.as_deref().map(|run| store.resolve_run(run));
         let span = self.span();
         Ok(FaultFilter {
-            unit: self.unit.clone(),
-            serial: self.serial.clone(),
-            train: self.train.clone(),
+            unit: self.serial_no.clone(),
+            serial: self.part_serial_no.clone(),
+            train: self.train_no.clone(),
             code: self.code.clone(),
-            lru: self.lru.clone(),
+            lru: self.part.clone(),
             cause: self.cause.clone(),
             severity: self.severity.clone(),
             states: self.state.clone(),
@@ -147,12 +136,12 @@ impl FilterArguments {
         if let Some(said) = self.unknown_code(store)? {
             return Ok(Some(said));
         }
-        if let Some(lru) = &self.lru {
+        if let Some(part) = &self.part {
             let known = store.known_lrus()?;
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(lru)) && !is_part(lru) {
-                let hint = did_you_mean(lru, known.iter().map(String::as_str));
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(part)) && !is_part(part) {
+                let hint = did_you_mean(part, known.iter().map(String::as_str));
                 return Ok(Some(format!(
-                    "no fault ever named the part \"{lru}\"{hint}"
+                    "no fault ever named the part \"{part}\"{hint}"
                 )));
             }
         }
@@ -165,7 +154,7 @@ impl FilterArguments {
                 )));
             }
         }
-        if let Some(train) = &self.train {
+        if let Some(train) = &self.train_no {
             let known = store.known_trains()?;
             if !known.contains(train) {
                 let hint = did_you_mean_number(train, known.iter().map(String::as_str));
@@ -192,7 +181,7 @@ impl FilterArguments {
                 )));
             }
         }
-        if let Some(serial) = &self.serial {
+        if let Some(serial) = &self.part_serial_no {
             let known = store.known_part_serials()?;
             if !known.contains(serial) {
                 let hint = did_you_mean_number(serial, known.iter().map(String::as_str));

@@ -6,7 +6,7 @@ use protocol::message::Identity;
 use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
-use crate::cli::{ScriptsOption, print_json, print_out, since_argument};
+use crate::cli::{Json, ScriptsOption, since_argument};
 use ptu_bench::clock::{local, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::field::{ImportedLog, UnitReading};
@@ -15,15 +15,15 @@ use ptu_bench::table::Table;
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///
-/// The unit is asked for its log, over all power-ups, and told the time: it is given no input and no
-/// stimulus, and nothing is armed. What it logged in runs of this history, armed for a tester, or because
-/// nothing is connected to it any more is no fault. Entries are dated by the times the unit was told; those
-/// of a power-up in which nobody told it have the power-up and the time since then, and a date that they are
-/// not later than. An older unit keeps the log of its present power-up alone.
+/// The unit is asked for its log of all power-ups, and receives the time. It gets no input and no stimulus,
+/// and nothing is armed. Entries that it logged in runs of this history, while it was armed, or because
+/// nothing was connected to it any more are no faults. The times that the unit received date its entries.
+/// Entries of a power-up without such a time show the power-up and the time since it; their date is the
+/// latest possible. An older unit keeps the log of its present power-up alone.
 ///
 /// Examples:
 ///   ptu faults import --unit serial:/dev/ttyUSB0
-///   ptu faults import --unit tcp:127.0.0.1:7000 --since 7d && ptu diagnose latest
+///   ptu faults import --unit tcp:127.0.0.1:7000 --when 7d && ptu diagnose latest
 ///
 /// Exit codes: 0 read, whether or not it holds faults; 2 wrong command; 3 no unit, another unit, or the
 /// link was lost, what was read is kept.
@@ -32,12 +32,11 @@ use ptu_bench::table::Table;
 pub struct ImportArguments {
     #[command(flatten)]
     unit: UnitOption,
-    /// Only what is dated since: 30d, 12h, 2026-03, 2026-03-21
-    #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true)]
-    since: Option<i64>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    /// Only entries that are not certainly older: 30d, 12h, 2026-03, 2026-03-21
+    #[arg(long, value_name = "SPAN", value_parser = since_argument, allow_hyphen_values = true)]
+    when: Option<i64>,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -57,13 +56,10 @@ impl ImportArguments {
             .unit
             .asked()
             .read(&self.scripts.find()?, false, &stop)?;
-        let log = reading.import(&store, self.since)?;
+        let log = reading.import(&store, self.when)?;
         store.close()?;
         let outcome = Outcome { reading, log };
-        let told = match self.json {
-            true => print_json(&outcome.json()),
-            false => print_out(&outcome.text()),
-        };
+        let told = self.json.answer(|| outcome.json(), || outcome.text());
         outcome.reading.complete()?;
         told
     }
@@ -75,7 +71,7 @@ impl Outcome {
         let left_out = self.log.judged.left_out;
         let faults = self.log.imported.new.iter().map(|fault| {
             json!({
-                "code": fault.code, "name": fault.code_name, "lru": fault.lru,
+                "code": fault.code, "name": fault.code_name, "part": fault.lru,
                 "severity": fault.severity, "at": rfc3339(fault.at_us), "message": fault.message,
                 "unit_time_s": fault.bench_us as f64 / 1e6, "freeze_frame": fault.freeze,
             })

@@ -4,7 +4,7 @@ use clap::Args;
 use fault_db::{Life, Store};
 use protocol::display_text::line;
 
-use crate::cli::{ScriptsOption, at_least_one, print_json, print_out};
+use crate::cli::{Json, ScriptsOption, at_least_one, print_json, print_out};
 use ptu_bench::clock::local;
 use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
 use ptu_bench::table::Table;
@@ -22,12 +22,11 @@ use ptu_report::words::{Language, Words, fill};
 pub struct LifeArguments {
     /// Serial number of a unit or of a part that a repair put in or took out, or number of a train
     serial: String,
-    /// At most so many entries, the latest
+    /// At most N entries, the latest
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least_one())]
     limit: u32,
-    /// Print JSON, with all entries
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// Language: en or ko
     #[arg(long, value_name = "LANGUAGE", default_value = "en")]
     lang: Language,
@@ -41,7 +40,7 @@ impl LifeArguments {
         if lives.is_empty() {
             return Err(self.unknown(store)?);
         }
-        if self.json {
+        if self.json.is_asked() {
             return print_json(&lives.iter().map(life::json).collect::<Vec<_>>());
         }
         let names = PartNames::of(&self.scripts.find()?);

@@ -16,15 +16,15 @@ use ptu_report::{FAULT_KEYS, fault_json};
 ///
 /// Examples:
 ///   ptu faults list --state open
-///   ptu faults list --unit SG-0142 --when 2026-03..2026-05
-///   ptu faults list --note 교체 --lru eb_relay
+///   ptu faults list --serial-no SG-0142 --when 2026-03..2026-05
+///   ptu faults list --note 교체 --part eb_relay
 ///   ptu faults list --cause eb_relay --state open,repaired
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ListArguments {
     #[command(flatten)]
     filter: FilterArguments,
-    /// At most so many
+    /// At most N faults
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     #[command(flatten)]

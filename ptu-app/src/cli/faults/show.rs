@@ -4,7 +4,7 @@ use fault_db::{FaultDetail, FaultEvent, FaultSummary, FreezeSample, Store};
 use protocol::display_text::line;
 use serde_json::{Value, json};
 
-use crate::cli::{print_json, print_out};
+use crate::cli::Json;
 use ptu_bench::clock::{local, rfc3339};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
@@ -18,15 +18,11 @@ use ptu_report::words::{Language, Words, fill};
 pub fn show(
     store: &Store,
     id: &str,
-    json: bool,
+    json: Json,
     named: (&Words, &PartNames),
 ) -> Result<Exit, Failure> {
     let fault = store.fault(store.resolve_fault(id)?)?;
-    if json {
-        print_json(&detail_json(&fault))
-    } else {
-        print_out(&detail(&fault, named))
-    }
+    json.answer(|| detail_json(&fault), || detail(&fault, named))
 }
 
 fn detail_json(detail: &FaultDetail) -> Value {

@@ -23,16 +23,16 @@ use ptu_bench::failure::{Exit, Failure, did_you_mean};
 /// Examples:
 ///   ptu faults trend eb_reaction --procedure atp/overspeed
 ///   ptu faults trend eb_reaction --step "code 55: alarm, FSB, EB"
-///   ptu faults trend eb_reaction --unit SG-0142 --when 180d --plot creep.html
-///   ptu faults trend eb_reaction --unit SG-0142 --since-repair eb_relay
+///   ptu faults trend eb_reaction --serial-no SG-0142 --when 180d --plot creep.html
+///   ptu faults trend eb_reaction --serial-no SG-0142 --since-repair eb_relay
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct TrendArguments {
     /// The measurement's name
     measurement: String,
     /// Only of this unit (serial number)
-    #[arg(long, value_name = "SERIAL")]
-    unit: Option<String>,
+    #[arg(long, value_name = "TEXT")]
+    serial_no: Option<String>,
     /// Only as measured by this procedure; another may have other limits
     #[arg(long, value_name = "PROCEDURE")]
     procedure: Option<String>,
@@ -40,18 +40,23 @@ pub struct TrendArguments {
     #[arg(long, value_name = "STEP")]
     step: Option<String>,
     /// Only on this line
-    #[arg(long, value_name = "LINE")]
+    #[arg(long, value_name = "NAME")]
     line: Option<String>,
     /// Only of units in this train
-    #[arg(long, value_name = "TRAIN")]
-    train: Option<String>,
+    #[arg(long, value_name = "TEXT")]
+    train_no: Option<String>,
     /// Only then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
     #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     when: Option<Span>,
     /// Only since this part of the unit was repaired last
-    #[arg(long, value_name = "PART", requires = "unit", conflicts_with = "when")]
+    #[arg(
+        long,
+        value_name = "PART",
+        requires = "serial_no",
+        conflicts_with = "when"
+    )]
     since_repair: Option<String>,
-    /// At most so many values, months or units in a table: the last, and those farthest off
+    /// At most N values, months or units in a table: the last, and the units farthest off
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = at_least_one())]
     limit: u32,
     /// Draw it, too, on a page
@@ -85,22 +90,22 @@ impl TrendArguments {
                 self.measurement
             )));
         }
-        if let Some(unit) = &self.unit {
+        if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;
         }
         let procedures = store.measuring_procedures(&self.measurement)?;
         let span = self.when.unwrap_or_default();
         let mut query = TrendQuery {
             measurement: self.measurement.clone(),
-            unit: self.unit.clone(),
+            unit: self.serial_no.clone(),
             line: self.line.clone(),
-            train: self.train.clone(),
+            train: self.train_no.clone(),
             procedure: self.procedure.clone(),
             step: self.step.clone(),
             since_us: span.since_us,
             until_us: span.until_us,
         };
-        if let (Some(unit), Some(part)) = (&self.unit, &self.since_repair) {
+        if let (Some(unit), Some(part)) = (&self.serial_no, &self.since_repair) {
             let repaired = store.last_repair(unit, part)?;
             query.since_us = Some(repaired.ok_or_else(|| {
                 Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
@@ -120,7 +125,7 @@ impl TrendArguments {
         query: &TrendQuery,
         procedures: &[String],
     ) -> Result<String, Failure> {
-        let of = match &self.unit {
+        let of = match &self.serial_no {
             Some(unit) => format!(" of unit {unit}"),
             None => String::new(),
         };

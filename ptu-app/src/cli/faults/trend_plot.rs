@@ -1,14 +1,22 @@
 //! A trend drawn on a page: values, limits, control limits, the line through them.
 
+use crate::cli::made_by;
 use crate::trend::{TimeSeries, Trend};
 use ptu_report::plot::{Plot, Series, Style};
+use ptu_report::plot_page::PlotPage;
+use ptu_report::run::html;
+use ptu_report::words::Language;
 
 /// Microseconds of a day.
 const DAY_US: f64 = 86.4e9;
 
 /// The page.
 pub fn page(trend: &Trend) -> String {
-    ptu_report::drive::page(&title(trend), &plot(trend).svg())
+    let page = PlotPage {
+        plot: plot(trend),
+        made: made_by(),
+    };
+    html(&page, Language::English.words())
 }
 
 fn title(trend: &Trend) -> String {

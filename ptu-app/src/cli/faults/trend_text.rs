@@ -12,10 +12,10 @@ use ptu_report::limits::short;
 /// Days of a month, for slopes.
 const MONTH_DAYS: f64 = 30.0;
 
-/// A course is shown in so many bars.
+/// A course is shown in this many bars.
 const BARS: usize = 60;
 
-/// A unit so many standard deviations off the fleet's middle is worth a look.
+/// A unit this many standard deviations off the fleet's middle is worth a look.
 const STANDS_OUT: f64 = 3.0;
 
 /// All of it.

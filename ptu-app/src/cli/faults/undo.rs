@@ -11,17 +11,18 @@ use ptu_bench::failure::{Exit, Failure};
 
 /// Take back what a person wrote last about a fault, and the same at the others of its case
 ///
-/// The history keeps it and the correction; state, cause, repairs and counts are as if it had never been written. What a
-/// run found is not taken back, nor what a run or another person has built on: say by a state or a note what is so.
+/// The history keeps the entry and its withdrawal; state, cause, repairs and counts are as if it had never been written.
+/// What a run found cannot be taken back, nor an entry on which a later run or another person's entry depends: correct
+/// these by a new state or a note.
 #[derive(Debug, Args)]
 pub struct UndoArguments {
     /// The fault
     id: String,
     /// Who takes it back
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// Why
-    #[arg(long, default_value = "")]
+    #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
     /// Of this fault alone, not of the others of its case
     #[arg(long)]

@@ -10,10 +10,10 @@ use super::{ScriptsOption, print_out};
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Exit, Failure};
 
-/// Begin a procedure, unit configuration, line or fault mode of one's own
+/// Begin a procedure, unit configuration, line or fault mode of your own
 ///
-/// Writes a file with comments that is right as it stands and passes `ptu run --check`. Without --in it goes into the
-/// user's own scripts, which are laid over those of the program. A file that is there is left as it is.
+/// Writes a file with comments that is valid as it is: `ptu run --check` accepts it. Without --in it goes into your own
+/// scripts, which replace those of the program file by file. An existing file is not changed.
 ///
 /// Examples:
 ///   ptu new procedure door/depot_doors
@@ -127,7 +127,7 @@ impl NewArguments {
                 if !parts.iter().any(|lru| lru.id.as_str() == part) {
                     let parts = parts.iter().map(|lru| lru.id.as_str());
                     return Err(Failure::usage(format!(
-                        "no part \"{part}\"{}; `ptu catalog lrus` lists them",
+                        "no part \"{part}\"{}; `ptu catalog parts` lists them",
                         ptu_bench::failure::did_you_mean(part, parts)
                     )));
                 }

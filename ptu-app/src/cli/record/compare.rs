@@ -6,29 +6,29 @@ use btu_rig::drive::Load;
 use clap::Args;
 use fault_db::Store;
 
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::data::{check_writable, write};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::record::CompareRequest;
 use ptu_report::{json_text, record};
 
-/// Hold a run of a unit's own record against its target and against a sound unit's run through the same section
+/// Compare a run of a unit's own record with its target, and with a sound unit's run through the same section
 ///
-/// Tells where the speed parts from the run's own target, where target and speed part from those of a sound
-/// unit that is driven for it (same line, section and unit configuration), the stop error, a late brake, and
-/// markers that were missed. Section, line and unit configuration are found out from the trace and its run.
+/// Shows where the speed deviates from the run's own target, and where target and speed deviate from those of a
+/// sound unit that drives the same section (same line and unit configuration). Also shows the stop error, a late
+/// brake, and missed markers. Section, line and unit configuration follow from the trace and its run.
 ///
 /// Examples:
 ///   ptu record compare latest
 ///   ptu record compare 59c2ce97 --load full --report compare.json
 ///
-/// Exit codes: 0 as expected; 1 something parts; 2 wrong command, or no run record.
+/// Exit codes: 0 as expected; 1 something deviates; 2 wrong command, or no run record.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CompareArguments {
     /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
     trace: String,
-    /// Section [default: the one whose markers and stop are where the run found them]
+    /// Section [default: the one whose markers and stop fit those of the run]
     #[arg(long, value_name = "N")]
     section: Option<u16>,
     /// Line, lines/NAME.toml [default: that of the trace's run]
@@ -40,9 +40,8 @@ pub struct CompareArguments {
     /// Passengers of the sound unit's train: a mass, empty or full
     #[arg(long, value_name = "KG|empty|full")]
     load: Option<Load>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     /// Write the comparison to a file, .json or .txt; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<PathBuf>,
@@ -81,10 +80,7 @@ impl CompareArguments {
             };
             write(file, format!("{}\n", content.trim_end()))?;
         }
-        match self.json {
-            true => print_json(&document)?,
-            false => print_out(&text)?,
-        };
+        self.json.answer(|| &document, || text)?;
         Ok(match compared.comparison.is_as_expected() {
             true => Exit::Passed,
             false => Exit::Failed,

@@ -5,7 +5,7 @@ use fault_db::Store;
 use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::clock::rfc3339;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::field::UnitReading;
@@ -14,9 +14,9 @@ use ptu_bench::stop::Stop;
 
 /// Read a unit's stored record of automatic runs: each run that is new becomes a trace
 ///
-/// The unit is asked for its record and its log, and told the time: it is given no input and no stimulus, and
+/// The unit is asked for its record and its log, and receives the time: it gets no input and no stimulus, and
 /// nothing is armed. A run that is under way is left for the next time. `ptu trace show ID` shows a trace,
-/// `ptu record compare ID` holds it against what it should have been.
+/// `ptu record compare ID` compares it with a sound unit's run.
 ///
 /// Examples:
 ///   ptu record pull --unit serial:/dev/ttyUSB0
@@ -29,9 +29,8 @@ use ptu_bench::stop::Stop;
 pub struct PullArguments {
     #[command(flatten)]
     unit: UnitOption,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -44,10 +43,8 @@ impl PullArguments {
         let reading = self.unit.asked().read(&self.scripts.find()?, true, &stop)?;
         let pulled = pull_reading(&store, &reading)?;
         store.close()?;
-        let told = match self.json {
-            true => print_json(&document(&reading, &pulled)),
-            false => print_out(&text(&reading, &pulled)),
-        };
+        let document = || document(&reading, &pulled);
+        let told = self.json.answer(document, || text(&reading, &pulled));
         reading.complete()?;
         told
     }

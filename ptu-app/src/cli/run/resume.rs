@@ -21,7 +21,7 @@ const UNKNOWN_SERIAL: &str = "unknown";
 pub struct ResumeOption {
     /// Run what RUN left without a verdict (stopped, interrupted, not begun) as a new run linked to it. Unit, serial
     /// number, train number, line, unit configuration, seed and injected faults are those of RUN where they are not
-    /// given; what a run does not store (--harness, --train, --set, --scatter, --step, --repeat) is to be given again
+    /// given; what a run does not store (--harness, --train, --set, --scattered, --step, --repeat) is to be given again
     #[arg(long, value_name = "RUN", conflicts_with_all = ["procedures", "retry_errors", "adaptive", "check"])]
     resume: Option<String>,
     /// The same with what could not be tested in RUN: its procedures that ended as errors

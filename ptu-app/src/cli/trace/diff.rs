@@ -9,21 +9,21 @@ use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_report::trace_io::{beside, is_importable};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
-/// Numbers differ beyond one step of their signal, words and bits at once; where one of the traces comes
-/// from a unit on a port, beyond what its clock explains (two rows, and a tolerance by the unit).
-/// The number of log entries (`events`) is left out; on a port also efforts, accelerations and counts of
-/// frames.
+/// Numbers differ if they are more than one step of their signal apart, words and bits if they are not the same. If
+/// one of the traces comes from a unit on a port, they differ only beyond what its clock explains (two rows, and a
+/// tolerance for each unit of measure). The number of log entries (`events`) is not compared; on a port neither are
+/// efforts, accelerations and counts of frames.
 ///
 /// B may be a .csv, .parquet or .mcap file: an export, or another program's table with seconds in its first
-/// column or messages in JSON. Seconds are from the trigger, messages at their time of day; each row is compared with
-/// the last sample until then, where they do not come at the trace's rows as with a unit on a port.
+/// column or messages in JSON. Seconds count from the trigger, messages have a time of day. Each row of the trace is
+/// compared with the last sample before it.
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest
@@ -41,13 +41,12 @@ pub struct DiffArguments {
     /// Only these signals
     #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
     signals: Vec<String>,
-    /// Lay a file's samples so many seconds later; negative: sooner
+    /// Shift a file's samples to this many seconds later; negative: earlier
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
         allow_hyphen_values = true, value_parser = shift_argument)]
     shift: f64,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -84,15 +83,15 @@ impl DiffArguments {
         let is_asked = |name: &String| self.signals.is_empty() || self.signals.contains(name);
         let unknown = sides.unknown.iter().filter(|name| is_asked(name));
         comparison.missing.extend(unknown.cloned());
-        if self.json {
-            return print_json(&json!({
+        let document = || {
+            json!({
                 "a": a.to_string(), "b": sides.name,
                 "from_s": comparison.window_s.0, "to_s": comparison.window_s.1,
                 "missing_in_a": comparison.missing, "missing_in_b": comparison.missing_expected,
                 "deviations": deviations_json(&comparison),
-            }));
-        }
-        print_out(&text(a, &sides, &comparison))
+            })
+        };
+        self.json.answer(document, || text(a, &sides, &comparison))
     }
 
     fn with_file(

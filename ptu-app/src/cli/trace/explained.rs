@@ -166,6 +166,6 @@ fn link_json(link: &Link) -> Value {
             code,
             name,
             lru,
-        } => json!({"kind": "fault", "at_s": at_s, "code": code, "name": name, "lru": lru}),
+        } => json!({"kind": "fault", "at_s": at_s, "code": code, "name": name, "part": lru}),
     }
 }

@@ -20,8 +20,8 @@ use ptu_report::trace_io::{Format, TracePart, export};
 /// unit, period, trigger and each signal's unit and words are kept.
 ///
 /// Examples:
-///   ptu trace export latest --to trace.parquet
-///   ptu trace export 59c2ce97 --to brake.csv --signals speed,limit,eb --window -2..5
+///   ptu trace export latest --out trace.parquet
+///   ptu trace export 59c2ce97 --out brake.csv --signals speed,limit,eb --window -2..5
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ExportArguments {
@@ -29,7 +29,7 @@ pub struct ExportArguments {
     id: String,
     /// The file; its ending says the format
     #[arg(long, value_name = "FILE")]
-    to: PathBuf,
+    out: PathBuf,
     #[command(flatten)]
     part: PartArguments,
     /// Replace a file that is there
@@ -40,16 +40,16 @@ pub struct ExportArguments {
 impl ExportArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         // Before anything is looked for.
-        Format::of(&self.to)?;
+        Format::of(&self.out)?;
         let id = store.resolve_trace(&self.id)?;
         let chosen = TracePart::new(store, id, &self.part.signals, self.part.window)?;
-        export(&chosen, &self.to, self.force)?;
+        export(&chosen, &self.out, self.force)?;
         print_out(&format!(
             "trace {}: {} rows of {} signals to {}",
             id.short(),
             chosen.about.rows,
             chosen.about.channels.len(),
-            self.to.display()
+            self.out.display()
         ))
     }
 }

@@ -9,20 +9,20 @@ use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
-use crate::cli::{Database, ScriptsOption, answered, print_json, print_out};
+use crate::cli::{Database, Json, ScriptsOption, answered};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
 use ptu_bench::stop::Stop;
 
-/// Do again what was done in a trace, on the embedded unit or one on a port, and compare what comes
+/// Repeat the stimuli of a trace on the simulated unit or one on a port, and compare the responses
 ///
-/// The replay is kept as a run with a trace of its own. It is `reproduced` when it does as the trace, `not
-/// reproduced` when it does not; as the good twin, or as neither. Its verdict is on the unit: passed when
-/// it does as the good twin, a sound unit given the same.
+/// The replay is stored as a run with a trace of its own. The answer is `reproduced` if the unit responds as in the
+/// trace, and else `not reproduced`: as the good twin, or as neither. The verdict is on the unit: passed if it
+/// responds as the good twin, a sound unit with the same stimuli.
 ///
 /// Examples:
-///   ptu trace replay latest                                on a sound embedded unit
+///   ptu trace replay latest                                on a sound simulated unit
 ///   ptu trace replay latest --inject eb_relay.slow         is it this fault?
 ///   ptu trace replay 59c2ce97 --unit serial:/dev/ttyUSB0   the unit on the bench
 #[derive(Debug, Args)]
@@ -33,15 +33,14 @@ pub struct ReplayArguments {
     /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
-    /// Faults to inject into the embedded unit or into the train around any, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit or into the train around any, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Who tests
     #[arg(long, value_name = "TEXT", default_value = "")]
-    operator: String,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    who: String,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     reports: ReportOption,
     #[command(flatten)]
@@ -54,12 +53,12 @@ impl ReplayArguments {
         let faults = directory.chosen_faults(&self.inject)?;
         if self.unit != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
             return Err(Failure::usage(
-                "--inject puts faults of a unit into the embedded one only; inject into a served one with \
+                "--inject puts faults of a unit into the simulated one only; inject into a served one with \
                  `ato-under-test --inject`",
             ));
         }
         self.reports.check()?;
-        limits::name("the operator's name", &self.operator)?;
+        limits::name("the operator's name", &self.who)?;
         // A trace that is not there must not make a database.
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
@@ -72,14 +71,12 @@ impl ReplayArguments {
         let rerunning = Rerunning {
             endpoint: self.unit.clone(),
             faults,
-            operator: self.operator.clone(),
+            operator: self.who.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
         let detail = store.run(rerun.run_id, &ptu_bench::process_id::is_alive)?;
-        let told = match self.json {
-            true => print_json(&rerun_json(&original, &rerun)),
-            false => print_out(&text(&original, &rerun)),
-        };
+        let document = || rerun_json(&original, &rerun);
+        let told = self.json.answer(document, || text(&original, &rerun));
         self.reports.write(&store, &directory, &detail)?;
         store.close()?;
         answered(told, rerun.exit)

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::explained::{explanation_json, explanation_text};
 use super::plot::{lanes, plot};
 use super::{PartArguments, read};
-use crate::cli::{ScriptsOption, print_json, print_out};
+use crate::cli::{Json, ScriptsOption, print_json, print_out};
 use ptu_bench::clock::rfc3339;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::replay::{Explanation, explain};
@@ -23,9 +23,8 @@ pub struct ShowArguments {
     /// Show deviating signals beside those of the good twin: the same stimuli on a sound unit
     #[arg(long)]
     twin: bool,
-    /// Print JSON with all samples; with --twin also where they deviate
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -33,7 +32,7 @@ pub struct ShowArguments {
 impl ShowArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         let (id, trace) = read(store, &self.id, &self.part.signals, self.part.window)?;
-        if self.json {
+        if self.json.is_asked() {
             let mut document = trace_json(id, &trace, &TraceNote::all(store, id)?);
             if self.twin {
                 add(&mut document, explanation_json(&self.explained(store, id)?));
@@ -115,6 +114,6 @@ fn trace_json(id: Id, trace: &TraceData, notes: &[TraceNote]) -> Value {
         "notes": notes.iter().map(|note| json!({
             "time_s": note.time_us as f64 / 1e6, "at": note.at, "who": note.who, "text": note.text,
         })).collect::<Vec<_>>(),
-        "channels": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
+        "signals": trace.channels.iter().zip(&trace.columns).map(channel).collect::<Vec<_>>(),
     })
 }

@@ -11,6 +11,7 @@ use super::setup::Setup;
 use crate::gui::parts::{ActionPlace, chip};
 use crate::gui::{Page, PageContext, Palette, Sizes};
 use ptu_bench::bench_worker::Phase;
+use ptu_bench::table::cut;
 use ptu_report::words::{self, Words, fill};
 
 /// Letters of a chip that names faults, at most.
@@ -37,7 +38,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, setup: &mut Setup) {
                 let care = &context.words.care;
                 let server = context.queries.paths().database.display().to_string();
                 let said = fill(care.reads, &[("server", &server)]);
-                let cut = shortened(&said);
+                let cut = cut(&said, LINE);
                 chip(ui, &cut, Palette::of(ui).warn)
                     .on_hover_text(format!("{said}. {}", care.is_server));
             }
@@ -148,7 +149,7 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
     if let Some(setup) = unit.setup.value().filter(|setup| !setup.faults.is_empty()) {
         let names = setup.injected().unwrap_or_default();
         let said = fill(frame.injected, &[("faults", &names)]);
-        chip(ui, &shortened(&said), palette.warn).on_hover_text(said);
+        chip(ui, &cut(&said, LINE), palette.warn).on_hover_text(said);
     }
     if let Some(identity) = identity {
         let serial = ptu_bench::run::unit_text::serial(&identity);
@@ -169,14 +170,6 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
             colour,
         );
     }
-}
-
-/// What fits a line of the bar.
-fn shortened(text: &str) -> String {
-    if text.chars().count() <= LINE {
-        return text.to_owned();
-    }
-    text.chars().take(LINE).chain(['…']).collect()
 }
 
 /// What of the unit is not as the record of its train says.

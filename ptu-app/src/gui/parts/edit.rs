@@ -3,7 +3,7 @@
 use eframe::egui::{Align2, Key, Response, TextEdit, Ui, WidgetText};
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 
-/// A field for a name or a serial number, so many points wide.
+/// A field for a name or a serial number, this many points wide.
 pub fn name_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     TextEdit::singleline(text)
         .char_limit(MOST_NAME)
@@ -11,7 +11,7 @@ pub fn name_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
         .desired_width(wide)
 }
 
-/// A field for a note, so many points wide.
+/// A field for a note, this many points wide.
 pub fn note_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     TextEdit::singleline(text)
         .char_limit(MOST_TEXT)

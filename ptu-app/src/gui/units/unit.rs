@@ -36,7 +36,7 @@ pub struct Unit {
     lost: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
-    /// Nothing is begun: nobody has given a name.
+    /// Nothing is begun: no name has been given.
     pub(super) locked: bool,
     /// It was let go without its outputs being confirmed safe.
     pub(super) not_safe: bool,

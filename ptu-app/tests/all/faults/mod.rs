@@ -157,7 +157,7 @@ fn the_tables_name_no_fault_that_is_gone() {
     let catalogue = Place::new().json(&["catalog", "faults", "--json"]);
     let keys = [
         ("id", "text"),
-        ("lru", "text"),
+        ("part", "text"),
         ("mode", "text"),
         ("severity", "text"),
         ("weight", "number"),
@@ -225,7 +225,7 @@ fn two_faults_at_once_are_both_seen() {
     );
     let parts: BTreeSet<_> = list(&report["faults"])
         .iter()
-        .map(|fault| text(&fault["lru"]))
+        .map(|fault| text(&fault["part"]))
         .collect();
     assert!(
         parts.contains("tra") && parts.contains("rs485_link"),
@@ -306,7 +306,9 @@ fn check_steps(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
 
 fn check_parts(mode: &FaultMode, run: &FaultRun) -> Option<String> {
     let faults = list(&run.report["faults"]);
-    let named = faults.iter().any(|fault| fault["lru"] == mode.lru.as_str());
+    let named = faults
+        .iter()
+        .any(|fault| fault["part"] == mode.lru.as_str());
     let excused = PART_NOT_NAMED.iter().find(|(id, _)| *id == mode.id);
     match (named, excused) {
         _ if faults.is_empty() => Some("no fault stored".into()),
@@ -332,8 +334,8 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let blamed = list(&run.report["faults"])
         .iter()
         // An event that names no part suspects nobody.
-        .filter(|fault| fault["lru"] != "unknown")
-        .filter(|fault| of_train(text(&fault["lru"])) != train_is_broken)
+        .filter(|fault| fault["part"] != "unknown")
+        .filter(|fault| of_train(text(&fault["part"])) != train_is_broken)
         .map(|fault| format!("suspects the other side: {fault}"));
     let failed = list(&run.report["steps"])
         .iter()

@@ -134,7 +134,7 @@ pub fn run_program(id: &str) -> FaultRun {
     let (said, report) = place.run(&["--inject", id, "--report", "r.junit.xml"]);
     assert!(!said.err.contains("panicked"), "{}", said.all());
     let diagnosis = place.json(&["diagnose", "latest", "--json"]);
-    let first = &diagnosis["candidates"][0]["lru"];
+    let first = &diagnosis["candidates"][0]["part"];
     let ids = list(&report["faults"])
         .iter()
         .filter_map(|fault| fault["trace_id"].as_str());
@@ -174,7 +174,7 @@ impl Window {
         let rows = number(&trace["rows"]);
         let trigger = number(&trace["trigger_row"]);
         let period_ms = number(&trace["period_ms"]);
-        let channels = list(&trace["channels"]).iter();
+        let channels = list(&trace["signals"]).iter();
         Self {
             id: id.to_owned(),
             before_s: trigger * period_ms / 1e3,

@@ -32,14 +32,14 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
         .finish()
         .exits(1);
 
-    let first = import(&depot, &unit, &["--operator", "Kim"]);
+    let first = import(&depot, &unit, &["--who", "Kim"]);
     assert_eq!(first["unit_serial"], "FLD-1");
     assert_eq!(first["complete"], true);
     let dead = list(&first["faults"])
         .iter()
         .find(|f| f["name"] == "tacho1_dead");
     let dead = dead.unwrap_or_else(|| panic!("{first}"));
-    assert_eq!(dead["lru"], "speed_sensor_1");
+    assert_eq!(dead["part"], "speed_sensor_1");
     let frozen = |name: &str| {
         let samples = list(&dead["freeze_frame"]).iter();
         samples
@@ -126,7 +126,7 @@ fn a_wrong_clock_told_before_hides_no_fault() {
         .finish()
         .exits(1);
 
-    let read = import(&depot, &unit, &["--since", "7d"]);
+    let read = import(&depot, &unit, &["--when", "7d"]);
     assert!(names(&read["faults"]).contains(&"tacho1_dead"), "{read}");
     assert_eq!(number(&read["left_out"]["too_old"]), 0.0, "{read}");
     let dead = list(&read["faults"])
@@ -151,7 +151,7 @@ fn without_a_unit_nothing_is_stored() {
     place
         .ptu(&["faults", "import", "--unit", "sim"])
         .exits(2)
-        .explains(&["embedded unit", "--unit"]);
+        .explains(&["simulated unit", "--unit"]);
     place
         .ptu(&["faults", "import", "--unit", "lockstep:/dev/pts/0"])
         .exits(2)

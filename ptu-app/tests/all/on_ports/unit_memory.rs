@@ -74,7 +74,7 @@ fn a_unit_that_never_drove_has_no_run_to_pull() {
     place
         .ptu(&["record", "pull", "--unit", "sim"])
         .exits(2)
-        .explains(&["embedded unit"]);
+        .explains(&["simulated unit"]);
 }
 
 #[test]

@@ -257,7 +257,7 @@ fn or_dash(text: &str) -> &str {
     if text.is_empty() { "–" } else { text }
 }
 
-/// At most so many letters.
+/// At most this many letters.
 pub(super) fn clipped(text: &str, most: usize) -> String {
     let text = text.trim();
     match text.char_indices().nth(most) {

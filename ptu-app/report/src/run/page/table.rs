@@ -26,12 +26,15 @@ pub fn pieces(table: &Table, letters: &FontMetrics) -> Vec<Piece> {
             .map(|column| (Cell::Text(Tone::Soft, column.name.clone()), 1))
             .collect(),
     };
-    let mut top = row(&heading, &table.columns, letters);
-    top.items
-        .push(Item::rule(MARGIN, top.height, INSIDE, Ink::Rule));
-    top.repeated = true;
-    top.with_next = true;
-    let mut pieces = vec![top];
+    let mut pieces = Vec::new();
+    if table.has_headings() {
+        let mut top = row(&heading, &table.columns, letters);
+        top.items
+            .push(Item::rule(MARGIN, top.height, INSIDE, Ink::Rule));
+        top.repeated = true;
+        top.with_next = true;
+        pieces.push(top);
+    }
     for (place, one) in table.rows.iter().enumerate() {
         let mut piece = row(one, &table.columns, letters);
         if one.kind == RowKind::Head && place > 0 {
@@ -43,7 +46,7 @@ pub fn pieces(table: &Table, letters: &FontMetrics) -> Vec<Piece> {
         // A step's name stands with the first of what belongs to it.
         piece.with_next =
             one.kind == RowKind::Head && next.is_some_and(|next| next.kind == RowKind::Detail);
-        piece.under_repeated = true;
+        piece.under_repeated = table.has_headings();
         pieces.push(piece);
     }
     pieces

@@ -9,7 +9,7 @@ use ptu_bench::bench_worker::{BenchWorker, Phase};
 #[derive(Debug, Default)]
 pub struct BenchSnapshot {
     pub phase: Phase,
-    /// Counts benches made anew and made safe.
+    /// Goes up when a bench is made again or made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
     /// What the last self-test asked for found.

@@ -100,7 +100,7 @@ impl BenchPage {
     }
 }
 
-/// The unit's sheet: filled in anew for another configuration, and without what is no longer given.
+/// The unit's sheet: filled in again for another configuration, and without what is no longer given.
 fn sheet<'a>(
     sheets: &'a mut BTreeMap<u64, Sheet>,
     unit: u64,

@@ -157,7 +157,7 @@ mod tests {
     use ptu_bench::structure::Link;
     use ptu_report::words::Language;
 
-    /// Goal: nobody takes out a part beside the suspected one. Method: it and what comes after it are marked by words, what
+    /// Goal: a technician does not take out the part next to the suspected one. Method: it and what comes after it are marked by words, what
     /// comes before is not.
     #[test]
     fn the_part_and_all_after_it_are_marked_by_words() {

@@ -97,7 +97,7 @@ impl SeenUnits {
     }
 }
 
-/// The whole way of a case, on the embedded unit with a fault.
+/// The whole way of a case, on the simulated unit with a fault.
 fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.case;
     ui.add_space(8.0);

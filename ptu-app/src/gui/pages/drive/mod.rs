@@ -1,4 +1,4 @@
-//! Automatic runs of a whole train on an embedded unit, from station to station: what `ptu drive` does, with its figures and
+//! Automatic runs of a whole train on a simulated unit, from station to station: what `ptu drive` does, with its figures and
 //! plots in the window.
 
 mod form;
@@ -13,7 +13,7 @@ use crate::gui::{PageContext, Palette};
 use form::{Form, Offered};
 use ptu_bench::drive::{Driven, drive_all};
 use ptu_bench::pool::cores;
-use ptu_report::drive::DriveSheet;
+use ptu_report::drive::Results;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
 
@@ -26,7 +26,7 @@ pub struct DrivePage {
     form: Form,
     job: Job,
     driven: Slot,
-    sheet: Option<Arc<DriveSheet>>,
+    sheet: Option<Arc<Results>>,
     /// Counts sheets: another one is looked at from its top.
     number: usize,
     pages: Request<Vec<Page>>,
@@ -92,7 +92,7 @@ impl DrivePage {
         if self.job.poll(context, context.words.drive.cannot_drive) {
             let mut driven = self.driven.lock().unwrap_or_else(PoisonError::into_inner);
             let runs = driven.take().filter(|runs| !runs.is_empty());
-            self.sheet = runs.map(|runs| Arc::new(DriveSheet::new(runs)));
+            self.sheet = runs.map(|runs| Arc::new(Results::of_runs(runs)));
             (self.pages, self.language) = (Request::Idle, None);
             self.number += 1;
         }

@@ -93,7 +93,7 @@ impl Change {
         }
     }
 
-    /// Shows it: only what the fault's state allows, and nothing while that state is being read anew.
+    /// Shows it: only what the fault's state allows, and nothing while that state is being read again.
     pub fn show(
         &mut self,
         ui: &mut Ui,

@@ -1,5 +1,6 @@
 //! The procedures page: select steps, run them, follow the run.
 
+mod conclusion;
 mod controls;
 mod overview;
 mod prepare;
@@ -19,13 +20,12 @@ use crate::gui::messages::About;
 use crate::gui::parts::{FirstHalf, RunNoteForm};
 use crate::gui::request::Request;
 use crate::gui::{PageContext, Palette};
+pub use conclusion::Concluded;
 use prepare::{Prepared, RunSettings, ShownSuite};
 pub use present::present;
 use ptu_bench::bench_worker::Phase;
 use ptu_bench::run::{BenchChoice, Suite};
-use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_report::naming::PartNames;
-use ptu_report::proof_text;
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
@@ -68,16 +68,6 @@ pub struct ProceduresPage {
     traced: Request<Vec<(String, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
-}
-
-/// What is said of a run that has ended.
-pub struct Concluded {
-    /// The conclusion, or what the run says of repairs before it.
-    pub text: String,
-    /// The diagnosis of a run that failed.
-    pub answer: Option<Box<Answer>>,
-    /// Of a run that passed.
-    pub proofs: Vec<RepairProof>,
 }
 
 /// An order that is being prepared.
@@ -161,7 +151,7 @@ impl ProceduresPage {
         Some((self.concluded?, &self.conclusion))
     }
 
-    /// Scripts are loaded for the unit's configuration, line and train: anew when these change.
+    /// Scripts are loaded for the unit's configuration, line and train: again when these change.
     fn keep_loaded(&mut self, context: &PageContext<'_>) {
         let choice = &context.units.chosen().choice;
         let loaded_for = self.loaded_for.as_ref();
@@ -188,7 +178,7 @@ impl ProceduresPage {
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.stops != context.units.stops() || context.settings.locked {
-            // Nothing begins by itself after everything was stopped, nor while nobody has given a name.
+            // Nothing begins by itself after everything was stopped, nor while no name has been given.
             self.stops = context.units.stops();
             self.orders.clear();
             self.wanted = None;
@@ -287,58 +277,6 @@ impl ProceduresPage {
                 order => self.orders.push(PendingOrder { order, ..ordered }),
             }
         }
-    }
-
-    /// Requests the diagnosis of a run that failed, and of one that passed what it says of repairs.
-    fn conclude(&mut self, context: &PageContext<'_>) {
-        self.conclusion.poll();
-        self.traced.poll();
-        let run = context.units.chosen().run.as_ref();
-        let Some(outcome) = run.and_then(|run| run.ended.as_ref()?.as_ref()) else {
-            return;
-        };
-        if self.concluded == Some(outcome.id) {
-            return;
-        }
-        self.concluded = Some(outcome.id);
-        let id = outcome.id;
-        self.traced = Request::Pending(context.queries.run(move |paths| {
-            let seen = paths.read()?.run_occurrences(id)?.into_iter();
-            let traced = seen.filter_map(|seen| Some((seen.message, seen.trace_id?)));
-            Ok(traced.collect())
-        }));
-        self.conclusion = match outcome.exit {
-            ptu_bench::failure::Exit::Failed => {
-                let words = context.words;
-                Request::Pending(context.queries.run(move |paths| {
-                    let store = paths.open()?;
-                    let answer = diagnose_run(&store, &paths.scripts, id)?;
-                    let conclusion = words.sentence(&answer.diagnosis.conclusion);
-                    let text = match answer.attribute(&store) {
-                        Ok(()) => conclusion.into_owned(),
-                        // The part is known all the same.
-                        Err(failure) => format!("{conclusion} ({failure})"),
-                    };
-                    Ok(Concluded {
-                        text,
-                        answer: Some(Box::new(answer)),
-                        proofs: Vec::new(),
-                    })
-                }))
-            }
-            ptu_bench::failure::Exit::Passed => {
-                let words = context.words;
-                Request::Pending(context.queries.run(move |paths| {
-                    let proofs = prove_repairs(&paths.open()?, &paths.scripts, id)?;
-                    Ok(Concluded {
-                        text: proof_text(&proofs, words),
-                        answer: None,
-                        proofs,
-                    })
-                }))
-            }
-            _ => Request::Idle,
-        };
     }
 
     fn run(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {

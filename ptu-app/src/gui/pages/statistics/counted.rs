@@ -13,7 +13,7 @@ use ptu_bench::clock;
 use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
 
-/// A repair after which the fault is seen again within so many days did not hold.
+/// A repair after which the fault is seen again within this many days did not hold.
 pub const BACK_WITHIN_DAYS: u32 = 30;
 
 /// Of what is asked.
@@ -36,7 +36,7 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
-    /// What trains ran in the months, or why their distances cannot be read; of one unit nobody knows them.
+    /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
     pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, String>>,
     pub parts: PartNames,
 }

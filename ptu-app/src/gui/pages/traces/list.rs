@@ -16,7 +16,7 @@ pub struct TraceList {
     runs: CachedResponse<Vec<ListedRun>>,
     filter: String,
     units: UnitFilter,
-    /// What fits the filter, by run and trace; told anew when either changes.
+    /// What fits the filter, by run and trace; computed again when either changes.
     shown: Vec<(usize, Option<usize>)>,
     /// Version of the data it was asked for.
     version: (usize, u64),

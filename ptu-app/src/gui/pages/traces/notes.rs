@@ -7,6 +7,7 @@ use super::row::Sheet;
 use crate::gui::parts::{NoteOn, RunNoteForm, lane, link, name_edit};
 use crate::gui::request::CachedResponse;
 use crate::gui::{PageContext, Palette};
+use ptu_bench::table::cut;
 use ptu_report::trace_notes::TraceNote;
 use ptu_report::trace_view::{Cursor, TracePlot, TraceView};
 
@@ -55,7 +56,7 @@ impl TraceNotes {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(words.report.notes).color(quiet));
                 for (number, note) in (1..).zip(notes).take(LINKS) {
-                    let text = format!("{number}  {} {}", note.time(), short(&note.text));
+                    let text = format!("{number}  {} {}", note.time(), cut(&note.text, MOST));
                     if link(ui, text).on_hover_text(whole(note)).clicked()
                         && let Some(row) = row_of(note, scene.view())
                     {
@@ -122,15 +123,6 @@ fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
     let rows = note.time_us.div_euclid(data.period_us);
     let row = rows.saturating_add(view.trigger_row() as i64);
     usize::try_from(row).ok().filter(|row| *row < data.rows())
-}
-
-fn short(text: &str) -> String {
-    let mut letters = text.chars();
-    let mut short: String = letters.by_ref().take(MOST).collect();
-    if letters.next().is_some() {
-        short.push('…');
-    }
-    short
 }
 
 /// All of a note, with who wrote it.

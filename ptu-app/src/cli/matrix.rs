@@ -1,7 +1,7 @@
-//! `ptu diagnose --matrix`: the order of tests of any dependency matrix.
+//! `ptu matrix`: the order of tests of any dependency matrix.
 
 use std::fmt::Display;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use diagnosis::matrix::{
@@ -9,7 +9,7 @@ use diagnosis::matrix::{
     Posterior, plan, read_outcomes,
 };
 
-use super::print_out;
+use super::{Json, print_out};
 use ptu_bench::data::read_within;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_bench::stdio;
@@ -21,59 +21,70 @@ const SHOWN_STATES: usize = 20;
 /// Longest file of a matrix or of outcomes, bytes.
 const LONGEST_FILE: u64 = 64 << 20;
 
-/// What is asked of a matrix.
+/// Find the cheapest order of tests of any dependency matrix, and what outcomes leave of its states
+///
+/// Examples:
+///   ptu matrix pump.json                            cheapest order of tests
+///   ptu matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
+///   ptu matrix pump.json --outcomes found.json --json
+///
+/// Exit codes: 0 answered, 2 wrong matrix or outcomes.
 #[derive(Debug, Args)]
-pub struct MatrixOptions {
+#[command(verbatim_doc_comment)]
+pub struct MatrixArguments {
+    /// Dependency matrix of states and tests; its format is in docs/dictionaries.md
+    file: PathBuf,
     /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
-    #[arg(long, value_name = "OUTCOMES", conflicts_with = "runs")]
+    #[arg(long, value_name = "OUTCOMES")]
     outcomes: Option<String>,
     /// How the tree is made [default: optimal if it can be found, else greedy]
-    #[arg(long, value_enum, conflicts_with = "runs")]
+    #[arg(long, value_enum)]
     tree: Option<TreeMethod>,
     /// Probability that an answer must have where tests may err, above 0.5 and at most 1
-    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE, conflicts_with = "runs")]
+    #[arg(long, value_name = "P", default_value_t = DEFAULT_CONFIDENCE)]
     confidence: f64,
+    #[command(flatten)]
+    json: Json,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum TreeMethod {
-    /// The cheapest there is: 20 states × 20 tests for certain, up to 64 × 64 if luck has it
+    /// The cheapest there is: 20 states × 20 tests always, larger ones up to 64 × 64 only if the search ends in time
     Optimal,
     /// Most information for its cost, each choice checked by what follows
     Greedy,
 }
 
-/// Answers for one matrix.
-pub(super) fn diagnose_matrix(
-    file: &Path,
-    options: &MatrixOptions,
-    json: bool,
-) -> Result<Exit, Failure> {
-    let place = file.display();
-    let matrix = Matrix::from_json(&read(file)?).map_err(|error| wrong(&place, &error))?;
-    let known = match &options.outcomes {
-        Some(given) => known(&matrix, given)?,
-        None => Posterior::prior(&matrix),
-    };
-    let asked = PlanOptions {
-        method: options.tree.map(|method| match method {
-            TreeMethod::Optimal => Method::Optimal,
-            TreeMethod::Greedy => Method::Greedy,
-        }),
-        confidence: options.confidence,
-    };
-    let plan = plan(&matrix, &known, asked).map_err(|error| match error {
-        MatrixError::Confidence(_) => wrong(&"--confidence", &error),
-        _ => wrong(&place, &error),
-    })?;
-    if json {
-        let text = plan
-            .to_json(&matrix, &known)
-            .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
-        stdio::document(&json_safe(&text))?;
-        return Ok(Exit::Passed);
+impl MatrixArguments {
+    /// Answers for one matrix.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let place = self.file.display();
+        let matrix =
+            Matrix::from_json(&read(&self.file)?).map_err(|error| wrong(&place, &error))?;
+        let known = match &self.outcomes {
+            Some(given) => known(&matrix, given)?,
+            None => Posterior::prior(&matrix),
+        };
+        let asked = PlanOptions {
+            method: self.tree.map(|method| match method {
+                TreeMethod::Optimal => Method::Optimal,
+                TreeMethod::Greedy => Method::Greedy,
+            }),
+            confidence: self.confidence,
+        };
+        let plan = plan(&matrix, &known, asked).map_err(|error| match error {
+            MatrixError::Confidence(_) => wrong(&"--confidence", &error),
+            _ => wrong(&place, &error),
+        })?;
+        if self.json.is_asked() {
+            let text = plan
+                .to_json(&matrix, &known)
+                .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+            stdio::document(&json_safe(&text))?;
+            return Ok(Exit::Passed);
+        }
+        print_out(&text(&matrix, &known, &plan, self.outcomes.is_some()))
     }
-    print_out(&text(&matrix, &known, &plan, options.outcomes.is_some()))
 }
 
 fn read(file: &Path) -> Result<String, Failure> {

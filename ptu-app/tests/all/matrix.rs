@@ -1,4 +1,4 @@
-//! `ptu diagnose --matrix`: the contract of its JSON, its examples, and what it refuses.
+//! `ptu matrix`: the contract of its JSON, its examples, and what it refuses.
 
 use crate::common::{Place, list, number, scripts, text};
 use serde_json::{Value, json};
@@ -25,7 +25,7 @@ fn way<'a>(tree: &'a Value, outcomes: &Value, state: &str) -> (Vec<String>, &'a 
 fn six_by_six_costs_what_huffman_says() {
     let place = Place::new();
     let file = example("six_by_six.json");
-    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    let answer = place.json(&["matrix", &file, "--json"]);
     assert!((number(&answer["expected_cost"]) - 2.5).abs() < 1e-12);
     assert_eq!(answer["optimal"], true);
     assert_eq!(answer["next_test"], answer["tree"]["test"]);
@@ -38,7 +38,7 @@ fn six_by_six_costs_what_huffman_says() {
         cost += number(&state["p"]) * tests.len() as f64;
     }
     assert!((cost - 2.5).abs() < 1e-12);
-    let greedy = place.json(&["diagnose", "--matrix", &file, "--tree", "greedy", "--json"]);
+    let greedy = place.json(&["matrix", &file, "--tree", "greedy", "--json"]);
     assert_eq!(greedy["optimal"], false);
     assert!(number(&greedy["expected_cost"]) >= 2.5 - 1e-12);
 }
@@ -48,14 +48,7 @@ fn outcomes_give_posterior_and_next_test() {
     let place = Place::new();
     let file = example("six_by_six.json");
     let asked = |outcomes: &str| {
-        let arguments = [
-            "diagnose",
-            "--matrix",
-            &file,
-            "--outcomes",
-            outcomes,
-            "--json",
-        ];
+        let arguments = ["matrix", &file, "--outcomes", outcomes, "--json"];
         place.json(&arguments)
     };
     let inline = asked("pulses at 40 km/h=1");
@@ -78,14 +71,14 @@ fn outcomes_give_posterior_and_next_test() {
 fn states_that_are_alike_end_together_and_are_pointed_out() {
     let place = Place::new();
     let file = example("ambiguous.json");
-    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    let answer = place.json(&["matrix", &file, "--json"]);
     let tree = answer["tree"].to_string();
     assert!(
         tree.contains(r#""states":["twc antenna","antenna cable"]"#),
         "{tree}"
     );
     assert!(text(&answer["warnings"][0]).contains("\"twc antenna\", \"antenna cable\""));
-    let said = place.ptu(&["diagnose", "--matrix", &file]).exits(0);
+    let said = place.ptu(&["matrix", &file]).exits(0);
     for word in [
         "twc antenna or antenna cable",
         "note: no test tells",
@@ -100,14 +93,7 @@ fn uncertain_tests_end_at_the_confidence_asked() {
     let place = Place::new();
     let file = example("false_alarms.json");
     let cost = |confidence: &str| {
-        let answer = place.json(&[
-            "diagnose",
-            "--matrix",
-            &file,
-            "--confidence",
-            confidence,
-            "--json",
-        ]);
+        let answer = place.json(&["matrix", &file, "--confidence", confidence, "--json"]);
         assert_eq!(answer["optimal"], true);
         let mut open = vec![&answer["tree"]];
         while let Some(node) = open.pop() {
@@ -167,7 +153,7 @@ fn wrong_matrices_and_outcomes_are_named_and_refused() {
     ];
     for (matrix, words) in cases {
         let file = place.write("wrong.json", &matrix);
-        let said = place.ptu(&["diagnose", "--matrix", &file, "--json"]);
+        let said = place.ptu(&["matrix", &file, "--json"]);
         let said = said.exits(2).explains(words);
         assert_eq!(said.out, "");
     }
@@ -188,11 +174,11 @@ fn wrong_matrices_and_outcomes_are_named_and_refused() {
         (&["--outcomes", ""], &["cannot read"]),
     ];
     for (options, words) in cases {
-        let arguments = [&["diagnose", "--matrix", &file], options].concat();
+        let arguments = [&["matrix", &file], options].concat();
         place.ptu(&arguments).exits(2).explains(words);
     }
     place
-        .ptu(&["diagnose", "--matrix", "nowhere.json"])
+        .ptu(&["matrix", "nowhere.json"])
         .exits(2)
         .explains(&["nowhere.json"]);
 }
@@ -212,12 +198,12 @@ fn an_optimal_tree_that_is_too_large_is_refused_with_the_limit() {
         .collect();
     let matrix = json!({"states": states, "tests": tests, "outcomes": outcomes});
     let file = place.write("large.json", &matrix.to_string());
-    let optimal = ["diagnose", "--matrix", &file, "--tree", "optimal"];
+    let optimal = ["matrix", &file, "--tree", "optimal"];
     place
         .ptu(&optimal)
         .exits(2)
         .explains(&["at most 64", "70", "greedy"]);
-    let answer = place.json(&["diagnose", "--matrix", &file, "--json"]);
+    let answer = place.json(&["matrix", &file, "--json"]);
     // Each test ends one of n alike: (2 + … + 70) / 70.
     assert!((number(&answer["expected_cost"]) - 2484.0 / 70.0).abs() < 1e-9);
 }

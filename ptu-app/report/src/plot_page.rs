@@ -1,0 +1,33 @@
+//! A page with one drawing.
+
+use crate::plot::Plot;
+use crate::run::block::{Block, Tone};
+use crate::run::{Paper, Printed};
+use crate::words::Words;
+
+/// A drawing with its title, and how it was made.
+pub struct PlotPage {
+    /// The drawing.
+    pub plot: Plot,
+    /// By which command, and when.
+    pub made: String,
+}
+
+impl Printed for PlotPage {
+    fn paper(&self, _words: &Words) -> Paper {
+        Paper {
+            name: "",
+            unit: String::new(),
+            short: self.plot.title.clone(),
+            number: self.plot.y_label.clone(),
+            program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
+            at_us: 0,
+            across: None,
+            blocks: vec![
+                Block::Title(self.plot.title.clone(), String::new()),
+                Block::Plot(Box::new(self.plot.clone())),
+                Block::Text(Tone::Soft, self.made.clone()),
+            ],
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Whether something is seen more often than before.
+
+/// How many times as often something was seen in the later half of a course as in the earlier half.
+pub(super) struct RateRatio {
+    pub(super) ratio: f64,
+    /// 95 % interval.
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl RateRatio {
+    /// Of counts by day or month; of an odd number of them the one in the middle counts for neither half. Where
+    /// neither half has anything there is no ratio.
+    ///
+    /// The logarithm of a ratio of two Poisson counts is nearly normal with variance `1/a + 1/b`; half a count is
+    /// added to each, so that none divides by zero (Haldane, Anscombe).
+    pub(super) fn of(course: &[u64]) -> Option<Self> {
+        let half = course.len() / 2;
+        let earlier: u64 = course[..half].iter().sum();
+        let later: u64 = course[course.len() - half..].iter().sum();
+        if earlier + later == 0 {
+            return None;
+        }
+        let (earlier, later) = (earlier as f64 + 0.5, later as f64 + 0.5);
+        let ratio = later / earlier;
+        let off = (1.96 * (1.0 / earlier + 1.0 / later).sqrt()).exp();
+        Some(Self {
+            ratio,
+            low: ratio / off,
+            high: ratio * off,
+        })
+    }
+
+    pub(super) fn text(&self) -> String {
+        let said = match (self.low > 1.0, self.high < 1.0) {
+            (true, _) => " worse",
+            (_, true) => " better",
+            _ => "",
+        };
+        format!("{:.1} ({:.1}–{:.1}){said}", self.ratio, self.low, self.high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 4.5 to 10.5 is 2.33 times; 1.96 × √(1/4.5 + 1/10.5) is 1.104, and e to that 3.02.
+    #[test]
+    fn a_rate_ratio_has_the_interval_of_two_counts() {
+        let ratio = RateRatio::of(&[1, 3, 50, 4, 6]).expect("something was seen");
+        let near = |a: f64, b: f64| (a - b).abs() < 0.01;
+        assert!(near(ratio.ratio, 2.33) && near(ratio.low, 0.77) && near(ratio.high, 7.05));
+        assert_eq!(ratio.text(), "2.3 (0.8–7.0)");
+        let worse = RateRatio::of(&[2, 40]).expect("something was seen");
+        assert!(worse.text().ends_with(" worse"), "{}", worse.text());
+        let better = RateRatio::of(&[40, 2]).expect("something was seen");
+        assert!(better.text().ends_with(" better"), "{}", better.text());
+        assert!(RateRatio::of(&[0, 0]).is_none() && RateRatio::of(&[7]).is_none());
+    }
+}

@@ -1,0 +1,107 @@
+//! Which procedures and steps are run.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
+use glob::Pattern;
+
+use super::RunArguments;
+use ptu_bench::failure::{Failure, did_you_mean};
+use ptu_bench::run::{Task, select};
+use ptu_bench::stdio;
+
+impl RunArguments {
+    /// All when some are named, else those that are not run on request only; without those that are left out.
+    pub(super) fn asked_for(
+        &self,
+        mut procedures: Vec<Arc<Procedure>>,
+    ) -> Result<Vec<Arc<Procedure>>, Failure> {
+        if self.procedures.is_empty() {
+            let (left_out, run) = procedures.into_iter().partition(|p| p.on_request);
+            procedures = run;
+            let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
+            if !names.is_empty() {
+                stdio::note(&format!("run only when named: {}", names.join(", ")));
+            }
+        }
+        for name in &self.exclude {
+            exclude(name, &mut procedures)?;
+        }
+        Ok(procedures)
+    }
+
+    /// Procedures with the steps chosen; those with none are left out.
+    pub(super) fn tasks(
+        &self,
+        procedures: Vec<Arc<Procedure>>,
+        operator: bool,
+    ) -> Result<Vec<Task>, Failure> {
+        let pattern = select::step_pattern(self.step.as_deref())?;
+        let task = |procedure: Arc<Procedure>| {
+            let chosen = pattern.as_ref().map(|pattern| {
+                let steps = procedure.steps.iter().enumerate();
+                steps
+                    .filter(|(_, step)| pattern.matches(&step.name))
+                    .map(|(i, _)| i)
+                    .collect()
+            });
+            let options = RunOptions {
+                chosen,
+                repeat: self.repeat,
+                stop_on_fail: self.stop_on_fail,
+                prompts: match operator {
+                    true => PromptPolicy::Ask,
+                    false => PromptPolicy::Refuse,
+                },
+                ..RunOptions::default()
+            };
+            Task { procedure, options }
+        };
+        let mut tasks: Vec<_> = procedures.into_iter().map(task).collect();
+        if let Some(glob) = &self.step {
+            tasks.retain(|task| task.options.chosen.as_ref().is_none_or(|c| !c.is_empty()));
+            if tasks.is_empty() {
+                return Err(Failure::usage(format!(
+                    "no step matches \"{glob}\"; `ptu run --list` shows all steps"
+                )));
+            }
+        }
+        if self.shuffle {
+            select::shuffle(&mut tasks, self.seed());
+        }
+        Ok(tasks)
+    }
+}
+
+/// Takes out what the name, folder or glob stands for.
+///
+/// # Errors
+/// It stands for none of them, or for all that are left.
+fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failure> {
+    let wanted = name.strip_suffix(".star").unwrap_or(name);
+    let wanted = wanted.trim_start_matches("scripts/").trim_end_matches('/');
+    let pattern = Pattern::new(wanted)
+        .map_err(|error| Failure::usage(format!("--exclude: \"{name}\" is not a glob: {error}")))?;
+    let is_excluded = |id: &str| {
+        pattern.matches(id)
+            || id
+                .split_once('/')
+                .is_some_and(|(folder, _)| folder == wanted)
+    };
+    let (left_out, left): (Vec<_>, Vec<_>) = std::mem::take(procedures)
+        .into_iter()
+        .partition(|procedure| is_excluded(&procedure.id));
+    if left_out.is_empty() {
+        let hint = did_you_mean(wanted, left.iter().map(|procedure| procedure.id.as_str()));
+        return Err(Failure::usage(format!(
+            "--exclude: no procedure \"{name}\" would be run{hint}; `ptu run --list` shows all"
+        )));
+    }
+    if left.is_empty() {
+        return Err(Failure::usage(format!(
+            "--exclude {name} leaves nothing to run"
+        )));
+    }
+    *procedures = left;
+    Ok(())
+}
