@@ -9,6 +9,7 @@
 //! * `driverless`: what ATO does in place of people: doors, turn-back, put-away and wake-up;
 //! * [`flash`]: event log and run record over power-ups;
 //! * `test_board`: test signals of an armed tester;
+//! * [`receivers`]: from the waveforms in the coils to codes and bytes;
 //! * `front_end`: antennas, sensors and relays, where injected faults act;
 //! * `guards`: what injected faults put out of action elsewhere.
 //!
@@ -32,6 +33,7 @@ mod guards;
 mod kernel;
 mod keyed;
 mod psm;
+pub mod receivers;
 #[cfg(feature = "serve")]
 pub mod serve;
 mod setup;

@@ -9,6 +9,7 @@
 //! * [`train`]: the train models;
 //! * [`rig`]: generators, train, TCMS, wayside and tester session, stepped in virtual time; it sees
 //!   the unit only through frames;
+//! * [`waveform`]: what is in the coils, as samples: codes, TWC, noise;
 //! * [`recorder`]: the 50 ms row of every signal, the ring of the latest, and windows around triggers;
 //! * [`drive`]: a station-to-station automatic run with its figures;
 //! * [`procedure`]: check procedures built by Starlark at load, checked, and run by a polled state
@@ -29,3 +30,4 @@ pub mod stimulus;
 mod stored;
 pub mod tcms;
 pub mod train;
+pub mod waveform;

@@ -2,7 +2,7 @@
 //!
 //! FILE is a history as `cargo run --release -p fault-db --example history -- FILE --faults 1000000 --runs
 //! 100000` makes it. Each question is asked of another unit or another year each time; median and 99th
-//! percentile are printed, or with `--json` for `benches/against_duckdb.py`.
+//! percentile are printed.
 
 #![allow(
     clippy::print_stdout,
@@ -192,19 +192,14 @@ fn in_year(asked: &Asked) -> TrendQuery {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let arguments: Vec<_> = std::env::args()
+    let Some(file) = std::env::args()
         .skip(1)
-        .filter(|argument| argument != "--bench")
-        .collect();
-    let Some(file) = arguments
-        .iter()
         .find(|argument| !argument.starts_with("--"))
     else {
         println!("no history given: cargo bench -p fault-db --bench questions -- FILE");
         return Ok(());
     };
-    let as_json = arguments.iter().any(|argument| argument == "--json");
-    let store = Store::open_read_only(Path::new(file))?;
+    let store = Store::open_read_only(Path::new(&file))?;
     let (first_us, last_us) = store.history_span()?.ok_or("an empty history")?;
     let units = store.query_read_only("SELECT serial FROM unit ORDER BY serial", 10_000)?;
     let units: Vec<_> = units
@@ -215,13 +210,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             _ => None,
         })
         .collect();
-    if !as_json {
-        println!(
-            "{:40} {:>9} {:>9} {:>7}",
-            "question", "p50 ms", "p99 ms", "rows"
-        );
-    }
-    let mut results = Vec::new();
+    println!(
+        "{:40} {:>9} {:>9} {:>7}",
+        "question", "p50 ms", "p99 ms", "rows"
+    );
     for (name, ask) in questions() {
         let mut rows = 0;
         let mut times: Vec<f64> = (0..TIMES)
@@ -241,16 +233,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .collect::<Result<_, StoreError>>()?;
         times.sort_by(f64::total_cmp);
         let (p50, p99) = (times[TIMES / 2], times[TIMES * 99 / 100]);
-        if as_json {
-            results.push(format!(
-                "{{\"question\": \"{name}\", \"p50_ms\": {p50:.4}, \"p99_ms\": {p99:.4}}}"
-            ));
-        } else {
-            println!("{name:40} {p50:9.3} {p99:9.3} {rows:7}");
-        }
-    }
-    if as_json {
-        println!("[{}]", results.join(",\n "));
+        println!("{name:40} {p50:9.3} {p99:9.3} {rows:7}");
     }
     Ok(())
 }

@@ -40,6 +40,7 @@ pub mod replay;
 pub mod run;
 pub mod run_diagnosis;
 pub mod schemas;
+pub mod signal;
 pub mod stdio;
 pub mod stop;
 pub mod stored;

@@ -27,6 +27,7 @@ mod run;
 mod run_list;
 mod runs;
 mod saved;
+mod signal;
 mod trace;
 mod train;
 mod unit_option;
@@ -81,6 +82,7 @@ enum Verb {
     /// Show and export recorded traces
     Trace(trace::TraceArguments),
     Record(record::RecordArguments),
+    Signal(signal::SignalArguments),
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
     /// Show faults, signals, speed codes, lines or parts
@@ -155,6 +157,7 @@ impl Cli {
             Verb::Db(arguments) => arguments.run(),
             Verb::Train(arguments) => arguments.run(),
             Verb::Matrix(arguments) => arguments.run(),
+            Verb::Signal(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
             Verb::Doctor(arguments) => arguments.run(),
             Verb::New(arguments) => arguments.run(),

@@ -50,6 +50,7 @@ mod saved_questions;
 mod scatter;
 mod server;
 mod shards;
+mod signal;
 mod statistics_page;
 mod suite;
 mod symptoms;

@@ -234,6 +234,8 @@ pub(super) const VIEWS: &[View] = &[
             ("unit", Text),
             ("who", Text),
             ("text", Text),
+            ("trace_id", Text),
+            ("place_s", Number),
             ("noted_at", Text),
             ("at_us", Whole),
         ],

@@ -1,0 +1,222 @@
+//! The receiver of TWC: two tones, one for each bit value, and bytes with a start bit, even parity and a stop bit.
+
+use core::f32::consts::TAU;
+
+use super::downmix::{Downmix, Phasor};
+
+/// Values of the complex envelope for each bit, about.
+const VALUES_PER_BIT: f32 = 20.0;
+/// Longest bit, values.
+const MOST: usize = 32;
+/// Least mean purity of a byte's bits; noise is none.
+const LEAST_PURITY: f32 = 0.65;
+/// Bits of a byte, with start, parity and stop bit.
+const BITS: f32 = 11.0;
+/// Share of a timing error that a change between bits corrects.
+const NUDGE: f32 = 0.25;
+
+/// The tones and the bit rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tones {
+    /// Middle of the two, Hz.
+    pub middle_hz: f32,
+    /// Distance of each from it, Hz; the upper tone is bit 1.
+    pub apart_hz: f32,
+    /// Bits per second.
+    pub bit_rate: f32,
+}
+
+impl Tones {
+    /// 9 650 ± 150 Hz, as a public data sheet of a TWC has it (Alstom); the bit rate is a default: at 300 bit/s the tones
+    /// are orthogonal.
+    pub const DEFAULT: Self = Self {
+        middle_hz: 9_650.0,
+        apart_hz: 150.0,
+        bit_rate: 300.0,
+    };
+}
+
+/// What was received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Received {
+    /// A byte whose parity and stop bit are right.
+    Byte(u8),
+    /// One whose parity is wrong.
+    Parity,
+    /// One without its stop bit.
+    Framing,
+}
+
+/// Tells the tones apart without their phase (non-coherent detection).
+#[derive(Clone, Debug)]
+pub struct Demodulator {
+    downmix: Downmix,
+    turn: Phasor,
+    tone: Phasor,
+    /// What each tone has had of the last bit.
+    upper: [Phasor; MOST],
+    lower: [Phasor; MOST],
+    length: usize,
+    place: usize,
+}
+
+impl Demodulator {
+    /// For samples of this rate, Hz.
+    pub fn new(tones: Tones, sample_hz: f32) -> Self {
+        let downmix = Downmix::new(
+            tones.middle_hz,
+            sample_hz,
+            VALUES_PER_BIT * tones.bit_rate,
+            2.0 * tones.apart_hz + tones.bit_rate,
+        );
+        let value_hz = downmix.envelope_hz();
+        let length = libm::roundf(value_hz / tones.bit_rate) as usize;
+        Self {
+            turn: Phasor::at(TAU * tones.apart_hz / value_hz),
+            tone: Phasor { re: 1.0, im: 0.0 },
+            downmix,
+            upper: [Phasor::default(); MOST],
+            lower: [Phasor::default(); MOST],
+            length: length.clamp(1, MOST),
+            place: 0,
+        }
+    }
+
+    /// Values for each bit.
+    pub fn values_per_bit(&self, bit_rate: f32) -> f32 {
+        self.downmix.envelope_hz() / bit_rate
+    }
+
+    /// Takes a sample, mV; gives what the last bit length was.
+    pub fn take(&mut self, sample_mv: f32) -> Option<BitHeard> {
+        let value = self.downmix.take(sample_mv)?;
+        self.upper[self.place] = value.times_conj(self.tone);
+        self.lower[self.place] = value.times(self.tone);
+        self.place = (self.place + 1) % self.length;
+        self.tone = self.tone.times(self.turn);
+        let length = self.tone.abs();
+        (self.tone.re, self.tone.im) = (self.tone.re / length, self.tone.im / length);
+        let power = |line: &[Phasor; MOST]| {
+            let mut sum = Phasor::default();
+            for value in &line[..self.length] {
+                sum.re += value.re;
+                sum.im += value.im;
+            }
+            sum.re * sum.re + sum.im * sum.im
+        };
+        let (upper, lower) = (power(&self.upper), power(&self.lower));
+        let both = upper + lower;
+        let all: f32 = self.upper[..self.length]
+            .iter()
+            .map(|value| value.re * value.re + value.im * value.im)
+            .sum();
+        let part = |of: f32, whole: f32| if whole > 0.0 { of / whole } else { 0.0 };
+        Some(BitHeard {
+            lean: part(upper - lower, both),
+            purity: part(both, all * self.length as f32),
+            amplitude_mv: libm::sqrtf(both) / self.length as f32,
+        })
+    }
+}
+
+/// The last bit length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BitHeard {
+    /// By how much the upper tone was stronger, −1 to 1.
+    pub lean: f32,
+    /// Share of the power within the band that the tones have: 1 of a tone, about 0.3 of noise.
+    pub purity: f32,
+    /// Amplitude of both tones, mV.
+    pub amplitude_mv: f32,
+}
+
+/// Receives bytes.
+#[derive(Clone, Debug)]
+pub struct FskReceiver {
+    demodulator: Demodulator,
+    values_per_bit: f32,
+    level_min_mv: f32,
+    last: f32,
+    /// The bit that is received next, and the values until its end; none between bytes.
+    bit: Option<(u8, f32)>,
+    byte: u8,
+    ones: u8,
+    /// Sum of the purity of its bits.
+    purity: f32,
+}
+
+impl FskReceiver {
+    /// What is weaker than `level_min_mv`, rms, is silence.
+    pub fn new(tones: Tones, sample_hz: f32, level_min_mv: f32) -> Self {
+        let demodulator = Demodulator::new(tones, sample_hz);
+        Self {
+            values_per_bit: demodulator.values_per_bit(tones.bit_rate),
+            demodulator,
+            level_min_mv,
+            last: 1.0,
+            bit: None,
+            byte: 0,
+            ones: 0,
+            purity: 0.0,
+        }
+    }
+
+    /// Takes a sample, mV.
+    pub fn take(&mut self, sample_mv: f32) -> Option<Received> {
+        let BitHeard {
+            lean,
+            purity,
+            amplitude_mv,
+        } = self.demodulator.take(sample_mv)?;
+        let last = core::mem::replace(&mut self.last, lean);
+        if amplitude_mv < self.level_min_mv * core::f32::consts::SQRT_2 {
+            self.bit = None;
+            self.last = 1.0;
+            return None;
+        }
+        // A change of the tone is where the lean is zero: half of the last bit length is of each.
+        let crossing = (last > 0.0) != (lean > 0.0);
+        let since = lean / (lean - last);
+        let Some((bit, left)) = &mut self.bit else {
+            if crossing && lean < 0.0 {
+                self.bit = Some((0, self.values_per_bit / 2.0 - since));
+                (self.byte, self.ones, self.purity) = (0, 0, 0.0);
+            }
+            return None;
+        };
+        *left -= 1.0;
+        if crossing {
+            // At a change, half a bit is left until the end of the new one.
+            let late = *left + since - self.values_per_bit / 2.0;
+            *left -= NUDGE * late;
+        }
+        if *left > 0.0 {
+            return None;
+        }
+        let (number, one) = (*bit, lean > 0.0);
+        *left += self.values_per_bit;
+        *bit += 1;
+        self.purity += purity;
+        match number {
+            0 if one => self.bit = None,
+            0 => {}
+            1..=8 => {
+                self.byte |= u8::from(one) << (number - 1);
+                self.ones += u8::from(one);
+            }
+            9 => self.ones += u8::from(one),
+            _ => {
+                self.bit = None;
+                if self.purity < LEAST_PURITY * BITS {
+                    return None;
+                }
+                return Some(match (one, self.ones % 2) {
+                    (false, _) => Received::Framing,
+                    (true, 1) => Received::Parity,
+                    (true, _) => Received::Byte(self.byte),
+                });
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,50 @@
+//! An ATP speed code: a carrier that is keyed on and off at the code rate.
+
+use super::{Phase, cosine};
+
+/// Rise and fall of the keying, 10 to 90 %, as a share of the time that a keyed carrier is on.
+const EDGE: f64 = 0.05;
+
+/// The samples of a code, mV, without end.
+#[derive(Clone, Debug)]
+pub struct CodeWave {
+    carrier: Phase,
+    carrier_step: f64,
+    keying: Phase,
+    keying_step: f64,
+    amplitude_mv: f64,
+}
+
+impl CodeWave {
+    /// A carrier of this level, mV rms while it is on, keyed at `rate_hz`; a rate of 0 keys nothing.
+    pub fn new(carrier_hz: f64, rate_hz: f64, level_mv: f64, sample_hz: f64) -> Self {
+        Self {
+            carrier: Phase::default(),
+            carrier_step: carrier_hz / sample_hz,
+            keying: Phase::default(),
+            keying_step: rate_hz / sample_hz,
+            amplitude_mv: level_mv * std::f64::consts::SQRT_2,
+        }
+    }
+
+    /// How much of the carrier is on: half of the time all, with edges of a raised cosine.
+    fn keyed(cycles: f64) -> f64 {
+        let edge = |from: f64| 0.5 - 0.5 * cosine(0.5 * (from / EDGE).clamp(0.0, 1.0));
+        match cycles {
+            on if on < 0.5 => edge(2.0 * on),
+            off => 1.0 - edge(2.0 * off - 1.0),
+        }
+    }
+}
+
+impl Iterator for CodeWave {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let on = match self.keying_step > 0.0 {
+            true => Self::keyed(self.keying.step(self.keying_step)),
+            false => 1.0,
+        };
+        Some(self.amplitude_mv * on * cosine(self.carrier.step(self.carrier_step)))
+    }
+}

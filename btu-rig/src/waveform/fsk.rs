@@ -1,0 +1,60 @@
+//! TWC: bytes as two tones of one continuous phase.
+
+use std::collections::VecDeque;
+
+use super::{Phase, cosine};
+
+/// Bits of rest before the first byte and after the last.
+const REST: usize = 30;
+
+/// The samples of some bytes, mV.
+#[derive(Clone, Debug)]
+pub struct FskWave {
+    carrier: Phase,
+    /// Cycles for each sample of bit 0 and of bit 1.
+    steps: [f64; 2],
+    bits: VecDeque<bool>,
+    bit: Phase,
+    bit_step: f64,
+    amplitude_mv: f64,
+}
+
+impl FskWave {
+    /// Bytes with a start bit, the lowest bit first, even parity and a stop bit, at this level, mV rms. Bit 0 is
+    /// `middle_hz - apart_hz`.
+    pub fn new(
+        bytes: &[u8],
+        (middle_hz, apart_hz): (f64, f64),
+        bit_rate: f64,
+        level_mv: f64,
+        sample_hz: f64,
+    ) -> Self {
+        let mut bits: VecDeque<bool> = std::iter::repeat_n(true, REST).collect();
+        for byte in bytes {
+            bits.push_back(false);
+            bits.extend((0..8).map(|bit| byte >> bit & 1 == 1));
+            bits.extend([byte.count_ones() % 2 == 1, true]);
+        }
+        bits.extend(std::iter::repeat_n(true, REST));
+        Self {
+            carrier: Phase::default(),
+            steps: [middle_hz - apart_hz, middle_hz + apart_hz].map(|tone| tone / sample_hz),
+            bits,
+            bit: Phase::default(),
+            bit_step: bit_rate / sample_hz,
+            amplitude_mv: level_mv * std::f64::consts::SQRT_2,
+        }
+    }
+}
+
+impl Iterator for FskWave {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let one = *self.bits.front()?;
+        if self.bit.step(self.bit_step) + self.bit_step >= 1.0 {
+            self.bits.pop_front();
+        }
+        Some(self.amplitude_mv * cosine(self.carrier.step(self.steps[usize::from(one)])))
+    }
+}

@@ -1,0 +1,292 @@
+//! What the bench makes is what the unit reads.
+
+use std::path::Path;
+
+use ato_under_test::receivers::{CodeReceiver, Demodulator, FskReceiver, Received, Tones};
+use btu_rig::waveform::{CodeWave, FskWave, Noise};
+use protocol::config::UnitConfig;
+
+use super::*;
+use crate::data::ScriptsDirectory;
+
+const RATE: f64 = 48_000.0;
+
+fn unit() -> UnitConfig {
+    let scripts = ScriptsDirectory::find(None).expect("scripts");
+    scripts.unit_config("sg100").expect("read").content
+}
+
+fn made(wave: &Wave, level: (f64, Option<f64>, u64), path: &Path) -> Reading {
+    let unit = unit();
+    make(wave, &unit, level, (path, FULL_SCALE_MV)).expect("made");
+    read(path, &unit, FULL_SCALE_MV).expect("read")
+}
+
+/// Goal: each code is read by its name, at its level and from when to when it lasts, with noise 20 dB below it.
+#[test]
+fn each_code_is_read_as_it_was_made() {
+    let dir = tempfile::tempdir().expect("a directory");
+    for code in unit().codes {
+        let path = dir.path().join("code.wav");
+        let wave = Wave::Code {
+            name: code.name.clone(),
+            seconds: 3.0,
+        };
+        let reading = made(&wave, (500.0, Some(20.0), 7), &path);
+        let [source] = &reading.sources[..] else {
+            panic!("{}: {reading:?}", code.name);
+        };
+        assert_eq!((source.kind, &source.what), ("code", &code.name));
+        let level = source.level_mv.expect("measured");
+        assert!((level - 500.0).abs() < 35.0, "{source:?}");
+        assert!((source.rate_hz - code.rate_hz).abs() < 0.1, "{source:?}");
+        assert!(
+            (source.carrier_hz - code.carrier_hz).abs() < 2.0,
+            "{source:?}"
+        );
+        assert!(source.from_s < 0.1 && source.to_s > 2.9, "{source:?}");
+        let snr = source.snr_db.expect("known");
+        assert!((snr - 20.0).abs() < 4.0, "{source:?}");
+        assert_eq!(reading.not_understood, []);
+    }
+}
+
+#[test]
+fn bytes_are_read_as_they_were_made() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("twc.wav");
+    let bytes: Vec<u8> = (0..=255).collect();
+    let reading = made(&Wave::Twc(bytes.clone()), (500.0, Some(20.0), 7), &path);
+    let [source] = &reading.sources[..] else {
+        panic!("{reading:?}");
+    };
+    let hex: Vec<_> = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!((source.kind, &source.what), ("twc", &hex.join(" ")));
+    assert_eq!(source.bad_bytes, Some(0));
+}
+
+/// What the receiver decides each 50 ms of samples, mV.
+fn decided(samples: impl Iterator<Item = f64>, codes: &[f32]) -> Vec<Option<f32>> {
+    let mut receiver = CodeReceiver::new(3_000.0, RATE as f32, 60.0);
+    let mut decided = Vec::new();
+    for (place, sample) in samples.enumerate() {
+        receiver.take(sample as f32);
+        if place % 2_400 == 2_399 {
+            let heard = receiver.heard(codes);
+            decided.push(heard.map(|heard| heard.rate_hz).filter(|rate| *rate > 0.0));
+        }
+    }
+    decided
+}
+
+/// Goal: at no moment around a change of the code is another one heard than the two that were sent, and noise alone is no
+/// code. Method: all pairs of codes, spliced at any phase, with noise of 0 to 30 dB.
+#[test]
+fn a_change_of_code_is_never_a_third_code() {
+    let rates: Vec<f32> = unit()
+        .codes
+        .iter()
+        .map(|code| code.rate_hz as f32)
+        .collect();
+    let (mut asked, mut heard) = (0, 0);
+    for (place, first) in rates.iter().enumerate() {
+        for (other, second) in rates.iter().enumerate() {
+            let snr_db = f64::from((place * 7 + other) as u32 % 7) * 5.0;
+            let length = 40_000 + 331 * (7 * place + other);
+            let wave = |rate: f32| CodeWave::new(3_000.0, f64::from(rate), 500.0, RATE);
+            let spliced = wave(*first).take(length).chain(wave(*second).take(40_000));
+            let noise = Noise::new(500.0, snr_db, 320.0, RATE, (place * 8 + other) as u64);
+            let noisy = spliced.zip(noise).map(|(signal, noise)| signal + noise);
+            for rate in decided(noisy, &rates) {
+                asked += 1;
+                let Some(rate) = rate else { continue };
+                heard += 1;
+                let is_sent = [first, second]
+                    .iter()
+                    .any(|sent| (rate - **sent).abs() < 0.5);
+                let is_code = rates.iter().any(|code| (rate - code).abs() < 0.5);
+                assert!(
+                    is_sent || !is_code,
+                    "{first} then {second} Hz: {rate} Hz at {snr_db} dB"
+                );
+            }
+        }
+    }
+    assert!(heard * 3 > asked, "{heard} of {asked}");
+    let noise = Noise::new(500.0, 0.0, 320.0, RATE, 1).take(480_000);
+    assert!(decided(noise, &rates).iter().all(Option::is_none));
+}
+
+/// Goal: bytes with a bit error are not taken for others. Method: noise at which one byte in ten has one.
+#[test]
+fn a_byte_with_a_wrong_bit_is_told() {
+    let tones = Tones::DEFAULT;
+    let mut receiver = FskReceiver::new(tones, RATE as f32, 60.0);
+    let bytes: Vec<u8> = (0..400u32).map(|n| (n * 37) as u8).collect();
+    let wave = FskWave::new(&bytes, (9_650.0, 150.0), 300.0, 500.0, RATE);
+    let noise = Noise::new(500.0, 11.0, 300.0, RATE, 3);
+    let received: Vec<_> = wave
+        .zip(noise)
+        .filter_map(|(signal, noise)| receiver.take((signal + noise) as f32))
+        .collect();
+    let good = received
+        .iter()
+        .filter(|one| matches!(one, Received::Byte(_)))
+        .count();
+    assert!(
+        received.len() - good < 40 && good > 360,
+        "{good} of {}",
+        received.len()
+    );
+}
+
+/// Goal: what is no recording of such signals ends in words, not in a code and not in a panic.
+#[test]
+fn what_is_no_such_signal_is_said() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("x.wav");
+    let unit = unit();
+    let write = |samples: &mut dyn Iterator<Item = f64>| {
+        wav::write(&path, 48_000, FULL_SCALE_MV, samples).expect("written");
+        read(&path, &unit, FULL_SCALE_MV).expect("read")
+    };
+    let silence = write(&mut std::iter::repeat_n(0.0, 96_000));
+    assert_eq!(
+        (silence.sources.len(), silence.not_understood.len()),
+        (0, 0)
+    );
+    let noise = write(&mut Noise::new(500.0, 0.0, 320.0, RATE, 5).take(960_000));
+    assert_eq!(noise.sources, [], "20 s of noise");
+    let direct = write(&mut std::iter::repeat_n(2_000.0, 96_000));
+    assert_eq!(direct.sources, []);
+    let square = write(&mut (0..96_000).map(|n| if n / 50 % 2 == 0 { 4_000.0 } else { -4_000.0 }));
+    assert_eq!(square.sources, []);
+    for reading in [direct, square] {
+        let [unknown] = &reading.not_understood[..] else {
+            panic!("{reading:?}");
+        };
+        assert!(
+            unknown.what.contains("no code of this unit configuration"),
+            "{unknown:?}"
+        );
+    }
+    // Cut off in the middle of a sample, and before the first.
+    let bytes = std::fs::read(&path).expect("the file");
+    std::fs::write(&path, &bytes[..bytes.len() / 2 + 1]).expect("cut");
+    let cut = read(&path, &unit, FULL_SCALE_MV).expect("as far as it goes");
+    let said = &cut.not_understood.last().expect("said").what;
+    assert!(said.contains("cut off or damaged"), "{said}");
+    for text in [&b""[..], b"RIFF", b"not a recording", &bytes[..30]] {
+        std::fs::write(&path, text).expect("written");
+        let refused = read(&path, &unit, FULL_SCALE_MV).expect_err("no recording");
+        assert!(refused.message.contains("x.wav"), "{}", refused.message);
+    }
+}
+
+/// The figures of `docs/figures.md`: bit errors over Eb/N0 with known bit timing, codes decided at 10 dB, and more
+/// permissive codes at any noise, crosstalk and splice.
+#[test]
+#[ignore = "measures for minutes: cargo test --release -p ptu-bench figures_of_the_receivers -- --ignored --nocapture"]
+fn figures_of_the_receivers() {
+    let tones = Tones::DEFAULT;
+    let per_bit = RATE / f64::from(tones.bit_rate);
+    for db in [4.0, 6.0, 8.0, 10.0, 12.0] {
+        let mut random = protocol::Random::new(db as u64);
+        let mut demodulator = Demodulator::new(tones, RATE as f32);
+        let (bits, mut leans) = (1_000_000, Vec::new());
+        let sent: Vec<bool> = (0..bits).map(|_| random.chance(0.5)).collect();
+        let noise = Noise::new(500.0, db, f64::from(tones.bit_rate), RATE, db as u64 + 50);
+        let wave = keyed(&sent, per_bit as usize, 500.0);
+        for (signal, noise) in wave.zip(noise) {
+            leans.extend(
+                demodulator
+                    .take((signal + noise) as f32)
+                    .map(|bit| bit.lean),
+            );
+        }
+        let per_bit = demodulator.values_per_bit(tones.bit_rate) as usize;
+        // Filter and bit length delay a bit by a fixed number of values: found on the first thousand bits.
+        let errors = |delay: usize, bits: std::ops::Range<usize>| {
+            let wrong = |place: &usize| {
+                let lean = leans.get(place * per_bit + delay);
+                lean.is_some_and(|lean| (*lean > 0.0) != sent[*place])
+            };
+            bits.filter(wrong).count()
+        };
+        let delay = (0..3 * per_bit).min_by_key(|delay| errors(*delay, 0..1_000));
+        let measured = errors(delay.unwrap_or(0), 1_000..bits) as f64 / (bits - 1_000) as f64;
+        let theory = 0.5 * (-10f64.powf(db / 10.0) / 2.0).exp();
+        let needs_db = 10.0 * (-2.0 * (2.0 * measured).ln()).log10();
+        println!(
+            "TWC {db} dB: {measured:.6} of the bits wrong, theory {theory:.6}; as theory at {needs_db:.2} dB"
+        );
+    }
+    let rates: Vec<f32> = unit()
+        .codes
+        .iter()
+        .map(|code| code.rate_hz as f32)
+        .collect();
+    let mut random = protocol::Random::new(7);
+    let mut decide = |wave: &mut dyn Iterator<Item = f64>, snr_db: f64| {
+        let noise = Noise::new(500.0, snr_db, 320.0, RATE, random.bits());
+        let mut receiver = CodeReceiver::new(3_000.0, RATE as f32, 60.0);
+        for (signal, noise) in wave.zip(noise).take(28_800) {
+            receiver.take((signal + noise) as f32);
+        }
+        let heard = receiver.heard(&rates).map(|heard| heard.rate_hz);
+        heard.and_then(|heard| {
+            rates
+                .iter()
+                .copied()
+                .find(|rate| (heard - rate).abs() < 0.5)
+        })
+    };
+    let wave = |rate: f32, level: f64| CodeWave::new(3_000.0, f64::from(rate), level, RATE);
+    let mut right = 0;
+    let trials = 20_000;
+    for trial in 0..trials {
+        let rate = rates[trial % rates.len()];
+        let skipped = trial * 977 % 5_000;
+        right += usize::from(decide(&mut wave(rate, 500.0).skip(skipped), 10.0) == Some(rate));
+    }
+    println!("code at 10 dB, within 0.6 s: right {right} of {trials}");
+    let (mut permissive, mut decided) = (0, 0);
+    for trial in 0..trials {
+        let (one, other) = (trial % rates.len(), trial / rates.len() % rates.len());
+        let snr_db = -10.0 + 40.0 * (trial * 617 % 1_000) as f64 / 1_000.0;
+        let splice = trial * 353 % 28_800;
+        let crosstalk = wave(rates[other], 250.0).skip(trial * 31 % 4_000);
+        let sent = match trial % 2 {
+            0 => decide(
+                &mut wave(rates[one], 500.0).zip(crosstalk).map(|(a, b)| a + b),
+                snr_db,
+            ),
+            _ => {
+                let second = wave(rates[other], 500.0);
+                decide(
+                    &mut wave(rates[one], 500.0).take(splice).chain(second),
+                    snr_db,
+                )
+            }
+        };
+        decided += usize::from(sent.is_some());
+        // Codes stand in the order of their limits: a later one permits more. Crosstalk is not what was sent.
+        let most = if trial % 2 == 0 { one } else { one.max(other) };
+        permissive += usize::from(sent.is_some_and(|rate| rate < rates[most]));
+    }
+    println!(
+        "any noise, crosstalk of -6 dB, splices: {decided} of {trials} decided, {permissive} more permissive"
+    );
+}
+
+/// Bits as two tones of one phase, mV.
+fn keyed(bits: &[bool], per_bit: usize, level_mv: f64) -> impl Iterator<Item = f64> + '_ {
+    let mut phase = 0.0f64;
+    bits.iter()
+        .flat_map(move |bit| std::iter::repeat_n(*bit, per_bit))
+        .map(move |bit| {
+            let tone = if bit { 9_800.0 } else { 9_500.0 };
+            phase = (phase + tone / RATE).fract();
+            level_mv * std::f64::consts::SQRT_2 * (std::f64::consts::TAU * phase).cos()
+        })
+}
