@@ -104,7 +104,7 @@ pub struct LifeRun {
 /// What happened to faults.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LifeFault {
-    /// The kind of the event, as in [`FaultEvent`](super::FaultEvent).
+    /// The kind of the event, as in [`FaultEvent`](crate::FaultEvent).
     pub kind: String,
     /// Who; empty for the program itself.
     pub who: String,
