@@ -1,7 +1,7 @@
 //! The receiver of ATP speed codes: a carrier that is keyed on and off at the code rate.
 //!
-//! The window of the last half second is judged as a whole and in its two halves: a rate counts only if both halves have
-//! it with the same phase, so that neither noise nor a change of the code is taken for a code that was not sent.
+//! The window of the last half second is judged as a whole and in three halves that overlap: a rate counts only if each
+//! has it, with one phase, so that neither noise nor a change of the code is taken for a code that was not sent.
 
 use core::f32::consts::{PI, SQRT_2, TAU};
 
@@ -22,6 +22,11 @@ const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
 /// 0.81; two codes spliced in the window, or noise, have less.
 const LEAST_SHARE: f32 = 0.55;
 const LEAST_SHARE_OF_HALF: f32 = 0.45;
+/// Share of a square wave's power at its fundamental, and how near to it a code must come.
+const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
+const NEARLY: f32 = 0.88;
+/// Variance of the envelope that noise of this power makes: half of it while the carrier is on, 1 − π/4 in the pauses.
+const NOISE_OF_ENVELOPE: f32 = 0.36;
 /// Least depth of keying: amplitude of the fundamental over the mean. On and off by half has 1.27.
 const LEAST_DEPTH: f32 = 0.6;
 /// An envelope with less depth than this is a carrier without a code.
@@ -117,10 +122,24 @@ impl CodeReceiver {
         if share < LEAST_SHARE || amplitude < LEAST_DEPTH * mean {
             return None;
         }
+        // What the pauses hold is noise. It is in the mean, too, by the mean of its amplitude (Rayleigh).
+        let noise = self.noise_power();
+        let floor = libm::sqrtf(PI / 4.0 * noise);
+        let share_on = on_share(amplitude / (mean - floor).max(amplitude / 2.0));
+        let square: f32 = (self.values(0, self.window).zip(hann(self.window)))
+            .map(|(value, w)| value.abs() * value.abs() * w)
+            .sum();
+        let signal = (square * 2.0 / self.window as f32 - noise).max(0.0) / share_on;
+        // Of a square wave in that noise the fundamental has so much; less is another shape, as of a jump of the phase.
+        let keying = signal * share_on * (1.0 - share_on);
+        if share < NEARLY * OF_SQUARE_WAVE * keying / (keying + NOISE_OF_ENVELOPE * noise) {
+            return None;
+        }
+        // Three halves that overlap: in the middle one a jump of the phase shows, which would look like another rate.
         let half = self.window / 2;
-        let mut phases = [0.0; 2];
+        let mut phases = [0.0; 3];
         for (place, phase) in phases.iter_mut().enumerate() {
-            let (from, to) = (place * half, (place + 1) * half);
+            let (from, to) = (place * half / 2, place * half / 2 + half);
             let mean = self.mean(from, to);
             let tone = self.tone(rate, from, to, mean);
             let power = self.keying_power(from, to, mean);
@@ -130,16 +149,8 @@ impl CodeReceiver {
             *phase = libm::atan2f(tone.im, tone.re);
         }
         // The phases are those at the middle of each half, of the nominal rate's own clock.
-        let turned = wrapped(phases[1] - phases[0]);
+        let turned = wrapped(phases[2] - phases[0]);
         let offset = turned / TAU / (half as f32 / self.downmix.envelope_hz());
-        // What the pauses hold is noise. It is in the mean, too, by the mean of its amplitude (Rayleigh).
-        let noise = self.noise_power();
-        let floor = libm::sqrtf(PI / 4.0 * noise);
-        let share_on = on_share(amplitude / (mean - floor).max(amplitude / 2.0));
-        let square: f32 = (self.values(0, self.window).zip(hann(self.window)))
-            .map(|(value, w)| value.abs() * value.abs() * w)
-            .sum();
-        let signal = (square * 2.0 / self.window as f32 - noise).max(0.0) / share_on;
         let level_mv = libm::sqrtf(signal / 2.0);
         let snr_db = Some(10.0 * libm::log10f(signal / noise.max(1e-9)));
         Some(heard(rate + offset, level_mv, share.min(1.0), snr_db))
