@@ -126,22 +126,28 @@ impl CodeReceiver {
         let noise = self.noise_power();
         let floor = libm::sqrtf(PI / 4.0 * noise);
         let share_on = on_share(amplitude / (mean - floor).max(amplitude / 2.0));
-        let square: f32 = (self.values(0, self.window).zip(hann(self.window)))
-            .map(|(value, w)| value.abs() * value.abs() * w)
-            .sum();
-        let signal = (square * 2.0 / self.window as f32 - noise).max(0.0) / share_on;
+        let square = self.mean_of(0, self.window, |amplitude| amplitude * amplitude);
+        let signal = (square - noise).max(0.0) / share_on;
         // Of a square wave in that noise the fundamental has so much; less is another shape, as of a jump of the phase.
         let keying = signal * share_on * (1.0 - share_on);
         if share < NEARLY * OF_SQUARE_WAVE * keying / (keying + NOISE_OF_ENVELOPE * noise) {
             return None;
         }
-        // Three halves that overlap: in the middle one a jump of the phase shows, which would look like another rate.
+        let offset = self.offset_of_rate(rate)?;
+        let level_mv = libm::sqrtf(signal / 2.0);
+        let snr_db = Some(10.0 * libm::log10f(signal / noise.max(1e-9)));
+        Some(heard(rate + offset, level_mv, share.min(1.0), snr_db))
+    }
+
+    /// By how much the code rate is above this one, Hz, from how its phase goes on: judged in three halves that overlap,
+    /// since a jump of the phase looks like another rate, and shows in the middle half.
+    fn offset_of_rate(&self, rate_hz: f32) -> Option<f32> {
         let half = self.window / 2;
         let mut phases = [0.0; 3];
         for (place, phase) in phases.iter_mut().enumerate() {
             let (from, to) = (place * half / 2, place * half / 2 + half);
             let mean = self.mean(from, to);
-            let tone = self.tone(rate, from, to, mean);
+            let tone = self.tone(rate_hz, from, to, mean);
             let power = self.keying_power(from, to, mean);
             if tone.abs() * tone.abs() / 2.0 < LEAST_SHARE_OF_HALF * power {
                 return None;
@@ -150,10 +156,7 @@ impl CodeReceiver {
         }
         // The phases are those at the middle of each half, of the nominal rate's own clock.
         let turned = wrapped(phases[2] - phases[0]);
-        let offset = turned / TAU / (half as f32 / self.downmix.envelope_hz());
-        let level_mv = libm::sqrtf(signal / 2.0);
-        let snr_db = Some(10.0 * libm::log10f(signal / noise.max(1e-9)));
-        Some(heard(rate + offset, level_mv, share.min(1.0), snr_db))
+        Some(turned / TAU / (half as f32 / self.downmix.envelope_hz()))
     }
 
     /// Values of the window from the oldest on.
@@ -161,21 +164,23 @@ impl CodeReceiver {
         (from..to).map(|place| self.line[(self.place + place) % self.window])
     }
 
-    fn mean(&self, from: usize, to: usize) -> f32 {
-        let sum: f32 = self
-            .values(from, to)
-            .zip(hann(to - from))
-            .map(|(value, w)| value.abs() * w)
+    /// Mean, over a Hann window, of what `of` makes of the amplitude.
+    fn mean_of(&self, from: usize, to: usize, of: impl Fn(f32) -> f32) -> f32 {
+        let sum: f32 = (self.values(from, to).zip(hann(to - from)))
+            .map(|(value, w)| of(value.abs()) * w)
             .sum();
         sum * 2.0 / (to - from) as f32
     }
 
+    fn mean(&self, from: usize, to: usize) -> f32 {
+        self.mean_of(from, to, |amplitude| amplitude)
+    }
+
     /// Power of what varies, mV².
     fn keying_power(&self, from: usize, to: usize, mean: f32) -> f32 {
-        let sum: f32 = (self.values(from, to).zip(hann(to - from)))
-            .map(|(value, w)| (value.abs() - mean) * (value.abs() - mean) * w)
-            .sum();
-        sum * 2.0 / (to - from) as f32
+        self.mean_of(from, to, |amplitude| {
+            (amplitude - mean) * (amplitude - mean)
+        })
     }
 
     /// Amplitude and phase of the envelope at a rate.
@@ -239,10 +244,7 @@ fn hann(length: usize) -> impl Iterator<Item = f32> {
     let mut at = Phasor::at(PI / length as f32);
     (0..length).map(move |_| {
         let value = 0.5 - 0.5 * at.re;
-        at = Phasor {
-            re: at.re * turn.re - at.im * turn.im,
-            im: at.re * turn.im + at.im * turn.re,
-        };
+        at = at.times(turn);
         value
     })
 }

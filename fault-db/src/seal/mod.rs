@@ -131,7 +131,7 @@ pub(crate) struct PrunedPayload {
 pub(crate) const BEGUN: &str = "begun";
 
 /// The payload of the first entry of a chain.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Serialize)]
 pub(crate) struct BegunPayload {
     /// The file's schema.
     pub schema: i32,

@@ -14,7 +14,7 @@ pub struct Wav {
     shown: String,
 }
 
-/// Samples of all channels at one time, and why there are no more.
+/// Why there are no more samples.
 pub enum End {
     /// The file is read.
     Whole,
