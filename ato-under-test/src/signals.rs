@@ -1,7 +1,7 @@
 //! Signals as they pass from terminals to processors.
 
-use protocol::Instant;
 use protocol::message::{ModeSwitch, TrainLines};
+use protocol::{Duration, Instant};
 
 /// What is in the ATP antenna.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +12,8 @@ pub struct AntennaSignal {
     pub rate_hz: f64,
     /// Level, mV.
     pub level_mv: f64,
+    /// Time for which a receiver of waveforms had it already when it was heard.
+    pub heard_for: Duration,
 }
 
 /// Pulses of one tachometer input in one scan.
@@ -39,7 +41,7 @@ pub struct MarkerPulse {
     /// 1 to 4 = PSM1 to PSM4.
     pub marker: u8,
     /// Age when the inputs were sampled, s × 10⁻⁶.
-    pub age_us: u16,
+    pub age_us: u32,
 }
 
 /// The inputs as the processors see them in one scan.

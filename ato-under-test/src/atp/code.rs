@@ -40,6 +40,8 @@ pub struct CodeDecoder {
     heard: Heard,
     /// When a more restrictive code took the place of another, or came back after it.
     restricted: Option<Instant>,
+    /// The last code that was heard beside the one in force, and when.
+    other: Option<(Code, Instant)>,
     /// The code in force was heard, and not for long enough, since it was confirmed.
     unconfirmed: bool,
     /// The code in force took over by the sum of its times.
@@ -60,6 +62,7 @@ impl CodeDecoder {
             patience: Duration::ZERO,
             heard: Heard::default(),
             restricted: None,
+            other: None,
             unconfirmed: false,
             by_sum: false,
             flicker_reported: false,
@@ -79,12 +82,16 @@ impl CodeDecoder {
     ) {
         let match_ = lookup(signal, config);
         let receiver = &config.receiver;
-        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
+        // A receiver of waveforms has had the code for a while when it hands it on.
+        let detect_ms = u64::from(receiver.detect_ms).saturating_sub(signal.heard_for.as_ms());
+        let detect = Duration::from_ms(detect_ms);
         let hold = Duration::from_ms(u64::from(receiver.hold_ms));
         self.heard.note(now, match_, hold);
         let stricter = |code: Code, than: Code| most_kmh(code, config) < most_kmh(than, config);
         if match_ != self.candidate {
-            if match_ != Code::None && match_ == self.code && stricter(match_, self.candidate) {
+            // Between two codes a receiver of waveforms hears none.
+            let after = |(other, at)| now.since(at) < hold && stricter(match_, other);
+            if match_ != Code::None && match_ == self.code && self.other.is_some_and(after) {
                 self.restricted = Some(now);
             }
             let comes_back = self.restricted.is_some_and(|at| now.since(at) < hold);
@@ -96,6 +103,9 @@ impl CodeDecoder {
             self.steady.clear();
         }
         let steady = self.steady.update(now, match_ != Code::None, self.patience);
+        if match_ != Code::None && match_ != self.code {
+            self.other = Some((match_, now));
+        }
         // A code that is steady is detected with the scan in which its time is over.
         let enough = self.heard.time(match_) >= detect + SCAN || !confirms;
         let takes_over = enough && match_ != Code::None && stricter(match_, self.code);
@@ -240,6 +250,7 @@ mod tests {
             carrier_hz,
             rate_hz,
             level_mv,
+            heard_for: Duration::ZERO,
         }
     }
 
@@ -380,6 +391,25 @@ mod tests {
             // Each is detected for itself where it stays for 450 ms of 900.
             assert_eq!(told, code != known_75 && one_ms != 450, "{what:?}");
         }
+    }
+
+    /// Goal: the most restrictive holds also where nothing is heard between two codes that alternate.
+    #[test]
+    fn a_pause_between_codes_that_alternate_frees_none() {
+        let mut receiver = Receiver::new();
+        receiver.hear(CODE_75, 3000);
+        let mut after = alloc::vec![];
+        for _ in 0..6 {
+            receiver.hear(CODE_25, 450);
+            receiver.hear(SILENCE, 50);
+            receiver.hear(CODE_75, 450);
+            receiver.hear(SILENCE, 50);
+            after.push(receiver.decoder.code());
+        }
+        assert!(
+            after.iter().all(|code| *code == Code::Known(1)),
+            "{after:?}"
+        );
     }
 
     #[test]

@@ -4,6 +4,7 @@ use protocol::message::{Crosstalk, IoInput};
 use protocol::{Duration, Instant};
 
 use crate::front_end::at_rate;
+use crate::receivers::Sampled;
 
 /// Time without a frame after which a second code counts as gone: two are lost.
 const CROSSTALK_LASTS: Duration = Duration::from_ms(150);
@@ -19,6 +20,7 @@ pub struct IoImage {
     timeout: Duration,
     clock_rate: f64,
     crosstalk: Option<(Crosstalk, Instant)>,
+    sampled: Option<Sampled>,
 }
 
 impl IoImage {
@@ -33,6 +35,7 @@ impl IoImage {
             timeout,
             clock_rate: 1.0,
             crosstalk: None,
+            sampled: None,
         }
     }
 
@@ -46,8 +49,10 @@ impl IoImage {
         self.clock_rate
     }
 
-    /// Takes a frame sampled at the sender's `stamp_ms`.
-    pub fn latch(&mut self, now: Instant, stamp_ms: u32, input: IoInput) {
+    /// Takes a frame sampled at the sender's `stamp_ms`, and what the receivers made of the waveforms that came with it.
+    pub fn latch(&mut self, now: Instant, stamp_ms: u32, input: IoInput, sampled: Option<Sampled>) {
+        let input = sampled.map_or(input, |sampled| sampled.input);
+        self.sampled = sampled;
         // The sender's clock is unwrapped here, so that pulse times do not feel the wire's jitter.
         let elapsed = if self.alive {
             stamp_ms.wrapping_sub(self.stamp_ms)
@@ -88,6 +93,11 @@ impl IoImage {
     /// The last frame and its sampling time, while the harness is alive.
     pub fn input(&self) -> Option<(&IoInput, Instant)> {
         self.latest.as_ref().map(|input| (input, self.sampled_at))
+    }
+
+    /// What the receivers made of waveforms, if code, pulses and marker came as such.
+    pub fn sampled(&self) -> Option<&Sampled> {
+        self.sampled.as_ref()
     }
 
     pub fn alive(&self) -> bool {

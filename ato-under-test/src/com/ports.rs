@@ -1,5 +1,5 @@
-//! The unit's two ports: the harness, which carries all channels, and the maintenance port, a technician's
-//! RS-232 connector on a train, which carries the maintenance channel alone [S2 §2.2].
+//! The unit's ports: the harness, which carries all channels, the maintenance port, a technician's RS-232 connector on a
+//! train, which carries the maintenance channel alone [S2 §2.2], and the loop that the TWC antenna hears.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use protocol::Instant;
 use protocol::link::{End, Link, Received};
 use protocol::message::{Channel, Message};
 
-/// One of the unit's ports.
+/// One of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
     /// To I/O, TCMS and wayside, and to a tester that plays them.
@@ -15,6 +15,8 @@ pub enum Port {
     /// To a tester alone: frames of any other channel than [`Channel::Ptu`] are rejected here, so that no
     /// laptop can play the train.
     Maintenance,
+    /// The loop in the track, of which the TWC antenna hears samples: TWC alone, and nothing is sent there.
+    Loop,
 }
 
 /// A link on each port.
@@ -22,6 +24,7 @@ pub enum Port {
 pub struct Ports {
     harness: Link,
     maintenance: Link,
+    track_loop: Link,
     /// Where a tester was heard last: it is spoken to there.
     tester_at: Port,
     /// What goes out on the maintenance port.
@@ -29,11 +32,12 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Nothing was received on either.
+    /// Nothing was received on any.
     pub fn new() -> Self {
         Self {
             harness: Link::new(End::Unit),
             maintenance: Link::with_channels(End::Unit, &[Channel::Ptu]),
+            track_loop: Link::with_channels(End::Unit, &[Channel::Twc]),
             tester_at: Port::Harness,
             to_maintenance: Vec::new(),
         }
@@ -44,6 +48,7 @@ impl Ports {
         match port {
             Port::Harness => &self.harness,
             Port::Maintenance => &self.maintenance,
+            Port::Loop => &self.track_loop,
         }
     }
 
@@ -52,16 +57,15 @@ impl Ports {
         match port {
             Port::Harness => &mut self.harness,
             Port::Maintenance => &mut self.maintenance,
+            Port::Loop => &mut self.track_loop,
         }
     }
 
     /// The next accepted frame: those of the harness first.
     pub fn poll(&mut self, now: Instant) -> Option<(Port, Received)> {
-        let harness = self.harness.poll(now).map(|frame| (Port::Harness, frame));
-        harness.or_else(|| {
-            let frame = self.maintenance.poll(now)?;
-            Some((Port::Maintenance, frame))
-        })
+        [Port::Harness, Port::Loop, Port::Maintenance]
+            .into_iter()
+            .find_map(|port| Some((port, self.link_mut(port).poll(now)?)))
     }
 
     /// Where a tester was heard last.
@@ -94,17 +98,17 @@ impl Ports {
         out.append(&mut self.to_maintenance);
     }
 
-    /// Frames rejected on both ports, for any reason.
+    /// Frames rejected on all ports, for any reason.
     pub fn rejected_total(&self) -> u64 {
         self.sum(|link| link.counters().rejected_total())
     }
 
-    /// Frames rejected on a channel, on both ports.
+    /// Frames rejected on a channel, on all ports.
     pub fn rejected_on(&self, channel: Channel) -> u64 {
         self.sum(|link| link.counters().rejected_on(channel))
     }
 
     fn sum(&self, count: impl Fn(&Link) -> u64) -> u64 {
-        count(&self.harness) + count(&self.maintenance)
+        count(&self.harness) + count(&self.maintenance) + count(&self.track_loop)
     }
 }

@@ -25,6 +25,7 @@ pub use stored_data::apply_stored_data_faults;
 pub use supply::{PowerAndClock, Supply, at_rate};
 
 use crate::com::IoImage;
+use crate::receivers::Gains;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
 
@@ -109,15 +110,20 @@ impl FrontEnd {
             .filter(|_| image.alive())
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
+        let mut own = in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv);
+        own.heard_for = (image.sampled()).map_or(Duration::ZERO, |sampled| sampled.heard_for);
         let track = self.separate(
-            in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv),
+            own,
             image
                 .crosstalk()
                 .map(|second| in_antenna(second.carrier_hz, second.code_rate_chz, second.level_mv)),
             faults,
         );
-        let received = self.receive(track, board.code(), built_in, faults);
-        let (marker, from_board) = self.marker(now, input.map(|(frame, _)| frame), board, faults);
+        let is_wave = image.sampled().is_some();
+        let received = self.receive((track, is_wave), board.code(), built_in, faults);
+        let marker_age = image.sampled().map(|sampled| sampled.marker_age);
+        let frame_of_marker = input.map(|(frame, _)| (frame, marker_age));
+        let (marker, from_board) = self.marker(now, frame_of_marker, board, faults);
         let tested = Inputs {
             alive: image.alive(),
             signal: match built_in {
@@ -182,10 +188,11 @@ impl FrontEnd {
     }
 
     /// Antenna and receiver: the stronger of track and test coil through the antenna; what is built in
-    /// for the self-test enters behind it and is heard alone.
+    /// for the self-test enters behind it and is heard alone. What weakens a track's signal `is_wave` has weakened its
+    /// waveform already.
     fn receive(
         &mut self,
-        mut track: AntennaSignal,
+        (mut track, is_wave): (AntennaSignal, bool),
         coil: Option<AntennaSignal>,
         built_in: Option<AntennaSignal>,
         faults: &mut Faults,
@@ -196,7 +203,9 @@ impl FrontEnd {
             Some(Effect::Gain { factor }) => factor,
             _ => 1.0,
         };
-        track.level_mv *= through_antenna;
+        if !is_wave {
+            track.level_mv *= through_antenna;
+        }
         let coil = coil.map(|coil| AntennaSignal {
             level_mv: coil.level_mv * through_antenna,
             ..coil
@@ -205,6 +214,7 @@ impl FrontEnd {
         let mut signal = built_in.or(coil).unwrap_or(track);
         match faults.at(Place::AtpReceiver) {
             Some(Effect::Dead) => signal = AntennaSignal::default(),
+            Some(Effect::Gain { .. }) if is_wave && from_track => {}
             Some(Effect::Gain { factor }) => signal.level_mv *= factor,
             Some(Effect::Limit { to }) => signal.rate_hz = signal.rate_hz.min(to),
             Some(Effect::Offset { by }) if signal.rate_hz > 0.0 => signal.rate_hz += by,
@@ -223,17 +233,21 @@ impl FrontEnd {
     fn marker(
         &mut self,
         now: Instant,
-        frame: Option<&IoInput>,
+        frame: Option<(&IoInput, Option<Duration>)>,
         board: &mut TestBoard,
         faults: &mut Faults,
     ) -> (Option<MarkerPulse>, bool) {
         let before = self.marker_edges;
-        self.marker_edges = frame.map(|frame| frame.marker_edges);
+        self.marker_edges = frame.map(|(frame, _)| frame.marker_edges);
         let passed = match (before, frame) {
-            (Some(before), Some(frame)) if before != frame.marker_edges => Some(MarkerPulse {
-                marker: frame.marker,
-                age_us: frame.marker_edge_us,
-            }),
+            (Some(before), Some((frame, age))) if before != frame.marker_edges => {
+                Some(MarkerPulse {
+                    marker: frame.marker,
+                    age_us: age.map_or(u32::from(frame.marker_edge_us), |age| {
+                        u32::try_from(age.as_us()).unwrap_or(u32::MAX)
+                    }),
+                })
+            }
             _ => None,
         };
         let made = board
@@ -261,12 +275,25 @@ impl FrontEnd {
     }
 }
 
+/// What injected faults make of the waveforms in the ATP antenna.
+pub fn gains(faults: &Faults) -> Gains {
+    let of = |place| match faults.at(place) {
+        Some(Effect::Dead) => 0.0,
+        Some(Effect::Gain { factor }) => factor as f32,
+        _ => 1.0,
+    };
+    Gains {
+        atp: of(Place::AtpAntenna) * of(Place::AtpReceiver),
+    }
+}
+
 /// A signal of the wire.
 fn in_antenna(carrier_hz: u16, rate_chz: u16, level_mv: u16) -> AntennaSignal {
     AntennaSignal {
         carrier_hz: f64::from(carrier_hz),
         rate_hz: f64::from(rate_chz) / 100.0,
         level_mv: f64::from(level_mv),
+        heard_for: Duration::ZERO,
     }
 }
 

@@ -1,38 +1,82 @@
 //! The receiver of ATP speed codes: a carrier that is keyed on and off at the code rate.
 //!
-//! The window of the last half second is judged as a whole and in three halves that overlap: a rate counts only if each
-//! has it, with one phase, so that neither noise nor a change of the code is taken for a code that was not sent.
+//! The last values of the envelope, a window, are brought to the phase of the carrier, so that two codes at once add up and
+//! noise has no mean. They are judged as a whole and in three halves that overlap: a rate counts only if each has it, with
+//! one phase, so that neither noise nor a change of the code is taken for a code that was not sent.
 
 use core::f32::consts::{PI, SQRT_2, TAU};
+
+use protocol::config::ReceiverConfig;
 
 use super::downmix::{Downmix, Phasor};
 
 /// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
-/// Longest window, values of the envelope.
-const MOST: usize = 512;
-/// Length of the window, s.
-const WINDOW_S: f32 = 0.5;
-/// A code is heard no later than this after it has begun, s: the window, and the filters' delay.
-pub const HEARD_WITHIN_S: f32 = WINDOW_S + 0.02;
+/// Most values of a window: about a second.
+const MOST: usize = 640;
+/// Share of the time until a code is decoded that the window holds. In the rest the code must stay what it is: longer than
+/// a jump of the phase takes from the window's one end to where its other end no longer feels it.
+const SHARE_OF_DETECTION: f32 = 0.75;
+/// Shortest and longest window, s.
+const SHORTEST_S: f32 = 0.2;
+const LONGEST_S: f32 = 1.0;
 /// Of noise alone, the weaker half of all values has this share of the mean power.
 const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
 /// Least share of the keying's power that the rate's fundamental has, of the window and of each half. A square wave has
 /// 0.81; two codes spliced in the window, or noise, have less.
 const LEAST_SHARE: f32 = 0.55;
-const LEAST_SHARE_OF_HALF: f32 = 0.45;
-/// Share of a square wave's power at its fundamental, and how near to it a code must come.
+const LEAST_SHARE_OF_HALF: f32 = 0.4;
+/// Share of a square wave's power at its fundamental, and how near to it a code must come: less is another shape, as of a
+/// jump of the phase.
 const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
 const NEARLY: f32 = 0.88;
-/// Variance of the envelope that noise of this power makes: half of it while the carrier is on, 1 − π/4 in the pauses.
-const NOISE_OF_ENVELOPE: f32 = 0.36;
+/// Share of what the stronger code leaves unexplained that a weaker one at another rate has, if that is what it is.
+const EXPLAINED: f32 = 0.7;
+/// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
+const WHOLE: f32 = 0.88;
+/// Most power in quadrature of one code alone, over that of the keying.
+const BESIDE: f32 = 0.12;
+/// With less noise than this, over the power of the keying, each break of a rate shows.
+const CLEAR: f32 = 0.04;
 /// Least depth of keying: amplitude of the fundamental over the mean. On and off by half has 1.27.
 const LEAST_DEPTH: f32 = 0.6;
+/// Share of the time that a carrier of a code is on.
+const SHARES_ON: core::ops::RangeInclusive<f32> = 0.25..=0.75;
+/// Most depth, beside a weaker code in opposite phase; more is no carrier between its sidebands.
+const MOST_DEPTH: f32 = 2.7;
 /// An envelope with less depth than this is a carrier without a code.
 const FLAT: f32 = 0.15;
+/// Slowest and fastest rate that is looked for besides those of the table, and the step between them, Hz.
+const RATES_HZ: (f32, f32) = (2.5, 42.0);
+const RATE_STEP_HZ: f32 = 2.0;
 
-/// What the receiver makes of the last half second.
+/// What is received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reception {
+    /// Carrier, Hz.
+    pub carrier_hz: f32,
+    /// Weakest level that is heard, mV rms.
+    pub level_min_mv: f32,
+    /// By how much a second code must be weaker, dB.
+    pub apart_db: f32,
+    /// Time for which a code must be there until it is decoded, s.
+    pub detect_s: f32,
+}
+
+impl Reception {
+    /// A carrier as a unit of this configuration receives it.
+    pub fn of(receiver: &ReceiverConfig, carrier_hz: f64) -> Self {
+        Self {
+            carrier_hz: carrier_hz as f32,
+            level_min_mv: receiver.level_min_mv as f32,
+            apart_db: receiver.apart_db as f32,
+            detect_s: receiver.detect_ms as f32 / 1000.0,
+        }
+    }
+}
+
+/// What the receiver makes of its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heard {
     /// Frequency of the carrier, Hz.
@@ -43,8 +87,7 @@ pub struct Heard {
     pub level_mv: f32,
     /// Share of the keying's power at the fundamental of the rate, 0 to 1.
     pub validity: f32,
-    /// Level over the noise within 160 Hz of the carrier, dB, as far as the pauses of the keying tell; of a carrier without
-    /// a code it is not known.
+    /// Level over the noise within 160 Hz of the carrier, dB; of a carrier without a code it is not known.
     pub snr_db: Option<f32>,
 }
 
@@ -52,28 +95,60 @@ pub struct Heard {
 #[derive(Clone, Debug)]
 pub struct CodeReceiver {
     downmix: Downmix,
-    carrier_hz: f32,
-    level_min_mv: f32,
+    reception: Reception,
+    /// Ratio of the powers of two codes of which the stronger counts.
+    apart: f32,
     line: [Phasor; MOST],
     window: usize,
     place: usize,
     filled: usize,
 }
 
+/// The window on the carrier's phase.
+struct OnCarrier {
+    values: [f32; MOST],
+    /// Power of the noise on either side of that phase, mV²: the least that quadrature and pauses tell, since a jump of the
+    /// carrier's phase is in the quadrature, too.
+    noise: f32,
+    /// Power in quadrature beyond that noise, mV²: of a jump of the carrier's phase, or of another code.
+    beside: f32,
+    offset_hz: f32,
+}
+
+/// A rate in a part of the window.
+#[derive(Clone, Copy)]
+struct Tone {
+    rate_hz: f32,
+    amplitude: f32,
+    angle: f32,
+}
+
+impl Tone {
+    fn power(self) -> f32 {
+        self.amplitude * self.amplitude / 2.0
+    }
+}
+
 impl CodeReceiver {
-    /// For a carrier in samples of this rate, Hz. What is weaker than `level_min_mv` is not heard.
-    pub fn new(carrier_hz: f32, sample_hz: f32, level_min_mv: f32) -> Self {
-        let downmix = Downmix::new(carrier_hz, sample_hz, ENVELOPE_HZ, PASS_HZ);
-        let window = (libm::roundf(WINDOW_S * downmix.envelope_hz()) as usize / 2 * 2).min(MOST);
+    /// For samples of this rate, Hz.
+    pub fn new(reception: Reception, sample_hz: f32) -> Self {
+        let downmix = Downmix::new(reception.carrier_hz, sample_hz, ENVELOPE_HZ, PASS_HZ);
+        let window_s = (SHARE_OF_DETECTION * reception.detect_s).clamp(SHORTEST_S, LONGEST_S);
+        let window = libm::roundf(window_s * downmix.envelope_hz()) as usize / 4 * 4;
         Self {
             downmix,
-            carrier_hz,
-            level_min_mv,
+            apart: libm::powf(10.0, reception.apart_db / 10.0),
+            reception,
             line: [Phasor::default(); MOST],
-            window,
+            window: window.min(MOST),
             place: 0,
             filled: 0,
         }
+    }
+
+    /// Time that the window holds, s: whoever hears a code has had it for about so long.
+    pub fn window_s(&self) -> f32 {
+        self.window as f32 / self.downmix.envelope_hz()
     }
 
     /// Takes a sample, mV.
@@ -85,144 +160,216 @@ impl CodeReceiver {
         }
     }
 
-    /// What was heard in the last half second, if it is one code at one of these rates, or a carrier without one.
+    /// What the window holds, if it is one code, at one of these rates or another, or a carrier without one.
     pub fn heard(&self, rates_hz: &[f32]) -> Option<Heard> {
-        if self.filled < self.window {
+        if self.filled < self.window || self.loudest() < self.reception.level_min_mv {
             return None;
         }
-        let mean = self.mean(0, self.window);
-        let on: (f32, u32) = (self.values(0, self.window)).fold((0.0, 0), |(sum, count), value| {
-            match value.abs() > mean {
-                true => (sum + value.abs(), count + 1),
-                false => (sum, count),
-            }
-        });
-        let level_mv = on.0 / on.1.max(1) as f32 / SQRT_2;
-        if level_mv < self.level_min_mv {
-            return None;
-        }
-        let heard = |rate_hz, level_mv, validity, snr_db| Heard {
-            carrier_hz: self.carrier_hz + self.offset_hz(),
-            rate_hz,
-            level_mv,
-            validity,
-            snr_db,
+        let all = 0..self.window;
+        let on = self.on_carrier();
+        let mean = mean_of(&on.values[all.clone()], |value| value);
+        let power = power_around(&on.values[all.clone()], mean);
+        let heard = |rate_hz, level_mv, validity, snr_db| {
+            (level_mv >= self.reception.level_min_mv).then_some(Heard {
+                carrier_hz: self.reception.carrier_hz + on.offset_hz,
+                rate_hz,
+                level_mv,
+                validity,
+                snr_db,
+            })
         };
-        let power = self.keying_power(0, self.window, mean);
-        if libm::sqrtf(2.0 * power) < FLAT * mean {
-            return Some(heard(0.0, mean / SQRT_2, 1.0, None));
+        let flat = libm::sqrtf(2.0 * (power - on.noise).max(0.0)) < FLAT * mean;
+        if flat && on.beside < BESIDE * mean * mean {
+            return heard(0.0, mean / SQRT_2, 1.0, None);
         }
-        let strongest = rates_hz
-            .iter()
-            .map(|rate| (*rate, self.tone(*rate, 0, self.window, mean)))
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        let (rate, whole) = strongest;
-        let amplitude = whole.abs();
-        let share = amplitude * amplitude / 2.0 / power;
-        if share < LEAST_SHARE || amplitude < LEAST_DEPTH * mean {
+        let (tone, rate_hz, is_whole) = self.rate(&on, mean, rates_hz)?;
+        let share = tone.power() / power;
+        if share < LEAST_SHARE || tone.amplitude < LEAST_DEPTH * mean {
             return None;
         }
-        // What the pauses hold is noise. It is in the mean, too, by the mean of its amplitude (Rayleigh).
-        let noise = self.noise_power();
-        let floor = libm::sqrtf(PI / 4.0 * noise);
-        let share_on = on_share(amplitude / (mean - floor).max(amplitude / 2.0));
-        let square = self.mean_of(0, self.window, |amplitude| amplitude * amplitude);
-        let signal = (square - noise).max(0.0) / share_on;
-        // Of a square wave in that noise the fundamental has so much; less is another shape, as of a jump of the phase.
-        let keying = signal * share_on * (1.0 - share_on);
-        if share < NEARLY * OF_SQUARE_WAVE * keying / (keying + NOISE_OF_ENVELOPE * noise) {
-            return None;
+        let keying = power - on.noise;
+        let is_clear = on.noise < CLEAR * keying;
+        let code_alone = tone.power() >= NEARLY * OF_SQUARE_WAVE * keying
+            && on.beside < BESIDE * keying
+            && (is_whole || !is_clear);
+        let share_on = on_share(tone.amplitude / mean);
+        let signal = match SHARES_ON.contains(&share_on) {
+            true if code_alone => {
+                let square = mean_of(&on.values[all], |value| value * value);
+                (square - on.noise).max(0.0) / share_on
+            }
+            // The mean is of both codes: of one that is on for half of the time the fundamental tells.
+            _ if is_whole
+                && tone.amplitude < MOST_DEPTH * mean
+                && self.is_second_code(&on, mean, tone, power, rates_hz) =>
+            {
+                tone.amplitude * tone.amplitude * (PI / 2.0) * (PI / 2.0)
+            }
+            _ => return None,
+        };
+        let snr_db = Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6)));
+        heard(rate_hz, libm::sqrtf(signal / 2.0), share.min(1.0), snr_db)
+    }
+
+    /// Level of the louder half of the window, mV rms.
+    fn loudest(&self) -> f32 {
+        let values = &self.line[..self.window];
+        let mean = values.iter().map(|value| value.power()).sum::<f32>() / self.window as f32;
+        // A carrier that is keyed is on for half of the time.
+        libm::sqrtf(mean)
+    }
+
+    /// Values of the window from the oldest on.
+    fn values(&self) -> impl Iterator<Item = Phasor> + '_ {
+        let (late, early) = self.line[..self.window].split_at(self.place);
+        early.iter().chain(late).copied()
+    }
+
+    /// Brings the window to the frequency and the phase of its carrier.
+    fn on_carrier(&self) -> OnCarrier {
+        let value_hz = self.downmix.envelope_hz();
+        let mut turned = Phasor::default();
+        for (before, value) in self.values().zip(self.values().skip(1)) {
+            turned = turned.plus(value.times_conj(before));
         }
-        let offset = self.offset_of_rate(rate)?;
-        let level_mv = libm::sqrtf(signal / 2.0);
-        let snr_db = Some(10.0 * libm::log10f(signal / noise.max(1e-9)));
-        Some(heard(rate + offset, level_mv, share.min(1.0), snr_db))
+        let coarse = turned.angle();
+        // What is left of the offset is seen from one half of the window to the other.
+        let mut halves = [Phasor::default(); 2];
+        let (mut at, turn) = (Phasor::at(0.0), Phasor::at(-coarse));
+        for (place, value) in self.values().enumerate() {
+            let half = &mut halves[place * 2 / self.window];
+            *half = half.plus(value.times(at));
+            at = at.times(turn);
+        }
+        let half = (self.window / 2) as f32;
+        let fine = halves[1].times_conj(halves[0]).angle() / half;
+        let turn = Phasor::at(-coarse - fine);
+        // The phase in the middle of the window, where both halves meet.
+        let middle = halves[0].angle() - fine * (half - 1.0) / 2.0;
+        let mut at = Phasor::at(-middle);
+        let mut on = OnCarrier {
+            values: [0.0; MOST],
+            noise: 0.0,
+            beside: 0.0,
+            offset_hz: (coarse + fine) / TAU * value_hz,
+        };
+        for (slot, value) in on.values.iter_mut().zip(self.values()) {
+            let value = value.times(at);
+            *slot = value.re;
+            on.noise += value.im * value.im;
+            at = at.times(turn);
+        }
+        let quadrature = on.noise / self.window as f32;
+        on.noise = quadrature.min(self.noise_of_pauses());
+        on.beside = quadrature - on.noise;
+        on
+    }
+
+    /// Power of what the pauses hold, half of it on either side of a phase, mV²: the quarter of the window with the least is
+    /// their weaker half.
+    fn noise_of_pauses(&self) -> f32 {
+        let mut powers = [0.0f32; MOST];
+        for (power, value) in powers.iter_mut().zip(&self.line[..self.window]) {
+            *power = value.power();
+        }
+        let quarter = self.window / 4;
+        let powers = &mut powers[..self.window];
+        let (weakest, _, _) = powers.select_nth_unstable_by(quarter, f32::total_cmp);
+        weakest.iter().sum::<f32>() / quarter as f32 / WEAKER_HALF / 2.0
+    }
+
+    /// The strongest rate, what it is exactly, and whether it goes on through the window without a break: of the table, or
+    /// of all others.
+    fn rate(&self, on: &OnCarrier, mean: f32, table_hz: &[f32]) -> Option<(Tone, f32, bool)> {
+        let strongest = |rates: &mut dyn Iterator<Item = f32>| {
+            let tones = rates.map(|rate_hz| self.tone(on, mean, rate_hz, 0, self.window));
+            tones.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
+        };
+        let nearest = strongest(&mut table_hz.iter().copied())?;
+        if let Some((offset_hz, is_whole)) = self.offset_of_rate(on, nearest)
+            && offset_hz.abs() < RATE_STEP_HZ / 2.0
+        {
+            return Some((nearest, nearest.rate_hz + offset_hz, is_whole));
+        }
+        let steps = ((RATES_HZ.1 - RATES_HZ.0) / RATE_STEP_HZ) as usize;
+        let others = (0..steps).map(|step| RATES_HZ.0 + step as f32 * RATE_STEP_HZ);
+        let nearest = strongest(&mut others.chain(table_hz.iter().copied()))?;
+        let (offset_hz, is_whole) = self.offset_of_rate(on, nearest)?;
+        let rate_hz = nearest.rate_hz + offset_hz;
+        let tone = self.tone(on, mean, rate_hz, 0, self.window);
+        Some((tone, rate_hz, is_whole))
     }
 
     /// By how much the code rate is above this one, Hz, from how its phase goes on: judged in three halves that overlap,
     /// since a jump of the phase looks like another rate, and shows in the middle half.
-    fn offset_of_rate(&self, rate_hz: f32) -> Option<f32> {
+    fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, bool)> {
         let half = self.window / 2;
-        let mut phases = [0.0; 3];
-        for (place, phase) in phases.iter_mut().enumerate() {
+        let mut halves = [whole; 3];
+        for (place, of_half) in halves.iter_mut().enumerate() {
             let (from, to) = (place * half / 2, place * half / 2 + half);
-            let mean = self.mean(from, to);
-            let tone = self.tone(rate_hz, from, to, mean);
-            let power = self.keying_power(from, to, mean);
-            if tone.abs() * tone.abs() / 2.0 < LEAST_SHARE_OF_HALF * power {
+            let mean = mean_of(&on.values[from..to], |value| value);
+            *of_half = self.tone(on, mean, whole.rate_hz, from, to);
+            let power = power_around(&on.values[from..to], mean);
+            if of_half.power() < LEAST_SHARE_OF_HALF * power {
                 return None;
             }
-            *phase = libm::atan2f(tone.im, tone.re);
         }
         // The phases are those at the middle of each half, of the nominal rate's own clock.
-        let turned = wrapped(phases[2] - phases[0]);
-        Some(turned / TAU / (half as f32 / self.downmix.envelope_hz()))
+        let turned = wrapped(halves[2].angle - halves[0].angle);
+        let offset_hz = turned / TAU / (half as f32 / self.downmix.envelope_hz());
+        let least = whole.amplitude.min(halves[1].amplitude);
+        let is_whole = least >= WHOLE * halves[0].amplitude.max(halves[2].amplitude);
+        Some((offset_hz, is_whole))
     }
 
-    /// Values of the window from the oldest on.
-    fn values(&self, from: usize, to: usize) -> impl Iterator<Item = Phasor> + '_ {
-        (from..to).map(|place| self.line[(self.place + place) % self.window])
+    /// Whether what a code does not explain of the window is a weaker one at another rate.
+    fn is_second_code(
+        &self,
+        on: &OnCarrier,
+        mean: f32,
+        tone: Tone,
+        power: f32,
+        table_hz: &[f32],
+    ) -> bool {
+        // Nearer than this the two are one peak.
+        let apart_hz = 2.0 / self.window_s();
+        let second = (table_hz.iter())
+            .filter(|rate| (*rate - tone.rate_hz).abs() > apart_hz)
+            .map(|rate_hz| self.tone(on, mean, *rate_hz, 0, self.window).power())
+            .fold(0.0, f32::max);
+        let unexplained = power - on.noise - tone.power() / OF_SQUARE_WAVE;
+        second * self.apart <= tone.power() && second / OF_SQUARE_WAVE >= EXPLAINED * unexplained
     }
 
-    /// Mean, over a Hann window, of what `of` makes of the amplitude.
-    fn mean_of(&self, from: usize, to: usize, of: impl Fn(f32) -> f32) -> f32 {
-        let sum: f32 = (self.values(from, to).zip(hann(to - from)))
-            .map(|(value, w)| of(value.abs()) * w)
-            .sum();
-        sum * 2.0 / (to - from) as f32
-    }
-
-    fn mean(&self, from: usize, to: usize) -> f32 {
-        self.mean_of(from, to, |amplitude| amplitude)
-    }
-
-    /// Power of what varies, mV².
-    fn keying_power(&self, from: usize, to: usize, mean: f32) -> f32 {
-        self.mean_of(from, to, |amplitude| {
-            (amplitude - mean) * (amplitude - mean)
-        })
-    }
-
-    /// Amplitude and phase of the envelope at a rate.
-    fn tone(&self, rate_hz: f32, from: usize, to: usize, mean: f32) -> Phasor {
+    /// Amplitude and phase of a rate in a part of the window.
+    fn tone(&self, on: &OnCarrier, mean: f32, rate_hz: f32, from: usize, to: usize) -> Tone {
         let step = TAU * rate_hz / self.downmix.envelope_hz();
+        let (mut at, turn) = (Phasor::at(-step * from as f32), Phasor::at(-step));
         let mut sum = Phasor::default();
-        for ((place, value), w) in (from..).zip(self.values(from, to)).zip(hann(to - from)) {
-            let at = Phasor::at(-step * place as f32);
-            let of = (value.abs() - mean) * w;
+        for (value, w) in on.values[from..to].iter().zip(hann(to - from)) {
+            let of = (value - mean) * w;
             sum.re += at.re * of;
             sum.im += at.im * of;
+            at = at.times(turn);
         }
-        let scale = 4.0 / (to - from) as f32;
-        Phasor {
-            re: sum.re * scale,
-            im: sum.im * scale,
+        Tone {
+            rate_hz,
+            amplitude: sum.abs() * 4.0 / (to - from) as f32,
+            angle: sum.angle(),
         }
     }
+}
 
-    /// Square of the amplitude in the pauses, mV²: the quarter of the window with the least is their weaker half.
-    fn noise_power(&self) -> f32 {
-        let mut powers = [0.0f32; MOST];
-        for (power, value) in powers.iter_mut().zip(self.values(0, self.window)) {
-            *power = value.abs() * value.abs();
-        }
-        let powers = &mut powers[..self.window];
-        powers.sort_unstable_by(f32::total_cmp);
-        let weakest = &powers[..self.window / 4];
-        weakest.iter().sum::<f32>() / weakest.len() as f32 / WEAKER_HALF
-    }
+/// Mean, over a Hann window, of what `of` makes of the values.
+fn mean_of(values: &[f32], of: impl Fn(f32) -> f32) -> f32 {
+    let weighted = values.iter().zip(hann(values.len()));
+    let sum: f32 = weighted.map(|(value, w)| of(*value) * w).sum();
+    sum * 2.0 / values.len() as f32
+}
 
-    /// By how much the carrier is above its nominal frequency, Hz.
-    fn offset_hz(&self) -> f32 {
-        let mut sum = Phasor::default();
-        let later = self.values(1, self.window);
-        for (before, value) in self.values(0, self.window - 1).zip(later) {
-            let turned = value.times_conj(before);
-            sum.re += turned.re;
-            sum.im += turned.im;
-        }
-        libm::atan2f(sum.im, sum.re) / TAU * self.downmix.envelope_hz()
-    }
+/// Power of what varies, mV².
+fn power_around(values: &[f32], mean: f32) -> f32 {
+    mean_of(values, |value| (value - mean) * (value - mean))
 }
 
 /// The share of the time that a keyed carrier is on, from the amplitude of the fundamental over the mean: that is

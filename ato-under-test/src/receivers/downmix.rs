@@ -19,7 +19,12 @@ pub struct Phasor {
 impl Phasor {
     /// Amplitude, mV.
     pub fn abs(self) -> f32 {
-        libm::sqrtf(self.re * self.re + self.im * self.im)
+        libm::sqrtf(self.power())
+    }
+
+    /// Square of the amplitude, mV².
+    pub fn power(self) -> f32 {
+        self.re * self.re + self.im * self.im
     }
 
     /// Product with the conjugate of another: its angle is the one between them.
@@ -28,6 +33,17 @@ impl Phasor {
             re: self.re * other.re + self.im * other.im,
             im: self.im * other.re - self.re * other.im,
         }
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            re: self.re + other.re,
+            im: self.im + other.im,
+        }
+    }
+
+    pub(crate) fn angle(self) -> f32 {
+        libm::atan2f(self.im, self.re)
     }
 
     pub(crate) fn times(self, other: Self) -> Self {

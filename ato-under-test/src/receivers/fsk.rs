@@ -2,6 +2,8 @@
 
 use core::f32::consts::TAU;
 
+use protocol::config::TwcConfig;
+
 use super::downmix::{Downmix, Phasor};
 
 /// Values of the complex envelope for each bit, about.
@@ -34,6 +36,15 @@ impl Tones {
         apart_hz: 150.0,
         bit_rate: 300.0,
     };
+
+    /// Those of a unit configuration.
+    pub fn of(twc: &TwcConfig) -> Self {
+        Self {
+            middle_hz: twc.middle_hz as f32,
+            apart_hz: twc.apart_hz as f32,
+            bit_rate: twc.bits_per_s as f32,
+        }
+    }
 }
 
 /// What was received.

@@ -1,10 +1,16 @@
-//! What the unit makes of the waveforms in its coils: speed codes and TWC bytes, from samples in mV.
+//! What the unit makes of the waveforms in its coils: speed codes, TWC bytes, markers and pulses, from samples in mV.
 //!
 //! No allocation, no clock: the caller passes one sample after the other at a known rate.
 
 mod code;
+mod coils;
 mod downmix;
 mod fsk;
+mod marker;
+mod sensor;
 
-pub use code::{CodeReceiver, HEARD_WITHIN_S, Heard};
+pub use code::{CodeReceiver, Heard, Reception};
+pub use coils::{Coils, Gains, Sampled};
 pub use fsk::{BitHeard, Demodulator, FskReceiver, Received, Tones};
+pub use marker::{MarkerReceiver, Passed};
+pub use sensor::SensorInput;

@@ -45,6 +45,7 @@ impl Defects {
             carrier_hz: moved(asked.carrier_hz, self.carrier_offset_hz),
             rate_hz: moved(asked.rate_hz, self.rate_offset_hz),
             level_mv: asked.level_mv * self.level_gain,
+            ..AntennaSignal::default()
         }
     }
 }

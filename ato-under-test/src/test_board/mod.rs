@@ -87,6 +87,7 @@ impl TestBoard {
                 carrier_hz: f64::from(request.carrier_hz),
                 rate_hz: f64::from(request.code_rate_chz) / 100.0,
                 level_mv: f64::from(request.level_mv),
+                ..AntennaSignal::default()
             });
         }
         answer

@@ -10,7 +10,7 @@ use protocol::message::{Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcOr
 use protocol::{Duration, Instant};
 
 use super::{Unit, report};
-use crate::com::ArmConditions;
+use crate::com::{ArmConditions, Port};
 use crate::setup::Setup;
 use crate::twc::StationSender;
 
@@ -35,7 +35,12 @@ impl Unit {
                 self.ports.hear_tester(port);
             }
             match message {
-                Message::IoInput(input) => self.image.latch(now, header.stamp_ms, input),
+                Message::CoilSamples(samples) => self.coils.take(&samples),
+                Message::IoInput(input) => {
+                    let sampled = self.coils.end_scan(input);
+                    (self.image).latch(now, header.stamp_ms, input, sampled);
+                    self.hear_loop();
+                }
                 Message::WheelEntry(entry) => self.take_wheel_entry(now, entry),
                 Message::Crosstalk(signal) => self.image.latch_crosstalk(now, signal),
                 Message::TcmsToAtc(frame) => self.on_tcms(now, frame),
@@ -71,6 +76,14 @@ impl Unit {
         self.replies.extend(notice);
         self.follow_arming();
         self.send_replies(now, out);
+    }
+
+    /// What came through the loop as tones is frames again, which are received as any others.
+    fn hear_loop(&mut self) {
+        let link = self.ports.link_mut(Port::Loop);
+        for byte in self.coils.take_twc_bytes() {
+            link.push(&[byte]);
+        }
     }
 
     pub(super) fn send_replies(&mut self, now: Instant, out: &mut Vec<u8>) {

@@ -25,12 +25,13 @@ use crate::driverless::Stabling;
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
     DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
-    apply_stored_data_faults,
+    apply_stored_data_faults, gains,
 };
 use crate::guards::Guards;
 use crate::kernel::{EventLog, RunRecord, SelfTester};
 use crate::keyed::Keyed;
 use crate::psm::Tra;
+use crate::receivers::Coils;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
 use crate::twc::OwnNumber;
@@ -58,6 +59,7 @@ pub struct Unit {
     tra: Tra,
     tcms: TcmsLink,
     image: IoImage,
+    coils: Coils,
     run_record: RunRecord,
     /// Log and record over power-ups.
     memory: Memory,
@@ -126,6 +128,7 @@ impl Unit {
             run_record: RunRecord::default(),
             memory,
             image: IoImage::new(ms(link.io_timeout_ms)),
+            coils: Coils::new(config),
             faults,
             guards: Guards::ALL,
             power: PowerAndClock::default(),
@@ -188,6 +191,7 @@ impl Unit {
         let clock_rate = self.faults.gain(Place::Clock);
         let now = self.power.own(now, clock_rate);
         self.image.set_clock_rate(clock_rate);
+        self.coils.set_gains(gains(&self.faults));
         self.receive_frames(now, out);
         self.read_inputs(now);
         self.test_self(now);

@@ -63,6 +63,7 @@ impl Unit {
                 carrier_hz: code.carrier_hz,
                 rate_hz: code.rate_hz,
                 level_mv: config.receiver.level_min_mv * SELF_TEST_LEVEL,
+                ..AntennaSignal::default()
             })
     }
 

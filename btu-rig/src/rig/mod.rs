@@ -38,6 +38,7 @@ use crate::procedure::UnitEvent;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
 use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
+use crate::waveform::ChannelConfig;
 
 pub use bench::{Bench, LinkFailure, UnitLink};
 pub use link::Harness;
@@ -50,7 +51,8 @@ use rolling::weight_shares;
 use session::{IdentityCheck, Subscription, Tester};
 use tcms::{PairCars, pair_cars};
 use train_side::{
-    CabDesk, DoorGear, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults, TrainSeen, Wheel,
+    CabDesk, Coils, DoorGear, InCoils, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults,
+    TrainSeen, Wheel,
 };
 use wayside::{Antenna, Markers, Track, Wayside};
 
@@ -83,6 +85,10 @@ pub struct Rig {
     train_driven: bool,
     track: Option<Track>,
     markers: Markers,
+    /// Codes, TWC, markers and pulses are waveforms instead of numbers.
+    coils: Option<Coils>,
+    /// What the wayside sends in a scan through the loop as waveform.
+    in_loop: Vec<u8>,
     wayside: Wayside,
     /// Number of the train.
     train_number: u16,
@@ -168,6 +174,8 @@ impl Rig {
             train_driven: false,
             track: None,
             markers: Markers::default(),
+            coils: None,
+            in_loop: Vec::new(),
             wayside,
             train_number: config.train.number,
             desk: CabDesk::default(),
@@ -201,6 +209,11 @@ impl Rig {
     /// the unit are injected in the unit.
     pub fn inject(&mut self, modes: &[FaultMode], power_at: Instant) {
         self.injected.begin(modes, power_at);
+    }
+
+    /// Makes codes, TWC, markers and pulses waveforms from now on, for a unit of this configuration.
+    pub fn use_waveforms(&mut self, config: &UnitConfig, channel: &ChannelConfig, seed: u64) {
+        self.coils = Some(Coils::new(config, channel, &mut Random::new(seed)));
     }
 
     /// One scan: generators advance, frames that are due are appended to `out`.
@@ -248,10 +261,26 @@ impl Rig {
         for entry in self.desk.entries_due(now).into_iter().flatten() {
             self.link.send(now, &entry, out);
         }
-        if let Some(second) = self.antenna.second_due(now) {
-            self.link.send(now, &second.into(), out);
+        let mut input = self.io_input(now);
+        match &mut self.coils {
+            None => {
+                if let Some(second) = self.antenna.second_due(now) {
+                    self.link.send(now, &second.into(), out);
+                }
+            }
+            Some(coils) => {
+                let in_coils = InCoils {
+                    codes: self.antenna.arriving(),
+                    twc: &self.in_loop,
+                    motion: self.wheel.motion(),
+                    markers: &mut self.markers.along(),
+                    asked_marker: self.markers.asked(),
+                };
+                coils.send(now, &mut input, in_coils, &mut self.link, out);
+                self.in_loop.clear();
+            }
         }
-        self.link.send(now, &self.io_input(now).into(), out);
+        self.link.send(now, &input.into(), out);
         let seen = TrainSeen {
             braking: self.braking,
             doors_closed: self.desk.doors_proved(),
@@ -260,8 +289,12 @@ impl Rig {
         if let Some(message) = self.tcms_port.step(now, self.tcms.view(), seen) {
             self.link.send(now, &message.into(), out);
         }
+        let in_loop = match self.coils {
+            Some(_) => &mut self.in_loop,
+            None => out,
+        };
         self.wayside
-            .step(now, self.train_number, &mut self.link, out);
+            .step(now, self.train_number, &mut self.link, in_loop);
     }
 
     /// Takes bytes from the unit.

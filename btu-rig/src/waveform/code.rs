@@ -27,6 +27,13 @@ impl CodeWave {
         }
     }
 
+    /// Another carrier, rate and level from now on, without a jump of either phase.
+    pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64, sample_hz: f64) {
+        self.carrier_step = carrier_hz / sample_hz;
+        self.keying_step = rate_hz / sample_hz;
+        self.amplitude_mv = level_mv * std::f64::consts::SQRT_2;
+    }
+
     /// How much of the carrier is on: half of the time all, with edges of a raised cosine.
     fn keyed(cycles: f64) -> f64 {
         let edge = |from: f64| 0.5 - 0.5 * cosine(0.5 * (from / EDGE).clamp(0.0, 1.0));
@@ -41,6 +48,9 @@ impl Iterator for CodeWave {
     type Item = f64;
 
     fn next(&mut self) -> Option<f64> {
+        if self.amplitude_mv == 0.0 {
+            return Some(0.0);
+        }
         let on = match self.keying_step > 0.0 {
             true => Self::keyed(self.keying.step(self.keying_step)),
             false => 1.0,

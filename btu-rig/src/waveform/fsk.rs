@@ -29,21 +29,31 @@ impl FskWave {
         level_mv: f64,
         sample_hz: f64,
     ) -> Self {
-        let mut bits: VecDeque<bool> = std::iter::repeat_n(true, REST).collect();
-        for byte in bytes {
-            bits.push_back(false);
-            bits.extend((0..8).map(|bit| byte >> bit & 1 == 1));
-            bits.extend([byte.count_ones() % 2 == 1, true]);
-        }
-        bits.extend(std::iter::repeat_n(true, REST));
-        Self {
+        let mut wave = Self {
             carrier: Phase::default(),
             steps: [middle_hz - apart_hz, middle_hz + apart_hz].map(|tone| tone / sample_hz),
-            bits,
+            bits: VecDeque::new(),
             bit: Phase::default(),
             bit_step: bit_rate / sample_hz,
             amplitude_mv: level_mv * std::f64::consts::SQRT_2,
+        };
+        wave.send(bytes);
+        wave
+    }
+
+    /// Sends bytes behind those that are not sent yet; after silence a rest comes first.
+    pub fn send(&mut self, bytes: &[u8]) {
+        match self.bits.len().checked_sub(REST) {
+            // The rest behind the bytes before.
+            Some(left) => self.bits.truncate(left),
+            None => self.bits.extend(std::iter::repeat_n(true, REST)),
         }
+        for byte in bytes {
+            self.bits.push_back(false);
+            self.bits.extend((0..8).map(|bit| byte >> bit & 1 == 1));
+            self.bits.extend([byte.count_ones() % 2 == 1, true]);
+        }
+        self.bits.extend(std::iter::repeat_n(true, REST));
     }
 }
 

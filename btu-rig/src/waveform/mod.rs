@@ -1,15 +1,21 @@
-//! What is in the coils, as samples in mV: speed codes, TWC and noise.
+//! What is in the coils, as samples in mV: speed codes, TWC, markers, pulses of speed sensors, and what disturbs them.
 //!
 //! Each source gives one sample after the other, without end or for its length, at a rate of its own. A phase is counted
 //! in cycles and kept below one, so that it stays exact over hours.
 
+mod channel;
 mod code;
 mod fsk;
+mod marker;
 mod noise;
+mod sensor;
 
+pub use channel::{Channel, ChannelConfig};
 pub use code::CodeWave;
 pub use fsk::FskWave;
+pub use marker::MarkerWave;
 pub use noise::Noise;
+pub use sensor::SensorWave;
 
 /// A phase in cycles, 0 to 1.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,6 +2,11 @@
 
 use super::*;
 
+/// Highest frequency that is sampled well with 48 000 samples a second, Hz.
+const HIGHEST_HZ: f64 = 22_000.0;
+/// Tones that are nearer to each other are not told apart, Hz.
+const TONES_APART_HZ: f64 = 500.0;
+
 impl UnitConfig {
     /// Checks ranges and that values fit together.
     ///
@@ -31,6 +36,20 @@ impl UnitConfig {
         )?;
         if self.marker.debounce_ms > self.marker.bounce_ms {
             return Err(conflict("marker.debounce_ms must not be above bounce_ms"));
+        }
+        if self.twc.apart_hz >= self.twc.middle_hz
+            || self.twc.middle_hz + self.twc.apart_hz > HIGHEST_HZ
+        {
+            return Err(conflict(
+                "twc: middle_hz - apart_hz must be above 0, middle_hz + apart_hz at most 22 000 Hz",
+            ));
+        }
+        for (place, tone_hz) in self.marker.tones_hz.iter().enumerate() {
+            within("marker.tones_hz", *tone_hz, 500.0, HIGHEST_HZ)?;
+            let is_near = |other: &f64| libm::fabs(other - tone_hz) < TONES_APART_HZ;
+            if self.marker.tones_hz[..place].iter().any(is_near) {
+                return Err(conflict("marker.tones_hz must be at least 500 Hz apart"));
+            }
         }
         self.ato.check()?;
         self.check_codes()
@@ -76,6 +95,12 @@ impl UnitConfig {
             marker.wheel_spread: 0.0001, 0.1;
             marker.debounce_ms: 0.0, 1000.0;
             marker.bounce_ms: 0.0, 2000.0;
+            marker.level_mv: 1.0, 2000.0;
+            marker.reach_m: 0.01, 1.0;
+            twc.middle_hz: 500.0, 20_000.0;
+            twc.apart_hz: 10.0, 5_000.0;
+            twc.bits_per_s: 50.0, 10_000.0;
+            twc.level_mv: 1.0, 2000.0;
             test_board.carrier_tolerance_hz: 1.0, 100.0;
             test_board.rate_tolerance_hz: 0.01, 5.0;
             test_board.level_tolerance: 0.001, 0.5;

@@ -218,6 +218,32 @@ impl Default for TestBoardConfig {
     }
 }
 
+/// TWC in its loop: two tones for the two values of a bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TwcConfig {
+    /// Middle of the two tones, Hz.
+    pub middle_hz: f64,
+    /// Distance of each tone from it, Hz; the upper one is bit 1.
+    pub apart_hz: f64,
+    /// Bits per second.
+    pub bits_per_s: f64,
+    /// Level in the antenna, mV rms.
+    pub level_mv: f64,
+}
+
+/// The values of `sg100`, for configurations without this table.
+impl Default for TwcConfig {
+    fn default() -> Self {
+        Self {
+            middle_hz: 9650.0,
+            apart_hz: 2400.0,
+            bits_per_s: 4800.0,
+            level_mv: 500.0,
+        }
+    }
+}
+
 /// Start after power-up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -250,6 +276,9 @@ pub struct UnitConfig {
     pub orders: OrdersConfig,
     /// Time-outs of the channels.
     pub link: LinkConfig,
+    /// TWC in its loop.
+    #[serde(default)]
+    pub twc: TwcConfig,
     /// Supervision of markers and TRA.
     pub marker: MarkerConfig,
     /// Accuracy of the TEST board.

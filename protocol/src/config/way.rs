@@ -131,10 +131,31 @@ pub struct MarkerConfig {
     /// Time within which the same marker again is TRA's, and no marker of the track, ms.
     #[serde(default = "MarkerConfig::default_bounce_ms")]
     pub bounce_ms: u32,
+    /// Tones of PSM1 to PSM4 behind the marker antenna, Hz.
+    #[serde(default = "MarkerConfig::default_tones_hz")]
+    pub tones_hz: [f64; 4],
+    /// Level in the antenna over the marker's middle, mV rms.
+    #[serde(default = "MarkerConfig::default_level_mv")]
+    pub level_mv: f64,
+    /// Distance from the middle at which it has fallen to 61 % (1σ of a bell), m.
+    #[serde(default = "MarkerConfig::default_reach_m")]
+    pub reach_m: f64,
 }
 
 /// Those of `sg100`, for configurations without the keys.
 impl MarkerConfig {
+    const fn default_tones_hz() -> [f64; 4] {
+        [4000.0, 5000.0, 6000.0, 7000.0]
+    }
+
+    const fn default_level_mv() -> f64 {
+        500.0
+    }
+
+    const fn default_reach_m() -> f64 {
+        0.1
+    }
+
     const fn default_debounce_ms() -> u32 {
         100
     }

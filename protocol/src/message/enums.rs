@@ -79,6 +79,20 @@ wire_bits! {
 }
 
 wire_enum! {
+    /// A coil or sensor whose waveform is sent as samples.
+    Coil {
+        /// ATP antenna.
+        AtpAntenna = 0 "atp_antenna",
+        /// TWC antenna.
+        TwcAntenna = 1 "twc_antenna",
+        /// Marker antenna.
+        MarkerAntenna = 2 "marker_antenna",
+        /// Both speed sensors.
+        SpeedSensors = 3 "speed_sensors",
+    }
+}
+
+wire_enum! {
     /// Position of the cab's mode switch.
     ModeSwitch {
         /// Off.

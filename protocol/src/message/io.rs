@@ -1,7 +1,10 @@
 //! I/O channel: what the bench harness carries, once per 10 ms scan each way.
 
-use super::enums::ModeSwitch;
-use super::layout::{layout, wire_bits};
+use super::enums::{Coil, ModeSwitch};
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::layout::{Cursor, DecodeError, Field, layout, wire_bits};
 
 wire_bits! {
     /// Train lines and cab contacts; a set bit is an energised line.
@@ -129,6 +132,64 @@ layout! {
         code_rate_chz: u16,
         /// Its level, mV; 0 = there is none any more.
         level_mv: u16,
+    }
+}
+
+/// Samples of one [`CoilSamples`].
+pub const COIL_PART: usize = 96;
+/// Parts of a scan: 480 samples, 48 000 a second.
+pub const COIL_PARTS: usize = 5;
+/// What one step of a sample stands for, mV: a coil takes up to 3.2 V.
+pub const COIL_STEP_MV: f32 = 0.1;
+
+/// The samples of a [`CoilSamples`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Samples(pub [i16; COIL_PART]);
+
+/// Silence.
+impl Default for Samples {
+    fn default() -> Self {
+        Self([0; COIL_PART])
+    }
+}
+
+/// Big-endian, one sample after the other; shown as bytes.
+impl Field for Samples {
+    const SIZE: usize = 2 * COIL_PART;
+    fn put(&self, out: &mut Vec<u8>) {
+        for sample in self.0 {
+            out.extend_from_slice(&sample.to_be_bytes());
+        }
+    }
+    fn get(cursor: &mut Cursor<'_>, name: &'static str) -> Result<Self, DecodeError> {
+        let bytes: [u8; Self::SIZE] = cursor.take(name)?;
+        let mut samples = Self::default();
+        for (sample, bytes) in samples.0.iter_mut().zip(bytes.as_chunks().0) {
+            *sample = i16::from_be_bytes(*bytes);
+        }
+        Ok(samples)
+    }
+    fn show(&self) -> String {
+        let mut bytes = Vec::with_capacity(Self::SIZE);
+        self.put(&mut bytes);
+        bytes
+            .iter()
+            .map(|byte| alloc::format!("{byte:02x}"))
+            .collect()
+    }
+}
+
+layout! {
+    /// What is in one coil as samples, I/O rack → unit; sent before the `IoInput` of the same scan, whose code, tachometers
+    /// and marker count no more then. A coil of which nothing is sent is silent.
+    CoilSamples, Io, 0x05 {
+        /// Coil.
+        coil: Coil,
+        /// Part of the scan, 0 to 4.
+        part: u8,
+        /// 96 samples of 0.1 mV, i16 each. Of the speed sensors: their four lines by turns, 12 000 a second each: sensor 1 A,
+        /// 1 B, 2 A, 2 B.
+        samples: Samples,
     }
 }
 

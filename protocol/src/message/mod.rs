@@ -17,11 +17,14 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 pub use enums::{
-    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, DoorSide, EbCause, FsbCause,
+    AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, Coil, DoorSide, EbCause, FsbCause,
     MeasureUnit, Mode, ModeSwitch, NumberState, OrderLacks, OrderState, Refusals, RunningMode,
     StoreKind, TrainOrder,
 };
-pub use io::{CabEntries, Crosstalk, IoInput, IoOutput, Outputs, TrainLines, WheelEntry};
+pub use io::{
+    COIL_PART, COIL_PARTS, COIL_STEP_MV, CabEntries, CoilSamples, Crosstalk, IoInput, IoOutput,
+    Outputs, Samples, TrainLines, WheelEntry,
+};
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,
 };
@@ -229,6 +232,7 @@ messages!(
     CabEntries,
     Crosstalk,
     WheelEntry,
+    CoilSamples,
     IoOutput,
     TcmsToAtc,
     AtcToTcms,
@@ -242,6 +246,7 @@ messages!(
 pub const ENUMS: &[WordSpec] = &[
     Mode::SPEC,
     ModeSwitch::SPEC,
+    Coil::SPEC,
     RunningMode::SPEC,
     TrainOrder::SPEC,
     OrderState::SPEC,

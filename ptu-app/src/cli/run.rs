@@ -24,7 +24,8 @@ use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
-    self, BenchChoice, BenchSetup, RunControl, RunPlan, Suite, check_serial, software_version,
+    self, BenchChoice, BenchSetup, RunControl, RunPlan, Signals, Suite, check_serial,
+    software_version,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_bench::stdio;
@@ -104,6 +105,9 @@ pub struct RunArguments {
     /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     scattered: Option<Option<PathBuf>>,
+    /// Codes, TWC, markers and pulses as values, or sampled, as waveforms; a file says what disturbs these
+    #[arg(long, value_name = "values|sampled[:FILE]", default_value = "values")]
+    signals: Signals,
     /// Run the simulated unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
@@ -244,6 +248,7 @@ impl RunArguments {
             seed: self.seed(),
             scatter: self.scattered.is_some(),
             scatter_file: self.scattered.clone().flatten(),
+            signals: self.signals.clone(),
             realtime: self.realtime,
             slower: self.slower,
         }

@@ -46,6 +46,7 @@ mod report;
 mod report_page;
 mod resume;
 mod run_output;
+mod sampled;
 mod saved_questions;
 mod scatter;
 mod server;

@@ -2,6 +2,7 @@
 //! broken in it.
 
 mod cab_desk;
+mod coils;
 mod door_gear;
 mod motion;
 mod tacho;
@@ -11,6 +12,7 @@ mod true_motion;
 mod wheel;
 
 pub use cab_desk::CabDesk;
+pub use coils::{Coils, InCoils};
 pub use door_gear::DoorGear;
 pub use motion::Motion;
 pub use tacho::{MAX_AGE_US, Tacho};

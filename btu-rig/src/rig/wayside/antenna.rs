@@ -114,6 +114,17 @@ impl Antenna {
         })
     }
 
+    /// What arrives of both signals: carrier, Hz, code rate, Hz, level, mV.
+    pub fn arriving(&self) -> [(f64, f64, f64); 2] {
+        [&self.wanted, &self.second.signal].map(|signal| {
+            (
+                f64::from(self.arriving_hz(signal.carrier_hz)),
+                f64::from(self.arriving_chz(signal.rate_hz)) / 100.0,
+                f64::from(self.arriving_mv(signal.level_mv)),
+            )
+        })
+    }
+
     /// Level of the second signal as sent, mV.
     pub fn second_mv(&self) -> u16 {
         self.arriving_mv(self.second.signal.level_mv)

@@ -19,11 +19,13 @@ pub struct Markers {
     along_m: [Option<f64>; 4],
     /// How far from there each really lies.
     offsets_m: [f64; 4],
-    /// Marker and age at the coming stamp, µs.
-    pending: VecDeque<(u8, f64)>,
+    /// Marker and age at the coming stamp, µs, and whether it was asked for instead of passed.
+    pending: VecDeque<(u8, f64, bool)>,
     last: u8,
     edges: u8,
     age_us: f64,
+    /// What was asked for and pulses in this scan.
+    asked: Option<u8>,
 }
 
 impl Default for Markers {
@@ -35,6 +37,7 @@ impl Default for Markers {
             last: 0,
             edges: 0,
             age_us: MAX_AGE_US,
+            asked: None,
         }
     }
 }
@@ -50,7 +53,7 @@ impl Markers {
                 "{MAX_PENDING} marker pulses are waiting already: a scan carries one at most"
             )));
         }
-        self.pending.push_back((psm, -(SCAN.as_us() as f64)));
+        self.pending.push_back((psm, -(SCAN.as_us() as f64), true));
         Ok(())
     }
 
@@ -102,14 +105,29 @@ impl Markers {
             let crossed = at.and_then(|at| motion.age_of_position_s(at + offset));
             // A full queue means four markers within centimetres: one coil cannot tell them apart.
             if let Some(age_s) = crossed.filter(|_| self.pending.len() < MAX_PENDING) {
-                self.pending.push_back((psm, age_s * 1e6));
+                self.pending.push_back((psm, age_s * 1e6, false));
             }
         }
-        if let Some((psm, age_us)) = self.pending.pop_front() {
+        self.asked = None;
+        if let Some((psm, age_us, asked)) = self.pending.pop_front() {
+            self.asked = asked.then_some(psm);
             self.last = psm;
             self.edges = self.edges.wrapping_add(1);
             self.age_us = age_us.min(MAX_AGE_US);
         }
+    }
+
+    /// Numbers and places of the markers along the way.
+    pub fn along(&self) -> impl Iterator<Item = (u8, f64)> + '_ {
+        let places = self.along_m.iter().zip(self.offsets_m);
+        (1..)
+            .zip(places)
+            .filter_map(|(psm, (at, offset))| Some((psm, at.as_ref()? + offset)))
+    }
+
+    /// A marker that was asked for and pulses in this scan.
+    pub fn asked(&self) -> Option<u8> {
+        self.asked
     }
 
     /// Marker entered last; 0 = none yet.

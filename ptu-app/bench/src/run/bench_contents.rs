@@ -8,6 +8,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::recorded::StimulusRecord;
 use btu_rig::rig::{ExpectedIdentity, Harness};
 use btu_rig::train::TrainData;
+use btu_rig::waveform::ChannelConfig;
 use fault_db::{Recording, RecordingRecord};
 use protocol::Instant;
 use serde::{Deserialize, Serialize};
@@ -50,6 +51,9 @@ pub struct BenchContents {
     pub seed: u64,
     /// How units, trains and benches were let differ.
     pub scatter: Option<BenchScatter>,
+    /// What disturbed the waveforms that were used in place of numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waveforms: Option<ChannelConfig>,
     /// At the wall clock's pace.
     pub realtime: bool,
     /// Only the maintenance port was connected: the train did all else by itself.
@@ -91,6 +95,7 @@ impl BenchContents {
             },
             seed: setup.seed,
             scatter: setup.scatter.as_deref().copied(),
+            waveforms: setup.waveforms.clone(),
             realtime: setup.realtime,
             on_train: connection == Connection::Ptu,
         }
@@ -176,6 +181,7 @@ impl BenchContents {
             faults: Vec::new(),
             seed: self.seed,
             scatter: self.scatter.map(Arc::new),
+            waveforms: self.waveforms.clone(),
             serial: Some(self.serial.clone()),
             expected,
             realtime: false,

@@ -8,6 +8,7 @@ use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::rig::{Bench, ExpectedIdentity, Harness, LinkFailure, Rig, UnitLink};
 use btu_rig::train::TrainData;
+use btu_rig::waveform::ChannelConfig;
 use protocol::config::UnitConfig;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
@@ -27,6 +28,9 @@ use crate::stop::Stop;
 
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
+
+/// The same for what disturbs waveforms.
+const WAVEFORM_SEQUENCE: u64 = 0xC011_5A3B_1E5D_0A7E;
 
 /// Time an embedded unit is without power before a procedure, so that the signals before show in a trace of its
 /// power-up.
@@ -52,6 +56,8 @@ pub struct BenchSetup {
     pub seed: u64,
     /// How good units, trains and benches differ: drawn by the seed; none = all are nominal.
     pub scatter: Option<Arc<BenchScatter>>,
+    /// Codes, TWC, markers and pulses are waveforms that are disturbed so; none = numbers.
+    pub waveforms: Option<ChannelConfig>,
     /// Serial number asked for.
     pub serial: Option<String>,
     /// What the unit's identity is compared with.
@@ -142,6 +148,9 @@ impl BenchSetup {
             rig.set_conditions(drawn.conditions);
             rig.set_sensors(&drawn.sensors);
             rig.set_usual_load(drawn.load_kg);
+        }
+        if let Some(channel) = &self.waveforms {
+            rig.use_waveforms(&self.config.content, channel, seed ^ WAVEFORM_SEQUENCE);
         }
         rig.inject(&self.faults, power_at);
         rig

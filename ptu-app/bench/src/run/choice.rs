@@ -13,6 +13,7 @@ use protocol::message::Identity;
 use serde::{Deserialize, Serialize};
 
 use super::bench_setup::BenchSetup;
+use super::signals::Signals;
 use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
@@ -48,6 +49,9 @@ pub struct BenchChoice {
     pub seed: u64,
     /// Whether units, trains and benches differ as good ones do.
     pub scatter: bool,
+    /// Numbers or waveforms between bench and unit.
+    #[serde(skip)]
+    pub signals: Signals,
     /// Whether the embedded unit runs at the pace of the wall clock.
     pub realtime: bool,
     /// Changed keys of the unit configuration.
@@ -75,6 +79,7 @@ impl Default for BenchChoice {
             faults: Vec::new(),
             seed: 1,
             scatter: false,
+            signals: Signals::Values,
             realtime: false,
             settings: Vec::new(),
             scatter_file: None,
@@ -129,6 +134,11 @@ impl BenchChoice {
         if let Some(serial) = &serial {
             check_serial(serial)?;
         }
+        if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
+            return Err(Failure::usage(
+                "--signals sampled needs 3.5 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH",
+            ));
+        }
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
         let train = train(directory, &self.train)?;
@@ -152,6 +162,7 @@ impl BenchChoice {
             faults,
             seed: self.seed,
             scatter,
+            waveforms: self.signals.channel()?,
             expected: ExpectedIdentity {
                 records,
                 train: of_train,

@@ -1,5 +1,7 @@
 //! Signals as waveforms in files: made by the bench's generators, read by the unit's receivers.
 
+#[cfg(test)]
+mod coil_tests;
 mod make;
 mod read;
 #[cfg(test)]

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use ato_under_test::receivers::{
-    CodeReceiver, FskReceiver, HEARD_WITHIN_S, Heard, Received, Tones,
-};
+use ato_under_test::receivers::{CodeReceiver, FskReceiver, Heard, Received, Reception, Tones};
 use protocol::config::{SpeedCode, UnitConfig};
 use serde::Serialize;
 
@@ -215,10 +213,12 @@ struct Carrier<'a> {
 
 impl<'a> Carrier<'a> {
     fn new(code: &'a SpeedCode, unit: &UnitConfig, sample_hz: f64) -> Self {
-        let (carrier, rate) = (code.carrier_hz as f32, sample_hz as f32);
         Self {
             carrier_hz: code.carrier_hz,
-            receiver: CodeReceiver::new(carrier, rate, unit.receiver.level_min_mv as f32),
+            receiver: CodeReceiver::new(
+                Reception::of(&unit.receiver, code.carrier_hz),
+                sample_hz as f32,
+            ),
             codes: vec![code],
             rates_hz: vec![code.rate_hz as f32],
             under_way: None,
@@ -242,7 +242,7 @@ impl<'a> Carrier<'a> {
         };
         self.heard_s = at_s;
         let what = self.name(&heard, unit);
-        let began_s = (at_s - f64::from(HEARD_WITHIN_S)).max(0.0);
+        let began_s = (at_s - f64::from(self.receiver.window_s())).max(0.0);
         match &mut self.under_way {
             Some(source) if source.what == what => source.to_s = at_s,
             under_way => {

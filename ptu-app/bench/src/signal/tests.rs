@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use ato_under_test::receivers::{CodeReceiver, Demodulator, FskReceiver, Received, Tones};
+use ato_under_test::receivers::{
+    CodeReceiver, Demodulator, FskReceiver, Received, Reception, Tones,
+};
 use btu_rig::waveform::{CodeWave, FskWave, Noise};
 use protocol::config::UnitConfig;
 
@@ -67,7 +69,7 @@ fn bytes_are_read_as_they_were_made() {
 
 /// What the receiver decides each 50 ms of samples, mV.
 fn decided(samples: impl Iterator<Item = f64>, codes: &[f32]) -> Vec<Option<f32>> {
-    let mut receiver = CodeReceiver::new(3_000.0, RATE as f32, 60.0);
+    let mut receiver = CodeReceiver::new(Reception::of(&unit().receiver, 3_000.0), RATE as f32);
     let mut decided = Vec::new();
     for (place, sample) in samples.enumerate() {
         receiver.take(sample as f32);
@@ -230,7 +232,7 @@ fn figures_of_the_receivers() {
     let mut noises = protocol::Random::new(2_026);
     let mut decide = |wave: &mut dyn Iterator<Item = f64>, snr_db: f64| {
         let noise = Noise::new(500.0, snr_db, 320.0, RATE, noises.bits());
-        let mut receiver = CodeReceiver::new(3_000.0, RATE as f32, 60.0);
+        let mut receiver = CodeReceiver::new(Reception::of(&unit().receiver, 3_000.0), RATE as f32);
         for (signal, noise) in wave.zip(noise).take(28_800) {
             receiver.take((signal + noise) as f32);
         }

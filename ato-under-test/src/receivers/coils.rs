@@ -1,0 +1,219 @@
+//! The receivers of one unit, from the samples in its coils to what an input frame tells as numbers.
+
+use alloc::vec::Vec;
+
+use protocol::Duration;
+use protocol::config::UnitConfig;
+use protocol::message::{COIL_PART, COIL_PARTS, COIL_STEP_MV, Coil, CoilSamples, IoInput};
+
+use super::code::{CodeReceiver, Heard, Reception};
+use super::fsk::{FskReceiver, Received, Tones};
+use super::marker::MarkerReceiver;
+use super::sensor::SensorInput;
+
+/// Samples of a scan, and in a second.
+const SAMPLES: usize = COIL_PART * COIL_PARTS;
+const SAMPLE_HZ: f32 = SAMPLES as f32 * 100.0;
+/// Lines of the speed sensors, which take turns.
+const LINES: usize = 4;
+/// Scans without samples after which a coil has been silent for long, and its receiver rests.
+const RESTS_AFTER: u8 = 100;
+/// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
+const HEARD_EARLY_MS: u64 = 60;
+/// Scans for which the last code stands in for one that noise hides.
+const STANDS_IN: u8 = 3;
+/// Weakest level of TWC and of a marker, as a share of its configured one.
+const WEAKEST: f64 = 0.1;
+
+/// What an injected fault does to the waveforms of this scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// From the rail to the ATP receiver.
+    pub atp: f32,
+}
+
+/// What the receivers make of a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampled {
+    /// The input frame with code, pulses and marker as received.
+    pub input: IoInput,
+    /// Time for which the code was there already when it was heard.
+    pub heard_for: Duration,
+    /// Time since the last marker was passed.
+    pub marker_age: Duration,
+}
+
+/// Coils, sensors and their receivers.
+#[derive(Debug)]
+pub struct Coils {
+    codes: Vec<(CodeReceiver, Vec<f32>)>,
+    twc: FskReceiver,
+    twc_bytes: Vec<u8>,
+    markers: MarkerReceiver,
+    sensors: [SensorInput; 2],
+    /// Last marker, how many there were, and samples since the last one.
+    marker: (u8, u8, f32),
+    /// Parts of this scan that came of each coil, and scans since the last.
+    parts: [u8; 4],
+    silent: [u8; 4],
+    gains: Gains,
+    /// The last code that was heard, and scans since.
+    heard: Option<(Heard, u8)>,
+}
+
+impl Coils {
+    /// For a unit of this configuration; silent.
+    pub fn new(config: &UnitConfig) -> Self {
+        let receiver = &config.receiver;
+        let mut codes: Vec<(CodeReceiver, Vec<f32>, f64)> = Vec::new();
+        for code in &config.codes {
+            let rate = code.rate_hz as f32;
+            if let Some(known) = codes.iter_mut().find(|known| known.2 == code.carrier_hz) {
+                known.1.push(rate);
+                continue;
+            }
+            let reception = Reception::of(receiver, code.carrier_hz);
+            let one = CodeReceiver::new(reception, SAMPLE_HZ);
+            codes.push((one, alloc::vec![rate], code.carrier_hz));
+        }
+        let twc = &config.twc;
+        let weakest = |level_mv: f64| (WEAKEST * level_mv) as f32;
+        let marker = &config.marker;
+        Self {
+            codes: codes
+                .into_iter()
+                .map(|(one, rates, _)| (one, rates))
+                .collect(),
+            twc: FskReceiver::new(Tones::of(twc), SAMPLE_HZ, weakest(twc.level_mv)),
+            twc_bytes: Vec::new(),
+            markers: MarkerReceiver::new(marker.tones_hz, SAMPLE_HZ, weakest(marker.level_mv)),
+            sensors: [SensorInput::default(); 2],
+            marker: (0, 0, f32::MAX),
+            parts: [0; 4],
+            silent: [RESTS_AFTER; 4],
+            gains: Gains { atp: 1.0 },
+            heard: None,
+        }
+    }
+
+    /// What faults do from now on.
+    pub fn set_gains(&mut self, gains: Gains) {
+        self.gains = gains;
+    }
+
+    /// Takes samples of this scan; one that comes too late or twice is passed over.
+    pub fn take(&mut self, samples: &CoilSamples) {
+        let Some(place) = place_of(samples.coil) else {
+            return;
+        };
+        if samples.part < self.parts[place] || usize::from(samples.part) >= COIL_PARTS {
+            return;
+        }
+        while self.parts[place] < samples.part {
+            self.receive(place, &[0; COIL_PART]);
+        }
+        self.receive(place, &samples.samples.0);
+        self.silent[place] = 0;
+    }
+
+    /// The end of a scan, with its input frame: what was received in it, if samples came of late.
+    pub fn end_scan(&mut self, mut input: IoInput) -> Option<Sampled> {
+        for place in 0..self.parts.len() {
+            if self.silent[place] < RESTS_AFTER {
+                while usize::from(self.parts[place]) < COIL_PARTS {
+                    self.receive(place, &[0; COIL_PART]);
+                }
+                self.silent[place] += 1;
+            }
+            self.parts[place] = 0;
+        }
+        let antenna_rests = self.silent[Coil::AtpAntenna.code() as usize] == RESTS_AFTER;
+        let sensors_rest = self.silent[Coil::SpeedSensors.code() as usize] == RESTS_AFTER;
+        if antenna_rests && sensors_rest {
+            return None;
+        }
+        let mut heard_for = Duration::ZERO;
+        if let Some(heard) = self.hear_code() {
+            let whole = |value: f32| libm::roundf(value) as u16;
+            input.carrier_hz = whole(heard.carrier_hz);
+            input.code_rate_chz = whole(100.0 * heard.rate_hz);
+            input.level_mv = whole(heard.level_mv);
+            let window_s = (self.codes.first()).map_or(0.0, |(receiver, _)| receiver.window_s());
+            let window_ms = (window_s * 1000.0) as u64;
+            heard_for = Duration::from_ms(window_ms.saturating_sub(HEARD_EARLY_MS));
+        }
+        let [one, two] = &self.sensors;
+        let line_us = 1e6 * LINES as f32 / SAMPLE_HZ;
+        let age_us = |since: f32| (since * line_us).min(f32::from(u16::MAX)) as u16;
+        (input.tacho1_count, input.tacho1_edge_us) = (one.count(), age_us(one.since()));
+        (input.tacho2_count, input.tacho2_edge_us) = (two.count(), age_us(two.since()));
+        input.tacho_backward = u8::from(one.backward()) | u8::from(two.backward()) << 1;
+        let age = (self.marker.2 / SAMPLE_HZ * 1e6) as u64;
+        (input.marker, input.marker_edges) = (self.marker.0, self.marker.1);
+        input.marker_edge_us = age.min(u64::from(u16::MAX)) as u16;
+        self.marker.2 += SAMPLES as f32;
+        Some(Sampled {
+            input,
+            heard_for,
+            marker_age: Duration::from_us(age),
+        })
+    }
+
+    /// The code in the antenna now.
+    fn hear_code(&mut self) -> Option<Heard> {
+        let now = (self.codes.iter()).find_map(|(receiver, rates)| receiver.heard(rates));
+        self.heard = match (now, self.heard) {
+            (Some(heard), _) => Some((heard, 0)),
+            (None, Some((last, since))) if since < STANDS_IN => Some((last, since + 1)),
+            _ => None,
+        };
+        self.heard.map(|(heard, _)| heard)
+    }
+
+    /// Bytes received by TWC since they were taken last.
+    pub fn take_twc_bytes(&mut self) -> impl Iterator<Item = u8> + '_ {
+        self.twc_bytes.drain(..)
+    }
+
+    /// One part of a coil's samples.
+    fn receive(&mut self, place: usize, samples: &[i16; COIL_PART]) {
+        let part = self.parts[place];
+        self.parts[place] += 1;
+        let in_mv = |sample: i16| f32::from(sample) * COIL_STEP_MV;
+        match place {
+            0 => {
+                for sample in samples {
+                    for (receiver, _) in &mut self.codes {
+                        receiver.take(in_mv(*sample) * self.gains.atp);
+                    }
+                }
+            }
+            1 => {
+                for sample in samples {
+                    if let Some(Received::Byte(byte)) = self.twc.take(in_mv(*sample)) {
+                        self.twc_bytes.push(byte);
+                    }
+                }
+            }
+            2 => {
+                let left = SAMPLES - usize::from(part) * COIL_PART;
+                for (until_end, sample) in (0..left).rev().zip(samples) {
+                    if let Some(passed) = self.markers.take(in_mv(*sample)) {
+                        let since = until_end as f32 + passed.ago_s * SAMPLE_HZ;
+                        self.marker = (passed.marker, self.marker.1.wrapping_add(1), since);
+                    }
+                }
+            }
+            _ => {
+                for lines in samples.chunks_exact(LINES) {
+                    self.sensors[0].take(in_mv(lines[0]), in_mv(lines[1]));
+                    self.sensors[1].take(in_mv(lines[2]), in_mv(lines[3]));
+                }
+            }
+        }
+    }
+}
+
+fn place_of(coil: Coil) -> Option<usize> {
+    coil.is_known().then(|| usize::from(coil.code()))
+}

@@ -1,0 +1,182 @@
+//! The receiver of markers: each has a tone of its own, which swells and fades as the train passes over it.
+//!
+//! A marker is passed where its tone was strongest. Noise moves the strongest value, so the place is that of the top of a
+//! parabola through the logarithms of all values near it: a bell is one exactly.
+
+use super::downmix::Downmix;
+
+/// Rate of the envelope, about, Hz, and its pass band: a marker at 100 km/h swells within milliseconds.
+const ENVELOPE_HZ: f32 = 1_500.0;
+const PASS_HZ: f32 = 220.0;
+/// Delay of its filter: half of its eight values.
+const DELAY_VALUES: f32 = 4.0;
+/// Values that are kept of a passage; of a slow one each stands for several.
+const MOST: usize = 128;
+/// The tone has faded when it is below this share of its strongest value, and values above it tell the place.
+const FADED: f32 = 0.6;
+/// Least level of a marker over the others' at the same time.
+const LEAST_RATIO: f32 = 2.0;
+
+/// A marker that was passed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passed {
+    /// 1 to 4 = PSM1 to PSM4.
+    pub marker: u8,
+    /// Time since it was passed, s.
+    pub ago_s: f32,
+    /// Strongest level, mV rms.
+    pub level_mv: f32,
+}
+
+/// Receives the tones of four markers.
+#[derive(Clone, Debug)]
+pub struct MarkerReceiver {
+    tones: [Downmix; 4],
+    level_min_mv: f32,
+    passage: Option<Passage>,
+    /// A marker was passed, and its tone is not silent yet.
+    fading: bool,
+}
+
+/// A marker that is being passed.
+#[derive(Clone, Debug)]
+struct Passage {
+    marker: u8,
+    strongest: f32,
+    values: [f32; MOST],
+    length: usize,
+    /// Values of the envelope that each stands for, and the sum of those that do not fill one yet.
+    each: usize,
+    sum: (f32, usize),
+}
+
+impl MarkerReceiver {
+    /// For tones in samples of this rate, Hz. What is weaker than `level_min_mv`, rms, is silence.
+    pub fn new(tones_hz: [f64; 4], sample_hz: f32, level_min_mv: f32) -> Self {
+        Self {
+            tones: tones_hz.map(|tone| Downmix::new(tone as f32, sample_hz, ENVELOPE_HZ, PASS_HZ)),
+            level_min_mv,
+            passage: None,
+            fading: false,
+        }
+    }
+
+    /// Takes a sample, mV.
+    pub fn take(&mut self, sample_mv: f32) -> Option<Passed> {
+        let mut levels = [None; 4];
+        for (level, tone) in levels.iter_mut().zip(&mut self.tones) {
+            *level = tone.take(sample_mv);
+        }
+        let levels = levels.map(|value| value.map(|value| value.abs() / core::f32::consts::SQRT_2));
+        // All are made of the same samples: either each has a value, or none.
+        let [Some(_), ..] = levels else {
+            return None;
+        };
+        self.value(levels.map(Option::unwrap_or_default))
+    }
+
+    fn value(&mut self, levels: [f32; 4]) -> Option<Passed> {
+        if let Some(passage) = &mut self.passage {
+            let level = levels[usize::from(passage.marker - 1)];
+            passage.add(level);
+            if level >= FADED * passage.strongest && level >= self.level_min_mv {
+                return None;
+            }
+            let passed = passage.passed(1.0 / self.tones[0].envelope_hz());
+            self.passage = None;
+            self.fading = true;
+            return Some(passed);
+        }
+        let (place, level) = (levels.into_iter().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let others = (levels.into_iter().enumerate()).filter(|other| other.0 != place);
+        let loudest_other = others.map(|other| other.1).fold(0.0, f32::max);
+        self.fading &= level >= self.level_min_mv;
+        if !self.fading && level >= self.level_min_mv && level >= LEAST_RATIO * loudest_other {
+            let mut passage = Passage {
+                marker: place as u8 + 1,
+                strongest: 0.0,
+                values: [0.0; MOST],
+                length: 0,
+                each: 1,
+                sum: (0.0, 0),
+            };
+            passage.add(level);
+            self.passage = Some(passage);
+        }
+        None
+    }
+
+    /// Whether a marker is being passed.
+    pub fn is_passing(&self) -> bool {
+        self.passage.is_some()
+    }
+}
+
+impl Passage {
+    fn add(&mut self, level: f32) {
+        self.strongest = self.strongest.max(level);
+        self.sum = (self.sum.0 + level, self.sum.1 + 1);
+        if self.sum.1 < self.each {
+            return;
+        }
+        self.values[self.length] = self.sum.0 / self.each as f32;
+        self.sum = (0.0, 0);
+        self.length += 1;
+        if self.length == MOST {
+            for place in 0..MOST / 2 {
+                self.values[place] = (self.values[2 * place] + self.values[2 * place + 1]) / 2.0;
+            }
+            self.length = MOST / 2;
+            self.each *= 2;
+        }
+    }
+
+    /// Where the top of the parabola lies, by weighted least squares around the middle of the values near the top.
+    fn passed(&self, value_s: f32) -> Passed {
+        let values = &self.values[..self.length];
+        let near = |level: &f32| *level >= FADED * self.strongest;
+        let first = values.iter().position(near).unwrap_or(0);
+        let last = values.iter().rposition(near).unwrap_or(0);
+        let middle = (first + last) as f32 / 2.0;
+        let mut sums = [0.0f32; 5];
+        let mut logs = [0.0f32; 3];
+        for (place, level) in (first..).zip(&values[first..=last]) {
+            // The logarithm of a weak value has more noise.
+            let share = level / self.strongest;
+            let (x, weight) = (place as f32 - middle, share * share);
+            let log = libm::logf(share.max(1e-3));
+            let mut power = weight;
+            for (degree, sum) in sums.iter_mut().enumerate() {
+                *sum += power;
+                if degree < 3 {
+                    logs[degree] += power * log;
+                }
+                power *= x;
+            }
+        }
+        let top = top_of_parabola(sums, logs).unwrap_or(0.0);
+        let half = (last - first) as f32 / 2.0;
+        let top = middle + top.clamp(-half, half);
+        // A value that stands for several is in their middle.
+        let each = self.each as f32;
+        let since =
+            (self.length as f32 - top - 1.0) * each + (each - 1.0) / 2.0 + self.sum.1 as f32;
+        Passed {
+            marker: self.marker,
+            ago_s: (since + DELAY_VALUES) * value_s,
+            level_mv: self.strongest,
+        }
+    }
+}
+
+/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c; none of a line.
+fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Option<f32> {
+    let determinant = |m: [[f32; 3]; 3]| {
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+            - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    };
+    let b = determinant([[s0, t0, s2], [s1, t1, s3], [s2, t2, s4]]);
+    let c = determinant([[s0, s1, t0], [s1, s2, t1], [s2, s3, t2]]);
+    (c != 0.0).then(|| -b / (2.0 * c))
+}

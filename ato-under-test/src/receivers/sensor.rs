@@ -1,0 +1,71 @@
+//! The input of a speed sensor: two lines with a square wave each, a quarter of a period apart.
+
+/// A line is high above this voltage and low below its negative, mV: noise between them changes nothing.
+const HYSTERESIS_MV: f32 = 100.0;
+
+/// Counts the pulses of one sensor.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SensorInput {
+    a: Line,
+    b: Line,
+    count: u16,
+    backward: bool,
+    /// Samples since the last pulse.
+    since: f32,
+}
+
+/// One line.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    high: bool,
+    last_mv: f32,
+    /// Samples since it was zero last.
+    zero: f32,
+}
+
+impl Line {
+    /// Takes a sample; whether the line has become high, which it was since its last zero.
+    fn rises(&mut self, sample_mv: f32) -> bool {
+        let last = core::mem::replace(&mut self.last_mv, sample_mv);
+        self.zero += 1.0;
+        if last <= 0.0 && sample_mv > 0.0 {
+            self.zero = sample_mv / (sample_mv - last);
+        }
+        let was = self.high;
+        self.high = match self.high {
+            true => sample_mv > -HYSTERESIS_MV,
+            false => sample_mv > HYSTERESIS_MV,
+        };
+        self.high && !was
+    }
+}
+
+impl SensorInput {
+    /// Takes a sample of each line, mV.
+    pub fn take(&mut self, a_mv: f32, b_mv: f32) {
+        self.since += 1.0;
+        let rises = self.a.rises(a_mv);
+        self.b.rises(b_mv);
+        if rises {
+            self.count = self.count.wrapping_add(1);
+            self.since = self.a.zero;
+            // Forward, B follows A by a quarter of a period.
+            self.backward = self.b.high;
+        }
+    }
+
+    /// Pulses so far, wrapping.
+    pub fn count(&self) -> u16 {
+        self.count
+    }
+
+    /// Samples since the last one.
+    pub fn since(&self) -> f32 {
+        self.since
+    }
+
+    /// B was high at the last pulse: the wheel turns backward.
+    pub fn backward(&self) -> bool {
+        self.backward
+    }
+}
