@@ -35,19 +35,65 @@ pub struct Made {
     pub clipped: u64,
 }
 
-/// Writes a waveform with `level_mv`, rms while it is on, to a WAV file; with `snr_db`, white noise is added: of a code in
-/// the receiver's band, of TWC in the bandwidth of a bit.
+/// Most bytes that are made together.
+const MOST_BYTES: usize = 2_048;
+
+/// Bytes from pairs of hex digits, with or without blanks.
 ///
 /// # Errors
-/// There is no such code, or the file cannot be written.
-pub fn make(
-    wave: &Wave,
-    unit: &UnitConfig,
-    (level_mv, snr_db, seed): (f64, Option<f64>, u64),
-    (path, full_scale_mv): (&Path, f64),
-) -> Result<Made, Failure> {
+/// They are no bytes, none, or too many.
+pub fn bytes_of(text: &str) -> Result<Vec<u8>, String> {
+    let digits: Vec<u32> = (text.chars().filter(|letter| !letter.is_whitespace()))
+        .map(|letter| letter.to_digit(16))
+        .collect::<Option<_>>()
+        .ok_or("bytes are pairs of hex digits, as '01 fe 3c'")?;
+    if digits.is_empty() || digits.len() % 2 == 1 || digits.len() > 2 * MOST_BYTES {
+        return Err("1 to 2048 bytes are needed, each of two hex digits".to_owned());
+    }
+    let pairs = digits.chunks_exact(2);
+    Ok(pairs.map(|pair| (pair[0] << 4 | pair[1]) as u8).collect())
+}
+
+/// The tone of TWC between bytes, Hz.
+pub fn rest_hz() -> f64 {
+    f64::from(Tones::DEFAULT.middle_hz + Tones::DEFAULT.apart_hz)
+}
+
+/// Frequencies by which the levels of codes and of TWC are measured, Hz.
+pub fn reference_hz(unit: &UnitConfig) -> [f64; 2] {
+    let carrier = unit.codes.first().map(|code| code.carrier_hz);
+    [
+        carrier.unwrap_or(1_000.0),
+        f64::from(Tones::DEFAULT.middle_hz),
+    ]
+}
+
+/// How strong a waveform is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strength {
+    /// Level while it is on, mV rms.
+    pub level_mv: f64,
+    /// Level over white noise that is added, dB: of a code in the receiver's band, of TWC in the bandwidth of a bit.
+    pub snr_db: Option<f64>,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// Samples, mV, that may be made on another thread.
+pub type Samples = Box<dyn Iterator<Item = f64> + Send>;
+
+/// The samples of a waveform, mV.
+///
+/// # Errors
+/// There is no such code.
+pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Samples, Failure> {
     let rate = f64::from(SAMPLE_HZ);
-    let (samples, band_hz): (Box<dyn Iterator<Item = f64>>, f64) = match wave {
+    let Strength {
+        level_mv,
+        snr_db,
+        seed,
+    } = strength;
+    let (samples, band_hz): (Samples, f64) = match wave {
         Wave::Code { name, seconds } => {
             let SpeedCode {
                 carrier_hz,
@@ -69,15 +115,27 @@ pub fn make(
             (Box::new(wave), bit_rate.into())
         }
     };
-    let mut count = 0u64;
     let mut noise = snr_db.map(|snr_db| Noise::new(level_mv, snr_db, band_hz, rate, seed));
-    let noisy = samples.map(|sample| {
-        count += 1;
-        sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0)
-    });
-    let clipped = wav::write(path, SAMPLE_HZ, full_scale_mv, noisy)?;
+    let noisy =
+        samples.map(move |sample| sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0));
+    Ok(Box::new(noisy))
+}
+
+/// Writes a waveform to a WAV file.
+///
+/// # Errors
+/// There is no such code, or the file cannot be written.
+pub fn make(
+    wave: &Wave,
+    unit: &UnitConfig,
+    strength: Strength,
+    (path, full_scale_mv): (&Path, f64),
+) -> Result<Made, Failure> {
+    let mut count = 0u64;
+    let counted = samples(wave, unit, strength)?.inspect(|_| count += 1);
+    let clipped = wav::write(path, SAMPLE_HZ, full_scale_mv, counted)?;
     Ok(Made {
-        seconds: count as f64 / rate,
+        seconds: count as f64 / f64::from(SAMPLE_HZ),
         clipped,
     })
 }
