@@ -1,4 +1,6 @@
-//! `ptu signal`: waveforms in files: make one, or read what is in one.
+//! `ptu signal`: waveforms in files and at a sound card: make, read, play and record them.
+
+mod sound;
 
 use std::path::PathBuf;
 
@@ -15,7 +17,7 @@ use ptu_report::signal::{self as report, Recording};
 use ptu_report::words::Language;
 use serde_json::Value;
 
-/// Make the waveform of a speed code or of TWC, or read what is in a recording
+/// Make the waveform of a speed code or of TWC, read what is in a recording, play and record
 ///
 /// Examples:
 ///   ptu signal make code 55 --level 500 --snr 20 code55.wav
@@ -38,6 +40,11 @@ enum SignalVerb {
     Make(MakeArguments),
     /// Read a WAV file: which codes and bytes are in it, when, at which level
     Read(ReadArguments),
+    Play(sound::PlayArguments),
+    Record(sound::RecordArguments),
+    Calibrate(sound::CalibrateArguments),
+    /// List the sound devices, and how each is calibrated
+    Devices,
 }
 
 #[derive(Debug, Args)]
@@ -157,6 +164,10 @@ impl SignalArguments {
         match self.verb {
             SignalVerb::Make(arguments) => arguments.run(),
             SignalVerb::Read(arguments) => arguments.run(),
+            SignalVerb::Play(arguments) => arguments.run(),
+            SignalVerb::Record(arguments) => arguments.run(),
+            SignalVerb::Calibrate(arguments) => arguments.run(),
+            SignalVerb::Devices => sound::list_devices(),
         }
     }
 }
