@@ -51,6 +51,7 @@ mod scatter;
 mod server;
 mod shards;
 mod signal;
+mod signals_page;
 mod sound;
 mod statistics_page;
 mod suite;
