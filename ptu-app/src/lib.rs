@@ -15,5 +15,6 @@ mod fault_months;
 pub mod gui;
 mod operator;
 mod run_recording;
+mod sound_file;
 mod sparkline;
 mod trend;

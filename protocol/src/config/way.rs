@@ -145,7 +145,7 @@ pub struct MarkerConfig {
 /// Those of `sg100`, for configurations without the keys.
 impl MarkerConfig {
     const fn default_tones_hz() -> [f64; 4] {
-        [4000.0, 5000.0, 6000.0, 7000.0]
+        [16_000.0, 17_000.0, 18_000.0, 19_000.0]
     }
 
     const fn default_level_mv() -> f64 {

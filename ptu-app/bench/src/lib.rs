@@ -8,6 +8,7 @@
 //! * [`train_server`]: serves the unit aboard a train on a port;
 //! * [`replay`]: repeats recorded stimuli and compares traces;
 //! * [`field`]: imports a unit's own event log into the fault history;
+//! * [`signal`]: waveforms made, and recordings read; [`sound`]: to and from a sound card;
 //! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
@@ -41,6 +42,7 @@ pub mod run;
 pub mod run_diagnosis;
 pub mod schemas;
 pub mod signal;
+pub mod sound;
 pub mod stdio;
 pub mod stop;
 pub mod stored;

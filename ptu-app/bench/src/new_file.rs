@@ -142,6 +142,14 @@ impl Seek for NewFile {
     }
 }
 
+/// A name that is free: this one, or with a number as [`NewFile::finish_beside`] has it, for what is written as it comes.
+pub fn free_beside(place: &Path) -> PathBuf {
+    let beside = (2..BESIDE).map(|number| numbered(place, number));
+    let mut names = std::iter::once(place.to_path_buf()).chain(beside);
+    let free = names.find(|name| !name.exists());
+    free.unwrap_or_else(|| place.to_path_buf())
+}
+
 /// The failure of a file that broke off.
 pub fn cannot_write(place: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::bench(format!("cannot write {}: {error}", place.display()))

@@ -29,6 +29,7 @@ pub mod plot_page;
 mod proof;
 pub mod record;
 pub mod run;
+pub mod signal;
 mod target;
 pub mod ticks;
 pub mod trace_io;

@@ -79,12 +79,17 @@ impl Output {
         if self.json {
             print_json(&rows)
         } else if self.csv {
-            stdio::document(&csv(columns, rows))?;
-            Ok(Exit::Passed)
+            print_csv(columns, rows)
         } else {
             print_out(&table())
         }
     }
+}
+
+/// Prints rows as CSV. The columns are the keys of each row, in their order.
+pub fn print_csv(columns: &[&str], rows: &[Value]) -> Result<Exit, Failure> {
+    stdio::document(&csv(columns, rows))?;
+    Ok(Exit::Passed)
 }
 
 /// Rows under their columns as CSV (RFC 4180), without the end of the last line; what is no single value

@@ -1,20 +1,29 @@
-//! `ptu signal`: waveforms in files: make one, or read what is in one.
+//! `ptu signal`: waveforms in files and at a sound card: make, read, play and record them.
+
+mod sound;
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{Json, ScriptsOption, print_out};
+use super::output::print_csv;
+use super::{Json, ScriptsOption, made_by, print_out};
+use protocol::config::UnitConfig;
+use ptu_bench::data::{check_writable, write};
 use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::signal::{self, FULL_SCALE_MV, Reading, Wave};
-use ptu_bench::table::Table;
+use ptu_bench::signal::{self, FULL_SCALE_MV, Strength, Wave};
+use ptu_report::run::html;
+use ptu_report::signal::{self as report, Recording};
+use ptu_report::words::Language;
+use serde_json::Value;
 
-/// Make the waveform of a speed code or of TWC as a WAV file, or read what is in a recording
+/// Make the waveform of a speed code or of TWC, read what is in a recording, play and record
 ///
 /// Examples:
 ///   ptu signal make code 55 --level 500 --snr 20 code55.wav
 ///   ptu signal make twc '01 fe 3c' twc.wav
 ///   ptu signal read recording.wav --json
+///   ptu signal read recording.wav --csv --report recording.html
 ///
 /// A recording is read by the receivers of the embedded unit: a code is what they decode. TWC has tones of
 /// 9650 Hz less and plus 150 Hz and 300 bit/s; the bit rate of the real equipment is not public.
@@ -31,6 +40,11 @@ enum SignalVerb {
     Make(MakeArguments),
     /// Read a WAV file: which codes and bytes are in it, when, at which level
     Read(ReadArguments),
+    Play(sound::PlayArguments),
+    Record(sound::RecordArguments),
+    Calibrate(sound::CalibrateArguments),
+    /// List the sound devices, and how each is calibrated
+    Devices,
 }
 
 #[derive(Debug, Args)]
@@ -60,6 +74,22 @@ enum WaveVerb {
         #[command(flatten)]
         common: CommonOfMake,
     },
+    /// A marker as a train passes it
+    Marker {
+        /// 1 to 4 for PSM1 to PSM4
+        #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(u8).range(1..=4))]
+        number: u8,
+        /// Speed of the train, km/h
+        #[arg(long, value_name = "KMH", default_value = "40", value_parser = passing_kmh)]
+        kmh: f64,
+        #[command(flatten)]
+        common: CommonOfMake,
+    },
+}
+
+fn passing_kmh(text: &str) -> Result<f64, String> {
+    let kmh = text.parse().ok().filter(|kmh| (1.0..=200.0).contains(kmh));
+    kmh.ok_or_else(|| "a speed is 1 to 200 km/h".to_owned())
 }
 
 #[derive(Clone, Debug)]
@@ -70,6 +100,14 @@ struct CommonOfMake {
     /// WAV file to write: one channel of 16 bits, 48 000 samples a second
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    noisy: Noisy,
+    #[command(flatten)]
+    scale: Scale,
+}
+
+#[derive(Debug, Args)]
+struct Noisy {
     /// Level while the carrier is on, mV rms
     #[arg(long, value_name = "MV", default_value_t = 500.0, value_parser = positive)]
     level: f64,
@@ -79,8 +117,16 @@ struct CommonOfMake {
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    #[command(flatten)]
-    scale: Scale,
+}
+
+impl Noisy {
+    fn strength(&self) -> Strength {
+        Strength {
+            level_mv: self.level,
+            snr_db: self.snr,
+            seed: self.seed,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -88,11 +134,24 @@ struct Scale {
     /// What full scale of the file stands for, mV
     #[arg(long, value_name = "MV", default_value_t = FULL_SCALE_MV, value_parser = positive)]
     full_scale: f64,
+    #[command(flatten)]
+    unit: UnitChoice,
+}
+
+#[derive(Debug, Args)]
+struct UnitChoice {
     /// Unit configuration whose speed codes are meant
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
     #[command(flatten)]
     scripts: ScriptsOption,
+}
+
+impl UnitChoice {
+    fn find(&self) -> Result<UnitConfig, Failure> {
+        let file = self.scripts.find()?.unit_config(&self.unit_config)?;
+        Ok(file.content)
+    }
 }
 
 #[derive(Debug, Args)]
@@ -102,6 +161,15 @@ struct ReadArguments {
     file: PathBuf,
     #[command(flatten)]
     json: Json,
+    /// Print CSV, a line of headings first, a line for each code and message that was heard
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Write a page with spectrum, envelope and eye beside what was heard, .html; repeatable
+    #[arg(long, value_name = "FILE", value_parser = page)]
+    report: Vec<PathBuf>,
+    /// Language of the page: en or ko
+    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
+    lang: Language,
     #[command(flatten)]
     scale: Scale,
 }
@@ -112,6 +180,10 @@ impl SignalArguments {
         match self.verb {
             SignalVerb::Make(arguments) => arguments.run(),
             SignalVerb::Read(arguments) => arguments.run(),
+            SignalVerb::Play(arguments) => arguments.run(),
+            SignalVerb::Record(arguments) => arguments.run(),
+            SignalVerb::Calibrate(arguments) => arguments.run(),
+            SignalVerb::Devices => sound::list_devices(),
         }
     }
 }
@@ -125,17 +197,16 @@ impl MakeArguments {
                 common,
             } => (Wave::Code { name, seconds }, common),
             WaveVerb::Twc { bytes, common } => (Wave::Twc(bytes.0), common),
+            WaveVerb::Marker {
+                number,
+                kmh,
+                common,
+            } => (Wave::Marker { number, kmh }, common),
         };
-        let CommonOfMake {
-            file,
-            level,
-            snr,
-            seed,
-            scale,
-        } = common;
-        let unit = scale.scripts.find()?.unit_config(&scale.unit_config)?;
+        let CommonOfMake { file, noisy, scale } = common;
+        let unit = scale.unit.find()?;
         let to = (file.as_path(), scale.full_scale);
-        let made = signal::make(&wave, &unit.content, (level, snr, seed), to)?;
+        let made = signal::make(&wave, &unit, noisy.strength(), to)?;
         let clipped = match made.clipped {
             0 => String::new(),
             clipped => format!(
@@ -153,62 +224,63 @@ impl MakeArguments {
 
 impl ReadArguments {
     fn run(self) -> Result<Exit, Failure> {
-        let unit = (self.scale.scripts.find()?).unit_config(&self.scale.unit_config)?;
-        let reading = signal::read(&self.file, &unit.content, self.scale.full_scale)?;
-        self.json.answer(|| &reading, || as_text(&reading))
+        let unit = self.scale.unit.find()?;
+        self.report
+            .iter()
+            .try_for_each(|file| check_writable(file))?;
+        let full_scale_mv = self.scale.full_scale;
+        let reading = match self.report.is_empty() {
+            true => signal::read(&self.file, &unit, full_scale_mv)?,
+            false => {
+                let (reading, pictures) =
+                    signal::read_and_picture(&self.file, &unit, full_scale_mv)?;
+                let recording = Recording {
+                    file: self.file.display().to_string(),
+                    unit_config: unit.name.clone(),
+                    full_scale_mv,
+                    reading,
+                    pictures,
+                    made: made_by(),
+                };
+                let page = html(&recording, self.lang.words());
+                for file in &self.report {
+                    write(file, &page)?;
+                }
+                recording.reading
+            }
+        };
+        if self.csv {
+            let rows = reading.sources.iter().map(|source| {
+                let row = serde_json::to_value(source).unwrap_or_default();
+                SOURCE_COLUMNS.map(|column| (column.to_owned(), row[column].clone()))
+            });
+            let rows: Vec<Value> = rows.map(|row| row.into_iter().collect()).collect();
+            return print_csv(&SOURCE_COLUMNS, &rows);
+        }
+        let text = || report::text(&reading, Language::English.words());
+        self.json.answer(|| &reading, text)
     }
 }
 
-fn as_text(reading: &Reading) -> String {
-    let number = |value: Option<f64>, digits: usize| {
-        value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
-    };
-    let mut lines = vec![format!("{:.2} s", reading.duration_s)];
-    if !reading.sources.is_empty() {
-        let heads = [
-            "channel",
-            "from s",
-            "to s",
-            "kind",
-            "what",
-            "carrier Hz",
-            "rate Hz",
-            "level mV",
-            "SNR dB",
-        ];
-        let mut table = Table::new(&heads);
-        for source in &reading.sources {
-            let what = match (source.kind, source.what.as_str(), source.rate_hz) {
-                ("code", "", rate) if rate < 1.0 => "carrier without a code".to_owned(),
-                ("code", "", _) => "no code of this unit configuration".to_owned(),
-                (_, what, _) => what.to_owned(),
-            };
-            let bad = source.bad_bytes.filter(|bad| *bad > 0);
-            let bad = bad.map_or_else(String::new, |bad| format!(" ({bad} bytes damaged)"));
-            table.row([
-                source.channel.to_string(),
-                format!("{:.2}", source.from_s),
-                format!("{:.2}", source.to_s),
-                source.kind.to_owned(),
-                what + &bad,
-                format!("{:.1}", source.carrier_hz),
-                format!("{:.2}", source.rate_hz),
-                number(source.level_mv, 0),
-                number(source.snr_db, 1),
-            ]);
-        }
-        lines.push(table.render());
+/// Columns of what was heard.
+const SOURCE_COLUMNS: [&str; 10] = [
+    "channel",
+    "from_s",
+    "to_s",
+    "kind",
+    "what",
+    "carrier_hz",
+    "rate_hz",
+    "level_mv",
+    "snr_db",
+    "bad_bytes",
+];
+
+fn page(file: &str) -> Result<PathBuf, String> {
+    match file.ends_with(".html") {
+        true => Ok(file.into()),
+        false => Err("a page of a recording ends in .html".into()),
     }
-    if reading.sources.is_empty() {
-        lines.push("no code and no TWC".to_owned());
-    }
-    for unknown in &reading.not_understood {
-        lines.push(format!(
-            "{:.2} to {:.2} s: {}",
-            unknown.from_s, unknown.to_s, unknown.what
-        ));
-    }
-    lines.join("\n")
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -219,16 +291,5 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn hex(text: &str) -> Result<Bytes, String> {
-    let digits: Vec<u32> = (text.chars().filter(|letter| !letter.is_whitespace()))
-        .map(|letter| letter.to_digit(16))
-        .collect::<Option<_>>()
-        .ok_or("bytes are pairs of hex digits, as '01 fe 3c'")?;
-    if digits.is_empty() || digits.len() % 2 == 1 || digits.len() > 4_096 {
-        return Err("1 to 2048 bytes are needed, each of two hex digits".to_owned());
-    }
-    Ok(Bytes(
-        (digits.chunks_exact(2))
-            .map(|pair| (pair[0] << 4 | pair[1]) as u8)
-            .collect(),
-    ))
+    signal::bytes_of(text).map(Bytes)
 }

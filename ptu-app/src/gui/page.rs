@@ -26,13 +26,15 @@ pub enum Page {
     Diagnosis,
     /// The test sheet of a run.
     Report,
+    /// Waveforms: read, recorded, made and played.
+    Signals,
     /// Which causes, how often, and whether repairs hold.
     Statistics,
 }
 
 impl Page {
     /// All, in the order they are shown.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Case,
         Self::Bench,
         Self::Procedures,
@@ -42,6 +44,7 @@ impl Page {
         Self::Report,
         Self::Statistics,
         Self::Drive,
+        Self::Signals,
     ];
 
     /// Its name on the command line.
@@ -56,6 +59,7 @@ impl Page {
             Self::Diagnosis => "diagnosis",
             Self::Report => "report",
             Self::Statistics => "statistics",
+            Self::Signals => "signals",
         }
     }
 
@@ -77,6 +81,7 @@ impl Page {
             Self::Diagnosis => words.diagnosis.title,
             Self::Report => words.report.title,
             Self::Statistics => words.statistics.title,
+            Self::Signals => words.signals.title,
         }
     }
 
@@ -92,6 +97,7 @@ impl Page {
             Self::Report => Key::F6,
             Self::Statistics => Key::F8,
             Self::Drive => Key::F10,
+            Self::Signals => Key::F11,
         }
     }
 }

@@ -83,7 +83,17 @@ fn every_answer_has_the_keys_that_are_promised() {
     ];
     let new = ["--new", "R-2", "--who", "Kim"];
     place.ptu(&[&repair[..], &new].concat()).exits(0);
-    let asked: [&[&str]; 16] = [
+    place
+        .ptu(&["signal", "make", "code", "55", "code.wav"])
+        .exits(0);
+    place
+        .ptu(&["signal", "make", "twc", "01", "twc.wav"])
+        .exits(0);
+    let cut = std::fs::read(place.path("twc.wav")).expect("made");
+    std::fs::write(place.path("twc.wav"), &cut[..cut.len() - 1]).expect("cut");
+    let asked: [&[&str]; 18] = [
+        &["signal", "read", "code.wav"],
+        &["signal", "read", "twc.wav"],
         &["runs", "list"],
         &["runs", "show", "latest"],
         &["faults", "list"],

@@ -119,6 +119,21 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.click(words.drive.drive);
     window.wait_for(words.drive.report);
     look(&mut window, "drive");
+    window.key(Page::Signals.key());
+    window.wait_for(words.signals.generator);
+    look(&mut window, "signals");
+    for make in [
+        ["code", "55", "signal.wav"],
+        ["twc", "01 fe 3c 01 fe 3c 01 fe 3c", "twc.wav"],
+    ] {
+        let made = window.place.ptu(&[&["signal", "make"][..], &make].concat());
+        made.exits(0);
+        let file = window.place.text_path(make[2]);
+        window.write_over(words.common.file, &file);
+        window.click(words.signals.open);
+        window.wait_for(make[1]);
+        look(&mut window, make[2]);
+    }
     window.key(Page::Statistics.key());
     window.write(words.life.search, "BAD-1");
     window.click(words.life.show);

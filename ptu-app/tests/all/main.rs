@@ -52,6 +52,8 @@ mod scatter;
 mod server;
 mod shards;
 mod signal;
+mod signals_page;
+mod sound;
 mod statistics_page;
 mod suite;
 mod symptoms;

@@ -1,5 +1,5 @@
 //! What each operating system does in a way of its own, under the same names: the terminal, requests to stop, serial
-//! ports, processes and their limits, and who may read a file. The rest of the program knows no operating system.
+//! ports, processes, their limits and pipes, and who may read a file. The rest of the program knows no operating system.
 
 #[cfg(unix)]
 mod unix;
@@ -18,6 +18,7 @@ pub use system::signals::survive_file_limit;
 
 pub(crate) use system::files::{keep_to_owner, make_folder, real_path};
 pub(crate) use system::limits::{ended_by_time, limit_memory, limit_time, without_window};
+pub(crate) use system::pipes::shorten_pipe;
 pub(crate) use system::ports::{holder, open_alone};
 pub(crate) use system::process::start_of;
 pub(crate) use system::signals::StopSignals;

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use ato_under_test::receivers::Tones;
-use btu_rig::waveform::{CodeWave, FskWave, Noise};
+use btu_rig::waveform::{CodeWave, FskWave, MarkerWave, Noise};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::{SAMPLE_HZ, wav};
@@ -11,6 +10,8 @@ use crate::failure::Failure;
 
 /// Band that the noise beside a code is measured in, Hz: that of a receiver of codes.
 const CODE_BAND_HZ: f64 = 320.0;
+/// The same of a receiver of markers.
+const MARKER_BAND_HZ: f64 = 440.0;
 
 /// What to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,13 @@ pub enum Wave {
     },
     /// Bytes as TWC.
     Twc(Vec<u8>),
+    /// A marker as a train passes it; its middle is in the middle.
+    Marker {
+        /// 1 to 4 = PSM1 to PSM4.
+        number: u8,
+        /// Speed of the train, km/h.
+        kmh: f64,
+    },
 }
 
 /// What was made.
@@ -35,19 +43,63 @@ pub struct Made {
     pub clipped: u64,
 }
 
-/// Writes a waveform with `level_mv`, rms while it is on, to a WAV file; with `snr_db`, white noise is added: of a code in
-/// the receiver's band, of TWC in the bandwidth of a bit.
+/// Most bytes that are made together.
+const MOST_BYTES: usize = 2_048;
+
+/// Bytes from pairs of hex digits, with or without blanks.
 ///
 /// # Errors
-/// There is no such code, or the file cannot be written.
-pub fn make(
-    wave: &Wave,
-    unit: &UnitConfig,
-    (level_mv, snr_db, seed): (f64, Option<f64>, u64),
-    (path, full_scale_mv): (&Path, f64),
-) -> Result<Made, Failure> {
+/// They are no bytes, none, or too many.
+pub fn bytes_of(text: &str) -> Result<Vec<u8>, String> {
+    let digits: Vec<u32> = (text.chars().filter(|letter| !letter.is_whitespace()))
+        .map(|letter| letter.to_digit(16))
+        .collect::<Option<_>>()
+        .ok_or("bytes are pairs of hex digits, as '01 fe 3c'")?;
+    if digits.is_empty() || digits.len() % 2 == 1 || digits.len() > 2 * MOST_BYTES {
+        return Err("1 to 2048 bytes are needed, each of two hex digits".to_owned());
+    }
+    let pairs = digits.chunks_exact(2);
+    Ok(pairs.map(|pair| (pair[0] << 4 | pair[1]) as u8).collect())
+}
+
+/// The tone of TWC between bytes, Hz.
+pub fn rest_hz(unit: &UnitConfig) -> f64 {
+    unit.twc.middle_hz + unit.twc.apart_hz
+}
+
+/// Frequencies by which the levels of codes and of TWC are measured, Hz.
+pub fn reference_hz(unit: &UnitConfig) -> [f64; 2] {
+    let carrier = unit.codes.first().map(|code| code.carrier_hz);
+    [carrier.unwrap_or(1_000.0), unit.twc.middle_hz]
+}
+
+/// How strong a waveform is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strength {
+    /// Level while it is on, mV rms.
+    pub level_mv: f64,
+    /// Level over white noise that is added, dB: of a code or marker in the receiver's band, of TWC in the bandwidth of a
+    /// bit.
+    pub snr_db: Option<f64>,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// Samples, mV, that may be made on another thread.
+pub type Samples = Box<dyn Iterator<Item = f64> + Send>;
+
+/// The samples of a waveform, mV.
+///
+/// # Errors
+/// There is no such code.
+pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Samples, Failure> {
     let rate = f64::from(SAMPLE_HZ);
-    let (samples, band_hz): (Box<dyn Iterator<Item = f64>>, f64) = match wave {
+    let Strength {
+        level_mv,
+        snr_db,
+        seed,
+    } = strength;
+    let (samples, band_hz): (Samples, f64) = match wave {
         Wave::Code { name, seconds } => {
             let SpeedCode {
                 carrier_hz,
@@ -59,25 +111,45 @@ pub fn make(
             (Box::new(wave.take(count)), CODE_BAND_HZ)
         }
         Wave::Twc(bytes) => {
-            let Tones {
-                middle_hz,
-                apart_hz,
-                bit_rate,
-            } = Tones::DEFAULT;
-            let tones = (f64::from(middle_hz), f64::from(apart_hz));
-            let wave = FskWave::new(bytes, tones, bit_rate.into(), level_mv, rate);
-            (Box::new(wave), bit_rate.into())
+            let twc = &unit.twc;
+            let tones = (twc.middle_hz, twc.apart_hz);
+            let wave = FskWave::new(bytes, tones, twc.bits_per_s, level_mv, rate);
+            (Box::new(wave), twc.bits_per_s)
+        }
+        Wave::Marker { number, kmh } => {
+            let marker = &unit.marker;
+            let tone_hz = marker.tones_hz.get(usize::from(*number).wrapping_sub(1));
+            let tone_hz = *tone_hz
+                .ok_or_else(|| Failure::usage("markers are PSM1 to PSM4: give 1, 2, 3 or 4"))?;
+            let mut wave = MarkerWave::new(tone_hz, level_mv, marker.reach_m, rate);
+            let (from_m, step_m) = (-2.0 * wave.heard_within_m(), kmh / 3.6 / rate);
+            let count = (-2.0 * from_m / step_m) as usize;
+            let samples =
+                (0..count).map(move |n| wave.at(from_m + step_m * n as f64).unwrap_or(0.0));
+            (Box::new(samples), MARKER_BAND_HZ)
         }
     };
-    let mut count = 0u64;
     let mut noise = snr_db.map(|snr_db| Noise::new(level_mv, snr_db, band_hz, rate, seed));
-    let noisy = samples.map(|sample| {
-        count += 1;
-        sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0)
-    });
-    let clipped = wav::write(path, SAMPLE_HZ, full_scale_mv, noisy)?;
+    let noisy =
+        samples.map(move |sample| sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0));
+    Ok(Box::new(noisy))
+}
+
+/// Writes a waveform to a WAV file.
+///
+/// # Errors
+/// There is no such code, or the file cannot be written.
+pub fn make(
+    wave: &Wave,
+    unit: &UnitConfig,
+    strength: Strength,
+    (path, full_scale_mv): (&Path, f64),
+) -> Result<Made, Failure> {
+    let mut count = 0u64;
+    let counted = samples(wave, unit, strength)?.inspect(|_| count += 1);
+    let clipped = wav::write(path, SAMPLE_HZ, full_scale_mv, counted)?;
     Ok(Made {
-        seconds: count as f64 / rate,
+        seconds: count as f64 / f64::from(SAMPLE_HZ),
         clipped,
     })
 }

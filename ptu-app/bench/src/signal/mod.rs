@@ -3,15 +3,20 @@
 #[cfg(test)]
 mod coil_tests;
 mod make;
+mod picture;
 mod read;
+mod receive;
 #[cfg(test)]
 mod tests;
 mod wav;
 
-pub use make::{Made, Wave, make};
-pub use read::{NotUnderstood, Reading, Source, read};
+pub use make::{Made, Samples, Strength, Wave, bytes_of, make, reference_hz, rest_hz, samples};
+pub use picture::{Columns, Picture, Span};
+pub use read::{NotUnderstood, Reading, Source, Why, read, read_and_picture};
+pub use receive::Receivers;
+pub use wav::{End, Wav};
 
-/// Sample rate of files that are made, Hz.
-const SAMPLE_HZ: u32 = 48_000;
+/// Samples a second of what is made.
+pub const SAMPLE_HZ: u32 = 48_000;
 /// What full scale of a file stands for, mV, unless something else is said: above the strongest level a receiver decodes.
 pub const FULL_SCALE_MV: f64 = 4_000.0;

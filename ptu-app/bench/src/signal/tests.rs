@@ -18,9 +18,14 @@ fn unit() -> UnitConfig {
     scripts.unit_config("sg100").expect("read").content
 }
 
-fn made(wave: &Wave, level: (f64, Option<f64>, u64), path: &Path) -> Reading {
+fn made(wave: &Wave, path: &Path) -> Reading {
     let unit = unit();
-    make(wave, &unit, level, (path, FULL_SCALE_MV)).expect("made");
+    let strength = Strength {
+        level_mv: 500.0,
+        snr_db: Some(20.0),
+        seed: 7,
+    };
+    make(wave, &unit, strength, (path, FULL_SCALE_MV)).expect("made");
     read(path, &unit, FULL_SCALE_MV).expect("read")
 }
 
@@ -34,7 +39,7 @@ fn each_code_is_read_as_it_was_made() {
             name: code.name.clone(),
             seconds: 3.0,
         };
-        let reading = made(&wave, (500.0, Some(20.0), 7), &path);
+        let reading = made(&wave, &path);
         let [source] = &reading.sources[..] else {
             panic!("{}: {reading:?}", code.name);
         };
@@ -58,7 +63,7 @@ fn bytes_are_read_as_they_were_made() {
     let dir = tempfile::tempdir().expect("a directory");
     let path = dir.path().join("twc.wav");
     let bytes: Vec<u8> = (0..=255).collect();
-    let reading = made(&Wave::Twc(bytes.clone()), (500.0, Some(20.0), 7), &path);
+    let reading = made(&Wave::Twc(bytes.clone()), &path);
     let [source] = &reading.sources[..] else {
         panic!("{reading:?}");
     };
@@ -142,6 +147,95 @@ fn a_byte_with_a_wrong_bit_is_told() {
     );
 }
 
+/// Goal: what a person looks at is what was made, and an hour of it takes no more room than seconds do. Method: a code and
+/// bytes; then silence after them, until every reduction has taken place many times.
+#[test]
+fn a_picture_shows_what_is_there_and_stays_small() {
+    let mut picture = Picture::new(RATE, 3_000.0, Tones::of(&unit().twc));
+    let code = CodeWave::new(3_000.0, 10.0, 500.0, RATE).take(96_000);
+    let twc = FskWave::new(&[0x5a; 20], (9_650.0, 150.0), 300.0, 200.0, RATE);
+    let samples: Vec<f32> = code
+        .zip(twc.chain(std::iter::repeat(0.0)))
+        .map(|(code, twc)| (code + twc) as f32)
+        .collect();
+    samples
+        .chunks(1_000)
+        .for_each(|samples| picture.take(samples));
+    let (envelope, each_s) = picture.envelope();
+    let at = |s: f64| envelope[(s / each_s) as usize];
+    // 10 Hz: on from the beginning of each tenth of a second, off after the half of it.
+    assert!((at(1.025).high - 500.0).abs() < 30.0, "{:?}", at(1.025));
+    assert!(at(1.075).high < 30.0, "{:?}", at(1.075));
+    let (spectrum, hz) = picture.mean_spectrum();
+    let loudest = (0..spectrum.len()).max_by(|a, b| spectrum[*a].total_cmp(&spectrum[*b]));
+    let loudest_hz = loudest.expect("a spectrum") as f64 * hz;
+    assert!((loudest_hz - 3_000.0).abs() < 2.0 * hz, "{loudest_hz}");
+    let (spectra, _) = picture.spectra();
+    let row = |hz: f64| (hz / picture.row_hz()) as usize;
+    let early = &spectra[2];
+    assert!(
+        early[row(9_800.0)] > early[row(7_000.0)] + 30.0,
+        "the tones of TWC"
+    );
+    assert!(picture.eye().len() > 50);
+    assert!((picture.eye().iter()).all(|curve| curve.last().expect("a decision").abs() > 0.9));
+
+    let silence = vec![0.0; 48_000];
+    (0..200).for_each(|_| picture.take(&silence));
+    let (wave, each_s) = picture.wave();
+    assert!((512..=1_024).contains(&wave.len()), "{}", wave.len());
+    let length_s = wave.len() as f64 * each_s;
+    assert!((length_s - 202.0).abs() < 2.0 * each_s, "{length_s} s");
+    let (spectra, each_s) = picture.spectra();
+    assert!((256..=512).contains(&spectra.len()), "{}", spectra.len());
+    let length_s = spectra.len() as f64 * each_s;
+    assert!((length_s - 202.0).abs() < 3.0 * each_s, "{length_s} s");
+    assert!(picture.eye().len() <= 200);
+}
+
+/// Goal: a recording of several channels is read from each, and what nobody could hold in memory is refused or cut.
+#[test]
+fn channels_are_read_each_and_not_without_end() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("channels.wav");
+    let write = |channels: u16, sample_rate: u32| {
+        let spec = hound::WavSpec {
+            channels,
+            sample_rate,
+            bits_per_sample: 16,
+            sample_format: hound::SampleFormat::Int,
+        };
+        let mut writer = hound::WavWriter::create(&path, spec).expect("begun");
+        let code = CodeWave::new(3_000.0, 10.0, 4_000.0, RATE);
+        for sample in code.take(72_000) {
+            for channel in 0..channels {
+                let sample = if channel == 1 { sample } else { 0.0 };
+                writer.write_sample(sample as i16).expect("written");
+            }
+        }
+        writer.finalize().expect("written");
+    };
+    let unit = unit();
+    write(2, 48_000);
+    let reading = read(&path, &unit, FULL_SCALE_MV).expect("read");
+    assert_eq!(reading.sources.len(), 1, "{reading:?}");
+    assert_eq!(reading.sources[0].channel, 2);
+    write(20, 48_000);
+    let reading = read(&path, &unit, FULL_SCALE_MV).expect("read");
+    assert_eq!(reading.sources.len(), 1, "{reading:?}");
+    assert_eq!(reading.not_understood[0].why, Why::Channels(20));
+    write(1, 48_000);
+    let mut bytes = std::fs::read(&path).expect("the file");
+    bytes[24..28].copy_from_slice(&4_000_000_000u32.to_le_bytes());
+    std::fs::write(&path, bytes).expect("another rate");
+    let refused = read(&path, &unit, FULL_SCALE_MV).expect_err("no recording");
+    assert!(
+        refused.message.contains("4000000000 Hz"),
+        "{}",
+        refused.message
+    );
+}
+
 /// Goal: what is no recording of such signals ends in words, not in a code and not in a panic.
 #[test]
 fn what_is_no_such_signal_is_said() {
@@ -168,7 +262,10 @@ fn what_is_no_such_signal_is_said() {
             panic!("{reading:?}");
         };
         assert!(
-            unknown.what.contains("no code of this unit configuration"),
+            unknown
+                .why
+                .to_string()
+                .contains("no code of this unit configuration"),
             "{unknown:?}"
         );
     }
@@ -176,7 +273,7 @@ fn what_is_no_such_signal_is_said() {
     let bytes = std::fs::read(&path).expect("the file");
     std::fs::write(&path, &bytes[..bytes.len() / 2 + 1]).expect("cut");
     let cut = read(&path, &unit, FULL_SCALE_MV).expect("as far as it goes");
-    let said = &cut.not_understood.last().expect("said").what;
+    let said = cut.not_understood.last().expect("said").why.to_string();
     assert!(said.contains("cut off or damaged"), "{said}");
     for text in [&b""[..], b"RIFF", b"not a recording", &bytes[..30]] {
         std::fs::write(&path, text).expect("written");

@@ -8,6 +8,9 @@ use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 
 use crate::failure::Failure;
 
+/// Highest sample rate that is read, Hz.
+const MOST_HZ: u32 = 768_000;
+
 /// A file to read.
 pub struct Wav {
     reader: WavReader<BufReader<File>>,
@@ -41,9 +44,9 @@ impl Wav {
             .map_err(|error| Failure::bench(format!("cannot read {shown}: {error}")))?;
         let reader = WavReader::new(BufReader::new(file)).map_err(failed)?;
         let spec = reader.spec();
-        if spec.channels == 0 || spec.sample_rate == 0 {
+        if spec.channels == 0 || !(1..=MOST_HZ).contains(&spec.sample_rate) {
             return Err(Failure::usage(format!(
-                "{shown} has {} channels at {} Hz: nothing to read",
+                "{shown} has {} channels at {} Hz: nothing that can be read",
                 spec.channels, spec.sample_rate
             )));
         }
@@ -60,36 +63,52 @@ impl Wav {
         usize::from(self.reader.spec().channels)
     }
 
-    /// Passes all samples, mV, those of one time together. What is no number is silence.
-    pub fn each(mut self, full_scale_mv: f64, mut take: impl FnMut(&[f32])) -> End {
+    /// The next samples, mV, of its first `most` channels, `frames` of each or less at its end, and why there are no more.
+    /// What is no number is silence.
+    pub fn block(
+        &mut self,
+        frames: usize,
+        most: usize,
+        full_scale_mv: f64,
+    ) -> (Vec<Vec<f32>>, Option<End>) {
         let WavSpec {
             channels,
             bits_per_sample,
             sample_format,
             ..
         } = self.reader.spec();
-        let mut together = Vec::with_capacity(usize::from(channels));
+        let channels = usize::from(channels);
+        let mut block = vec![Vec::with_capacity(frames); channels.min(most)];
+        let mut place = 0;
         let mut pass = |sample: f64| {
-            let mv = sample * full_scale_mv;
-            together.push(if mv.is_finite() { mv as f32 } else { 0.0 });
-            if together.len() == usize::from(channels) {
-                take(&together);
-                together.clear();
+            if let Some(channel) = block.get_mut(place) {
+                let mv = sample * full_scale_mv;
+                channel.push(if mv.is_finite() { mv as f32 } else { 0.0 });
             }
+            place = (place + 1) % channels;
         };
+        let wanted = frames * channels;
+        let mut passed = 0;
+        let mut count = |()| passed += 1;
         let read: hound::Result<()> = match sample_format {
-            SampleFormat::Float => (self.reader.samples::<f32>())
-                .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample)))),
+            SampleFormat::Float => (self.reader.samples::<f32>().take(wanted))
+                .try_for_each(|sample| sample.map(|sample| count(pass(f64::from(sample))))),
             SampleFormat::Int => {
                 let full = 2f64.powi(i32::from(bits_per_sample) - 1);
-                (self.reader.samples::<i32>())
-                    .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample) / full)))
+                (self.reader.samples::<i32>().take(wanted)).try_for_each(|sample| {
+                    sample.map(|sample| count(pass(f64::from(sample) / full)))
+                })
             }
         };
-        match read {
-            Ok(()) => End::Whole,
-            Err(error) => End::Broken(format!("{}: {error}", self.shown)),
-        }
+        // A frame that is cut off in its middle is none.
+        let whole = block.last().map_or(0, Vec::len);
+        block.iter_mut().for_each(|channel| channel.truncate(whole));
+        let end = match read {
+            Ok(()) if passed < wanted => Some(End::Whole),
+            Ok(()) => None,
+            Err(error) => Some(End::Broken(format!("{}: {error}", self.shown))),
+        };
+        (block, end)
     }
 }
 

@@ -87,6 +87,17 @@ pub enum Mark {
         /// Width and height.
         size: (f64, f64),
     },
+    /// Cells, each of a shade.
+    Raster {
+        /// Upper left corner.
+        at: (f64, f64),
+        /// Width and height.
+        size: (f64, f64),
+        /// Cells in a row.
+        columns: usize,
+        /// Shades from the upper left corner on, row by row.
+        shades: Vec<u8>,
+    },
     /// A dot.
     Dot {
         /// What for.

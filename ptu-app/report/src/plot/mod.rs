@@ -3,12 +3,14 @@
 
 mod curve;
 mod mark;
+mod raster;
 mod scale;
 mod svg;
 
 use maud::Markup;
 
 pub use mark::{Anchor, Mark, Role};
+pub use raster::{Raster, colour};
 
 use mark::room;
 use scale::Scale;
@@ -92,6 +94,8 @@ pub struct Plot {
     pub x_range: Option<(f64, f64)>,
     /// The vertical axis reaches at least so far.
     pub y_reach: Option<(f64, f64)>,
+    /// Cells behind the curves; pages of paper do not have them.
+    pub raster: Option<Raster>,
     /// Curves, the last on top.
     pub series: Vec<Series>,
     /// Places.
@@ -164,6 +168,7 @@ impl Plot {
         );
         let mut marks = vec![text(Role::Title, (edges.left, 13.0), &self.title)];
         marks.extend(self.legend(&edges));
+        marks.extend(self.raster.as_ref().map(|raster| raster.mark(&x, &y)));
         marks.extend(self.shades(&x, &edges));
         marks.extend(self.grid(&x, &y, &edges));
         marks.extend(self.named_places(&x, &edges, width));

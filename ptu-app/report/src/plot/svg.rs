@@ -41,6 +41,15 @@ fn drawn(mark: &Mark) -> Markup {
         Mark::Area { role, at, size } => html! {
             rect class=(class(*role)) x=(num(at.0)) y=(num(at.1)) width=(num(size.0)) height=(num(size.1)) {}
         },
+        Mark::Raster {
+            at,
+            size,
+            columns,
+            shades,
+        } => html! {
+            image x=(num(at.0)) y=(num(at.1)) width=(num(size.0)) height=(num(size.1))
+                preserveAspectRatio="none" href=[super::raster::address(*columns, shades)] {}
+        },
         Mark::Dot { role, at } => html! {
             circle class=(class(*role)) cx=(num(at.0)) cy=(num(at.1)) r="2" {}
         },

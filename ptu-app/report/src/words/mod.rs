@@ -19,6 +19,7 @@ mod memory;
 mod names;
 mod procedures;
 mod report;
+mod signals;
 mod statistics;
 mod traces;
 mod trouble;
@@ -36,6 +37,7 @@ pub use life::Life;
 pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
+pub use signals::Signals;
 pub use statistics::Statistics;
 pub use traces::Traces;
 
@@ -148,6 +150,8 @@ pub struct Words {
     pub diagnosis: Diagnosis,
     /// Test sheet.
     pub report: Report,
+    /// Waveforms: read, made, recorded and played.
+    pub signals: Signals,
 }
 
 impl Words {
@@ -205,6 +209,7 @@ static ENGLISH: Words = Words {
     memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
     report: Report::ENGLISH,
+    signals: Signals::ENGLISH,
 };
 
 static KOREAN: Words = Words {
@@ -223,6 +228,7 @@ static KOREAN: Words = Words {
     memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
     report: Report::KOREAN,
+    signals: Signals::KOREAN,
 };
 
 #[cfg(test)]
@@ -245,6 +251,7 @@ mod tests {
             Memory::all(),
             Diagnosis::all(),
             Report::all(),
+            Signals::all(),
         ]
         .concat()
     }

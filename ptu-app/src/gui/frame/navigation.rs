@@ -12,7 +12,7 @@ use ptu_report::words::{Language, Words};
 
 const STEP: f32 = 0.1;
 /// Least share of the usual spaces in which the names of pages can be told apart.
-const LEAST_SPACES: f32 = 0.5;
+const LEAST_SPACES: f32 = 0.4;
 /// A bar so wide has the pages and the rest in one line, points.
 const BESIDE: f32 = 1180.0;
 /// Least width of a choice, and most of that of the page, points.

@@ -7,6 +7,7 @@ mod drive;
 mod faults;
 mod procedures;
 mod report;
+mod signals;
 mod statistics;
 mod traces;
 
@@ -28,6 +29,7 @@ pub struct Pages {
     diagnosis: diagnosis::DiagnosisPage,
     report: report::ReportPage,
     statistics: statistics::StatisticsPage,
+    signals: signals::SignalsPage,
 }
 
 impl Pages {
@@ -54,6 +56,7 @@ impl Pages {
             Page::Diagnosis => self.diagnosis.show(ui, context),
             Page::Report => self.report.show(ui, context),
             Page::Statistics => self.statistics.show(ui, context),
+            Page::Signals => self.signals.show(ui, context),
         }
     }
 

@@ -83,6 +83,8 @@ fn items(mark: &Mark, scale: f32) -> Vec<Item> {
             }
             vec![Item::Area(x, y, wide, high, ink(*role))]
         }
+        // What has cells is looked at on a screen.
+        Mark::Raster { .. } => Vec::new(),
         Mark::Dot { role, at } => {
             let (x, y) = place(*at);
             vec![Item::Disc(x, y, DOT * scale, ink(*role))]

@@ -1,0 +1,18 @@
+//! Pipes to child processes.
+
+use std::process::ChildStdin;
+
+/// Least bytes that a pipe of Linux can hold.
+#[cfg(target_os = "linux")]
+const LEAST: usize = 4_096;
+
+/// As few bytes as possible wait in the pipe: what is in it is still heard when this process has ended. A system that
+/// refuses has its usual pipe.
+#[cfg(target_os = "linux")]
+pub fn shorten_pipe(to: &ChildStdin) {
+    let _ = rustix::pipe::fcntl_setpipe_size(to, LEAST);
+}
+
+/// A pipe has the length that the system gives it.
+#[cfg(not(target_os = "linux"))]
+pub fn shorten_pipe(_to: &ChildStdin) {}

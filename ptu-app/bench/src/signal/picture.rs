@@ -1,0 +1,396 @@
+//! What a person looks at beside the list of what was heard: waveform, spectrum over time, envelope of the carrier and eye
+//! of the TWC bits, reduced as the recording goes on, so that an hour takes no more room than seconds do.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use ato_under_test::receivers::{Demodulator, FskReceiver, Received, Tones};
+use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+
+/// Columns of a reduced curve at most; twice as long ones take their place when they are full.
+const MOST_COLUMNS: usize = 1_024;
+/// Columns of the spectrum over time at most.
+const MOST_SPECTRA: usize = 512;
+/// Highest frequency that is shown, Hz: above the tones of TWC.
+const HIGHEST_HZ: f64 = 12_000.0;
+/// Resolution of the spectrum, Hz, at least: the sidebands of the slowest code rates stand apart.
+const RESOLUTION_HZ: f64 = 12.0;
+/// Rows of the spectrum over time.
+const ROWS: usize = 256;
+/// Rate of the envelope, Hz.
+const ENVELOPE_HZ: f64 = 600.0;
+/// Least level that is shown, dB over 1 mV.
+const FLOOR_DB: f32 = -40.0;
+/// Bits of a byte, with start, parity and stop bit.
+const BITS: usize = 11;
+/// Curves of the eye at most; half of them go when there are more.
+const MOST_CURVES: usize = 200;
+
+/// Values in columns of equal length, each of which holds all that it covers.
+#[derive(Clone, Debug)]
+pub struct Columns<T> {
+    /// Values in each column.
+    each: u64,
+    /// Values in the last one.
+    last: u64,
+    most: usize,
+    values: Vec<T>,
+}
+
+/// What a column becomes with the next one in it.
+pub trait Merge: Clone {
+    /// Takes another in.
+    fn merge(&mut self, other: &Self);
+}
+
+impl<T: Merge> Columns<T> {
+    fn new(most: usize) -> Self {
+        Self {
+            each: 1,
+            last: 0,
+            most,
+            values: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, value: T) {
+        match self.values.last_mut() {
+            Some(last) if self.last < self.each => {
+                last.merge(&value);
+                self.last += 1;
+                return;
+            }
+            _ => {}
+        }
+        if self.values.len() == self.most {
+            for pair in 0..self.most / 2 {
+                let mut both = self.values[2 * pair].clone();
+                both.merge(&self.values[2 * pair + 1]);
+                self.values[pair] = both;
+            }
+            self.values.truncate(self.most / 2);
+            self.each *= 2;
+        }
+        self.values.push(value);
+        self.last = 1;
+    }
+
+    /// The columns, in order.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// Values that each column covers.
+    pub fn each(&self) -> u64 {
+        self.each
+    }
+}
+
+/// Least and greatest value of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Least.
+    pub low: f32,
+    /// Greatest.
+    pub high: f32,
+}
+
+impl Span {
+    fn of(value: f32) -> Self {
+        Self {
+            low: value,
+            high: value,
+        }
+    }
+}
+
+impl Merge for Span {
+    fn merge(&mut self, other: &Self) {
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+    }
+}
+
+/// Levels of a spectrum, dB over 1 mV rms, from 0 Hz on.
+type Levels = Vec<f32>;
+
+impl Merge for Levels {
+    fn merge(&mut self, other: &Self) {
+        for (level, other) in self.iter_mut().zip(other) {
+            *level = level.max(*other);
+        }
+    }
+}
+
+/// One channel, as it is looked at.
+#[derive(Clone)]
+pub struct Picture {
+    sample_hz: f64,
+    wave: Columns<Span>,
+    spectrum: Spectrum,
+    envelope: Envelope,
+    eye: Option<Eye>,
+}
+
+impl Picture {
+    /// Of samples at this rate; the envelope is that of this carrier, the eye of these tones.
+    pub fn new(sample_hz: f64, carrier_hz: f64, tones: Tones) -> Self {
+        let highest = f64::from(tones.middle_hz + tones.apart_hz);
+        Self {
+            sample_hz,
+            wave: Columns::new(MOST_COLUMNS),
+            spectrum: Spectrum::new(sample_hz),
+            envelope: Envelope::new(sample_hz, carrier_hz),
+            eye: (sample_hz > 2.2 * highest).then(|| Eye::new(sample_hz, tones)),
+        }
+    }
+
+    /// Takes samples, mV.
+    pub fn take(&mut self, samples: &[f32]) {
+        for sample in samples {
+            self.wave.push(Span::of(*sample));
+            self.envelope.take(*sample);
+            self.spectrum.take(*sample);
+            if let Some(eye) = &mut self.eye {
+                eye.take(*sample);
+            }
+        }
+    }
+
+    /// The waveform, mV, and seconds of a column.
+    pub fn wave(&self) -> (&[Span], f64) {
+        (self.wave.values(), self.wave.each() as f64 / self.sample_hz)
+    }
+
+    /// Level of the carrier, mV rms, and seconds of a column.
+    pub fn envelope(&self) -> (&[Span], f64) {
+        let Envelope { columns, by, .. } = &self.envelope;
+        let each_s = columns.each() as f64 * *by as f64 / self.sample_hz;
+        (columns.values(), each_s)
+    }
+
+    /// Spectra over time, dB over 1 mV rms, and seconds of each.
+    pub fn spectra(&self) -> (&[Vec<f32>], f64) {
+        let Spectrum { columns, hop, .. } = &self.spectrum;
+        let each_s = columns.each() as f64 * *hop as f64 / self.sample_hz;
+        (columns.values(), each_s)
+    }
+
+    /// Frequencies of a spectrum's row, Hz.
+    pub fn row_hz(&self) -> f64 {
+        let Spectrum { shown, window, .. } = &self.spectrum;
+        *shown as f64 / window.len() as f64 * self.sample_hz / ROWS as f64
+    }
+
+    /// Mean spectrum of the whole, dB over 1 mV rms, and Hz between its values.
+    pub fn mean_spectrum(&self) -> (Vec<f32>, f64) {
+        let Spectrum {
+            powers,
+            count,
+            window,
+            ..
+        } = &self.spectrum;
+        let levels = powers
+            .iter()
+            .map(|power| level_db(power / (*count).max(1) as f64));
+        (levels.collect(), self.sample_hz / window.len() as f64)
+    }
+
+    /// The eye of the TWC bits: curves of how much the upper tone is stronger, −1 to 1, from one decision to the second
+    /// after it; empty without TWC.
+    pub fn eye(&self) -> &[Vec<f32>] {
+        self.eye.as_ref().map_or(&[], |eye| &eye.curves)
+    }
+}
+
+/// Level of a power, mV², in dB over 1 mV rms.
+fn level_db(power: f64) -> f32 {
+    (10.0 * power.max(1e-12).log10()).max(f64::from(FLOOR_DB)) as f32
+}
+
+/// Spectra over time.
+#[derive(Clone)]
+struct Spectrum {
+    fft: Arc<dyn Fft<f32>>,
+    window: Vec<f32>,
+    line: Vec<f32>,
+    work: Vec<Complex<f32>>,
+    scratch: Vec<Complex<f32>>,
+    /// Samples between spectra.
+    hop: usize,
+    columns: Columns<Levels>,
+    /// Frequencies that are shown, and the sum of powers, mV², of each.
+    shown: usize,
+    powers: Vec<f64>,
+    count: u64,
+    /// Factor from a squared value to mV².
+    scale: f64,
+}
+
+impl Spectrum {
+    fn new(sample_hz: f64) -> Self {
+        let length = ((sample_hz / RESOLUTION_HZ) as usize)
+            .next_power_of_two()
+            .clamp(64, 1 << 16);
+        let fft = FftPlanner::new().plan_fft_forward(length);
+        let turn = std::f64::consts::TAU / length as f64;
+        let window: Vec<_> = (0..length)
+            .map(|n| (0.5 - 0.5 * (turn * (n as f64 + 0.5)).cos()) as f32)
+            .collect();
+        // A sine of 1 mV rms has 1 mV² at its frequency: half of its amplitude is at the negative one.
+        let sum: f64 = window.iter().map(|w| f64::from(*w)).sum();
+        let shown = (HIGHEST_HZ / sample_hz * length as f64) as usize;
+        let shown = shown.clamp(1, length / 2);
+        Self {
+            scratch: vec![Complex::default(); fft.get_inplace_scratch_len()],
+            fft,
+            line: Vec::with_capacity(length),
+            work: Vec::with_capacity(length),
+            hop: length / 4,
+            columns: Columns::new(MOST_SPECTRA),
+            powers: vec![0.0; shown],
+            shown,
+            count: 0,
+            scale: 2.0 / (sum * sum),
+            window,
+        }
+    }
+
+    fn take(&mut self, sample_mv: f32) {
+        self.line.push(sample_mv);
+        let length = self.window.len();
+        if self.line.len() < length {
+            return;
+        }
+        self.work.clear();
+        let windowed = self.line.iter().zip(&self.window);
+        (self.work).extend(windowed.map(|(sample, w)| Complex::new(sample * w, 0.0)));
+        self.fft
+            .process_with_scratch(&mut self.work, &mut self.scratch);
+        let powers = (self.work.iter()).map(|value| f64::from(value.norm_sqr()) * self.scale);
+        let mut levels = vec![f64::MIN; ROWS];
+        for (place, (sum, power)) in self.powers.iter_mut().zip(powers).enumerate() {
+            *sum += power;
+            let level = &mut levels[place * ROWS / self.shown];
+            *level = level.max(power);
+        }
+        self.count += 1;
+        // Of a long recording nothing is looked at twice.
+        let hops = match self.columns.each() {
+            1 => 1,
+            _ => length / self.hop,
+        };
+        let levels: Levels = levels.into_iter().map(level_db).collect();
+        for _ in 0..hops {
+            self.columns.push(levels.clone());
+        }
+        self.line.drain(..hops * self.hop);
+    }
+}
+
+/// The amplitude of a carrier over time.
+#[derive(Clone)]
+struct Envelope {
+    at: Complex<f32>,
+    turn: Complex<f32>,
+    /// Samples of each value.
+    by: usize,
+    taken: usize,
+    sum: Complex<f32>,
+    columns: Columns<Span>,
+}
+
+impl Envelope {
+    fn new(sample_hz: f64, carrier_hz: f64) -> Self {
+        let turn = -std::f64::consts::TAU * carrier_hz / sample_hz;
+        Self {
+            at: Complex::new(1.0, 0.0),
+            turn: Complex::from_polar(1.0, turn as f32),
+            by: ((sample_hz / ENVELOPE_HZ) as usize).max(1),
+            taken: 0,
+            sum: Complex::default(),
+            columns: Columns::new(MOST_COLUMNS),
+        }
+    }
+
+    fn take(&mut self, sample_mv: f32) {
+        self.sum += self.at * sample_mv;
+        self.at *= self.turn;
+        self.taken += 1;
+        if self.taken == self.by {
+            let level = self.sum.norm() * std::f32::consts::SQRT_2 / self.by as f32;
+            self.columns.push(Span::of(level));
+            (self.sum, self.taken) = (Complex::default(), 0);
+            self.at /= self.at.norm();
+        }
+    }
+}
+
+/// The eye of the TWC bits: what the receiver's decisions are taken from.
+#[derive(Clone)]
+struct Eye {
+    receiver: FskReceiver,
+    demodulator: Demodulator,
+    per_bit: f32,
+    /// Of the last byte.
+    line: VecDeque<f32>,
+    curves: Vec<Vec<f32>>,
+    /// Curves of which one is kept, and those passed since.
+    every: usize,
+    passed: usize,
+}
+
+impl Eye {
+    fn new(sample_hz: f64, tones: Tones) -> Self {
+        let demodulator = Demodulator::new(tones, sample_hz as f32);
+        Self {
+            receiver: FskReceiver::new(tones, sample_hz as f32, 0.0),
+            per_bit: demodulator.values_per_bit(tones.bit_rate),
+            demodulator,
+            line: VecDeque::new(),
+            curves: Vec::new(),
+            every: 1,
+            passed: 0,
+        }
+    }
+
+    fn take(&mut self, sample_mv: f32) {
+        if let Some(bit) = self.demodulator.take(sample_mv) {
+            self.line.push_back(bit.lean);
+            let longest = (self.per_bit * BITS as f32) as usize + 1;
+            if self.line.len() > longest {
+                self.line.pop_front();
+            }
+        }
+        if let Some(Received::Byte(_)) = self.receiver.take(sample_mv) {
+            self.keep();
+        }
+    }
+
+    /// A byte is over, with the decision of its stop bit: two bits each are a curve.
+    fn keep(&mut self) {
+        let two = (2.0 * self.per_bit).round() as usize;
+        let line: Vec<f32> = self.line.iter().copied().collect();
+        for pair in 0..BITS / 2 {
+            let back = (2.0 * self.per_bit * pair as f32).round() as usize;
+            let Some(end) = line.len().checked_sub(back).filter(|end| *end > two) else {
+                return;
+            };
+            self.passed += 1;
+            if self.passed < self.every {
+                continue;
+            }
+            self.passed = 0;
+            if self.curves.len() == MOST_CURVES {
+                let mut place = 0;
+                self.curves.retain(|_| {
+                    place += 1;
+                    place % 2 == 0
+                });
+                self.every *= 2;
+            }
+            self.curves.push(line[end - two - 1..end].to_vec());
+        }
+    }
+}

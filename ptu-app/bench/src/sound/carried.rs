@@ -1,0 +1,145 @@
+//! The child process that carries samples: what it says, and its end.
+
+use std::io::Read;
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use crate::failure::Failure;
+use crate::platform::shorten_pipe;
+use crate::stop::Stop;
+
+/// How often a request to stop is looked for.
+const LOOK: Duration = Duration::from_millis(5);
+/// Longest line of what it says that is kept, bytes.
+const LONGEST: usize = 300;
+
+/// A running process that carries samples.
+pub(super) struct Carried {
+    child: Arc<Mutex<Child>>,
+    pub(super) input: Option<ChildStdin>,
+    pub(super) output: Option<ChildStdout>,
+    /// Times that it had too few samples, or we took them too late.
+    pub(super) gaps: Arc<AtomicU64>,
+    last_words: Arc<Mutex<String>>,
+    over: Arc<AtomicBool>,
+}
+
+impl Carried {
+    /// Starts it. When `stop` is pressed it is ended at once, whatever this thread waits for.
+    pub(super) fn start(command: &mut Command, plays: bool, stop: &Stop) -> Result<Self, Failure> {
+        let name = command.get_program().to_string_lossy().into_owned();
+        let pipe = |wanted: bool| {
+            if wanted {
+                Stdio::piped()
+            } else {
+                Stdio::null()
+            }
+        };
+        let mut child = command
+            .stdin(pipe(plays))
+            .stdout(pipe(!plays))
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(|error| Failure::bench(format!("cannot start {name}: {error}")))?;
+        let (input, output) = (child.stdin.take(), child.stdout.take());
+        if let Some(input) = &input {
+            shorten_pipe(input);
+        }
+        let (gaps, last_words) = (Arc::<AtomicU64>::default(), Arc::<Mutex<String>>::default());
+        if let Some(words) = child.stderr.take() {
+            let (gaps, last_words) = (gaps.clone(), last_words.clone());
+            std::thread::spawn(move || listen(words, &gaps, &last_words));
+        }
+        let carried = Self {
+            child: Arc::new(Mutex::new(child)),
+            input,
+            output,
+            gaps,
+            last_words,
+            over: Arc::default(),
+        };
+        let (child, over, stop) = (carried.child.clone(), carried.over.clone(), stop.clone());
+        std::thread::spawn(move || {
+            while !over.load(Ordering::Relaxed) {
+                if stop.presses() > 0 {
+                    end(&child);
+                    return;
+                }
+                std::thread::sleep(LOOK);
+            }
+        });
+        Ok(carried)
+    }
+
+    /// Waits until it has ended by itself, after its input has.
+    pub(super) fn wait(&mut self) {
+        self.input = None;
+        loop {
+            let ended =
+                (self.child.lock()).map_or(true, |mut child| !matches!(child.try_wait(), Ok(None)));
+            if ended {
+                return;
+            }
+            std::thread::sleep(LOOK);
+        }
+    }
+
+    /// Why it ended, in its own words.
+    pub(super) fn failed(&mut self, what: &str, device: &str) -> Failure {
+        self.wait();
+        // What it said last may still be on its way.
+        std::thread::sleep(4 * LOOK);
+        let words = self.last_words.lock().map(|words| words.clone());
+        let words = words.unwrap_or_default();
+        let why = if words.is_empty() {
+            "the program ended"
+        } else {
+            words.as_str()
+        };
+        Failure::bench(format!("cannot {what} {device}: {why}"))
+    }
+}
+
+impl Drop for Carried {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        end(&self.child);
+    }
+}
+
+fn end(child: &Mutex<Child>) {
+    if let Ok(mut child) = child.lock() {
+        // It may have ended by itself.
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+}
+
+/// Counts what it says about gaps, and keeps the last of its other words.
+fn listen(mut words: ChildStderr, gaps: &AtomicU64, last: &Mutex<String>) {
+    let mut buffer = [0; 512];
+    let mut line = Vec::new();
+    while let Ok(count @ 1..) = words.read(&mut buffer) {
+        for byte in &buffer[..count] {
+            if !matches!(byte, b'\n' | b'\r') {
+                if line.len() < LONGEST {
+                    line.push(*byte);
+                }
+                continue;
+            }
+            let said = String::from_utf8_lossy(&line).trim().to_owned();
+            line.clear();
+            let lower = said.to_ascii_lowercase();
+            if lower.contains("underrun") || lower.contains("overrun") {
+                gaps.fetch_add(1, Ordering::Relaxed);
+            } else if lower.contains("fail") || lower.contains("error") || lower.contains("refused")
+            {
+                if let Ok(mut last) = last.lock() {
+                    *last = said;
+                }
+            }
+        }
+    }
+}

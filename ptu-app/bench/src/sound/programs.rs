@@ -1,0 +1,123 @@
+//! Programs of the system that carry sound: those of PulseAudio, which PipeWire has, too, or of ALSA.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde::Serialize;
+
+use super::{CHANNELS, Direction, SAMPLE_HZ};
+use crate::failure::Failure;
+use crate::platform::without_window;
+
+/// How long samples wait in the sound server, ms: with the 21 ms of the pipe, less than the 100 ms until silence.
+const LATENCY_MS: u32 = 60;
+
+/// A device for sound.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct DeviceFound {
+    /// Its name, as the sound server has it.
+    pub name: String,
+    /// Whether it plays or records.
+    pub direction: Direction,
+}
+
+/// The program that plays on a device, or records from it, samples of 16 bits through its standard streams.
+///
+/// # Errors
+/// There is no such program here.
+pub(super) fn carrier(direction: Direction, device: &str) -> Result<Command, Failure> {
+    let plays = direction == Direction::Output;
+    let (of_server, of_alsa) = match plays {
+        true => ("pacat", "aplay"),
+        false => ("parec", "arecord"),
+    };
+    if is_there(of_server) {
+        let mut command = Command::new(of_server);
+        command.args([
+            if plays { "--playback" } else { "--record" },
+            "--raw",
+            "--format=s16le",
+            "--no-remix",
+            "--volume=65536",
+            "--client-name=ptu",
+            "--verbose",
+        ]);
+        command.arg(format!("--rate={SAMPLE_HZ}"));
+        command.arg(format!("--channels={CHANNELS}"));
+        command.arg(format!("--latency-msec={LATENCY_MS}"));
+        if device != DEFAULT {
+            command.arg(format!("--device={device}"));
+        }
+        return Ok(ready(command));
+    }
+    if is_there(of_alsa) {
+        let mut command = Command::new(of_alsa);
+        command.args(["-t", "raw", "-f", "S16_LE", "-D", device]);
+        command.args(["-r", &SAMPLE_HZ.to_string(), "-c", &CHANNELS.to_string()]);
+        command.arg(format!("--buffer-time={}", LATENCY_MS * 1_000));
+        return Ok(ready(command));
+    }
+    Err(Failure::bench(format!(
+        "no program carries sound here: neither {of_server} (pulseaudio-utils) nor {of_alsa} (alsa-utils) is \
+         installed"
+    )))
+}
+
+/// The device that the system has chosen.
+pub const DEFAULT: &str = "default";
+
+/// The devices there are.
+///
+/// # Errors
+/// No program of the system tells them, or the sound server does not answer.
+pub fn devices() -> Result<Vec<DeviceFound>, Failure> {
+    let directions = [Direction::Output, Direction::Input];
+    let mut found = Vec::new();
+    for direction in directions {
+        let plays = direction == Direction::Output;
+        let names = if is_there("pactl") {
+            let what = if plays { "sinks" } else { "sources" };
+            let said = said(Command::new("pactl").args(["list", "short", what]))?;
+            let names = said.lines().filter_map(|line| line.split('\t').nth(1));
+            names.map(str::to_owned).collect::<Vec<_>>()
+        } else {
+            let said = said(Command::new(if plays { "aplay" } else { "arecord" }).arg("-L"))?;
+            let names = (said.lines()).filter(|line| !line.starts_with(char::is_whitespace));
+            names.map(str::to_owned).collect()
+        };
+        let names = names.into_iter().filter(|name| !name.is_empty());
+        found.extend(names.map(|name| DeviceFound { name, direction }));
+    }
+    Ok(found)
+}
+
+/// What a program prints.
+fn said(command: &mut Command) -> Result<String, Failure> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let failed = |why: &dyn std::fmt::Display| {
+        Failure::bench(format!("cannot list devices for sound: {name}: {why}"))
+    };
+    let output =
+        (without_window(command).env("LC_ALL", "C").output()).map_err(|error| {
+            match error.kind() {
+                std::io::ErrorKind::NotFound => failed(&"it is not installed (pulseaudio-utils)"),
+                _ => failed(&error),
+            }
+        })?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(failed(&String::from_utf8_lossy(&output.stderr).trim())),
+    }
+}
+
+/// Its words are English.
+fn ready(mut command: Command) -> Command {
+    without_window(&mut command).env("LC_ALL", "C");
+    command
+}
+
+fn is_there(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path)
+        .any(|folder: std::path::PathBuf| Path::is_file(&folder.join(program)))
+}

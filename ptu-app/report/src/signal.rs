@@ -1,0 +1,296 @@
+//! What was heard in a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside it.
+
+use ptu_bench::signal::{NotUnderstood, Picture, Reading, Receivers, Source, Span, Why};
+use ptu_bench::table::Table as TextTable;
+
+use crate::plot::{Plot, Raster, Series, Style};
+use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
+use crate::run::{Paper, Printed};
+use crate::words::{Words, fill};
+
+/// Level below the strongest that is shown, dB.
+const SHOWN_DB: f32 = 70.0;
+
+/// A recording that was read.
+pub struct Recording {
+    /// Name of the file.
+    pub file: String,
+    /// Name of the unit configuration.
+    pub unit_config: String,
+    /// What full scale stands for, mV.
+    pub full_scale_mv: f64,
+    /// What was heard.
+    pub reading: Reading,
+    /// How each channel looks.
+    pub pictures: Vec<Picture>,
+    /// By which command, and when.
+    pub made: String,
+}
+
+/// Names of the columns of what was heard.
+pub fn heads(words: &Words) -> [&'static str; 9] {
+    let said = &words.signals;
+    [
+        said.channel,
+        said.from,
+        said.to,
+        said.kind,
+        said.what,
+        said.carrier,
+        said.rate,
+        said.level,
+        said.snr,
+    ]
+}
+
+/// What was heard, a row each.
+pub fn row(source: &Source, words: &Words) -> [String; 9] {
+    let said = &words.signals;
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    let what = match (source.kind, source.what.as_str(), source.rate_hz) {
+        ("code", "", rate) if rate < 1.0 => said.no_code,
+        ("code", "", _) => said.unknown_code,
+        (_, what, _) => what,
+    };
+    let what = match source.bad_bytes {
+        Some(bad) if bad > 0 => fill(said.damaged_bytes, &[("bytes", &what), ("n", &bad)]),
+        _ => what.to_owned(),
+    };
+    [
+        source.channel.to_string(),
+        format!("{:.2}", source.from_s),
+        format!("{:.2}", source.to_s),
+        match source.kind {
+            "code" => said.code,
+            "marker" => said.marker,
+            _ => said.twc,
+        }
+        .to_owned(),
+        what,
+        format!("{:.1}", source.carrier_hz),
+        format!("{:.2}", source.rate_hz),
+        number(source.level_mv, 0),
+        number(source.snr_db, 1),
+    ]
+}
+
+/// What was not understood, as a sentence.
+pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
+    let said = &words.signals;
+    let why = match &of.why {
+        Why::Slow { sample_hz, for_hz } => {
+            let hz: Vec<_> = for_hz.iter().map(f64::to_string).collect();
+            fill(said.too_slow, &[("n", sample_hz), ("hz", &hz.join(", "))])
+        }
+        Why::Unknown { channel, level_mv } => {
+            let level = format!("{level_mv:.0}");
+            fill(said.loud, &[("n", channel), ("level", &level)])
+        }
+        Why::Channels(n) => {
+            let most = Receivers::MOST_CHANNELS;
+            fill(said.many_channels, &[("n", n), ("most", &most)])
+        }
+        Why::Broken(why) => fill(said.broken, &[("why", why)]),
+    };
+    let [from, to] = [of.from_s, of.to_s].map(|at| format!("{at:.2}"));
+    fill(said.at, &[("from", &from), ("to", &to), ("why", &why)])
+}
+
+/// What was heard, for a terminal.
+pub fn text(reading: &Reading, words: &Words) -> String {
+    let mut lines = vec![format!("{:.2} s", reading.duration_s)];
+    if reading.sources.is_empty() {
+        lines.push(words.signals.nothing.to_owned());
+    } else {
+        let mut table = TextTable::new(&heads(words));
+        for source in &reading.sources {
+            table.row(row(source, words));
+        }
+        lines.push(table.render());
+    }
+    lines.extend((reading.not_understood.iter()).map(|of| not_understood(of, words)));
+    lines.join("\n")
+}
+
+impl Printed for Recording {
+    fn paper(&self, words: &Words) -> Paper {
+        let said = &words.signals;
+        let facts = [
+            (said.file, self.file.clone()),
+            (said.length, format!("{:.2} s", self.reading.duration_s)),
+            (words.report.unit_config, self.unit_config.clone()),
+            (said.full_scale, format!("{} mV", self.full_scale_mv)),
+        ];
+        let facts = facts.map(|(name, value)| (block::sentence(name), value));
+        let mut blocks = vec![
+            Block::Title(said.report.into(), self.file.clone()),
+            Block::Facts(facts.into()),
+            Block::Heading(said.heard.into()),
+        ];
+        blocks.push(match self.reading.sources.is_empty() {
+            true => Block::Text(Tone::Plain, said.nothing.into()),
+            false => Block::Table(table(&self.reading.sources, words)),
+        });
+        if !self.reading.not_understood.is_empty() {
+            blocks.push(Block::Heading(said.not_understood.into()));
+            let of = self.reading.not_understood.iter();
+            blocks.extend(of.map(|of| Block::Text(Tone::Plain, not_understood(of, words))));
+        }
+        for (place, picture) in self.pictures.iter().enumerate() {
+            blocks.push(Block::Heading(fill(
+                said.of_channel,
+                &[("n", &(place + 1))],
+            )));
+            let plots = plots(picture, self.reading.duration_s, words).into_iter();
+            blocks.extend(plots.map(|plot| Block::Plot(Box::new(plot))));
+        }
+        blocks.push(Block::Text(Tone::Soft, self.made.clone()));
+        Paper {
+            name: said.report,
+            unit: String::new(),
+            short: self.file.clone(),
+            number: self.file.clone(),
+            program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
+            at_us: 0,
+            across: None,
+            blocks,
+        }
+    }
+}
+
+fn table(sources: &[Source], words: &Words) -> block::Table {
+    let shares = [0.08, 0.09, 0.09, 0.1, 0.24, 0.12, 0.1, 0.1, 0.08];
+    let columns = heads(words).into_iter().zip(shares).enumerate();
+    let columns = columns.map(|(place, (name, share))| {
+        let align = if matches!(place, 3 | 4) {
+            Align::Left
+        } else {
+            Align::Right
+        };
+        Column::new(name, share, align)
+    });
+    let rows = sources.iter();
+    block::Table {
+        columns: columns.collect(),
+        rows: rows
+            .map(|source| Row::words(RowKind::Head, row(source, words)))
+            .collect(),
+    }
+}
+
+/// How a channel looks.
+pub fn plots(picture: &Picture, duration_s: f64, words: &Words) -> Vec<Plot> {
+    let said = &words.signals;
+    let (wave, each_s) = picture.wave();
+    let time = |title: &str, y_label: &str, curve| Plot {
+        title: title.into(),
+        x_label: said.time.into(),
+        y_label: y_label.into(),
+        x_range: Some((0.0, duration_s)),
+        series: vec![curve],
+        height: Some(220.0),
+        ..Plot::default()
+    };
+    let waveform = time(said.waveform, said.millivolts, line(spans(wave, each_s)));
+    let (envelope, each_s) = picture.envelope();
+    let envelope = time(
+        said.envelope,
+        said.millivolts_rms,
+        line(spans(envelope, each_s)),
+    );
+    let mut plots = vec![waveform, spectrogram(picture, duration_s, words), envelope];
+    let (levels, row_hz) = picture.mean_spectrum();
+    let points = levels.iter().enumerate();
+    plots.push(Plot {
+        title: said.spectrum.into(),
+        x_label: said.frequency.into(),
+        y_label: said.decibels.into(),
+        x_range: Some((0.0, row_hz * levels.len() as f64)),
+        series: vec![line(
+            points
+                .map(|(place, level)| (place as f64 * row_hz, f64::from(*level)))
+                .collect(),
+        )],
+        height: Some(220.0),
+        ..Plot::default()
+    });
+    plots.extend(eye(picture, words));
+    plots
+}
+
+fn line(points: Vec<(f64, f64)>) -> Series {
+    Series {
+        name: String::new(),
+        colour: 0,
+        style: Style::Line,
+        points,
+    }
+}
+
+/// Columns as one line that goes through the least and the greatest value of each.
+pub fn spans(columns: &[Span], each_s: f64) -> Vec<(f64, f64)> {
+    let ends = columns.iter().enumerate().flat_map(|(place, span)| {
+        let at = (place as f64 + 0.5) * each_s;
+        [(at, f64::from(span.low)), (at, f64::from(span.high))]
+    });
+    ends.collect()
+}
+
+/// The spectrum over time, and the levels of its least and greatest shade.
+pub fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
+    let (spectra, _) = picture.spectra();
+    let rows = spectra.first().map_or(0, Vec::len);
+    let high = (spectra.iter().flatten()).fold(f32::MIN, |high, level| high.max(*level));
+    let high = if spectra.is_empty() { 0.0 } else { high };
+    let low = high - SHOWN_DB;
+    let shade = |level: f32| (255.0 * ((level - low) / SHOWN_DB).clamp(0.0, 1.0)) as u8;
+    let from_top = (0..rows).rev();
+    let shades = from_top.flat_map(|row| spectra.iter().map(move |levels| shade(levels[row])));
+    (spectra.len(), shades.collect(), (low, high))
+}
+
+fn spectrogram(picture: &Picture, duration_s: f64, words: &Words) -> Plot {
+    let said = &words.signals;
+    let (columns, shades, (low, high)) = shades(picture);
+    let (spectra, each_s) = picture.spectra();
+    let rows = spectra.first().map_or(0, Vec::len);
+    let highest = rows as f64 * picture.row_hz();
+    let [low, high] = [low, high].map(|level| format!("{level:.0}"));
+    Plot {
+        title: fill(said.spectrogram, &[("low", &low), ("high", &high)]),
+        x_label: said.time.into(),
+        y_label: said.frequency.into(),
+        x_range: Some((0.0, duration_s)),
+        y_reach: Some((0.0, highest)),
+        raster: Some(Raster {
+            x: (0.0, (columns as f64 * each_s).min(duration_s)),
+            y: (0.0, highest),
+            columns,
+            shades,
+        }),
+        ..Plot::default()
+    }
+}
+
+fn eye(picture: &Picture, words: &Words) -> Option<Plot> {
+    let curves = picture.eye();
+    let steps = curves.first()?.len().saturating_sub(1).max(1);
+    let points = curves.iter().flat_map(|curve| {
+        let at = |place: usize| 2.0 * place as f64 / steps as f64;
+        let points = curve.iter().enumerate();
+        points
+            .map(move |(place, lean)| (at(place), f64::from(*lean)))
+            .chain([(0.0, f64::NAN)])
+    });
+    Some(Plot {
+        title: words.signals.eye.into(),
+        x_label: words.signals.bits.into(),
+        y_label: words.signals.lean.into(),
+        x_range: Some((0.0, 2.0)),
+        y_reach: Some((-1.0, 1.0)),
+        series: vec![line(points.collect())],
+        ..Plot::default()
+    })
+}

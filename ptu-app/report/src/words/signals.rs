@@ -1,0 +1,85 @@
+//! Waveforms: read, made, recorded and played.
+
+use super::wordings;
+
+wordings! {
+    /// Waveforms: read, made, recorded and played.
+    Signals {
+        title: "Signals", "신호 파형";
+        report: "Waveforms in a file", "파일의 신호 파형";
+        file: "file", "파일";
+        length: "length", "길이";
+        full_scale: "full scale", "최대 눈금";
+
+        // What was heard.
+        heard: "What was heard", "수신 결과";
+        nothing: "No code, no TWC and no marker.", "속도 코드, TWC, 마커가 없습니다.";
+        channel: "channel", "채널";
+        from: "from s", "시작 s";
+        to: "to s", "끝 s";
+        kind: "kind", "종류";
+        what: "what", "내용";
+        carrier: "carrier Hz", "반송파 Hz";
+        rate: "rate Hz", "주파수 Hz";
+        level: "level mV", "레벨 mV";
+        snr: "SNR dB", "SNR dB";
+        code: "code", "속도 코드";
+        twc: "TWC", "TWC";
+        marker: "marker", "마커";
+        no_code: "carrier without a code", "코드 없는 반송파";
+        unknown_code: "no code of this unit configuration", "이 장치 구성에 없는 코드";
+        damaged_bytes: "{bytes} ({n} bytes damaged)", "{bytes} (손상 {n}바이트)";
+        not_understood: "Not understood", "해석하지 못한 부분";
+        at: "{from} to {to} s: {why}", "{from} ~ {to} s: {why}";
+        too_slow: "{n} samples a second are too few for {hz} Hz; record with 48 000", "초당 표본 {n}개로는 {hz} Hz를 읽을 수 없습니다. 48 000으로 녹음하십시오";
+        loud: "channel {n}: {level} mV rms that are no code of this unit configuration and no TWC", "채널 {n}: {level} mV rms, 이 장치 구성의 코드도 TWC도 아닙니다";
+        many_channels: "{n} channels: only the first {most} are read", "채널 {n}개 중 처음 {most}개만 읽습니다";
+        broken: "the file is cut off or damaged from here on ({why})", "여기서부터 파일이 잘렸거나 손상되었습니다 ({why})";
+
+        // How it looks.
+        of_channel: "Channel {n}", "채널 {n}";
+        waveform: "Waveform", "파형";
+        spectrogram: "Spectrum over time, lighter is stronger: {low} to {high} dB over 1 mV", "시간별 스펙트럼, 밝을수록 강함: 1 mV 기준 {low} ~ {high} dB";
+        spectrum: "Mean spectrum", "평균 스펙트럼";
+        envelope: "Envelope of the carrier", "반송파 포락선";
+        eye: "Eye of the TWC bits", "TWC 비트 아이 패턴";
+        time: "time, s", "시간, s";
+        frequency: "frequency, Hz", "주파수, Hz";
+        millivolts: "mV", "mV";
+        millivolts_rms: "mV rms", "mV rms";
+        decibels: "dB over 1 mV", "1 mV 기준 dB";
+        bits: "bits from a decision on", "판정 시점 기준 비트";
+        // The page.
+        explained: "Open a WAV file, or record from a sound card: codes and bytes are shown as the unit's receivers hear them.", "WAV 파일을 열거나 사운드 카드에서 녹음하십시오. 장치의 수신기가 해석한 속도 코드와 바이트를 표시합니다.";
+        open: "Open", "열기";
+        record: "Record", "녹음";
+        record_hint: "Recorded to the file named above, never over one that is there, but beside it as -2, -3 …", "위에 적은 파일에 녹음합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        recording: "recording: {time}", "녹음 중: {time}";
+        recorded: "Recorded: {file}, {time} s", "녹음 완료: {file}, {time} s";
+        input: "input", "입력 장치";
+        output: "output", "출력 장치";
+        no_sound: "No sound device can be listed.", "사운드 장치 목록을 읽을 수 없습니다.";
+        heard_in: "What was heard in {time}", "수신 결과 ({time})";
+        more: "Further signals: {n}.", "그 밖의 신호: {n}건.";
+        waterfall: "Spectrum over time, kHz", "시간별 스펙트럼, kHz";
+        generator: "Generator", "신호 발생기";
+        code_name: "name of the code", "코드 이름";
+        bytes: "bytes", "바이트";
+        bytes_hint: "Bytes are pairs of hex digits, at most 200.", "바이트는 16진수 두 자리씩, 최대 200바이트입니다.";
+        seconds: "length s", "길이 s";
+        noise: "noise", "잡음";
+        made: "What is made", "만들 파형";
+        play: "Play", "재생";
+        playing: "playing …", "재생 중 …";
+        played: "Played: {time} s", "재생 완료: {time} s";
+        save: "Save", "저장";
+        save_hint: "Saved to the file named above, never over one that is there, but beside it as -2, -3 …", "위에 적은 파일에 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        cut_off: "{n} samples were too strong and were cut off: lower the level.", "표본 {n}개가 범위를 넘어 잘렸습니다. 레벨을 낮추십시오.";
+        too_loud: "{n} samples of the channel {channel} are at the end of the device's range: it was too loud.", "{channel} 채널 표본 {n}개가 장치 범위 끝에 있습니다. 입력이 너무 큽니다.";
+        gaps: "The device had no samples in time, or lost some: {n} times.", "장치가 표본을 제때 받지 못했거나 잃었습니다: {n}회.";
+        uncalibrated: "{device}: not calibrated for {channels}; levels are nominal.", "{device}: {channels} 채널을 교정하지 않았습니다. 레벨은 공칭값입니다.";
+        not_done: "The signal was not read, recorded, saved or played", "신호를 읽기, 녹음, 저장 또는 재생하지 못했습니다";
+
+        lean: "upper tone over lower", "상측·하측 톤 차";
+    }
+}

@@ -1,0 +1,15 @@
+//! The file in which this user's calibrations of sound devices are.
+
+use std::path::PathBuf;
+
+use ptu_bench::failure::Failure;
+
+/// The file, in the user's configuration.
+///
+/// # Errors
+/// The user has no folder for it.
+pub fn usual() -> Result<PathBuf, Failure> {
+    directories::ProjectDirs::from("", "", "ptu")
+        .map(|directories| directories.config_dir().join("sound.json"))
+        .ok_or_else(|| Failure::usage("no user configuration directory for calibrations"))
+}
