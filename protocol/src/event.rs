@@ -115,6 +115,8 @@ events! {
     MovedAtStop = 215 "moved_at_stop" Minor "-" "Moved after it had stood under a stop code or none: full service brake" "정지신호 하에서 이동: 상용전제동" "speed, cm/s";
     EbReleaseRefused = 216 "eb_release_refused" Info "-" "Acknowledgement refused: the emergency brake's cause still holds" "비상제동 원인 지속: 완해 불허" "what holds, `EbCause`; 0 = the train moves";
     LineOpened = 217 "line_opened" Info "-" "Emergency brake line opened by others: automatic run ended" "외부 비상제동 인통선 차단: 자동운전 종료" "1 = only TCMS tells it";
+    StopAndProceed = 218 "stop_and_proceed" Info "-" "Stop and proceed: stopped without a code, the driver acknowledged it by a brake notch" "정지 후 진행: 코드 없이 정차하여 확인제동 취급" "limit, cm/s";
+    YardEnded = 219 "yard_ended" Info "-" "A code of the line, or one that cancels yard mode, ended the yard's limit" "구내운전 해제 코드 또는 본선 코드 수신" "";
     TachoDisagree = 220 "tacho_disagree" Critical "-" "The two tachometers disagree" "속도센서 불일치" "difference, cm/s";
     TachoDead1 = 221 "tacho1_dead" Critical "speed_sensor_1" "No pulses on tachometer 1 while 2 turns" "속도센서 1 무신호" "speed 2, cm/s";
     TachoDead2 = 222 "tacho2_dead" Critical "speed_sensor_2" "No pulses on tachometer 2 while 1 turns" "속도센서 2 무신호" "speed 1, cm/s";

@@ -5,7 +5,7 @@
 //! where the wayside sends what the database has.
 
 use protocol::Speed;
-use protocol::config::SpeedCode;
+use protocol::config::{SpeedCode, find_code};
 use protocol::line::Section;
 
 /// Where the train is, and what it hears there.
@@ -31,8 +31,8 @@ pub fn limit_ahead(
         return place.limit;
     };
     let limit_of = |name: &str| {
-        let code = codes.iter().find(|code| code.name == name);
-        code.map(|code| Speed::from_kmh(code.limit_kmh))
+        let at = find_code(codes, name)?;
+        Some(Speed::from_kmh(codes[at].line_kmh()))
     };
     let sent = || section.speed_codes.iter();
     let limit_at = |at_m: f64| {

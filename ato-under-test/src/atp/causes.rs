@@ -26,18 +26,27 @@ pub struct Found {
 impl Atp {
     /// The mode is one in which the speed code counts.
     pub(super) fn by_code(&self) -> bool {
-        let mode = self.sequence.mode();
-        matches!(mode, Mode::Manual | Mode::Automatic | Mode::AutomaticRun)
+        match self.sequence.mode() {
+            Mode::Manual | Mode::Automatic | Mode::AutomaticRun => true,
+            Mode::Yard => self.yard.ended(),
+            Mode::Off | Mode::Emergency | Mode::Unknown(_) => false,
+        }
     }
 
-    /// The limit by mode: by code under cab signal, fixed in yard and emergency mode.
+    /// The limit by mode: by code under cab signal, fixed in yard and emergency mode. Where the yard has ended, or a driver
+    /// proceeds without a code, both hold.
     pub(super) fn limit_in_force(&self, config: &UnitConfig) -> Speed {
+        let by_code = || {
+            self.proceeds
+                .limit()
+                .unwrap_or_else(|| self.decoder.limit(&config.codes))
+        };
+        let yard = || Speed::from_kmh(config.overspeed.yard_kmh);
         match self.sequence.mode() {
-            Mode::Yard => Speed::from_kmh(config.overspeed.yard_kmh),
+            Mode::Yard if self.yard.ended() => Speed::min(yard(), by_code()),
+            Mode::Yard => yard(),
             Mode::Emergency => Speed::from_kmh(config.overspeed.emergency_kmh),
-            Mode::Manual | Mode::Automatic | Mode::AutomaticRun => {
-                self.decoder.limit(&config.codes)
-            }
+            Mode::Manual | Mode::Automatic | Mode::AutomaticRun => by_code(),
             Mode::Off | Mode::Unknown(_) => Speed::ZERO,
         }
     }
@@ -115,7 +124,10 @@ impl Atp {
         let code = self.decoder.code();
         let over = self.overspeed.service_brake;
         let causes = [
-            (self.by_code() && code == Code::None, FsbCause::NoCode),
+            (
+                self.by_code() && code == Code::None && self.proceeds.limit().is_none(),
+                FsbCause::NoCode,
+            ),
             (
                 stop && (over || self.by_code() && code == Code::AbsoluteStop),
                 FsbCause::StopCode,

@@ -1,6 +1,6 @@
 //! Speed-code decoding: carrier, code rate and level against the unit's code table.
 
-use protocol::config::{ReceiverConfig, SpeedCode, UnitConfig};
+use protocol::config::{CodeMeaning, ReceiverConfig, SpeedCode, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, SCAN, Speed};
 
@@ -174,14 +174,18 @@ impl CodeDecoder {
         self.code
     }
 
-    /// The limit the code in force stands for; none means zero.
-    pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
+    /// The code of the table that is in force.
+    pub fn known<'a>(&self, codes: &'a [SpeedCode]) -> Option<&'a SpeedCode> {
         match self.code {
-            Code::Known(index) => codes
-                .get(usize::from(index))
-                .map_or(Speed::ZERO, |c| Speed::from_kmh(c.limit_kmh)),
-            Code::None | Code::AbsoluteStop => Speed::ZERO,
+            Code::Known(index) => codes.get(usize::from(index)),
+            Code::None | Code::AbsoluteStop => None,
         }
+    }
+
+    /// The limit under cab signal that the code in force stands for; none means zero.
+    pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
+        self.known(codes)
+            .map_or(Speed::ZERO, |code| Speed::from_kmh(code.line_kmh()))
     }
 }
 
@@ -195,13 +199,16 @@ fn in_level(signal: AntennaSignal, receiver: &ReceiverConfig) -> bool {
     signal.level_mv >= receiver.level_min_mv && signal.level_mv <= receiver.level_max_mv
 }
 
-/// The limit that a code stands for, km/h; none and a stop permit nothing.
+/// The limit that a code stands for, km/h; none and a stop permit nothing. A code of the yard, which permits nothing on
+/// the line, is less than any of the line and more than a stop.
 fn most_kmh(code: Code, config: &UnitConfig) -> f64 {
     match code {
-        Code::Known(index) => config
-            .codes
-            .get(usize::from(index))
-            .map_or(0.0, |code| code.limit_kmh),
+        Code::Known(index) => {
+            (config.codes.get(usize::from(index))).map_or(0.0, |code| match code.meaning {
+                CodeMeaning::Yard => f64::MIN_POSITIVE,
+                CodeMeaning::Line | CodeMeaning::YardCancel => code.limit_kmh,
+            })
+        }
         Code::None | Code::AbsoluteStop => 0.0,
     }
 }
@@ -452,6 +459,30 @@ mod tests {
             let mut receiver = Receiver::new();
             receiver.hear(signal, 1000);
             assert_eq!(receiver.decoder.code(), code, "{signal:?}");
+        }
+    }
+
+    /// Goal: a code of the yard lets no train run on the line. Method: it alone, and by turns with codes of the line, half
+    /// the time each.
+    #[test]
+    fn a_code_of_the_yard_permits_nothing_on_the_line() {
+        let text = include_str!("../../../scripts/units/seoul34.toml");
+        let config = UnitConfig::from_toml(text).unwrap();
+        let [yard, low, top] = [3.2, 5.0, 20.4].map(|rate_hz| signal(990.0, rate_hz, 500.0));
+        for other in [yard, low, top] {
+            let mut receiver = Receiver::new();
+            receiver.config = config.clone();
+            receiver.hear(other, 4000);
+            for _ in 0..40 {
+                receiver.hear(yard, 100);
+                receiver.hear(other, 100);
+            }
+            let limit = receiver.decoder.limit(&config.codes);
+            assert_eq!(
+                (receiver.decoder.code(), limit),
+                (Code::Known(1), Speed::ZERO),
+                "{other:?}"
+            );
         }
     }
 

@@ -16,7 +16,9 @@ mod mode;
 mod overspeed;
 mod sides;
 mod speedometer;
+mod stop_and_proceed;
 mod tachometers;
+mod yard;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::message::{DoorSide, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
@@ -30,6 +32,8 @@ use causes::Found;
 use direction::{Rollback, Towards};
 use door_order::{DoorOrders, enabled_sides};
 use jog_guard::{JogGuard, JogInputs};
+use stop_and_proceed::{ProceedInputs, StopAndProceed};
+use yard::Yard;
 
 pub use belief::Witness;
 pub use brake_proof::{BrakeProof, Demand, Proof};
@@ -78,6 +82,8 @@ pub struct ScanContext {
 pub struct Atp {
     decoder: CodeDecoder,
     tachometers: Tachometers,
+    yard: Yard,
+    proceeds: StopAndProceed,
     supervision: OverspeedSupervision,
     proof: BrakeProof,
     doors: Doors,
@@ -101,6 +107,8 @@ impl Atp {
         Self {
             decoder: CodeDecoder::new(),
             tachometers: Tachometers::new(config),
+            yard: Yard::new(config),
+            proceeds: StopAndProceed::default(),
             supervision: OverspeedSupervision::new(),
             proof: BrakeProof::new(),
             doors: Doors::default(),
@@ -133,8 +141,20 @@ impl Atp {
             .step(now, inputs.signal, confirmed, config, log);
         let witness = self.witness(inputs, context);
         self.tachometers.step(now, inputs, witness, config, log);
-        self.limit = self.limit_in_force(config);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
+        let mode = self.sequence.mode();
+        let known = self.decoder.known(&config.codes);
+        self.yard
+            .step(now, mode, known.map(|code| code.meaning), log);
+        let proceed_inputs = ProceedInputs {
+            without_code: self.by_code() && self.decoder.code() == Code::None,
+            by_driver: matches!(inputs.mode_switch, ModeSwitch::Manual | ModeSwitch::Yard),
+            standstill,
+            brakes: inputs.controller < 0,
+        };
+        self.proceeds
+            .step(now, proceed_inputs, config.stop_and_proceed.as_ref(), log);
+        self.limit = self.limit_in_force(config);
         let motion = SupervisedMotion {
             speed,
             limit: self.limit,
@@ -247,7 +267,8 @@ impl Atp {
         outputs.set(Outputs::EB_RELAY, !self.brake.applied());
         outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
         outputs.set(Outputs::POWER_CUT, self.power_cut());
-        outputs.set(Outputs::ALARM, self.overspeed.alarm);
+        let alarm = self.overspeed.alarm || self.proceeds.warns();
+        outputs.set(Outputs::ALARM, alarm);
         outputs.set(Outputs::CODE_VALID, code_valid);
         outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
         outputs.set(Outputs::HEALTHY, healthy);

@@ -115,8 +115,8 @@ impl OverspeedSupervision {
     ) -> bool {
         let in_grace =
             self.stepped_down && !proof.ineffective && (proof.proved || now < self.grace_until);
-        let most_kmh = motion.limit.kmh() + margins.eb_margin_kmh;
-        let beyond = motion.speed.kmh() > most_kmh && !in_grace;
+        let most_kmh = (margins.eb_margin_kmh).map(|margin| motion.limit.kmh() + margin);
+        let beyond = most_kmh.is_some_and(|most_kmh| motion.speed.kmh() > most_kmh) && !in_grace;
         let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
         self.above_emergency.update(now, beyond, delay)
     }
@@ -167,5 +167,39 @@ impl OverspeedSupervision {
 impl Default for OverspeedSupervision {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rule of `seoul34`: as soon as the train is faster than the limit the service brake comes, and the emergency
+    /// brake never by an excess alone, however great and long.
+    #[test]
+    fn without_delay_and_margin_the_service_brake_comes_at_once_and_alone() {
+        let text = include_str!("../../../scripts/units/seoul34.toml");
+        let config = UnitConfig::from_toml(text).expect("shipped");
+        let (mut one, mut log) = (OverspeedSupervision::new(), EventLog::default());
+        let mut now = Instant::from_ms(1000);
+        let mut scan = |kmh: f64, limit_kmh: f64| {
+            now += protocol::SCAN;
+            let motion = SupervisedMotion {
+                speed: Speed::from_kmh(kmh),
+                limit: Speed::from_kmh(limit_kmh),
+                stop: false,
+                standstill: false,
+                moves: true,
+            };
+            let found = one.step(now, motion, &config, &mut log);
+            let beyond = one.emergency(now, motion, Proof::default(), &config.overspeed);
+            (found.service_brake, beyond)
+        };
+        assert_eq!(scan(40.0, 40.0), (false, false));
+        assert_eq!(scan(40.1, 40.0), (true, false));
+        for _ in 0..2000 {
+            assert_eq!(scan(100.0, 25.0), (true, false));
+        }
+        assert_eq!(scan(25.0, 25.0), (false, false));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use protocol::config::UnitConfig;
+use protocol::config::{UnitConfig, find_code};
 use protocol::line::{Line, Section};
 use thiserror::Error;
 
@@ -164,7 +164,7 @@ pub(super) fn fixed_code(
 
 /// The same; `None` = the table has no such code.
 pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
-    let code = config.codes.iter().find(|code| code.name == name)?;
+    let code = &config.codes[find_code(&config.codes, name)?];
     Some(Stimulus::Code {
         carrier_hz: code.carrier_hz,
         rate_hz: code.rate_hz,

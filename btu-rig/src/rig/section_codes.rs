@@ -1,6 +1,6 @@
 //! The antenna signal follows the speed codes of the section that lies along the way.
 
-use protocol::config::SpeedCode;
+use protocol::config::{SpeedCode, find_code};
 use protocol::line::Section;
 
 use crate::procedure::Refusal;
@@ -26,7 +26,7 @@ impl Rig {
         }
         let name = |code: &SpeedCode| code.name.clone();
         for from in &section.speed_codes {
-            if !self.codes.iter().any(|code| code.name == from.code) {
+            if find_code(&self.codes, &from.code).is_none() {
                 let known: Vec<_> = self.codes.iter().map(name).collect();
                 return Err(Refusal(format!(
                     "section {number} sends code {} at {} m, which the unit does not have; it has {}",
@@ -47,7 +47,7 @@ impl Rig {
         let Some(name) = track.speed_code(self.wheel.motion().position_m) else {
             return;
         };
-        let place = self.codes.iter().position(|code| code.name == name);
+        let place = find_code(&self.codes, name);
         if place != self.code_put_in
             && let Some(code) = place.map(|at| &self.codes[at])
         {

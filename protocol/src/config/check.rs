@@ -18,10 +18,29 @@ impl UnitConfig {
             return Err(conflict("name must be 1 to 16 ASCII characters"));
         }
         let margins = &self.overspeed;
-        if !(margins.alarm_margin_kmh < margins.fsb_margin_kmh
-            && margins.fsb_margin_kmh < margins.eb_margin_kmh)
-        {
+        let [alarm, fsb] = [margins.alarm_margin_kmh, margins.fsb_margin_kmh];
+        // At once is right, too, where the emergency brake has no margin of its own.
+        let rise = match margins.eb_margin_kmh {
+            Some(eb) => alarm < fsb && fsb < eb,
+            None => alarm <= fsb,
+        };
+        if !rise {
             return Err(conflict("overspeed margins must rise: alarm < fsb < eb"));
+        }
+        if let Some(eb) = margins.eb_margin_kmh {
+            within("overspeed.eb_margin_kmh", eb, 0.0, 30.0)?;
+        }
+        if let Some(proceeds) = &self.stop_and_proceed {
+            check_ranges! { proceeds, "stop_and_proceed.";
+                limit_kmh: 5.0, 25.0;
+                warning_ms: 1000.0, 60_000.0;
+                sounds_ms: 100.0, 5000.0;
+            }
+            if proceeds.sounds_ms >= proceeds.warning_ms {
+                return Err(conflict(
+                    "stop_and_proceed.sounds_ms must be below warning_ms",
+                ));
+            }
         }
         if self.receiver.level_min_mv >= self.receiver.level_max_mv {
             return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
@@ -83,7 +102,6 @@ impl UnitConfig {
             tacho.tcms_difference_kmh: 2.0, 50.0;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
-            overspeed.eb_margin_kmh: 0.0, 30.0;
             overspeed.yard_kmh: 5.0, 45.0;
             overspeed.emergency_kmh: 5.0, 45.0;
             overspeed.jog_kmh: 2.0, 5.0;
@@ -124,6 +142,31 @@ impl UnitConfig {
             return Err(conflict("the code table needs 1 to 32 codes"));
         }
         for (i, code) in self.codes.iter().enumerate() {
+            for other in &code.stands_for {
+                let others = (self.codes.iter())
+                    .filter(|one| one.name == *other || one.stands_for.contains(other));
+                if others.count() != 1 {
+                    return Err(ConfigError::Conflict(alloc::format!(
+                        "codes.stands_for: \"{other}\" is the name of a code, or two codes stand for it"
+                    )));
+                }
+                // A line that permits less must not be run faster.
+                let most_kmh = other.parse().unwrap_or(f64::INFINITY);
+                if code.limit_kmh > most_kmh {
+                    return Err(ConfigError::Conflict(alloc::format!(
+                        "codes.stands_for: code {} permits more than \"{other}\"",
+                        code.name
+                    )));
+                }
+            }
+            if code.meaning == CodeMeaning::Yard && code.limit_kmh != self.overspeed.yard_kmh {
+                return Err(conflict("a yard code has the limit of overspeed.yard_kmh"));
+            }
+            if code.meaning == CodeMeaning::YardCancel && code.limit_kmh > 0.0 {
+                return Err(conflict(
+                    "a code that ends yard mode has no limit: limit_kmh = 0",
+                ));
+            }
             within("codes.limit_kmh", code.limit_kmh, 0.0, 130.0)?;
             within("codes.carrier_hz", code.carrier_hz, 100.0, 20000.0)?;
             within("codes.rate_hz", code.rate_hz, 1.0, 100.0)?;

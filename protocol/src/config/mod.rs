@@ -13,6 +13,7 @@ use crate::check_ranges;
 
 mod ato;
 mod check;
+mod codes;
 mod driverless;
 mod way;
 
@@ -20,6 +21,7 @@ pub use ato::{
     AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit, JogConfig,
     ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
+pub use codes::{CodeMeaning, SpeedCode, find_code};
 pub use driverless::DriverlessConfig;
 pub use way::{MarkerConfig, TachoConfig};
 
@@ -46,20 +48,6 @@ pub enum ConfigError {
     Conflict(String),
 }
 
-/// One speed code of the code table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SpeedCode {
-    /// Name in scripts, for instance `55`.
-    pub name: String,
-    /// Limit it stands for, km/h; 0 = stop.
-    pub limit_kmh: f64,
-    /// Carrier, Hz.
-    pub carrier_hz: f64,
-    /// Modulation, Hz.
-    pub rate_hz: f64,
-}
-
 /// ATP receiver and decoder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -83,6 +71,18 @@ pub struct ReceiverConfig {
     pub hold_ms: u32,
 }
 
+/// Stop and proceed: without a code the driver of a train that was stopped may go on at a low limit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StopAndProceedConfig {
+    /// Its limit, km/h.
+    pub limit_kmh: f64,
+    /// Time from one warning to the next, ms.
+    pub warning_ms: u32,
+    /// How long each sounds, ms.
+    pub sounds_ms: u32,
+}
+
 /// Overspeed supervision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -91,8 +91,10 @@ pub struct OverspeedConfig {
     pub alarm_margin_kmh: f64,
     /// Full service brake above limit plus this, km/h.
     pub fsb_margin_kmh: f64,
-    /// Emergency brake above limit plus this, km/h.
-    pub eb_margin_kmh: f64,
+    /// Emergency brake above limit plus this, km/h; without it no excess alone applies it, and only a service brake that
+    /// does not slow the train does.
+    #[serde(default)]
+    pub eb_margin_kmh: Option<f64>,
     /// How long the speed must stay above the alarm margin, ms.
     pub alarm_delay_ms: u32,
     /// How long the speed must stay above the service margin, ms.
@@ -266,6 +268,9 @@ pub struct UnitConfig {
     pub tacho: TachoConfig,
     /// Overspeed supervision.
     pub overspeed: OverspeedConfig,
+    /// Stop and proceed; without it a train without a code stays where it is.
+    #[serde(default)]
+    pub stop_and_proceed: Option<StopAndProceedConfig>,
     /// Supervision of the doors.
     pub doors: DoorConfig,
     /// The train that the unit is in.

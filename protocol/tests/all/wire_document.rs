@@ -183,7 +183,10 @@ fn configuration() -> String {
         ),
         (
             "`overspeed.eb_margin_kmh`, `eb_delay_ms`",
-            margin(speed.eb_margin_kmh, speed.eb_delay_ms),
+            margin(
+                speed.eb_margin_kmh.expect("sg100 has one"),
+                speed.eb_delay_ms,
+            ),
         ),
         (
             "`overspeed.brake_proof_mps2`, `brake_proof_ms`",

@@ -108,6 +108,7 @@ impl CatalogArguments {
             json!({
                 "index": index, "name": code.name, "limit_kmh": code.limit_kmh,
                 "carrier_hz": code.carrier_hz, "rate_hz": code.rate_hz,
+                "meaning": code.meaning.label(), "stands_for": code.stands_for,
             })
         };
         Ok(config.codes.iter().enumerate().map(entry).collect())

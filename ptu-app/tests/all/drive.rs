@@ -245,7 +245,7 @@ fn wrong_commands_are_refused_and_say_what_is_known() {
         ),
         (
             &["--unit-config", "nope"],
-            &["no unit configuration \"nope\"; known: sg100\n"],
+            &["no unit configuration \"nope\"; known: seoul34, sg100\n"],
         ),
         (&["--section", "61-54"], &["runs backward", "54-61"]),
         (

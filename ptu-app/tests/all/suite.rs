@@ -40,6 +40,50 @@ fn a_good_unit_passes_every_step_and_leaves_no_fault() {
     assert!(list(&place.json(&["faults", "list", "--json"])).is_empty());
 }
 
+/// Goal: another type of unit passes all procedures by its configuration alone, and what its rules add is tested.
+#[test]
+fn a_unit_of_another_type_passes_every_step_by_its_configuration() {
+    let place = Place::new();
+    let (said, report) = place.run(&["--unit-config", "seoul34"]);
+    said.exits(0);
+    let steps = list(&report["steps"]);
+    for step in steps {
+        // The record of the embedded unit's train names the other type.
+        let expected = match text(&step["procedure"]) {
+            "ptu/identity" => "skipped",
+            _ => "passed",
+        };
+        assert_eq!(step["verdict"], expected, "{step}");
+    }
+    assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
+    let procedures = |steps: &[Value]| -> BTreeSet<String> {
+        let names = steps.iter().map(|step| text(&step["procedure"]).to_owned());
+        names.collect()
+    };
+    let (_, of_sg100) = whole_suite();
+    let of_sg100 = list(&of_sg100["steps"]);
+    assert_eq!(procedures(steps), procedures(of_sg100));
+    for name in [
+        "code Y25 gives 0 km/h",
+        "code 100 gives 100 km/h",
+        "a brake notch under way acknowledges nothing",
+        "the warning comes again and again",
+        "far beyond the limit, a brake that slows the train too little",
+        "code YC ends the yard",
+    ] {
+        let has = |steps: &[Value]| steps.iter().any(|step| text(&step["name"]) == name);
+        assert!(has(steps) && !has(of_sg100), "{name}");
+    }
+}
+
+#[test]
+fn what_the_rules_of_another_unit_add_is_said_in_korean_and_names_its_limits() {
+    let check = ["run", "--check", "--unit-config", "seoul34"];
+    let said = Place::new().ptu(&check).exits(0);
+    let sound = "each limit names its source; each text has its Korean";
+    assert!(said.out.contains(sound), "{}", said.all());
+}
+
 /// The time to the nearest five minutes.
 #[test]
 fn the_readme_tells_how_many_procedures_there_are_and_how_long_they_take() {

@@ -1,6 +1,6 @@
 //! Plan of a manual run: sequence, train, speed code and section.
 
-use protocol::config::{SpeedCode, UnitConfig};
+use protocol::config::{SpeedCode, UnitConfig, find_code};
 use protocol::line::{Line, Section};
 use thiserror::Error;
 
@@ -66,12 +66,12 @@ impl Plan {
         };
         let found = line.section(section);
         let found = found.ok_or_else(|| PlanError::no_section(line, section))?;
-        let by_limit = |a: &&SpeedCode, b: &&SpeedCode| a.limit_kmh.total_cmp(&b.limit_kmh);
+        let by_limit = |a: &&SpeedCode, b: &&SpeedCode| a.line_kmh().total_cmp(&b.line_kmh());
         let highest = config.codes.iter().max_by(by_limit);
         let highest = highest.map_or("", |code| code.name.as_str());
         let code = sequence.code.as_deref().unwrap_or(highest).to_owned();
         let antenna = fixed_code(config, section, &code)?;
-        let limit = config.codes.iter().find(|known| known.name == code);
+        let limit = find_code(&config.codes, &code).map(|at| &config.codes[at]);
         let conditions = Conditions {
             gradient_offset_permille: sequence.gradient_permille,
             ..Conditions::default()

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use protocol::config::UnitConfig;
+use protocol::config::{UnitConfig, find_code};
 use protocol::line::Line;
 
 use crate::tcms::{EbSources, Lamps, PowerCuts};
@@ -32,6 +32,7 @@ impl Context {
                     ("limit_kmh", Item::Float(code.limit_kmh)),
                     ("carrier_hz", Item::Float(code.carrier_hz)),
                     ("rate_hz", Item::Float(code.rate_hz)),
+                    ("meaning", Item::Text(code.meaning.label().into())),
                     ("index", Item::Int(index as i64)),
                 ];
                 record("speed code", fields, "configuration codes.")
@@ -115,7 +116,7 @@ impl Context {
 
     pub(super) fn code(&self, name: &str) -> Result<Item, String> {
         let names = || self.unit.codes.iter().map(|code| code.name.as_str());
-        match names().position(|n| n == name) {
+        match find_code(&self.unit.codes, name) {
             Some(at) => Ok(self.codes[at].clone()),
             None => Err(format!("no speed code \"{name}\"{}", hint(name, names()))),
         }

@@ -8,12 +8,14 @@ mod memory;
 mod minute;
 mod monitor;
 mod permitted;
+mod proceeding;
 
 use std::collections::BTreeMap;
 
 use self::minute::{Find, Minute};
 use self::monitor::Hazard;
 use crate::pool;
+use crate::run::{BenchChoice, BenchSetup};
 use crate::stop::Stop;
 use crate::test_support::{scripts, setup};
 
@@ -52,12 +54,16 @@ fn explained(find: &Find) -> bool {
 
 /// Plays the minutes of these seeds on all processors, with faults drawn from the modes that this glob names.
 fn search(seeds: std::ops::Range<u64>, modes: &str) -> Vec<(u64, Find)> {
+    search_on(&setup(&[]), seeds, modes)
+}
+
+/// The same on a bench of its own.
+fn search_on(setup: &BenchSetup, seeds: std::ops::Range<u64>, modes: &str) -> Vec<(u64, Find)> {
     let mut catalogue = scripts().faults().expect("fault modes").faults;
     let modes = glob::Pattern::new(modes).expect("a glob");
     catalogue.retain(|mode| modes.matches(&mode.id));
-    let setup = setup(&[]);
     let seed = |number: usize| seeds.start + number as u64;
-    let play = |number| Minute::new(&setup, &catalogue, seed(number)).play();
+    let play = |number| Minute::new(setup, &catalogue, seed(number)).play();
     let count = (seeds.end - seeds.start) as usize;
     let finds = pool::run(count, pool::cores(), &Stop::default(), &mut |_| {}, play);
     let found = |(number, find): (usize, Option<Find>)| Some((seed(number), find?));
@@ -90,6 +96,20 @@ fn judge(finds: &[(u64, Find)]) {
 #[test]
 fn a_thousand_random_minutes_show_no_hazard() {
     judge(&search(0..1_000, "*"));
+}
+
+/// A unit that stops and proceeds, with codes of the yard.
+fn seoul34() -> BenchSetup {
+    let choice = BenchChoice {
+        unit_config: "seoul34".to_owned(),
+        ..BenchChoice::default()
+    };
+    choice.setup(&scripts()).expect("a bench")
+}
+
+#[test]
+fn minutes_of_a_unit_that_stops_and_proceeds_show_no_hazard() {
+    judge(&search_on(&seoul34(), 0..300, "*"));
 }
 
 /// Goal: the search finds what is there. Method: with a fault that takes a protection away, some minutes show the hazard.
@@ -130,7 +150,11 @@ fn many_random_minutes_show_no_hazard() {
         Some(Some((from, to))) => (number(from), number(to)),
         Some(None) => panic!("HAZARD_SEEDS is FROM..TO"),
     };
-    let finds = search(from..to, "*");
+    let setup = match std::env::var("HAZARD_UNIT_CONFIG").as_deref() {
+        Ok("seoul34") => seoul34(),
+        _ => setup(&[]),
+    };
+    let finds = search_on(&setup, from..to, "*");
     if to == from + 1 {
         for (_, find) in &finds {
             find.acts.iter().for_each(|act| println!("{act}"));

@@ -157,6 +157,8 @@ impl Observed<'_> {
 }
 
 pub struct Monitor {
+    /// Margins of the service brake and of the emergency brake, km/h.
+    margins_kmh: [f64; 2],
     limits: Limits,
     runs: Runs,
     asleep: Asleep,
@@ -173,6 +175,10 @@ pub struct Monitor {
 impl Monitor {
     pub fn new(config: &UnitConfig) -> Self {
         Self {
+            margins_kmh: {
+                let fsb_kmh = config.overspeed.fsb_margin_kmh;
+                [fsb_kmh, config.overspeed.eb_margin_kmh.unwrap_or(fsb_kmh)]
+            },
             limits: Limits::new(config),
             runs: Runs::default(),
             asleep: Asleep::default(),
@@ -220,6 +226,7 @@ impl Monitor {
         };
         let above =
             |margin_kmh, factor| most_kmh > 0.0 && beyond(most_kmh, margin_kmh, factor) && !blind;
+        let [fsb_kmh, eb_kmh] = self.margins_kmh;
         let side = seen.value(Signal::WaysideDoorSide);
         let (mut left_given, mut right_given) = (false, false);
         for side in self.sides.note(seen.now, side, Duration::from_ms(2_500)) {
@@ -235,10 +242,14 @@ impl Monitor {
         let elsewhere = seen.to_stop_m.is_none_or(|m| m.abs() > AT_STOP_POINT_M);
         let ms = Duration::from_ms;
         [
-            (Hazard::OverLimit, above(3.0, keyed) && !eb && !fsb, ms(300)),
+            (
+                Hazard::OverLimit,
+                above(fsb_kmh, keyed) && !eb && !fsb,
+                ms(300),
+            ),
             (
                 Hazard::OverLimitUnslowed,
-                above(6.0, keyed)
+                above(eb_kmh, keyed)
                     && !eb
                     && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs(),
                 ms(6_000),
@@ -287,7 +298,7 @@ impl Monitor {
             ),
             (
                 Hazard::UnconfirmedCode,
-                moves && beyond(confirmed_kmh, 3.0, keyed) && !eb && !fsb,
+                moves && beyond(confirmed_kmh, fsb_kmh, keyed) && !eb && !fsb,
                 ms(500),
             ),
             (
@@ -307,12 +318,12 @@ impl Monitor {
             ),
             (
                 Hazard::Crosstalk,
-                moves && beyond(selected_kmh, 3.0, keyed) && !eb && !fsb,
+                moves && beyond(selected_kmh, fsb_kmh, keyed) && !eb && !fsb,
                 ms(500),
             ),
             (
                 Hazard::WrongWheels,
-                above(3.0, admitted) && !eb && !fsb,
+                above(fsb_kmh, admitted) && !eb && !fsb,
                 ms(300),
             ),
         ]

@@ -7,10 +7,11 @@ use protocol::{Duration, Instant};
 
 use super::memory::{Confirmed, Lately};
 use super::monitor::Observed;
+use super::proceeding::{Proceeding, YardEnded};
 
-/// Time for which a code that is no longer there may still be in force, and the desk's order on its way: hold time of
-/// the receiver, detection, filter.
-const CODE_HELD: Duration = Duration::from_ms(1_900);
+/// Time for which a code that is no longer there may still be in force, and the desk's order on its way, beside hold time
+/// of the receiver and detection, ms: filter, scans.
+const CODE_HELD_MS: u32 = 500;
 /// Share of the time of detection for which a code is there before the unit may count it.
 const NEARLY: f64 = 0.8;
 /// Ratio of the levels of two codes from which on the stronger may count: the table's 4 dB, less what noise makes of it.
@@ -37,7 +38,10 @@ pub(super) struct Permitted {
 pub(super) struct Limits {
     codes: Vec<SpeedCode>,
     level_mv: (f64, f64),
+    code_held: Duration,
     yard_kmh: f64,
+    yard_ended: YardEnded,
+    proceeding: Proceeding,
     emergency_kmh: f64,
     /// Of the track's own code, or the mode switch; and of a neighbouring track's.
     each: [Heard; 2],
@@ -52,11 +56,11 @@ struct Heard {
 }
 
 impl Heard {
-    fn note(&mut self, now: Instant, limit_kmh: f64) -> [f64; 2] {
-        let lately = self.lately.note(now, limit_kmh, CODE_HELD);
+    fn note(&mut self, now: Instant, limit_kmh: f64, held: Duration) -> [f64; 2] {
+        let lately = self.lately.note(now, limit_kmh, held);
         [
             lately.fold(0.0, f64::max),
-            self.confirmed.note(now, limit_kmh, CODE_HELD),
+            self.confirmed.note(now, limit_kmh, held),
         ]
     }
 }
@@ -66,10 +70,14 @@ impl Limits {
         let receiver = &config.receiver;
         let needs = Duration::from_secs(NEARLY * f64::from(receiver.detect_ms) / 1e3);
         let within = Duration::from_ms(u64::from(receiver.hold_ms));
+        let held_ms = receiver.hold_ms + receiver.detect_ms + CODE_HELD_MS;
         Self {
             codes: config.codes.clone(),
             level_mv: (receiver.level_min_mv, receiver.level_max_mv),
+            code_held: Duration::from_ms(u64::from(held_ms)),
             yard_kmh: config.overspeed.yard_kmh,
+            yard_ended: YardEnded::new(config),
+            proceeding: Proceeding::new(config),
             emergency_kmh: config.overspeed.emergency_kmh,
             each: [(); 2].map(|()| Heard {
                 lately: Lately::default(),
@@ -82,16 +90,20 @@ impl Limits {
 
     /// One scan.
     pub fn note(&mut self, seen: Observed<'_>) -> Permitted {
+        let by_codes = self.by_codes(seen);
+        let ended = self.yard_ended.note(seen);
+        let proceeds_kmh = self.proceeding.note(seen, by_codes[0]);
         let [own_kmh, second_kmh, selected_kmh] = match seen.value(Signal::ModeSwitch) as u8 {
+            1 if ended => by_codes.map(|kmh| kmh.max(proceeds_kmh).min(self.yard_kmh)),
             1 => [self.yard_kmh; 3],
-            2..=4 => self.by_codes(seen),
+            2..=4 => by_codes.map(|kmh| kmh.max(proceeds_kmh)),
             5 => [self.emergency_kmh; 3],
             _ => [0.0; 3],
         };
         let [own, second] = &mut self.each;
-        let own = own.note(seen.now, own_kmh);
-        let second = second.note(seen.now, second_kmh);
-        let selected = self.selected.note(seen.now, selected_kmh, CODE_HELD);
+        let own = own.note(seen.now, own_kmh, self.code_held);
+        let second = second.note(seen.now, second_kmh, self.code_held);
+        let selected = self.selected.note(seen.now, selected_kmh, self.code_held);
         let selected_kmh = selected.fold(0.0, f64::max);
         let [keyed, admitted] = self.wheels.note(seen);
         Permitted {
@@ -130,7 +142,7 @@ impl Limits {
         let near = |code: &&SpeedCode| {
             (code.rate_hz - rate_hz).abs() < 0.7 && (code.carrier_hz - carrier_hz).abs() < 60.0
         };
-        let limits = self.codes.iter().filter(near).map(|code| code.limit_kmh);
+        let limits = self.codes.iter().filter(near).map(SpeedCode::line_kmh);
         limits.fold(0.0, f64::max)
     }
 }

@@ -18,7 +18,7 @@ use crate::run::BenchSetup;
 
 const MINUTE: Duration = Duration::from_ms(60_000);
 /// The unit is powered up a second in, and starts up in three.
-const STARTED: Duration = Duration::from_ms(4_000);
+const STARTED_MS: u32 = 4_000;
 
 /// Time in which the bench notices that the unit has restarted.
 const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
@@ -114,7 +114,8 @@ impl<'a> Minute<'a> {
         self.tidy_begin();
         let end = self.bench.now() + MINUTE;
         let mut next_act = self.bench.now();
-        let mut seen_from = self.bench.now() + STARTED;
+        let started = self.started_in();
+        let mut seen_from = self.bench.now() + started;
         let mut found: Option<(Find, u32)> = None;
         while self.bench.now() < end {
             let now = self.bench.now();
@@ -127,7 +128,7 @@ impl<'a> Minute<'a> {
             self.bench.tick().expect("the embedded unit answers");
             // Without TCMS nothing tells of motion that no tachometer sees.
             if !self.powered || self.blind() && !self.tcms_good {
-                seen_from = now + STARTED;
+                seen_from = now + started;
             }
             let rig = self.bench.rig();
             let truth = rig.truth();
@@ -160,10 +161,17 @@ impl<'a> Minute<'a> {
                 if before == restarts {
                     return Some(find);
                 }
-                seen_from = now + STARTED;
+                seen_from = now + started;
             }
         }
         None
+    }
+
+    /// Time in which it has started, and holds no code any more that the monitor has not seen.
+    fn started_in(&self) -> Duration {
+        let receiver = &self.setup.config.content.receiver;
+        let held_ms = 2 * receiver.hold_ms + receiver.detect_ms + 500;
+        Duration::from_ms(u64::from(held_ms.max(STARTED_MS)))
     }
 
     fn found(&self, hazard: Hazard, seen: Observed<'_>) -> Find {

@@ -1,0 +1,158 @@
+//! Stop and proceed: without a code the train is stopped, and the driver may then go on slowly.
+//!
+//! The driver acknowledges it at standstill by a brake notch. From then on a low limit holds, and a warning sounds again
+//! and again, until a code is there, or nobody drives by hand any more. An absolute stop is no lack of a code: nobody
+//! proceeds under one.
+
+use protocol::config::StopAndProceedConfig;
+use protocol::event::Event;
+use protocol::{Duration, Instant, Speed};
+
+use crate::kernel::EventLog;
+
+/// What it looks at in one scan.
+#[derive(Clone, Copy, Debug)]
+pub struct ProceedInputs {
+    /// The code counts, and there is none.
+    pub without_code: bool,
+    /// The mode switch leaves driving to the driver.
+    pub by_driver: bool,
+    pub standstill: bool,
+    /// The controller is at a brake notch.
+    pub brakes: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct StopAndProceed {
+    /// Since when, and the limit.
+    proceeds: Option<(Instant, Speed)>,
+    warns: bool,
+}
+
+impl StopAndProceed {
+    pub fn step(
+        &mut self,
+        now: Instant,
+        inputs: ProceedInputs,
+        config: Option<&StopAndProceedConfig>,
+        log: &mut EventLog,
+    ) {
+        let config = config.filter(|_| inputs.without_code && inputs.by_driver);
+        let Some(config) = config else {
+            *self = Self::default();
+            return;
+        };
+        if self.proceeds.is_none() && inputs.standstill && inputs.brakes {
+            let limit = Speed::from_kmh(config.limit_kmh);
+            self.proceeds = Some((now, limit));
+            log.push(now, Event::StopAndProceed, i32::from(limit.to_cms()));
+        }
+        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
+        self.warns = self.proceeds.is_some_and(|(since, _)| {
+            let into_us = now.since(since).as_us() % ms(config.warning_ms).as_us();
+            into_us < ms(config.sounds_ms).as_us()
+        });
+    }
+
+    /// Its limit, once it is acknowledged.
+    pub fn limit(&self) -> Option<Speed> {
+        self.proceeds.map(|(_, limit)| limit)
+    }
+
+    /// The warning sounds.
+    pub fn warns(&self) -> bool {
+        self.warns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use protocol::SCAN;
+
+    use super::*;
+
+    const ACKNOWLEDGED: ProceedInputs = ProceedInputs {
+        without_code: true,
+        by_driver: true,
+        standstill: true,
+        brakes: true,
+    };
+
+    fn config() -> StopAndProceedConfig {
+        StopAndProceedConfig {
+            limit_kmh: 15.0,
+            warning_ms: 8000,
+            sounds_ms: 500,
+        }
+    }
+
+    /// The rule: both the stop and the brake notch are needed, and only where there is no code.
+    #[test]
+    fn it_needs_a_stop_and_a_brake_notch_without_a_code() {
+        let lacking = [
+            ProceedInputs {
+                without_code: false,
+                ..ACKNOWLEDGED
+            },
+            ProceedInputs {
+                by_driver: false,
+                ..ACKNOWLEDGED
+            },
+            ProceedInputs {
+                standstill: false,
+                ..ACKNOWLEDGED
+            },
+            ProceedInputs {
+                brakes: false,
+                ..ACKNOWLEDGED
+            },
+        ];
+        let mut log = EventLog::default();
+        let after = |inputs: ProceedInputs, then: Option<ProceedInputs>, log: &mut EventLog| {
+            let mut one = StopAndProceed::default();
+            for inputs in core::iter::once(inputs).chain(then) {
+                one.step(Instant::from_ms(5000), inputs, Some(&config()), log);
+            }
+            one.limit()
+        };
+        for inputs in lacking {
+            assert_eq!(after(inputs, None, &mut log), None, "{inputs:?}");
+        }
+        let limit = Some(Speed::from_kmh(15.0));
+        assert_eq!(after(ACKNOWLEDGED, None, &mut log), limit);
+        // It lasts while the train runs, and ends with a code and with the driver.
+        let [coded, automatic, runs, released] = lacking;
+        for (then, limit) in [
+            (coded, None),
+            (automatic, None),
+            (runs, limit),
+            (released, limit),
+        ] {
+            assert_eq!(after(ACKNOWLEDGED, Some(then), &mut log), limit, "{then:?}");
+        }
+        let mut without = StopAndProceed::default();
+        without.step(Instant::ZERO, ACKNOWLEDGED, None, &mut log);
+        assert_eq!(without.limit(), None, "a unit without the rule");
+    }
+
+    /// The rule: the warning comes every eight seconds.
+    #[test]
+    fn the_warning_sounds_every_eight_seconds() {
+        let (mut one, mut log) = (StopAndProceed::default(), EventLog::default());
+        let (mut now, mut before, mut begun) = (Instant::from_ms(3000), false, Vec::new());
+        let mut sounded = 0;
+        while now < Instant::from_ms(30_000) {
+            one.step(now, ACKNOWLEDGED, Some(&config()), &mut log);
+            if one.warns() && !before {
+                begun.push(now.since(Instant::from_ms(3000)).as_ms());
+            }
+            before = one.warns();
+            sounded += u64::from(before) * SCAN.as_ms();
+            now += SCAN;
+        }
+        assert_eq!(begun, [0, 8000, 16_000, 24_000]);
+        assert_eq!(sounded, 4 * 500);
+    }
+}

@@ -1,0 +1,118 @@
+//! The code table: what each speed code means, and what lines and scripts call it.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+
+/// What a code is for.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum CodeMeaning {
+    /// Its limit holds under cab signal.
+    #[default]
+    Line,
+    /// Its limit holds in yard mode; under cab signal it permits nothing.
+    Yard,
+    /// Ends the limit of yard mode.
+    YardCancel,
+}
+
+impl CodeMeaning {
+    /// Its name in files.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Line => "line",
+            Self::Yard => "yard",
+            Self::YardCancel => "yard_cancel",
+        }
+    }
+}
+
+/// One speed code of the code table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpeedCode {
+    /// Name in scripts, for instance `55`.
+    pub name: String,
+    /// Limit it stands for, km/h; 0 = stop.
+    pub limit_kmh: f64,
+    /// Carrier, Hz.
+    pub carrier_hz: f64,
+    /// Modulation, Hz.
+    pub rate_hz: f64,
+    /// What it is for.
+    #[serde(default)]
+    pub meaning: CodeMeaning,
+    /// Codes of other tables, by name, for which this one is sent: lines and scripts name them.
+    #[serde(default)]
+    pub stands_for: Vec<String>,
+}
+
+impl SpeedCode {
+    /// Limit under cab signal, km/h: what is for the yard permits nothing there.
+    pub fn line_kmh(&self) -> f64 {
+        match self.meaning {
+            CodeMeaning::Line => self.limit_kmh,
+            CodeMeaning::Yard | CodeMeaning::YardCancel => 0.0,
+        }
+    }
+}
+
+/// Place of the code that is called `name`, or is sent for one that is.
+pub fn find_code(codes: &[SpeedCode], name: &str) -> Option<usize> {
+    let called = |code: &SpeedCode| code.name == name;
+    let sent_for = |code: &SpeedCode| code.stands_for.iter().any(|other| other == name);
+    (codes.iter().position(called)).or_else(|| codes.iter().position(sent_for))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ConfigError, UnitConfig};
+    use super::*;
+
+    const SEOUL34: &str = include_str!("../../../scripts/units/seoul34.toml");
+
+    #[test]
+    fn a_code_is_found_by_its_name_and_by_those_that_it_stands_for() {
+        let config = UnitConfig::from_toml(SEOUL34).expect("shipped");
+        let limit = |name: &str| {
+            let at = find_code(&config.codes, name)?;
+            Some(config.codes[at].limit_kmh)
+        };
+        for (name, kmh) in [
+            ("60", 60.0),
+            ("65", 60.0),
+            ("75", 70.0),
+            ("45", 40.0),
+            ("0", 0.0),
+        ] {
+            assert_eq!(limit(name), Some(kmh), "{name}");
+        }
+        assert_eq!(limit("61"), None);
+    }
+
+    /// Goal: no table lets a train run faster than a line permits, or leaves it open which code is sent.
+    #[test]
+    fn what_a_code_may_not_stand_for_is_refused() {
+        let config = UnitConfig::from_toml(SEOUL34).expect("shipped");
+        let place = |name: &str| find_code(&config.codes, name).expect("a code");
+        for (name, other, why) in [
+            ("60", "45", "two codes stand for it"),
+            ("60", "70", "the name of a code"),
+            ("60", "50", "permits more than \"50\""),
+        ] {
+            let mut changed = config.clone();
+            changed.codes[place(name)].stands_for.push(other.into());
+            let Err(ConfigError::Conflict(said)) = changed.check() else {
+                panic!("{name} for {other} is taken");
+            };
+            assert!(said.contains(why), "{said}");
+        }
+        let mut changed = config.clone();
+        changed.codes[place("YC")].limit_kmh = 25.0;
+        assert!(changed.check().is_err(), "a code that ends yard mode");
+    }
+}
