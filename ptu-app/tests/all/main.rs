@@ -51,6 +51,7 @@ mod scatter;
 mod server;
 mod shards;
 mod signal;
+mod signing;
 mod statistics_page;
 mod suite;
 mod symptoms;
