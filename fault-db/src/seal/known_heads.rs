@@ -1,6 +1,7 @@
 //! Ends of chains that were seen once, of this file and of others: a chain that is rewritten or cut later no longer has
 //! them. A sync brings those of all laptops, an import those that the other file has seen.
 
+use super::copied_from;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 
@@ -63,6 +64,10 @@ pub(crate) fn broken(
     let mut found = Vec::new();
     for head in known {
         let (origin, ordinal) = (head.origin, head.ordinal);
+        // A copy that has an id of its own kept what it recorded before, and said so.
+        if copied_from(store, origin)?.is_some_and(|after| ordinal > after) {
+            continue;
+        }
         let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
         let hash: Option<Vec<u8>> =
             store.first(sql, &values![origin, ordinal], |row| row.get(0))?;

@@ -30,7 +30,7 @@ pub struct SigningOption {
 #[derive(Debug, Default, Args)]
 pub struct PinOption {
     /// File with the PIN of the key, for what runs without a terminal
-    #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE")]
+    #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE", global = true)]
     pin_file: Option<PathBuf>,
 }
 

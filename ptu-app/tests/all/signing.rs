@@ -417,7 +417,7 @@ fn a_run_on_a_port_waits_for_a_calibration() {
             "2999-01-01",
         ])
         .exits(2)
-        .explains(&["B-0031"]);
+        .explains(&["no instrument \"B-0032\"", "ptu instrument list"]);
     place.ptu(&["instrument", "retire", "B-0031"]).exits(0);
     place
         .ptu(&["instrument", "list"])

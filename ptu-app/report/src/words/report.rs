@@ -50,7 +50,7 @@ wordings! {
         clock_not_known: "error not known", "오차 알 수 없음";
         instruments: "Instruments", "계측기";
         instrument: "{kind} {serial}, calibrated {day}, due {due}", "{kind} {serial}, 교정 {day}, 기한 {due}";
-        instrument_over: "{kind} {serial}, NOT CALIBRATED (last {day}, due {due})", "{kind} {serial}, 교정되지 않음 (최근 {day}, 기한 {due})";
+        instrument_over: "{kind} {serial}, not calibrated (last {day}, due {due})", "{kind} {serial}, 교정되지 않음 (최근 {day}, 기한 {due})";
         no_instruments: "none registered", "등록된 것 없음";
         decision_rule: "Decision rule (ISO/IEC 17025 7.8.6)", "판정 규칙 (ISO/IEC 17025 7.8.6)";
         rule_guard_band: "guard band: each limit is narrowed by the expanded uncertainty (k = 2) of its instrument", "가드 밴드: 각 한계값을 계측기의 확장 불확도(k = 2)만큼 좁힘";
