@@ -5,7 +5,8 @@
 //!
 //! 1. `files`, `backend` (SQLite and PostgreSQL), `values` (what is recorded), [`trace`] (samples of named channels,
 //!    compressed column by column), `error`;
-//! 2. `schema` (tables of a file, SQL functions), `seal` (the chain of hashes), `store` ([`Store`]: one open file or
+//! 2. `schema` (tables of a file, SQL functions), `seal` (the chain of hashes), `signature` (of persons and benches over
+//!    seals), `store` ([`Store`]: one open file or
 //!    server);
 //! 3. `history` writes: [`RunWriter`] records a run as it happens, people change the state of faults; `query` reads;
 //! 4. `maintenance` checks, backs up and prunes files; `server` sets up a server; `exchange` brings the rows of one store
@@ -30,6 +31,7 @@ mod query;
 mod schema;
 mod seal;
 mod server;
+mod signature;
 mod store;
 pub mod trace;
 mod values;
@@ -44,6 +46,7 @@ pub use history::cases::ChangedFault;
 pub use history::conflicts::{ConflictingEvent, StateConflict};
 pub use history::dictionaries::DictionaryRecord;
 pub use history::insert::FaultStored;
+pub use history::instruments::Instrument;
 pub use history::limits;
 pub use history::recording::{Recording, RecordingRecord};
 pub use history::run_notes::RunNote;
@@ -51,7 +54,7 @@ pub use history::run_writer::RunWriter;
 pub use history::verify::{RepairToProve, SettledFault};
 pub use history::withdrawal::{ToWithdraw, Withdrawn};
 pub use id::{Id, IdSource};
-pub use maintenance::{CheckReport, Problem, PruneCounts, PruneRule};
+pub use maintenance::{CheckReport, KeyUse, Problem, PruneCounts, PruneRule, Verification};
 pub use query::{
     ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultFilter, FaultStat, FaultSummary,
     Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,
@@ -64,6 +67,7 @@ pub use schema::views::VIEWS_PAGE;
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
 pub use server::{Address, Claim, MOST_TRIES, Queue, SERVER_SCHEMA_VERSION, ServerSetup};
+pub use signature::{About, Places, SignatureError, Signed, Signer, Statement, canonical_json};
 pub use store::Store;
 pub use store::atomic_file::AtomicFile;
 pub use store::open_options::{OpenOptions, Synchronous};

@@ -59,6 +59,7 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,
+        measuring: Default::default(),
     };
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();

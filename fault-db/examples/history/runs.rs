@@ -269,6 +269,7 @@ fn run_record(fleet: &Fleet, visit: &Visit, chance: &mut Chance) -> RunRecord {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: if visit.of_log {
             Vec::new()
         } else {

@@ -156,6 +156,7 @@ pub(super) static TABLES: [Table; COUNT] = [
             wall_time_us Integer, app_version Text, scripts_sha256 Text, unit_config_sha256 Text,
             injected Text, owner Text, train Text, unit_kind Text, unit_config_name Text,
             sw_versions Text, continues Bytes, connection Text, symptom Text,
+            evidence Text,
         ],
         // It was copied earlier, while it was still running.
         file_complete: "UPDATE run SET finished_at_us = {finished_at_us}, verdict = {verdict},

@@ -36,9 +36,9 @@ pub(crate) fn insert_run(
     conn.prepare_cached(
         "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
             scripts_sha256, unit_config_sha256, injected, owner, train, unit_kind, unit_config_name,
-            sw_versions, continues, connection, symptom)
+            sw_versions, continues, connection, symptom, evidence)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,
-            ?19)",
+            ?19, ?20)",
     )?
     .execute(params![
         id,
@@ -60,6 +60,7 @@ pub(crate) fn insert_run(
         record.continues,
         record.connection,
         record.symptom,
+        record.evidence,
     ])?;
     let run = conn.last_insert_rowid();
     let mut insert = conn.prepare_cached(

@@ -9,6 +9,7 @@ pub(crate) mod fault_event;
 mod fault_log;
 pub(crate) mod graph_sql;
 pub(crate) mod insert;
+pub(crate) mod instruments;
 pub mod limits;
 pub(crate) mod recording;
 pub(crate) mod recurrence;

@@ -4,5 +4,5 @@ mod backup;
 mod check;
 mod prune;
 
-pub use check::{CheckReport, Problem};
+pub use check::{CheckReport, KeyUse, Problem, Verification};
 pub use prune::{PruneCounts, PruneRule};

@@ -12,6 +12,7 @@ use crate::history::run_notes::RunNote;
 use crate::history::verify::{SETTLED, SettledFault, made_by};
 use crate::id::Id;
 use crate::seal::{RunSealed, sealed_as};
+use crate::signature::{Statement, signature_of_run};
 use crate::store::Store;
 use crate::values::fault_state::FaultState;
 use crate::values::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
@@ -95,6 +96,8 @@ pub struct RunSummary {
     pub connection: Option<String>,
     /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
     pub symptom: Option<String>,
+    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    pub evidence: Option<String>,
     /// Steps recorded, and what failed outside them.
     pub steps: u32,
     /// Of these, what failed, could not be tested or was stopped.
@@ -120,6 +123,8 @@ pub struct RunDetail {
     pub notes: Vec<RunNote>,
     /// Its seal; `None` before its end.
     pub seal: Option<RunSealed>,
+    /// Who signed it, where the signature holds; whether the key is one to be trusted is not looked at.
+    pub signature: Option<Statement>,
 }
 
 /// A fault as seen by one run: counts and times are those of the run alone.
@@ -158,7 +163,7 @@ const SELECT_RUN: &str = "
         (SELECT count(*) FROM step s WHERE s.run = r.seq),
         (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'inconclusive', 'aborted')),
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq, r.train, r.continues, r.connection, r.symptom
+        r.seq, r.train, r.continues, r.connection, r.symptom, r.evidence
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -203,6 +208,7 @@ impl Store {
                 settled: self.settled_by(id)?,
                 notes: self.run_notes(seq)?,
                 seal: sealed_as(self.backend(), id)?,
+                signature: signature_of_run(self.backend(), id)?,
             })
         };
         rest().map_err(|error| self.failed(DOING, error))
@@ -344,6 +350,7 @@ fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummar
         continues: row.get(23)?,
         connection: row.get(24)?,
         symptom: row.get(25)?,
+        evidence: row.get(26)?,
         steps: row.get(18)?,
         steps_not_passed: row.get(19)?,
         faults: row.get(20)?,

@@ -40,6 +40,7 @@ CREATE TABLE run(
   scripts_sha256 TEXT NOT NULL,
   unit_config_sha256 TEXT NOT NULL,
   injected TEXT,
+  evidence TEXT,                        -- json: what the bench was made of, its clock and instruments; NULL: not stated
   owner TEXT NOT NULL                   -- the program that writes it; tells a running run from an interrupted one
 ) STRICT;
 CREATE INDEX run_by_start ON run(started_at_us);
@@ -222,7 +223,7 @@ CREATE INDEX run_note_by_run ON run_note(run, at_us);
 CREATE TABLE seal(
   origin BLOB NOT NULL,                 -- file_id of the file that sealed
   ordinal INTEGER NOT NULL,             -- 1, 2, 3 …
-  what TEXT NOT NULL,                   -- run, event, note, pruned, begun, recounted, copied
+  what TEXT NOT NULL,                   -- run, event, note, signature, instrument, pruned, begun, recounted, copied
   id BLOB NOT NULL,                     -- of the run, event, note or trace; of the file for what concerns it
   says TEXT NOT NULL,                   -- json: what no other row says
   digest BLOB NOT NULL,                 -- SHA-256 of all that is sealed
@@ -230,6 +231,15 @@ CREATE TABLE seal(
   PRIMARY KEY(origin, ordinal)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX seal_by_id ON seal(id, what);
+CREATE INDEX seal_instrument ON seal(origin, ordinal) WHERE what = 'instrument';
+
+-- Ends of chains that were seen, of this file and of others; of each the longest.
+CREATE TABLE chain_head(
+  origin BLOB PRIMARY KEY,
+  ordinal INTEGER NOT NULL,
+  hash BLOB NOT NULL,
+  seen_at_us INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
 
 CREATE TABLE dictionary(
   seq INTEGER PRIMARY KEY,

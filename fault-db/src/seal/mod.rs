@@ -5,10 +5,11 @@
 //! as a whole is detected where one of its hashes is known elsewhere: on a test sheet, in a backup, in
 //! another file, or on a server. SEALS.md lists the hashed fields, byte by byte.
 
-mod canonical;
+pub(crate) mod canonical;
 pub(crate) mod divergence;
 pub(crate) mod events_and_notes;
 mod head;
+pub(crate) mod known_heads;
 pub(crate) mod run;
 pub(crate) mod trace;
 

@@ -99,6 +99,7 @@ impl RunDigest {
             &record.scripts_sha256,
             &record.unit_config_sha256,
             record.injected.as_ref(),
+            record.evidence.as_ref(),
             &record.owner,
         ]);
         // A path given twice is stored once, with the last digest.
@@ -228,14 +229,14 @@ fn whole(mut run: CanonicalHash, parts: [[u8; 32]; 4], payload: &str) -> [u8; 32
     run.finish()
 }
 
-const RUN: &str =
+pub(crate) const RUN: &str =
     "SELECT r.id, u.serial, r.unit_kind, r.unit_config_name, r.sw_versions, r.line, r.train,
         r.seed, r.operator, r.source, r.connection, r.symptom, r.continues, r.started_at_us, r.app_version, r.scripts_sha256,
-        r.unit_config_sha256, r.injected, r.owner, r.verdict, r.finished_at_us, r.bench_time_us,
+        r.unit_config_sha256, r.injected, r.evidence, r.owner, r.verdict, r.finished_at_us, r.bench_time_us,
         r.wall_time_us
      FROM run r JOIN unit u ON u.seq = r.unit WHERE r.seq = ?1";
 
-const PARTS: [&str; 3] = [
+pub(crate) const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
     "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us, message,
         script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
@@ -243,7 +244,7 @@ const PARTS: [&str; 3] = [
      WHERE run = ?1 ORDER BY step_index, ordinal",
 ];
 
-const OCCURRENCES: &str =
+pub(crate) const OCCURRENCES: &str =
     "SELECT id, step_index, at_us, bench_us, message, freeze_json, code, lru, line, code_name, severity
      FROM fault_occurrence WHERE run = ?1 ORDER BY id";
 

@@ -104,7 +104,7 @@ BEGIN
       AND is_span(NEW.bench_time_us) AND is_span(NEW.wall_time_us) AND is_name(NEW.app_version)
       AND is_name(NEW.scripts_sha256) AND is_name(NEW.unit_config_sha256) AND is_text(NEW.injected)
       AND is_name(NEW.owner) AND is_name(NEW.train) AND is_name(NEW.unit_kind) AND is_name(NEW.unit_config_name)
-      AND is_json(NEW.sw_versions) AND is_id(NEW.continues) AND is_name(NEW.connection) AND is_name(NEW.symptom)'],
+      AND is_json(NEW.sw_versions) AND is_json(NEW.evidence) AND is_id(NEW.continues) AND is_name(NEW.connection) AND is_name(NEW.symptom)'],
     ['run_script', 'INSERT', 'is_name(NEW.path) AND is_name(NEW.sha256)'],
     ['step', 'INSERT', 'is_count(NEW.step_index) AND is_name(NEW.procedure) AND is_name(NEW.name)
       AND is_span(NEW.started_bench_us) AND is_span(NEW.bench_time_us) AND is_text(NEW.message)

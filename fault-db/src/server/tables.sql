@@ -59,6 +59,7 @@ CREATE TABLE run(
   source text COLLATE "C" NOT NULL,
   connection text COLLATE "C",
   symptom text COLLATE "C",
+  evidence text COLLATE "C",
   continues bytea,
   started_at_us bigint NOT NULL,
   finished_at_us bigint,

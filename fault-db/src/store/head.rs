@@ -3,7 +3,7 @@
 use super::Store;
 use crate::backend::{Backend, SqlResult};
 use crate::error::StoreError;
-use crate::seal::{SealHead, head_of, hex, own_file_id};
+use crate::seal::{SealHead, head_of, hex, known_heads, own_file_id};
 
 impl Store {
     /// The last entry of this file's chain; `None` for a server, which has no chain of its own, and for a
@@ -25,5 +25,24 @@ impl Store {
             }))
         };
         read().map_err(|error| self.failed(DOING, error))
+    }
+
+    /// Holds the chains of another file against what this one has seen of them; what was rewritten or cut there.
+    ///
+    /// # Errors
+    /// One of them cannot be read.
+    pub fn seen_otherwise(&self, other: &Store) -> Result<Vec<String>, StoreError> {
+        const DOING: &str = "comparing chains of seals";
+        if !matches!(self.backend(), Backend::File(_)) {
+            return Ok(Vec::new());
+        }
+        let known = known_heads::of_file(self.backend());
+        let known = known.map_err(|error| self.failed(DOING, error))?;
+        let look = || {
+            let own = own_file_id(other.backend())?;
+            known_heads::broken(other.backend(), &known, own)
+        };
+        let broken = look().map_err(|error| other.failed(DOING, error))?;
+        Ok(broken.into_iter().map(|(_, what)| what).collect())
     }
 }

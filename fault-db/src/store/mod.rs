@@ -20,6 +20,7 @@ use crate::files::regular_file::make_private;
 use crate::id::{Id, IdSource};
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
+use crate::signature::{Signer, sign_new_entries};
 use crate::store::file::{
     READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
     set_up_to_record,
@@ -40,6 +41,7 @@ pub struct Store {
     ids: Option<RefCell<IdSource>>,
     codec: RefCell<TraceCodec>,
     pub(crate) channel_sets: RefCell<BTreeMap<i64, Arc<[Channel]>>>,
+    signer: RefCell<Option<Arc<Signer>>>,
 }
 
 impl std::fmt::Debug for Store {
@@ -158,6 +160,17 @@ impl Store {
         let timeout = std::time::Duration::from_millis(busy_timeout_ms.into());
         let set = self.file()?.busy_timeout(timeout);
         set.map_err(|error| self.failed("setting how long to wait", error))
+    }
+
+    /// From now on what is recorded in this file is signed: runs, events, notes and instruments, each in the transaction
+    /// that seals it. `None`: no longer.
+    pub fn sign_with(&self, signer: Option<Arc<Signer>>) {
+        *self.signer.borrow_mut() = signer;
+    }
+
+    /// Whose signature is put under what is recorded.
+    pub fn signer(&self) -> Option<Arc<Signer>> {
+        self.signer.borrow().clone()
     }
 
     /// The file's path as it was given; of a server its address without the password.
@@ -281,7 +294,16 @@ impl Store {
         // Immediate: a transaction that begins by reading cannot wait for another writer.
         let begun = Transaction::new_unchecked(conn, TransactionBehavior::Immediate);
         let transaction = begun.map_err(failed)?;
+        let signer = self.signer.borrow().clone();
+        let known = match &signer {
+            Some(_) => self.head()?.map_or(0, |head| head.entries),
+            None => 0,
+        };
         let result = work(&transaction)?;
+        if let Some(signer) = signer {
+            sign_new_entries(&self.backend, &signer, known)
+                .map_err(|error| self.failed("signing", error))?;
+        }
         transaction.commit().map_err(failed)?;
         Ok(result)
     }
@@ -385,6 +407,7 @@ impl Store {
             ids: ids.map(RefCell::new),
             codec: RefCell::new(codec),
             channel_sets: RefCell::default(),
+            signer: RefCell::default(),
         })
     }
 }

@@ -70,6 +70,8 @@ pub struct RunRecord {
     pub connection: Option<String>,
     /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
     pub symptom: Option<String>,
+    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    pub evidence: Option<String>,
     /// When it began.
     pub started_at_us: i64,
     /// Version of the program.

@@ -19,6 +19,7 @@ mod opening;
 mod pruning;
 mod recording;
 mod run_notes;
+mod signing;
 mod stimuli;
 mod trace_codec;
 mod trace_reading;

@@ -102,6 +102,7 @@ pub fn run_record(serial: &str) -> RunRecord {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: vec![ScriptRecord {
             path: "scripts/atp/speed.star".to_owned(),
             sha256: "ef".repeat(32),

@@ -12,6 +12,7 @@
 //! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
+//! * [`keys`]: keys of technicians and benches, and the list of those that are trusted;
 //! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person reads;
@@ -29,6 +30,7 @@ pub mod failure;
 pub mod field;
 mod fleet;
 pub mod kept;
+pub mod keys;
 pub mod link;
 pub mod new_file;
 pub mod owner_only;

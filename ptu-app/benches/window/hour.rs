@@ -79,6 +79,7 @@ pub fn write(file: &Path) {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &record).expect("a run");

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use btu_rig::procedure::Outside;
-use fault_db::{FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, StepRecord};
+use fault_db::{
+    FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, Statement, StepRecord,
+};
 use protocol::display_text;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -13,17 +15,19 @@ use crate::trace_notes::note_json;
 use ptu_bench::clock::rfc3339;
 use ptu_bench::coverage::Coverage;
 use ptu_bench::failure::Failure;
+use ptu_bench::run::Evidence;
 use ptu_bench::stored::{STEP, outside_of};
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
+    let evidence = run.run.evidence.as_deref().and_then(Evidence::of);
     json!({
         "run": run_summary_json(&run.run),
         "coverage": coverage_json(&Coverage::of_run(&run.steps)),
         "scripts": run.scripts.iter().map(|script| json!({
             "path": script.path, "sha256": script.sha256,
         })).collect::<Vec<_>>(),
-        "steps": run.steps.iter().map(step_json).collect::<Vec<_>>(),
+        "steps": run.steps.iter().map(|step| step_json(step, evidence.as_ref())).collect::<Vec<_>>(),
         "faults": run.faults.iter().map(run_fault_json).collect::<Vec<_>>(),
         "settles": run.settled.iter().map(|fault| json!({
             "id": fault.id.to_string(), "code": fault.code, "name": fault.code_name, "part": fault.lru,
@@ -31,6 +35,34 @@ pub fn run_json(run: &RunDetail) -> Value {
         })).collect::<Vec<_>>(),
         "notes": run.notes.iter().map(note_json).collect::<Vec<_>>(),
         "seal": run.seal,
+        "signature": run.signature.as_ref().map(signature_json),
+        "evidence": evidence.as_ref().map(evidence_json),
+    })
+}
+
+/// Who signed, with which key and when.
+pub fn signature_json(signed: &Statement) -> Value {
+    json!({
+        "who": signed.who, "kind": signed.kind, "key": signed.key, "at": rfc3339(signed.at_us),
+        "digest": signed.digest,
+    })
+}
+
+fn evidence_json(evidence: &Evidence) -> Value {
+    let Evidence { bench, clock, .. } = evidence;
+    let clock = match (clock.synchronised, clock.uncertainty_ms) {
+        (Some(true), Some(ms)) => format!("synchronised, within {ms} ms"),
+        (Some(true), None) => "synchronised".to_owned(),
+        (Some(false), _) => "not synchronised".to_owned(),
+        (None, _) => "not known".to_owned(),
+    };
+    json!({
+        "clock": clock, "line_sha256": bench.line.sha256, "train_sha256": bench.train.sha256,
+        "settings": bench.unit_config.settings, "guard_banded": evidence.guard_banded,
+        "instruments": evidence.instruments.iter().map(|used| json!({
+            "kind": used.of.kind, "serial_no": used.of.serial_no, "calibrated": used.of.calibrated, "by": used.of.by,
+            "due": used.of.due, "is_calibrated": used.is_calibrated, "uncertainty": used.of.uncertainty,
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -71,21 +103,22 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
     })
 }
 
-fn step_json(step: &StepRecord) -> Value {
+fn step_json(step: &StepRecord, evidence: Option<&Evidence>) -> Value {
     json!({
         "procedure": step.procedure,
         "name": step.name,
         "kind": outside_of(step).map_or(STEP, Outside::name),
         "verdict": step.verdict.as_str(),
         "bench_time_s": seconds(step.bench_time_us),
-        "measurements": step.measurements.iter().map(measurement_json).collect::<Vec<_>>(),
+        "measurements": step.measurements.iter().map(|one| measurement_json(one, evidence)).collect::<Vec<_>>(),
         "message": step.message,
         "script_line": step.script_line,
         "limit_source": step.limit_source,
     })
 }
 
-fn measurement_json(measurement: &MeasurementRecord) -> Value {
+fn measurement_json(measurement: &MeasurementRecord, evidence: Option<&Evidence>) -> Value {
+    let instrument = evidence.and_then(|evidence| evidence.instrument_for(&measurement.unit));
     json!({
         "name": measurement.name,
         "value": measurement.value,
@@ -94,6 +127,7 @@ fn measurement_json(measurement: &MeasurementRecord) -> Value {
         "high": measurement.high,
         "limit_source": measurement.limit_source,
         "verdict": measurement.verdict.as_str(),
+        "instrument": instrument.map(|used| &used.of.serial_no),
     })
 }
 

@@ -10,6 +10,7 @@
 
 pub mod campaign;
 pub mod care;
+mod certificate;
 mod coverage;
 pub mod csv;
 pub mod diagnosis;
@@ -38,8 +39,11 @@ pub mod trace_view;
 mod without_korean;
 pub mod words;
 
+pub use certificate::{SheetCertificate, SheetStatement, has_certificate, read_certificate};
 pub use coverage::coverage_text;
-pub use json::{FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json};
+pub use json::{
+    FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json, signature_json,
+};
 pub use proof::proof_text;
 use target::page_text;
 pub use target::{

@@ -8,10 +8,12 @@ use fault_db::{RunDetail, Store};
 use maud::Markup;
 use protocol::display_text;
 
+use crate::certificate::attach;
 use crate::json::{json_text, run_json};
 use crate::run::{self, CaseSheet, RunComparison, Sheet};
 use crate::words::Language;
 use crate::{csv, junit};
+use ptu_bench::clock::now_us;
 use ptu_bench::data::{self, ScriptsDirectory};
 use ptu_bench::failure::Failure;
 use ptu_bench::new_file::{NewFile, cannot_write};
@@ -88,11 +90,16 @@ pub fn write(
     let gather = || Sheet::gather(store, directory, run.run.id);
     let sheet = targets.iter().any(Target::is_sheet).then(gather);
     let sheet = sheet.transpose()?;
+    let signatures = store.signatures(run.run.id)?;
+    let signer = store.signer();
     for target in targets {
-        data::write(
-            &target.path,
-            &content(target, run, sheet.as_ref(), language)?,
-        )?;
+        let mut content = content(target, run, sheet.as_ref(), language)?;
+        if target.format == Format::Html {
+            let page = String::from_utf8_lossy(&content).into_owned();
+            let page = attach(page, run, &signatures, signer.as_deref(), now_us());
+            content = page.into_bytes();
+        }
+        data::write(&target.path, &content)?;
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ mod undo;
 
 use clap::{Args, Subcommand};
 
+use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_report::naming::PartNames;
@@ -24,6 +25,8 @@ use ptu_report::words::Language;
 pub struct FaultsArguments {
     #[command(subcommand)]
     verb: Verb,
+    #[command(flatten)]
+    signing: SigningOption,
     #[command(flatten)]
     database: Database,
 }
@@ -67,6 +70,9 @@ impl FaultsArguments {
             false if matches!(self.verb, Verb::Import(_)) => self.database.open_file()?,
             false => self.database.open()?,
         };
+        if !reads {
+            self.signing.sign(&store)?;
+        }
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
             Verb::Show {

@@ -15,7 +15,9 @@ mod gui;
 mod gui;
 mod help;
 mod help_files;
+mod instrument;
 mod keep;
+mod key;
 mod matrix;
 mod new;
 mod output;
@@ -28,9 +30,11 @@ mod run_list;
 mod runs;
 mod saved;
 mod signal;
+mod signing;
 mod trace;
 mod train;
 mod unit_option;
+mod verify;
 #[cfg(test)]
 mod words;
 
@@ -83,6 +87,9 @@ enum Verb {
     Trace(trace::TraceArguments),
     Record(record::RecordArguments),
     Signal(signal::SignalArguments),
+    Key(key::KeyArguments),
+    Instrument(instrument::InstrumentArguments),
+    Verify(verify::VerifyArguments),
     /// Check, back up, prune, merge, sync or query the database
     Db(db::DbArguments),
     /// Show faults, signals, speed codes, lines or parts
@@ -155,6 +162,9 @@ impl Cli {
             Verb::Saved(arguments) => arguments.run(),
             Verb::Trace(arguments) => arguments.run(),
             Verb::Db(arguments) => arguments.run(),
+            Verb::Key(arguments) => arguments.run(),
+            Verb::Instrument(arguments) => arguments.run(),
+            Verb::Verify(arguments) => arguments.run(),
             Verb::Train(arguments) => arguments.run(),
             Verb::Matrix(arguments) => arguments.run(),
             Verb::Signal(arguments) => arguments.run(),

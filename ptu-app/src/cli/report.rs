@@ -3,6 +3,7 @@
 use clap::Args;
 use fault_db::{Id, Store, StoreError};
 
+use super::signing::SigningOption;
 use super::{Database, ScriptsOption, print_out};
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
@@ -43,6 +44,8 @@ pub struct ReportArguments {
     #[arg(long, value_name = "TEXT", env = "PTU_DEPOT", default_value = "")]
     depot: String,
     #[command(flatten)]
+    signing: SigningOption,
+    #[command(flatten)]
     database: Database,
     #[command(flatten)]
     scripts: ScriptsOption,
@@ -68,6 +71,7 @@ impl ReportArguments {
                 ));
             }
             Told::Run(id) => {
+                self.signing.sign(&store)?;
                 let run = store.run(id, &process_id::is_alive)?;
                 ptu_report::write(&self.out, &store, &directory, &run, self.lang)?;
             }

@@ -14,6 +14,7 @@ use clap::Args;
 use fault_db::Store;
 
 use super::reports::ReportOption;
+use super::signing::SigningOption;
 use super::{Database, ScriptsOption, answered, print_out, run_list};
 use crate::console::Console;
 use crate::event_stream::EventStream;
@@ -24,8 +25,8 @@ use ptu_bench::drive::Setting;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::link::Endpoint;
 use ptu_bench::run::{
-    self, BenchChoice, BenchSetup, RunControl, RunPlan, Signals, Suite, check_serial,
-    software_version,
+    self, BenchChoice, BenchSetup, MeasuringRules, RunControl, RunPlan, Signals, Suite,
+    check_serial, software_version,
 };
 use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_bench::stdio;
@@ -143,12 +144,20 @@ pub struct RunArguments {
     /// Isolate a fault: after each step do what tells the most, until one part is found
     #[arg(long, conflicts_with_all = ["check", "list", "step", "shuffle", "stop_on_fail"])]
     adaptive: bool,
+    /// Go on where the calibration of an instrument of this bench is over; the sheet says so (`ptu instrument`)
+    #[arg(long)]
+    uncalibrated: bool,
+    /// Narrow each limit by the uncertainty of the instrument for its unit (ISO/IEC 17025 7.8.6); the sheet names the rule
+    #[arg(long)]
+    guard_band: bool,
     #[command(flatten)]
     resume: resume::ResumeOption,
     #[command(flatten)]
     show: show::ShowOptions,
     #[command(flatten)]
     reports: ReportOption,
+    #[command(flatten)]
+    signing: SigningOption,
     #[command(flatten)]
     database: Database,
     #[command(flatten)]
@@ -213,6 +222,10 @@ impl RunArguments {
             scripts_sha256,
             adaptive: None,
             continues: earlier.map(|earlier| earlier.run.id),
+            measuring: MeasuringRules {
+                uncalibrated: self.uncalibrated,
+                guard_band: self.guard_band,
+            },
         };
         setup.record_whole = self.show.mcap.is_some();
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
@@ -274,7 +287,9 @@ impl RunArguments {
         let symptom = symptom
             .map(|id| symptoms::find(directory, &directory.faults()?.lrus, id))
             .transpose()?;
+        let signer = self.signing.signer()?;
         let store = self.database.open_file()?;
+        store.sign_with(signer);
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
             return Err(Failure::usage(
                 "--adaptive does one step after the other, each once; leave --repeat and --jobs out",

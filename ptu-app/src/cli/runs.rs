@@ -1,12 +1,16 @@
 //! `ptu runs`: recorded runs.
 
+use std::path::{Path, PathBuf};
+
 use clap::{Args, Subcommand};
-use fault_db::{RunFilter, RunNote};
+use fault_db::{RunDetail, RunFilter, RunNote, Signed, Statement, Store};
 
 use super::reports::ReportOption;
+use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
 use ptu_bench::clock::{self, Span};
+use ptu_bench::data;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::process_id;
 use ptu_bench::table::Table;
@@ -20,6 +24,8 @@ use ptu_report::{Target, run_json, run_summary_json, write_comparison};
 pub struct RunsArguments {
     #[command(subcommand)]
     verb: Verb,
+    #[command(flatten)]
+    signing: SigningOption,
     #[command(flatten)]
     database: Database,
 }
@@ -89,6 +95,14 @@ enum Verb {
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
     },
+    /// Write the certificate of a signed run: what was signed, by whom, and the signature, for `ptu verify`
+    Certificate {
+        /// The run: an id, its beginning or end (at least 4 digits), or `latest`
+        id: String,
+        /// The file, as run.ptucert
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
 }
 
 impl RunsArguments {
@@ -100,7 +114,9 @@ impl RunsArguments {
             self.database.open_read_only()?
         };
         match self.verb {
+            Verb::Certificate { id, out } => certificate(&store, &id, &out),
             Verb::Note { id, text, who } => {
+                self.signing.sign(&store)?;
                 let (text, who) = (text.trim(), who.trim());
                 if text.is_empty() {
                     return Err(Failure::usage("a note says something"));
@@ -163,11 +179,45 @@ impl RunsArguments {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
                 }
-                let text = || verdict_table(&run) + &notes(&run.notes);
+                let text = || verdict_table(&run) + &signed(&run) + &notes(&run.notes);
                 json.answer(|| run_json(&run), text)
             }
         }
     }
+}
+
+/// Who signed the run, below its verdict.
+fn signed(run: &RunDetail) -> String {
+    match (&run.signature, &run.seal) {
+        (Some(signed), _) => format!(
+            "\nsigned by {} ({}, key {}) at {}; `ptu verify {}` verifies it",
+            signed.who,
+            signed.kind,
+            signed.short_key(),
+            clock::local(signed.at_us),
+            run.run.id.short()
+        ),
+        (None, Some(_)) => "\nunsigned".to_owned(),
+        (None, None) => String::new(),
+    }
+}
+
+fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
+    let run = store.resolve_run(id)?;
+    let signed = store.signatures(run)?.into_iter().find(|text| {
+        let signed = Signed::read(text).ok();
+        signed
+            .and_then(|signed| Statement::of(&signed))
+            .is_some_and(|statement| statement.what == "run")
+    });
+    let Some(signed) = signed else {
+        return Err(Failure::usage(format!(
+            "run {} is not signed and has no certificate; `ptu run --key FILE` signs one",
+            run.short()
+        )));
+    };
+    data::write(out, format!("{signed}\n").as_bytes())?;
+    print_out(&format!("written: {}", out.display()))
 }
 
 fn table(runs: &[fault_db::RunSummary]) -> String {

@@ -44,6 +44,7 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(store, &record).expect("begun");

@@ -53,6 +53,7 @@ mod server;
 mod shards;
 mod signal;
 mod signals_page;
+mod signing;
 mod sound;
 mod statistics_page;
 mod suite;

@@ -144,6 +144,7 @@ fn kept(place: &Place, trace: &TraceData) -> Id {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     };
     let mut writer = RunWriter::begin(&store, &run).expect("begun");

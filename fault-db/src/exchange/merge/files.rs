@@ -9,7 +9,7 @@ use super::{CopyOf, Merge, MergeCounts};
 use crate::backend::SqlError;
 use crate::error::StoreError;
 use crate::seal::divergence::{ChainComparison, compare_all_chains};
-use crate::seal::own_file_id;
+use crate::seal::{known_heads, own_file_id};
 use crate::store::Store;
 use crate::store::atomic_file::AtomicFile;
 use crate::store::file::CACHE_KIB;
@@ -78,7 +78,7 @@ impl Store {
     /// Compares the other file's chains of seals with the ones known here.
     ///
     /// # Errors
-    /// A chain was rewritten.
+    /// A chain was rewritten, or is not what was seen of it.
     fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
         const DOING: &str = "comparing seals";
         let look = || {
@@ -86,6 +86,16 @@ impl Store {
             Ok((own, compare_all_chains(other.backend(), self.backend())?))
         };
         let (own, chains) = look().map_err(|error: SqlError| other.failed(DOING, error))?;
+        let known = known_heads::of_file(self.backend());
+        let known = known.map_err(|error| self.failed(DOING, error))?;
+        let broken = known_heads::broken(other.backend(), &known, None);
+        let broken = broken.map_err(|error| other.failed(DOING, error))?;
+        if let Some((_, what)) = broken.into_iter().next() {
+            return Err(StoreError::Altered {
+                path: other.path().to_path_buf(),
+                what,
+            });
+        }
         let mut copy = None;
         for (file, stands) in chains {
             let (after, went_on) = match stands {

@@ -19,7 +19,7 @@ use crate::exchange::domain::{Refusals, shown_id};
 use crate::history::event_graph::{fault_of, settle};
 use crate::history::recurrence::HighWaterMark;
 use crate::id::Id;
-use crate::seal::BY_IMPORT;
+use crate::seal::{BY_IMPORT, known_heads};
 use trust::{
     event_mismatch, is_same, is_unwritten_remainder, note_mismatch, recordings_mismatch,
     seal_mismatch, trace_mismatch,
@@ -121,6 +121,9 @@ impl<'a> Merge<'a> {
         settle(self.ours, &self.applier.touched, Some(mark))?;
         self.seals()?;
         self.applier.seal_the_rest(BY_IMPORT)?;
+        for head in known_heads::of_file(self.theirs)? {
+            known_heads::keep(self.ours, &head)?;
+        }
         let new = |of: TableId| self.applier.counts[of as usize] as usize;
         Ok(MergeCounts {
             units: new(TableId::Unit),

@@ -19,6 +19,7 @@ use crate::error::StoreError;
 use crate::exchange::tables::TableId;
 use crate::exchange::to_server::ServerApplier;
 use crate::id::Id;
+use crate::seal::known_heads;
 use crate::server::schema::server_id;
 use crate::store::Store;
 use batch::Batch;
@@ -120,6 +121,7 @@ impl Sync<'_> {
         }
         if !self.outcome.stopped {
             self.receive(options)?;
+            self.receive_heads((options.now_us)())?;
         }
         self.outcome.waiting = self.waiting()?;
         self.outcome.conflicts = self.file.conflicts()?;
@@ -231,6 +233,23 @@ impl Sync<'_> {
                 .map_err(|error| self.server.failed(RECEIVING, error))
         })?;
         self.save(options)
+    }
+
+    /// Receives where the chains of all laptops end. A chain there that is not what this file has seen of it is named.
+    fn receive_heads(&mut self, now_us: i64) -> Result<(), StoreError> {
+        let known = self.of_file(RECEIVING, known_heads::of_file)?;
+        let broken = |server: &Backend| known_heads::broken(server, &known, None);
+        for (id, _) in self.of_server(RECEIVING, broken)? {
+            let (what, id) = ("chain", id);
+            self.outcome.different.push(Difference { what, id });
+        }
+        let heads = |server: &Backend| known_heads::of_server(server, now_us);
+        let heads = self.of_server(RECEIVING, heads)?;
+        self.file.change(RECEIVING, |file| {
+            let keep = |head| known_heads::keep(file, head);
+            let kept: SqlResult<()> = heads.iter().try_for_each(keep);
+            kept.map_err(|error| self.file.failed(RECEIVING, error))
+        })
     }
 
     fn receive_from(

@@ -3,18 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::seal_entry::{SEALS_PER_BATCH, Seal, position_error, seals_after};
+use super::signatures::{KeyUse, KeyUses, read_signature};
 use super::{Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
 use crate::seal::{
-    BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex, own_file_id, run,
+    BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex, known_heads, own_file_id, run,
     statement_digest, trace,
 };
+use crate::signature::SIGNATURE;
 
 /// What is collected while the chains are read.
 #[derive(Default)]
-struct ChainSummary {
+pub(super) struct ChainSummary {
     /// Seals of runs.
     runs: u32,
     /// Runs, events and notes sealed as found, since they came without a seal.
@@ -25,14 +27,23 @@ struct ChainSummary {
     pruned: BTreeSet<(Id, Option<i64>, String)>,
     /// Whether the file's own chain has its first entry.
     is_begun: bool,
+    /// Who signed.
+    keys: KeyUses,
 }
 
-/// Checks all chains; the number of runs checked.
+impl ChainSummary {
+    /// Traces and recordings that a seal names and that are not there.
+    pub fn missing(&self) -> impl Iterator<Item = (Id, Option<i64>)> {
+        self.missing.keys().copied()
+    }
+}
+
+/// Checks all chains; the number of runs checked, and who signed.
 pub(super) fn check(
     backend: &Backend,
     mut found: Findings<'_>,
     remarks: &mut Remarks,
-) -> SqlResult<u32> {
+) -> SqlResult<(u32, Vec<KeyUse>)> {
     let own = match backend {
         Backend::File(_) => own_file_id(backend)?,
         Backend::Server(_) => None,
@@ -73,6 +84,10 @@ pub(super) fn check(
             });
         }
         check_begun(backend, own, summary.is_begun, &mut found)?;
+        let known = known_heads::of_file(backend)?;
+        for (_, broken) in known_heads::broken(backend, &known, own)? {
+            found.add(broken);
+        }
     }
     check_unsealed_runs(backend, &mut found)?;
     let as_found = summary.found;
@@ -81,7 +96,7 @@ pub(super) fn check(
             "{as_found} runs, events and notes came without a seal and were sealed as they were found then"
         ));
     }
-    Ok(summary.runs)
+    Ok((summary.runs, summary.keys.into_list()))
 }
 
 /// Checks one entry against the row it covers.
@@ -135,6 +150,10 @@ fn check_entry(
                     }
                 }
                 BEGUN if own == Some(seal.origin) => summary.is_begun = true,
+                SIGNATURE => match read_signature(backend, &seal.payload)? {
+                    Ok(statement) => summary.keys.add(&statement),
+                    Err(wrong) => found.add(format!("the signature at {}: {wrong}", seal.name())),
+                },
                 RECOUNTED => {
                     if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
                         remarks.push(payload.text());
@@ -148,7 +167,7 @@ fn check_entry(
 }
 
 /// Checks the traces and recordings of a run against its seal.
-fn check_traces_and_recordings(
+pub(super) fn check_traces_and_recordings(
     backend: &Backend,
     (id, run, came): (Id, i64, bool),
     payload: &run::RunPayload,

@@ -5,6 +5,8 @@ mod counted;
 mod derived;
 mod seal_entry;
 mod server;
+mod signatures;
+mod verify;
 
 use rusqlite::Connection;
 use serde::Serialize;
@@ -17,6 +19,8 @@ use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::seal::SealHead;
 use crate::store::Store;
+pub use signatures::KeyUse;
+pub use verify::Verification;
 
 /// The result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,6 +37,8 @@ pub struct CheckReport {
     pub remarks: Vec<String>,
     /// The last entry of the file's chain of seals, for comparison with values known elsewhere.
     pub head: Option<SealHead>,
+    /// Who signed what is in it.
+    pub signed: Vec<KeyUse>,
 }
 
 /// Remarks, as sentences.
@@ -139,6 +145,7 @@ impl Store {
             problems,
             remarks: Vec::new(),
             head: None,
+            signed: Vec::new(),
         };
         match self.check_rows(conn, &mut report) {
             Err(StoreError::Stopped) => return Err(StoreError::Stopped),
@@ -188,7 +195,8 @@ impl Store {
 
         let found = Findings::new(problems, "seal", ALTERED);
         let runs = chain::check(self.backend(), found, &mut report.remarks);
-        report.runs = runs.map_err(|error| self.failed("checking seals", error))?;
+        (report.runs, report.signed) =
+            runs.map_err(|error| self.failed("checking seals", error))?;
         report.head = self.head()?;
 
         let found = Findings::new(problems, "derived", REBUILD);

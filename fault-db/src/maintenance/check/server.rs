@@ -29,6 +29,7 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
         problems: Vec::new(),
         remarks: Vec::new(),
         head: None,
+        signed: Vec::new(),
     };
     let backend = store.backend();
     let mut found = Findings::new(&mut report.problems, "schema", GUARDS);
@@ -43,6 +44,6 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
     drop(found);
     let found = Findings::new(&mut report.problems, "seal", SEALS);
     let checked = chain::check(backend, found, &mut report.remarks);
-    report.runs = checked.map_err(|error| store.failed(DOING, error))?;
+    (report.runs, report.signed) = checked.map_err(|error| store.failed(DOING, error))?;
     Ok(report)
 }

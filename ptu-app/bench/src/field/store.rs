@@ -165,6 +165,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     }
 }

@@ -254,6 +254,7 @@ fn run_record(
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     }
 }

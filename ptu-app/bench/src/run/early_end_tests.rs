@@ -89,6 +89,7 @@ fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,
+        measuring: Default::default(),
     }
 }
 

@@ -16,10 +16,12 @@ mod connect_port;
 #[cfg(test)]
 mod early_end_tests;
 mod event;
+mod evidence;
 mod fault_watch;
 mod first_failure;
 #[cfg(test)]
 mod hazards;
+mod instruments;
 #[cfg(test)]
 mod jogging_tests;
 pub mod loading;
@@ -52,10 +54,11 @@ pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_serial, software_version};
 pub use collector::{Listener, Outcome, steps_of, uncertainty_of};
 pub use event::{RecordedStimuli, SessionEvent};
+pub use evidence::{ClockEvidence, Evidence, InstrumentEvidence};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};
 pub(crate) use fault_watch::{is_fault, of_event};
 pub use observe::{ObservationBuilder, of_run};
-pub use plan::{Adaptive, RunPlan, Task};
+pub use plan::{Adaptive, MeasuringRules, RunPlan, Task};
 pub(crate) use repaired::trace_repaired;
 pub use run_control::RunControl;
 pub(crate) use session::{Session, Window};

@@ -41,6 +41,17 @@ pub struct RunPlan {
     pub adaptive: Option<Adaptive>,
     /// The earlier run whose open procedures these are.
     pub continues: Option<fault_db::Id>,
+    /// What is made of the instruments of the bench.
+    pub measuring: MeasuringRules,
+}
+
+/// What a run makes of the instruments of its bench.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MeasuringRules {
+    /// Instruments whose calibration is over do not hinder the run; it says so.
+    pub uncalibrated: bool,
+    /// Limits are narrowed by the uncertainty of what is measured.
+    pub guard_band: bool,
 }
 
 /// A procedure and the events of its run.

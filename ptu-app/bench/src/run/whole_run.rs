@@ -11,7 +11,9 @@ use super::adaptive;
 use super::bench_contents::BenchContents;
 use super::bench_setup::{BenchSetup, Connected};
 use super::collector::{Collector, Listener, Outcome, steps_of};
+use super::evidence::Evidence;
 use super::first_failure::FirstFailure;
+use super::instruments;
 use super::plan::{Adaptive, ProcedureStream, RunPlan, Task};
 use super::repaired::trace_repaired;
 use super::store_thread::RunStore;
@@ -35,6 +37,9 @@ pub fn run(
     let began = RunStart::now();
     let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
     trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
+    if plan.measuring.guard_band {
+        instruments::guard_band(&mut plan.tasks, &store)?;
+    }
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
@@ -54,6 +59,9 @@ pub fn search(
     let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
     let connection = connected.connection();
     trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
+    if plan.measuring.guard_band {
+        instruments::guard_band(&mut plan.tasks, &store)?;
+    }
     plan.adaptive = Some(adaptive(&store, &connected.serial(), connection)?);
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
@@ -67,7 +75,8 @@ fn reach(
     began: &RunStart,
 ) -> Result<(Connected, Store), Failure> {
     run_record(plan, setup, setup.expected_serial(), began.at_us).check()?;
-    match setup.connect(stop) {
+    let usable = instruments::of_run(&store, setup, plan.measuring.uncalibrated);
+    match usable.and_then(|_| setup.connect(stop)) {
         Ok(connected) => Ok((connected, store)),
         Err(failure) => {
             let record = run_record(plan, setup, setup.expected_serial(), began.at_us);
@@ -107,13 +116,15 @@ pub fn run_on(
 ) -> Result<(Store, Outcome), Failure> {
     connected.set_stop(stop);
     let connection = connected.connection();
+    let made = BenchContents::of(setup, connected.serial(), connection);
+    let used = instruments::of_run(&store, setup, plan.measuring.uncalibrated)?;
     let record = RunRecord {
         connection: Some(connection.word().into()),
+        evidence: Some(Evidence::now(made.clone(), used, plan.measuring).text()),
         ..run_record(plan, setup, connected.serial(), began.at_us)
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let made = BenchContents::of(setup, connected.serial(), connection);
     let mut collector = Collector::new(run_store, listener, made);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
@@ -225,6 +236,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         continues: plan.continues,
         connection: None,
         symptom: plan.symptom.clone(),
+        evidence: None,
         scripts: plan
             .tasks
             .iter()

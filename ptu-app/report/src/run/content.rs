@@ -16,6 +16,7 @@ use crate::trace_notes::note_text;
 use crate::words::{Words, fill};
 use ptu_bench::clock::{local, local_zoned};
 use ptu_bench::coverage::Coverage;
+use ptu_bench::run::{Evidence, InstrumentEvidence};
 use ptu_bench::stored::{outside_of, standing};
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
@@ -305,7 +306,11 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.wall_time, seconds(run.wall_time_us)),
         (report.program, format!("ptu {}", run.app_version)),
         (report.scripts_hash, run.scripts_sha256.clone()),
+        (report.clock, clock(sheet, words)),
+        (report.instruments, instruments(sheet, words)),
+        (report.decision_rule, decision_rule(sheet, words).to_owned()),
         (report.seal, seal(sheet, words)),
+        (report.signed_by, signed_by(sheet, words)),
     ];
     vec![
         Block::Heading(report.the_run.into()),
@@ -331,6 +336,69 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
         None => said,
         Some(_) => format!("{said} ({})", report.seal_found),
     }
+}
+
+/// How right the computer's clock was.
+fn clock(sheet: &Sheet, words: &Words) -> String {
+    let report = &words.report;
+    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
+    let clock = evidence.map(|evidence| evidence.clock);
+    match clock.map(|clock| (clock.synchronised, clock.uncertainty_ms)) {
+        Some((Some(true), ms)) => {
+            let ms = ms.unwrap_or_default();
+            fill(report.clock_set, &[("ms", &ms)])
+        }
+        Some((Some(false), _)) => report.clock_not_set.into(),
+        Some((None, _)) | None => report.clock_not_known.into(),
+    }
+}
+
+/// How a value is held against its limits.
+fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
+    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
+    match evidence.is_some_and(|evidence| evidence.guard_banded) {
+        true => words.report.rule_guard_band,
+        false => words.report.rule_simple,
+    }
+}
+
+/// With what was measured, and whether its calibration held.
+fn instruments(sheet: &Sheet, words: &Words) -> String {
+    let report = &words.report;
+    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
+    let used = evidence.map(|evidence| evidence.instruments);
+    let used = used.unwrap_or_default();
+    let one = |used: &InstrumentEvidence| {
+        let of = &used.of;
+        let day = |day: &Option<String>| day.clone().unwrap_or_else(|| "–".to_owned());
+        let (calibrated, due) = (day(&of.calibrated), day(&of.due));
+        let place: [(&str, &dyn std::fmt::Display); 4] = [
+            ("kind", &of.kind),
+            ("serial", &of.serial_no),
+            ("day", &calibrated),
+            ("due", &due),
+        ];
+        match used.is_calibrated {
+            true => fill(report.instrument, &place),
+            false => fill(report.instrument_over, &place),
+        }
+    };
+    match used.is_empty() {
+        true => report.no_instruments.into(),
+        false => used.iter().map(one).collect::<Vec<_>>().join("; "),
+    }
+}
+
+/// Who signed the run, by which `ptu verify` can be held against a list of keys.
+fn signed_by(sheet: &Sheet, words: &Words) -> String {
+    let report = &words.report;
+    let Some(signed) = &sheet.run.signature else {
+        return report.unsigned.into();
+    };
+    let (key, at) = (signed.short_key(), local_zoned(signed.at_us));
+    let place: [(&str, &dyn std::fmt::Display); 3] =
+        [("who", &signed.who), ("key", &key), ("at", &at)];
+    fill(report.signed, &place)
 }
 
 fn all_steps(sheet: &Sheet, sources: &Sources<'_>, words: &Words) -> Vec<Block> {

@@ -99,6 +99,7 @@ fn run() -> RunRecord {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: vec![ScriptRecord {
             path: "atp/overspeed.star".into(),
             sha256: "ef".repeat(32),

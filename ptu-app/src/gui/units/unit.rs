@@ -361,6 +361,7 @@ mod tests {
                 scripts_sha256: suite.sha256,
                 adaptive: None,
                 continues: None,
+                measuring: Default::default(),
             },
             store: fault_db::Store::open(database, ptu_bench::clock::open_options())
                 .expect("a database"),

@@ -93,6 +93,7 @@ impl TestBench {
             scripts_sha256: self.suite.sha256.clone(),
             adaptive: None,
             continues: None,
+            measuring: Default::default(),
         };
         let place = Place::new();
         let path = place.path("history.db");

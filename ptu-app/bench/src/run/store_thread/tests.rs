@@ -29,6 +29,7 @@ fn record() -> RunRecord {
         continues: None,
         connection: None,
         symptom: None,
+        evidence: None,
         scripts: Vec::new(),
     }
 }

@@ -130,6 +130,7 @@ fn workers_start_only_a_limited_number_of_procedures_ahead() {
         scripts_sha256: String::new(),
         adaptive: None,
         continues: None,
+        measuring: Default::default(),
     };
     let stop = Stop::default();
     let first_failure = FirstFailure::new(false);

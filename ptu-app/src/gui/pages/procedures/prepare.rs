@@ -111,6 +111,7 @@ pub fn order(
             scripts_sha256: suite.sha256.clone(),
             adaptive,
             continues: None,
+            measuring: Default::default(),
         },
         store,
         realtime: choice.realtime,

@@ -1,0 +1,109 @@
+//! The register of what measures and generates on a bench: each entry is a statement in the file's own chain of seals, so
+//! no earlier calibration is lost, and each may be signed.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::backend::{SqlResult, values};
+use crate::error::StoreError;
+use crate::history::limits;
+use crate::id::Id;
+use crate::seal::{append_statement, own_file_id};
+use crate::store::Store;
+
+/// The kind of its entries.
+const INSTRUMENT: &str = "instrument";
+
+/// An instrument as it was registered, or calibrated last.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Instrument {
+    /// What it is: `bench`, `sound card`, `coil`, in the caller's words.
+    pub kind: String,
+    /// Its serial number, by which it is named.
+    pub serial_no: String,
+    /// The day of its calibration; none: never calibrated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibrated: Option<String>,
+    /// Who calibrated it, and under which number.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub by: String,
+    /// The first day on which its calibration holds no more; none: it does not end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub due: Option<String>,
+    /// Expanded uncertainty (k = 2) of what it measures, by unit of measurement.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertainty: BTreeMap<String, f64>,
+    /// It was taken off the bench.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub retired: bool,
+    /// When this was registered.
+    pub at_us: i64,
+    /// Who registered it.
+    #[serde(default)]
+    pub who: String,
+}
+
+impl Instrument {
+    /// Its calibration holds on a day (2026-11-26).
+    pub fn is_calibrated_on(&self, day: &str) -> bool {
+        self.calibrated.as_deref().is_some_and(|from| from <= day)
+            && self.due.as_deref().is_none_or(|due| day < due)
+    }
+}
+
+impl Store {
+    /// Registers an instrument, or states anew what is known of it.
+    ///
+    /// # Errors
+    /// A text is too long, or the file does not take it.
+    pub fn register_instrument(&self, instrument: &Instrument) -> Result<(), StoreError> {
+        const DOING: &str = "registering an instrument";
+        limits::name("the kind of the instrument", &instrument.kind)?;
+        limits::name("the serial number", &instrument.serial_no)?;
+        limits::name("who calibrated it", &instrument.by)?;
+        limits::name("the name of who registers it", &instrument.who)?;
+        let minted = self.mint()?;
+        self.write(DOING, |_| {
+            let register = || -> SqlResult<()> {
+                let known = self.statements()?;
+                let same =
+                    (known.iter()).find(|(_, known)| known.serial_no == instrument.serial_no);
+                let id = same.map_or(minted, |(id, _)| *id);
+                append_statement(self.backend(), INSTRUMENT, id, instrument)
+            };
+            register().map_err(|error| self.failed(DOING, error))
+        })
+    }
+
+    /// The instruments of this file's own bench, by serial number, as they were stated last; those of other files that
+    /// were brought in are not among them.
+    ///
+    /// # Errors
+    /// They cannot be read.
+    pub fn instruments(&self) -> Result<Vec<Instrument>, StoreError> {
+        let read = self.statements();
+        let all = read.map_err(|error| self.failed("reading the instruments", error))?;
+        let last: BTreeMap<String, Instrument> = (all.into_iter())
+            .map(|(_, instrument)| (instrument.serial_no.clone(), instrument))
+            .collect();
+        Ok(last
+            .into_values()
+            .filter(|instrument| !instrument.retired)
+            .collect())
+    }
+
+    /// All statements in their order.
+    fn statements(&self) -> SqlResult<Vec<(Id, Instrument)>> {
+        let Some(own) = own_file_id(self.backend())? else {
+            return Ok(Vec::new());
+        };
+        let sql =
+            "SELECT id, says FROM seal WHERE origin = ?1 AND what = 'instrument' ORDER BY ordinal";
+        let found = self.backend().select(sql, &values![own], |row| {
+            Ok((row.get::<Id>(0)?, row.get::<String>(1)?))
+        })?;
+        let read = |(id, says): (Id, String)| Some((id, serde_json::from_str(&says).ok()?));
+        Ok(found.into_iter().filter_map(read).collect())
+    }
+}

@@ -1,0 +1,348 @@
+//! A list of public keys: text that can be read, signed off on paper and copied.
+
+use std::path::{Path, PathBuf};
+
+use chrono::{DateTime, NaiveDate, Utc};
+use fault_db::read_regular_file;
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+
+/// Longest list that is read, bytes.
+const LONGEST: u64 = 4 << 20;
+const DAY: &str = "%Y-%m-%d";
+
+/// A public key, whose it is, and when it holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KeyEntry {
+    /// The name it signs by.
+    pub who: String,
+    /// `technician` or `bench`.
+    pub kind: String,
+    /// The public key, in hex.
+    pub key: String,
+    /// The first day on which it holds (UTC).
+    pub from: String,
+    /// The first day on which it holds no more; none: without an end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
+    /// The day from which on it is revoked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revoked: Option<String>,
+    /// Why it was revoked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// Public keys, as the files say that were read.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KeyList {
+    /// The keys.
+    #[serde(default, rename = "key")]
+    pub keys: Vec<KeyEntry>,
+}
+
+/// How a key stood at a time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It is in the list under this name and held then.
+    Held,
+    /// It is not in the list.
+    Unknown,
+    /// It is in the list under another name.
+    OtherName(String),
+    /// Its time had not begun; the day from which on it holds.
+    NotYet(String),
+    /// Its time was over; the day from which on.
+    Expired(String),
+    /// It was revoked; the day from which on.
+    Revoked(String),
+}
+
+impl Standing {
+    /// It is in the list and held then.
+    pub fn is_good(&self) -> bool {
+        *self == Self::Held
+    }
+
+    /// In words, after "the key".
+    pub fn text(&self) -> String {
+        match self {
+            Self::Held => "is in the list and was valid then".to_owned(),
+            Self::Unknown => {
+                "is not in the list of keys; `ptu key trust FILE.pub` adds one that you know"
+                    .to_owned()
+            }
+            Self::OtherName(name) => format!("belongs to {name} in the list of keys"),
+            Self::NotYet(day) => format!("is valid from {day} only"),
+            Self::Expired(day) => format!("expired on {day}"),
+            Self::Revoked(day) => format!("was revoked from {day}"),
+        }
+    }
+}
+
+impl KeyList {
+    /// Reads a file, or all `.pub` and `.keys` files of a folder. A revocation in any of them holds.
+    ///
+    /// # Errors
+    /// There is none, or one of them is wrong.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        if !path.is_dir() {
+            return Self::of_file(path);
+        }
+        let cannot = |error| Failure::bench(format!("cannot read {}: {error}", path.display()));
+        let mut files: Vec<PathBuf> = Vec::new();
+        for entry in std::fs::read_dir(path).map_err(cannot)? {
+            let file = entry.map_err(cannot)?.path();
+            let ending = file.extension().unwrap_or_default();
+            if ending == "pub" || ending == "keys" {
+                files.push(file);
+            }
+        }
+        files.sort();
+        let mut list = Self::default();
+        for file in files {
+            for entry in Self::of_file(&file)?.keys {
+                list.add(entry);
+            }
+        }
+        Ok(list)
+    }
+
+    fn of_file(path: &Path) -> Result<Self, Failure> {
+        let shown = path.display();
+        let bytes = read_regular_file(path, LONGEST)
+            .map_err(|error| Failure::bench(format!("cannot read {shown}: {error}")))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Failure::bench(format!("{shown} is no list of keys: it is no text")))?;
+        Self::of_text(&text)
+            .map_err(|why| Failure::bench(format!("{shown} is no list of keys: {why}")))
+    }
+
+    fn of_text(text: &str) -> Result<Self, String> {
+        let list: Self = toml::from_str(text).map_err(|error| error.message().to_owned())?;
+        for entry in &list.keys {
+            entry.check()?;
+        }
+        Ok(list)
+    }
+
+    /// The list as a file has it.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for entry in &self.keys {
+            text += "[[key]]\n";
+            // Text in JSON is text in TOML, but for this one sign.
+            let mut line = |name: &str, value: &str| {
+                let quoted = serde_json::Value::from(value).to_string();
+                text += &format!("{name} = {}\n", quoted.replace('\u{7f}', "\\u007f"));
+            };
+            line("who", &entry.who);
+            line("kind", &entry.kind);
+            line("key", &entry.key);
+            line("from", &entry.from);
+            for (name, value) in [
+                ("until", &entry.until),
+                ("revoked", &entry.revoked),
+                ("reason", &entry.reason),
+            ] {
+                if let Some(value) = value {
+                    line(name, value);
+                }
+            }
+            text += "\n";
+        }
+        text
+    }
+
+    /// Adds a key; one that is there already keeps its earliest revocation, and takes the other's times.
+    pub fn add(&mut self, entry: KeyEntry) {
+        let Some(known) = self.keys.iter_mut().find(|known| known.key == entry.key) else {
+            self.keys.push(entry);
+            return;
+        };
+        let revoked = [&known.revoked, &entry.revoked]
+            .into_iter()
+            .flatten()
+            .min()
+            .cloned();
+        let reason = known.reason.clone().or(entry.reason.clone());
+        *known = KeyEntry {
+            revoked,
+            reason,
+            ..entry
+        };
+    }
+
+    /// The entry of this key.
+    pub fn find(&self, key: &str) -> Option<&KeyEntry> {
+        self.keys.iter().find(|entry| entry.key == key)
+    }
+
+    /// The keys that are meant by a name, or by the beginning of a key of at least four digits.
+    pub fn named<'a>(&'a self, asked: &'a str) -> impl Iterator<Item = &'a KeyEntry> {
+        let by_key = move |entry: &KeyEntry| asked.len() >= 4 && entry.key.starts_with(asked);
+        (self.keys.iter()).filter(move |entry| entry.who == asked || by_key(entry))
+    }
+
+    /// How a key stood at a time under a name.
+    pub fn standing(&self, key: &str, who: &str, at_us: i64) -> Standing {
+        match self.find(key) {
+            None => Standing::Unknown,
+            Some(entry) if entry.who != who => Standing::OtherName(entry.who.clone()),
+            Some(entry) => entry.standing(at_us),
+        }
+    }
+}
+
+impl KeyEntry {
+    /// The first digits of the key, as lists and sheets show it.
+    pub fn short(&self) -> &str {
+        self.key.get(..16).unwrap_or(&self.key)
+    }
+
+    /// How it stood at a time.
+    pub fn standing(&self, at_us: i64) -> Standing {
+        let day = day_of(at_us);
+        let is_from = |start: &&String| ***start <= *day;
+        match (&self.revoked, &self.until) {
+            (Some(revoked), _) if is_from(&revoked) => Standing::Revoked(revoked.clone()),
+            _ if *self.from > *day => Standing::NotYet(self.from.clone()),
+            (_, Some(until)) if is_from(&until) => Standing::Expired(until.clone()),
+            _ => Standing::Held,
+        }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let hex = self
+            .key
+            .bytes()
+            .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+        if self.key.len() != 64 || !hex {
+            return Err(format!(
+                "the key of {} is no 64 digits of 0 to 9, a to f",
+                self.who
+            ));
+        }
+        for day in [Some(&self.from), self.until.as_ref(), self.revoked.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            day_argument(day)?;
+        }
+        Ok(())
+    }
+}
+
+/// A day, as 2026-11-26.
+///
+/// # Errors
+/// It is none.
+pub fn day_argument(text: &str) -> Result<String, String> {
+    let day = NaiveDate::parse_from_str(text, DAY)
+        .ok()
+        .map(|day| day.format(DAY).to_string());
+    day.filter(|day| day == text)
+        .ok_or_else(|| format!("\"{text}\" is no day; write it as 2026-11-26"))
+}
+
+/// The day of a time, UTC.
+pub fn day_of(at_us: i64) -> String {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    at.format(DAY).to_string()
+}
+
+/// The day a number of years after a time.
+pub fn day_text(at_us: i64, years: u32) -> String {
+    let at = DateTime::<Utc>::from_timestamp_micros(at_us).unwrap_or_default();
+    let later = at
+        .date_naive()
+        .checked_add_months(chrono::Months::new(12 * years));
+    later.unwrap_or_default().format(DAY).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(who: &str, digit: &str) -> KeyEntry {
+        KeyEntry {
+            who: who.to_owned(),
+            kind: "technician".to_owned(),
+            key: digit.repeat(64),
+            from: "2026-03-01".to_owned(),
+            until: Some("2028-03-01".to_owned()),
+            revoked: None,
+            reason: None,
+        }
+    }
+
+    fn at(day: &str) -> i64 {
+        let day = NaiveDate::parse_from_str(day, DAY).expect("a day");
+        day.and_hms_opt(12, 0, 0)
+            .expect("noon")
+            .and_utc()
+            .timestamp_micros()
+    }
+
+    #[test]
+    fn a_list_is_read_as_it_was_written() {
+        let mut odd = entry("Kim \"K\" [[key]]\nwho = 김", "a");
+        odd.reason = Some("lost\\".to_owned());
+        odd.revoked = Some("2027-01-01".to_owned());
+        let list = KeyList {
+            keys: vec![odd, entry("Lee", "b")],
+        };
+        assert_eq!(KeyList::of_text(&list.text()), Ok(list));
+        assert_eq!(KeyList::of_text(""), Ok(KeyList::default()));
+        for wrong in [
+            "x",
+            "[[key]]\nwho = 'a'",
+            "[[key]]\nwho='a'\nkind='b'\nkey='zz'\nfrom='2026-01-01'",
+        ] {
+            assert!(KeyList::of_text(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_key_holds_from_its_first_day_until_it_ends_or_is_revoked() {
+        let mut list = KeyList {
+            keys: vec![entry("Kim", "a")],
+        };
+        let key = "a".repeat(64);
+        let standing = |list: &KeyList, day| list.standing(&key, "Kim", at(day));
+        assert_eq!(
+            standing(&list, "2026-02-28"),
+            Standing::NotYet("2026-03-01".to_owned())
+        );
+        assert_eq!(standing(&list, "2026-03-01"), Standing::Held);
+        assert_eq!(standing(&list, "2028-02-29"), Standing::Held);
+        assert_eq!(
+            standing(&list, "2028-03-01"),
+            Standing::Expired("2028-03-01".to_owned())
+        );
+        list.keys[0].revoked = Some("2027-01-01".to_owned());
+        assert_eq!(standing(&list, "2026-12-31"), Standing::Held);
+        assert_eq!(
+            standing(&list, "2027-01-01"),
+            Standing::Revoked("2027-01-01".to_owned())
+        );
+        assert_eq!(
+            list.standing(&key, "Lee", at("2026-04-01")),
+            Standing::OtherName("Kim".to_owned())
+        );
+        assert_eq!(list.standing("b", "Lee", 0), Standing::Unknown);
+    }
+
+    #[test]
+    fn a_revocation_is_not_undone_by_another_file() {
+        let mut list = KeyList::default();
+        let mut revoked = entry("Kim", "a");
+        revoked.revoked = Some("2027-01-01".to_owned());
+        list.add(revoked.clone());
+        list.add(entry("Kim", "a"));
+        assert_eq!(list.keys, [revoked]);
+    }
+}

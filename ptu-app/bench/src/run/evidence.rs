@@ -1,0 +1,86 @@
+//! What a run's results rest on besides its scripts: kept with the run, sealed and signed with it.
+
+use fault_db::Instrument;
+use serde::{Deserialize, Serialize};
+
+use super::bench_contents::BenchContents;
+use super::plan::MeasuringRules;
+use crate::clock::{ClockState, NOT_KNOWN_MS, now_us};
+use crate::keys::day_of;
+
+/// What the bench was made of, and how right its clock was.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Unit configuration, line, train and settings, by their content.
+    pub bench: BenchContents,
+    /// The computer's clock.
+    pub clock: ClockEvidence,
+    /// The instruments of the bench, as they were registered then.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instruments: Vec<InstrumentEvidence>,
+    /// Limits were narrowed by the uncertainty of what was measured.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub guard_banded: bool,
+}
+
+/// An instrument that a run used.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InstrumentEvidence {
+    /// As it was registered.
+    #[serde(flatten)]
+    pub of: Instrument,
+    /// Its calibration held.
+    pub is_calibrated: bool,
+}
+
+/// The computer's clock at the beginning of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClockEvidence {
+    /// The network has set it since the computer was started; none: the system does not say.
+    pub synchronised: Option<bool>,
+    /// How far its times may be wrong; none: not known.
+    pub uncertainty_ms: Option<u16>,
+}
+
+impl Evidence {
+    /// With the clock as it is now.
+    pub fn now(bench: BenchContents, used: Vec<Instrument>, rules: MeasuringRules) -> Self {
+        let today = day_of(now_us());
+        let used = used.into_iter().map(|of| InstrumentEvidence {
+            is_calibrated: of.is_calibrated_on(&today),
+            of,
+        });
+        let state = ClockState::now();
+        let uncertainty = state.uncertainty_ms();
+        Self {
+            bench,
+            clock: ClockEvidence {
+                synchronised: match state {
+                    ClockState::Synchronised => Some(true),
+                    ClockState::NotSynchronised => Some(false),
+                    ClockState::Unknown => None,
+                },
+                uncertainty_ms: (uncertainty != NOT_KNOWN_MS).then_some(uncertainty),
+            },
+            instruments: used.collect(),
+            guard_banded: rules.guard_band,
+        }
+    }
+
+    /// The instrument that values of this unit are measured with, if one is registered for it.
+    pub fn instrument_for(&self, unit: &str) -> Option<&InstrumentEvidence> {
+        let measures = |used: &&InstrumentEvidence| used.of.uncertainty.contains_key(unit);
+        self.instruments.iter().find(measures)
+    }
+
+    /// As a run keeps it.
+    pub fn text(&self) -> String {
+        // Structures of text and numbers: this cannot fail.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// As a run has kept it.
+    pub fn of(text: &str) -> Option<Self> {
+        serde_json::from_str(text).ok()
+    }
+}

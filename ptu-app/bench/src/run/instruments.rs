@@ -1,0 +1,85 @@
+//! The instruments of the bench that a run rests on, and whether their calibration holds.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::plan::Operand;
+use fault_db::{Instrument, Store};
+
+use super::bench_setup::BenchSetup;
+use super::plan::Task;
+use crate::clock;
+use crate::failure::Failure;
+use crate::keys::day_of;
+use crate::link::Endpoint;
+
+/// The instruments of this bench that a run on a port uses: all that are registered and not retired. A simulated unit is
+/// measured by none.
+///
+/// # Errors
+/// The calibration of one of them is over, and the run was not to go on without.
+pub(super) fn of_run(
+    store: &Store,
+    setup: &BenchSetup,
+    uncalibrated: bool,
+) -> Result<Vec<Instrument>, Failure> {
+    if setup.endpoint == Endpoint::Sim {
+        return Ok(Vec::new());
+    }
+    let used = store.instruments()?;
+    let today = day_of(clock::now_us());
+    match used.iter().find(|used| !used.is_calibrated_on(&today)) {
+        Some(over) if !uncalibrated => Err(Failure::bench(over_text(over))),
+        _ => Ok(used),
+    }
+}
+
+/// Narrows the limits of all measurements by the uncertainty of the instrument that is registered for their unit.
+///
+/// # Errors
+/// No instrument says how uncertain it is.
+pub(super) fn guard_band(tasks: &mut [Task], store: &Store) -> Result<(), Failure> {
+    let used = store.instruments()?;
+    if used.iter().all(|used| used.uncertainty.is_empty()) {
+        return Err(Failure::usage(
+            "no instrument is registered with an uncertainty, by which limits could be narrowed; `ptu instrument calibrate` \
+             states one",
+        ));
+    }
+    for task in tasks {
+        let procedure = Arc::make_mut(&mut task.procedure);
+        for measure in procedure
+            .steps
+            .iter_mut()
+            .flat_map(|step| &mut step.measures)
+        {
+            let of_unit = |used: &Instrument| used.uncertainty.get(measure.unit()).copied();
+            let Some(off) = used.iter().find_map(of_unit) else {
+                continue;
+            };
+            measure.low.iter_mut().for_each(|low| shift(low, off));
+            measure.high.iter_mut().for_each(|high| shift(high, -off));
+        }
+    }
+    Ok(())
+}
+
+fn shift(limit: &mut Operand, by: f64) {
+    match limit {
+        Operand::Literal(number) => *number += by,
+        Operand::Measured { offset, .. } => *offset += by,
+    }
+}
+
+fn over_text(instrument: &Instrument) -> String {
+    let Instrument {
+        kind, serial_no, ..
+    } = instrument;
+    let what = match (&instrument.calibrated, &instrument.due) {
+        (Some(_), Some(due)) => format!("the calibration of {kind} {serial_no} was due on {due}"),
+        _ => format!("{kind} {serial_no} was never calibrated"),
+    };
+    format!(
+        "{what}; nothing was driven. `ptu instrument calibrate {serial_no}` states a new calibration, --uncalibrated \
+         goes on without one, and the sheet says so"
+    )
+}

@@ -1,0 +1,249 @@
+//! `ptu instrument`: the register of what measures and generates on this bench.
+
+use std::collections::BTreeMap;
+
+use clap::{Args, Subcommand};
+use fault_db::{Instrument, Store};
+use serde_json::json;
+
+use super::signing::SigningOption;
+use super::{Database, Json, print_out};
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
+use ptu_bench::keys::{day_argument, day_of};
+use ptu_bench::table::Table;
+
+/// Register what measures and generates on this bench, with its calibration
+///
+/// Once an instrument is registered, a run on a port does not begin while the calibration of one of them is over; `ptu run
+/// --uncalibrated` goes on, and the sheet says so. Runs on the simulated unit use none.
+///
+/// Examples:
+///   ptu instrument add B-0031 --kind bench
+///   ptu instrument calibrate B-0031 --calibrated-by "KRISS 26-1187" --due 2027-11-26 --uncertainty ms=2 --uncertainty km/h=0.05
+///   ptu instrument list
+///   ptu instrument retire B-0031
+///
+/// Exit codes: 0 done, 2 no such instrument, 3 database.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct InstrumentArguments {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    signing: SigningOption,
+    #[command(flatten)]
+    database: Database,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Register an instrument; it counts as not calibrated until `calibrate` says when it was
+    Add {
+        /// Its serial number
+        #[arg(value_name = "SERIAL")]
+        serial_no: String,
+        /// What it is: bench, sound card, coil, adapter …
+        #[arg(long, value_name = "KIND")]
+        kind: String,
+        /// Who registers it
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        who: String,
+    },
+    /// State a calibration
+    Calibrate {
+        /// Its serial number
+        #[arg(value_name = "SERIAL")]
+        serial_no: String,
+        /// The day of the calibration, as 2026-11-26 [default: today]
+        #[arg(long, value_name = "DAY", value_parser = day_argument)]
+        on: Option<String>,
+        /// Who calibrated it, and the number of the certificate
+        #[arg(long = "calibrated-by", value_name = "TEXT")]
+        by: String,
+        /// First day on which the calibration holds no more
+        #[arg(long, value_name = "DAY", value_parser = day_argument)]
+        due: String,
+        /// Expanded uncertainty (k = 2) of values of a unit, as ms=2; repeatable
+        #[arg(long, value_name = "UNIT=NUMBER", value_parser = uncertainty)]
+        uncertainty: Vec<(String, f64)>,
+        /// Who states it
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        who: String,
+    },
+    /// Take an instrument off the bench; what runs said of it stays
+    Retire {
+        /// Its serial number
+        #[arg(value_name = "SERIAL")]
+        serial_no: String,
+        /// Who does it
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        who: String,
+    },
+    /// List the instruments, and how each stands today
+    List {
+        #[command(flatten)]
+        json: Json,
+    },
+}
+
+fn uncertainty(text: &str) -> Result<(String, f64), String> {
+    let wrong = || format!("\"{text}\" is no uncertainty; write it as ms=2");
+    let (unit, number) = text.split_once('=').ok_or_else(wrong)?;
+    let number: f64 = number.trim().parse().map_err(|_| wrong())?;
+    match number.is_finite() && number >= 0.0 && !unit.trim().is_empty() {
+        true => Ok((unit.trim().to_owned(), number)),
+        false => Err(wrong()),
+    }
+}
+
+impl InstrumentArguments {
+    /// Registers or lists.
+    pub fn run(self) -> Result<Exit, Failure> {
+        if let Verb::List { json } = self.verb {
+            return list(&self.database.open_read_only()?, json);
+        }
+        let store = self.database.open_file()?;
+        self.signing.sign(&store)?;
+        let at_us = clock::now_us();
+        match self.verb {
+            Verb::List { .. } => Ok(Exit::Passed),
+            Verb::Add {
+                serial_no,
+                kind,
+                who,
+            } => {
+                let (serial_no, kind) = (serial_no.trim().to_owned(), kind.trim().to_owned());
+                if serial_no.is_empty() || kind.is_empty() {
+                    return Err(Failure::usage(
+                        "an instrument has a serial number and a kind",
+                    ));
+                }
+                if store
+                    .instruments()?
+                    .iter()
+                    .any(|known| known.serial_no == serial_no)
+                {
+                    return Err(Failure::usage(format!(
+                        "{serial_no} is registered already; `ptu instrument list` shows it"
+                    )));
+                }
+                store.register_instrument(&Instrument {
+                    kind: kind.clone(),
+                    serial_no: serial_no.clone(),
+                    at_us,
+                    who,
+                    ..Instrument::default()
+                })?;
+                print_out(&format!(
+                    "registered: {kind} {serial_no}; until `ptu instrument calibrate {serial_no}` runs on a port do not begin"
+                ))
+            }
+            Verb::Calibrate {
+                serial_no,
+                on,
+                by,
+                due,
+                uncertainty,
+                who,
+            } => {
+                let known = find(&store, &serial_no)?;
+                let on = on.unwrap_or_else(|| day_of(at_us));
+                if due <= on {
+                    return Err(Failure::usage(format!(
+                        "it is due on {due}, before it was calibrated on {on}"
+                    )));
+                }
+                let uncertainty: BTreeMap<_, _> = uncertainty.into_iter().collect();
+                store.register_instrument(&Instrument {
+                    calibrated: Some(on.clone()),
+                    by,
+                    due: Some(due.clone()),
+                    uncertainty: if uncertainty.is_empty() {
+                        known.uncertainty
+                    } else {
+                        uncertainty
+                    },
+                    at_us,
+                    who,
+                    ..known
+                })?;
+                print_out(&format!("calibrated: {serial_no} on {on}, due {due}"))
+            }
+            Verb::Retire { serial_no, who } => {
+                let known = find(&store, &serial_no)?;
+                store.register_instrument(&Instrument {
+                    retired: true,
+                    at_us,
+                    who,
+                    ..known
+                })?;
+                print_out(&format!("retired: {serial_no}"))
+            }
+        }
+    }
+}
+
+fn find(store: &Store, serial_no: &str) -> Result<Instrument, Failure> {
+    let known = store.instruments()?;
+    let found = known
+        .iter()
+        .find(|known| known.serial_no == serial_no)
+        .cloned();
+    found.ok_or_else(|| {
+        let hint = did_you_mean_number(serial_no, known.iter().map(|known| known.serial_no.as_str()));
+        Failure::usage(format!(
+            "no instrument \"{serial_no}\" is registered{hint}; `ptu instrument list` shows them, `ptu instrument add` \
+             registers one"
+        ))
+    })
+}
+
+fn list(store: &Store, json: Json) -> Result<Exit, Failure> {
+    let known = store.instruments()?;
+    let today = day_of(clock::now_us());
+    let document = || {
+        let one = |one: &Instrument| {
+            json!({
+                "kind": one.kind, "serial_no": one.serial_no, "calibrated": one.calibrated, "by": one.by, "due": one.due,
+                "uncertainty": one.uncertainty, "is_calibrated": one.is_calibrated_on(&today),
+            })
+        };
+        known.iter().map(one).collect::<Vec<_>>()
+    };
+    json.answer(document, || {
+        if known.is_empty() {
+            return "no instrument is registered; `ptu instrument add` registers one".into();
+        }
+        let mut table = Table::new(&[
+            "KIND",
+            "SERIAL",
+            "CALIBRATED",
+            "BY",
+            "DUE",
+            "UNCERTAINTY",
+            "TODAY",
+        ]);
+        for one in &known {
+            let uncertainty = one
+                .uncertainty
+                .iter()
+                .map(|(unit, number)| format!("{number} {unit}"));
+            table.row([
+                one.kind.clone(),
+                one.serial_no.clone(),
+                one.calibrated.clone().unwrap_or_default(),
+                one.by.clone(),
+                one.due.clone().unwrap_or_default(),
+                uncertainty.collect::<Vec<_>>().join(", "),
+                if one.is_calibrated_on(&today) {
+                    "calibrated"
+                } else {
+                    "not calibrated"
+                }
+                .to_owned(),
+            ]);
+        }
+        table.render()
+    })
+}

@@ -1,0 +1,313 @@
+//! `ptu key`: keys that runs are signed with, and the list of those that are trusted.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde_json::json;
+
+use super::signing::PinOption;
+use super::{Json, print_out};
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_bench::keys::{
+    KeyEntry, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, own_folder,
+    public_name,
+};
+use ptu_bench::new_file::{NewFile, cannot_write};
+use ptu_bench::owner_only;
+use ptu_bench::table::Table;
+
+/// Years for which a new key holds.
+const YEARS: u32 = 2;
+
+/// Make keys that runs are signed with, and keep the list of those that are trusted
+///
+/// Examples:
+///   ptu key new --who Kim                       a technician's key, protected by a PIN
+///   ptu key new --who "bench 3" --bench --pin-file pin.txt
+///   ptu key trust kim.pub                       puts a public key into this computer's list
+///   ptu key revoke Kim --note "laptop lost"     from today on it signs nothing more
+///   ptu key list
+///
+/// Exit codes: 0 done, 2 no such key, or a key that is there already, 3 a file that cannot be read.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct KeyArguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Make a key: a private key file, protected by a PIN, and beside it a `.pub` file to hand to others
+    New {
+        /// The name it signs by
+        #[arg(long, value_name = "TEXT")]
+        who: String,
+        /// It is the key of a bench, not of a technician
+        #[arg(long)]
+        bench: bool,
+        /// The private key's file [default: in the folder `keys` of the user's data directory]
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+        /// First day on which it holds no more, as 2028-11-26 [default: in two years]
+        #[arg(long, value_name = "DAY", value_parser = day_argument)]
+        until: Option<String>,
+        #[command(flatten)]
+        pin: PinOption,
+    },
+    /// List the keys that are trusted, and how each stands today
+    List {
+        #[command(flatten)]
+        keys: KeysOption,
+        #[command(flatten)]
+        json: Json,
+    },
+    /// Put the public keys of a file into the list of those that are trusted
+    Trust {
+        /// A `.pub` file, or another list
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        #[command(flatten)]
+        keys: KeysOption,
+    },
+    /// Revoke a key from today on; what it signed before stays valid
+    Revoke {
+        /// Whose key, or the beginning of the key (at least 4 digits)
+        #[arg(value_name = "NAME|KEY")]
+        key: String,
+        /// Why
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        note: String,
+        #[command(flatten)]
+        keys: KeysOption,
+    },
+}
+
+/// Which list of public keys.
+#[derive(Debug, Default, Args)]
+pub struct KeysOption {
+    /// List of trusted public keys: a file, or a folder with `.pub` and `.keys` files [default: the folder `keys` of the
+    /// user's data directory]
+    #[arg(long, value_name = "FILE|DIR", env = "PTU_KEYS")]
+    keys: Option<PathBuf>,
+}
+
+impl KeysOption {
+    fn place(&self) -> Result<PathBuf, Failure> {
+        self.keys.clone().map_or_else(own_folder, Ok)
+    }
+
+    /// The list; empty where nobody has made one.
+    ///
+    /// # Errors
+    /// What was named is not there, or it cannot be read.
+    pub fn read(&self) -> Result<KeyList, Failure> {
+        let place = self.place()?;
+        match (place.exists(), self.keys.is_some()) {
+            (false, false) => Ok(KeyList::default()),
+            (false, true) => Err(Failure::usage(format!(
+                "there is no list of keys {}; `ptu key trust FILE.pub --keys FILE` begins one",
+                place.display()
+            ))),
+            (true, _) => KeyList::read(&place),
+        }
+    }
+
+    /// Changes the list in its file; that of a folder is `trusted.keys` in it.
+    fn change(&self, entry: KeyEntry) -> Result<PathBuf, Failure> {
+        let place = self.place()?;
+        let is_folder = place.is_dir() || self.keys.is_none();
+        let file = match is_folder {
+            true => place.join(TRUSTED),
+            false => place,
+        };
+        owner_only::folder_of(&file)?;
+        let mut list = match file.exists() {
+            true => KeyList::read(&file)?,
+            false => KeyList::default(),
+        };
+        list.add(entry);
+        write(&file, &list.text())?;
+        Ok(file)
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let mut file = NewFile::begin(path)?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| cannot_write(path, &error))?;
+    file.finish()
+}
+
+impl KeyArguments {
+    /// Makes, lists, trusts or revokes.
+    pub fn run(self) -> Result<Exit, Failure> {
+        match self.verb {
+            Verb::New {
+                who,
+                bench,
+                out,
+                until,
+                pin,
+            } => new(who.trim(), bench, out, until, &pin),
+            Verb::List { keys, json } => list(&keys, json),
+            Verb::Trust { file, keys } => trust(&file, &keys),
+            Verb::Revoke { key, note, keys } => revoke(&key, note.trim(), &keys),
+        }
+    }
+}
+
+fn new(
+    who: &str,
+    bench: bool,
+    out: Option<PathBuf>,
+    until: Option<String>,
+    pin: &PinOption,
+) -> Result<Exit, Failure> {
+    if who.is_empty() || who.chars().any(char::is_control) {
+        return Err(Failure::usage("a key signs by a name; give it with --who"));
+    }
+    let path = match out {
+        Some(path) => path,
+        None => own_folder()?.join(format!("{}.key", file_name(who))),
+    };
+    owner_only::folder_of(&path)?;
+    for there in [path.clone(), public_name(&path)] {
+        if there.exists() {
+            return Err(Failure::usage(format!(
+                "{} is there already and stays; name another file with --out",
+                there.display()
+            )));
+        }
+    }
+    let now = clock::now_us();
+    let key = NewKey {
+        who,
+        kind: if bench { "bench" } else { "technician" },
+        from: day_of(now),
+        until: until.or_else(|| Some(day_text(now, YEARS))),
+    };
+    let entry = key.write(&path, &pin.choose()?)?;
+    print_out(&format!(
+        "key {} of {who} ({}), valid {}\n  private: {}; keep it and its PIN to yourself, and keep a copy\n  public:  {}; \
+         hand it to whoever keeps the list: `ptu key trust`\nto sign: ptu run --key {}",
+        entry.short(),
+        entry.kind,
+        span(&entry),
+        path.display(),
+        public_name(&path).display(),
+        path.display(),
+    ))
+}
+
+/// A name for a file: letters and digits, all else a hyphen.
+fn file_name(who: &str) -> String {
+    let letter = |c: char| if c.is_alphanumeric() { c } else { '-' };
+    who.to_lowercase().chars().map(letter).collect()
+}
+
+fn span(entry: &KeyEntry) -> String {
+    match &entry.until {
+        Some(until) => format!("from {} until {until}", entry.from),
+        None => format!("from {}", entry.from),
+    }
+}
+
+fn list(keys: &KeysOption, json: Json) -> Result<Exit, Failure> {
+    let list = keys.read()?;
+    let now = clock::now_us();
+    let document = || {
+        let entry = |entry: &KeyEntry| {
+            json!({
+                "who": entry.who, "kind": entry.kind, "key": entry.key, "from": entry.from, "until": entry.until,
+                "revoked": entry.revoked, "reason": entry.reason, "valid": entry.standing(now).is_good(),
+            })
+        };
+        list.keys.iter().map(entry).collect::<Vec<_>>()
+    };
+    json.answer(document, || table(&list, now))
+}
+
+fn table(list: &KeyList, now: i64) -> String {
+    if list.keys.is_empty() {
+        return "no keys; `ptu key new` makes one, `ptu key trust FILE.pub` adds another's".into();
+    }
+    let mut table = Table::new(&["WHO", "KIND", "KEY", "FROM", "UNTIL", "TODAY"]);
+    for entry in &list.keys {
+        let today = match entry.standing(now) {
+            Standing::Held => "valid".to_owned(),
+            standing => standing.text(),
+        };
+        table.row([
+            entry.who.clone(),
+            entry.kind.clone(),
+            entry.short().to_owned(),
+            entry.from.clone(),
+            entry.until.clone().unwrap_or_default(),
+            match &entry.reason {
+                Some(reason) if !reason.is_empty() => format!("{today}: {reason}"),
+                _ => today,
+            },
+        ]);
+    }
+    table.render()
+}
+
+fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
+    if !file.exists() {
+        return Err(Failure::usage(format!(
+            "there is no file {}; it is the `.pub` file that `ptu key new` made",
+            file.display()
+        )));
+    }
+    let new = KeyList::read(file)?;
+    if new.keys.is_empty() {
+        return Err(Failure::usage(format!("{} names no key", file.display())));
+    }
+    let mut said = Vec::new();
+    for entry in new.keys {
+        let name = format!(
+            "{} ({}), key {}, {}",
+            entry.who,
+            entry.kind,
+            entry.short(),
+            span(&entry)
+        );
+        let to = keys.change(entry)?;
+        said.push(format!("trusted: {name}, in {}", to.display()));
+    }
+    print_out(&said.join("\n"))
+}
+
+fn revoke(asked: &str, note: &str, keys: &KeysOption) -> Result<Exit, Failure> {
+    let list = keys.read()?;
+    let found: Vec<&KeyEntry> = list.named(asked).collect();
+    let entry = match found[..] {
+        [entry] => entry.clone(),
+        [] => {
+            let hint = did_you_mean(asked, list.keys.iter().map(|entry| entry.who.as_str()));
+            return Err(Failure::usage(format!(
+                "no key \"{asked}\" in the list{hint}; `ptu key list` shows them"
+            )));
+        }
+        _ => {
+            return Err(Failure::usage(format!(
+                "{} keys are of \"{asked}\"; give the beginning of the key, as `ptu key list` shows it",
+                found.len()
+            )));
+        }
+    };
+    let (who, key) = (entry.who.clone(), entry.short().to_owned());
+    let today = day_of(clock::now_us());
+    let to = keys.change(KeyEntry {
+        revoked: Some(entry.revoked.clone().unwrap_or(today.clone())),
+        reason: Some(note.to_owned()).filter(|note| !note.is_empty()),
+        ..entry
+    })?;
+    print_out(&format!(
+        "revoked from {today}: key {key} of {who}, in {}; hand the new list to all who verify",
+        to.display()
+    ))
+}

@@ -1,0 +1,134 @@
+//! `--key`: what is recorded is signed.
+
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use fault_db::{Signer, Store};
+
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::keys::{KeyFile, KeyList, Standing, own_folder};
+
+/// Longest file with a PIN, bytes.
+const LONGEST_PIN: u64 = 4096;
+/// Holds the PIN, for benches without a terminal.
+const PIN: &str = "PTU_PIN";
+
+/// With which key to sign, if any.
+#[derive(Debug, Default, Args)]
+pub struct SigningOption {
+    /// Sign with this key file of `ptu key new`; its PIN is asked for, or read from --pin-file or PTU_PIN
+    #[arg(long, value_name = "FILE", env = "PTU_KEY", global = true)]
+    key: Option<PathBuf>,
+    #[command(flatten)]
+    pin: PinOption,
+}
+
+/// Where the PIN of a key comes from.
+#[derive(Debug, Default, Args)]
+pub struct PinOption {
+    /// File with the PIN of the key, for what runs without a terminal
+    #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE", global = true)]
+    pin_file: Option<PathBuf>,
+}
+
+impl SigningOption {
+    /// From now on what is recorded in this history is signed, if there is a key.
+    ///
+    /// # Errors
+    /// The key is not there, holds no longer, or its PIN is wrong.
+    pub fn sign(&self, store: &Store) -> Result<(), Failure> {
+        if let Some(signer) = self.signer()? {
+            store.sign_with(Some(signer));
+        }
+        Ok(())
+    }
+
+    /// Opens the key, if one is named.
+    ///
+    /// # Errors
+    /// The key is not there, holds no longer, or its PIN is wrong.
+    pub fn signer(&self) -> Result<Option<Arc<Signer>>, Failure> {
+        let Some(path) = self
+            .key
+            .as_deref()
+            .filter(|path| !path.as_os_str().is_empty())
+        else {
+            return Ok(None);
+        };
+        let file = KeyFile::read(path)?;
+        check(path, &file)?;
+        let pin = self
+            .pin
+            .ask(&format!("PIN of {}'s key: ", file.entry().who))?;
+        Ok(Some(Arc::new(file.open(&pin)?)))
+    }
+}
+
+/// Refuses a key that does not hold today, by its own file or by the list of this computer.
+fn check(path: &Path, file: &KeyFile) -> Result<(), Failure> {
+    let (entry, now) = (file.entry(), clock::now_us());
+    let listed = own_folder().ok().filter(|folder| folder.is_dir());
+    let listed = listed.map(|folder| KeyList::read(&folder)).transpose()?;
+    let listed = listed
+        .unwrap_or_default()
+        .standing(&entry.key, &entry.who, now);
+    for standing in [entry.standing(now), listed] {
+        if !matches!(standing, Standing::Held | Standing::Unknown) {
+            return Err(Failure::usage(format!(
+                "the key in {} {}: nothing is signed with it; `ptu key new` makes another",
+                path.display(),
+                standing.text()
+            )));
+        }
+    }
+    Ok(())
+}
+
+impl PinOption {
+    /// The PIN, from the file, the environment or the terminal.
+    ///
+    /// # Errors
+    /// There is none of them, or the file cannot be read.
+    pub fn ask(&self, prompt: &str) -> Result<String, Failure> {
+        if let Some(path) = &self.pin_file {
+            let bytes = fault_db::read_regular_file(path, LONGEST_PIN).map_err(|error| {
+                Failure::usage(format!(
+                    "cannot read the PIN in {}: {error}",
+                    path.display()
+                ))
+            })?;
+            let text = String::from_utf8_lossy(&bytes);
+            return Ok(text.trim_end_matches(['\n', '\r']).to_owned());
+        }
+        if let Ok(pin) = std::env::var(PIN) {
+            return Ok(pin);
+        }
+        if !std::io::stdin().is_terminal() {
+            return Err(Failure::usage(
+                "the key is protected by a PIN, and there is no terminal to ask for it; put it into a file that only you \
+                 can read and name that with --pin-file, or set PTU_PIN",
+            ));
+        }
+        let terminal = console::Term::stderr();
+        let cannot =
+            |error: std::io::Error| Failure::usage(format!("no PIN could be read: {error}"));
+        terminal.write_str(prompt).map_err(cannot)?;
+        terminal.read_secure_line().map_err(cannot)
+    }
+
+    /// The PIN for a new key: typed twice at a terminal.
+    ///
+    /// # Errors
+    /// As [`Self::ask`], or the two differ.
+    pub fn choose(&self) -> Result<String, Failure> {
+        let first = self.ask("PIN for the new key: ")?;
+        let typed = self.pin_file.is_none() && std::env::var_os(PIN).is_none();
+        if typed && self.ask("the same again: ")? != first {
+            return Err(Failure::usage("the two PINs differ; no key was made"));
+        }
+        Ok(first)
+    }
+}

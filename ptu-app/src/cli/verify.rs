@@ -1,0 +1,398 @@
+//! `ptu verify`: who signed, and whether anything was changed since.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use fault_db::{About, Signed, Statement, Store, Verification};
+use serde_json::{Value, json};
+
+use super::key::KeysOption;
+use super::{Database, Json, answered};
+use ptu_bench::clock::{self, rfc3339};
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::keys::KeyList;
+use ptu_report::{has_certificate, read_certificate};
+
+/// Longest sheet or certificate that is read, bytes.
+const LONGEST: u64 = 64 << 20;
+/// What a database file begins with.
+const DATABASE: &[u8] = b"SQLite format 3\0";
+
+/// Say who signed a run, a database, a sheet or a certificate, and whether anything was changed since; needs no network
+///
+/// Examples:
+///   ptu verify latest                      the last run of the database
+///   ptu verify sheet.html --keys depot.keys
+///   ptu verify run.ptucert
+///   ptu verify history.db                  all of a file
+///
+/// Exit codes: 0 signed by a key that is trusted, and unchanged, 1 changed, not signed, or signed by a key that is not
+/// trusted, 2 no such run or file, 3 it cannot be read.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct VerifyArguments {
+    /// A run (an id, its beginning or end, or `latest`), a database file, an .html sheet or a .ptucert file
+    #[arg(value_name = "RUN|FILE")]
+    what: String,
+    #[command(flatten)]
+    keys: KeysOption,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    database: Database,
+}
+
+/// What was found.
+#[derive(Default)]
+struct Findings {
+    /// `run`, `database`, `sheet` or `certificate`.
+    what: &'static str,
+    id: String,
+    /// Who signed what, when, and how the key stood then.
+    signatures: Vec<Value>,
+    /// The same in words.
+    said: Vec<String>,
+    /// What was changed, and where.
+    changes: Vec<String>,
+    /// What is not signed, or not by a key that is trusted.
+    doubts: Vec<String>,
+    /// What is to be known besides.
+    remarks: Vec<String>,
+}
+
+impl VerifyArguments {
+    /// Verifies.
+    pub fn run(self) -> Result<Exit, Failure> {
+        let keys = self.keys.read()?;
+        let path = Path::new(&self.what);
+        let found = match path.is_file() {
+            true => self.file(path, &keys)?,
+            false => self.of_run(&keys)?,
+        };
+        let good = found.changes.is_empty() && found.doubts.is_empty();
+        let told = self.json.answer(|| found.json(), || found.text());
+        let exit = if good { Exit::Passed } else { Exit::Failed };
+        answered(told, exit)
+    }
+
+    fn of_run(&self, keys: &KeyList) -> Result<Findings, Failure> {
+        if looks_like_a_file(&self.what) {
+            return Err(Failure::usage(format!("there is no file {}", self.what)));
+        }
+        let store = self.database.open_read_only()?;
+        let id = store.resolve_run(&self.what)?;
+        let seen = store.verify_run(id)?;
+        let mut found = Findings {
+            what: "run",
+            id: id.to_string(),
+            ..Findings::default()
+        };
+        found.take_run(seen, keys);
+        Ok(found)
+    }
+
+    fn file(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
+        let cannot = |error: std::io::Error| {
+            Failure::bench(format!("cannot read {}: {error}", path.display()))
+        };
+        let mut head = [0; DATABASE.len()];
+        let read = std::io::Read::read(&mut std::fs::File::open(path).map_err(cannot)?, &mut head);
+        if read.map_err(cannot)? == head.len() && head == *DATABASE {
+            return self.of_database(path, keys);
+        }
+        let bytes = fault_db::read_regular_file(path, LONGEST).map_err(cannot)?;
+        let none = |why: &str| {
+            Failure::bench(format!(
+                "{} is no database, no sheet with a certificate and no certificate: {why}",
+                path.display()
+            ))
+        };
+        let text = String::from_utf8(bytes).map_err(|_| none("it is no text"))?;
+        if has_certificate(&text) {
+            return sheet(&text, keys).map_err(|why| none(&why));
+        }
+        if text.trim_start().starts_with('{') {
+            return self.certificate(&text, keys).map_err(|why| none(&why));
+        }
+        Err(none("a sheet of a run that was not signed has none"))
+    }
+
+    fn of_database(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
+        let store = Store::open_read_only(path)?;
+        let report = store.check()?;
+        let mut found = Findings {
+            what: "database",
+            id: path.display().to_string(),
+            ..Findings::default()
+        };
+        found.changes = report
+            .problems
+            .into_iter()
+            .map(|problem| problem.detail)
+            .collect();
+        found.remarks = report.remarks;
+        // What this computer's own history has seen of it, by a sync or an import.
+        if let Ok(own) = self.database.open_read_only() {
+            for broken in own.seen_otherwise(&store)? {
+                if !found.changes.contains(&broken) {
+                    found.changes.push(broken);
+                }
+            }
+        }
+        let signed: u32 = report.signed.iter().map(|key| key.runs).sum();
+        for key in report.signed {
+            let stood = [key.first_at_us, key.last_at_us]
+                .map(|at_us| keys.standing(&key.key, &key.who, at_us));
+            let wrong = stood.iter().find(|standing| !standing.is_good());
+            let standing = wrong.unwrap_or(&stood[0]).text();
+            let short = key.key.get(..16).unwrap_or_default();
+            let name = format!("{} ({}, key {short})", key.who, key.kind);
+            found.said.push(format!(
+                "{name} signed {} runs and {} notes, events and instruments, from {} to {}; the key {standing}",
+                key.runs,
+                key.others,
+                clock::local(key.first_at_us),
+                clock::local(key.last_at_us)
+            ));
+            if wrong.is_some() {
+                found.doubts.push(format!("the key of {name} {standing}"));
+            }
+            found.signatures.push(json!({
+                "what": "database", "id": null, "who": key.who, "kind": key.kind, "key": key.key,
+                "at": rfc3339(key.last_at_us), "trusted": wrong.is_none(), "standing": standing,
+            }));
+        }
+        if signed == 0 {
+            found.doubts.push("no run in it is signed".to_owned());
+        } else if signed < report.runs {
+            let unsigned = report.runs - signed;
+            found
+                .remarks
+                .push(format!("{unsigned} of {} runs are not signed", report.runs));
+        }
+        Ok(found)
+    }
+
+    /// A certificate by itself, and held against the run where the database has it.
+    fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, String> {
+        let mut found = Findings {
+            what: "certificate",
+            ..Findings::default()
+        };
+        let signed: Result<Signed, String> =
+            Signed::read(text.trim()).map_err(|error| error.to_string());
+        match signed {
+            Err(why) if why.starts_with("it is no signed") => return Err(why),
+            Err(why) => found.changes.push(format!("the certificate: {why}")),
+            Ok(signed) => {
+                let statement = Statement::of(&signed).ok_or("it is no statement about a run")?;
+                found.id = statement.id.clone();
+                found.take(&statement, keys);
+                self.hold_against_database(&statement, &mut found);
+            }
+        }
+        Ok(found)
+    }
+
+    fn hold_against_database(&self, statement: &Statement, found: &mut Findings) {
+        let look = || -> Option<Verification> {
+            let store = self.database.open_read_only().ok()?;
+            store.verify_run(statement.id.parse().ok()?).ok()
+        };
+        match look() {
+            None => found
+                .remarks
+                .push("the database here does not have this run".to_owned()),
+            Some(seen) => {
+                let same = seen
+                    .seal
+                    .is_some_and(|seal| seal.digest == statement.digest);
+                if !same {
+                    found
+                        .changes
+                        .push("the run in the database is not what was signed".to_owned());
+                }
+                found.changes.extend(seen.changes);
+                if found.changes.is_empty() {
+                    found
+                        .remarks
+                        .push("the run in the database is what was signed".to_owned());
+                }
+            }
+        }
+    }
+}
+
+/// Whether a name is meant as that of a file.
+fn looks_like_a_file(name: &str) -> bool {
+    let ending = PathBuf::from(name);
+    let ending = ending.extension().and_then(|ending| ending.to_str());
+    name.contains(['/', '\\']) || matches!(ending, Some("db" | "html" | "ptucert"))
+}
+
+/// A sheet by the certificate in it.
+fn sheet(page: &str, keys: &KeyList) -> Result<Findings, String> {
+    let certificate = read_certificate(page)?;
+    let mut found = Findings {
+        what: "sheet",
+        ..Findings::default()
+    };
+    let mut digest = None;
+    for signed in certificate.run {
+        match signed.and_then(|signed| {
+            Statement::of(&signed).ok_or_else(|| "it is no statement about a run".to_owned())
+        }) {
+            Err(why) => found
+                .changes
+                .push(format!("a signature in its certificate: {why}")),
+            Ok(statement) => {
+                if statement.what == "run" {
+                    found.id.clone_from(&statement.id);
+                    digest = Some(statement.digest.clone());
+                }
+                found.take(&statement, keys);
+            }
+        }
+    }
+    match certificate.sheet {
+        None => found.doubts.push(
+            "the text of the sheet is not signed: hold it against the database, or write it again with --key".to_owned(),
+        ),
+        Some(Err(why)) => found.changes.push(format!("the signature of the sheet: {why}")),
+        Some(Ok(sheet)) => {
+            if sheet.what != "sheet" {
+                found.changes.push("the signature of the sheet is of something else".to_owned());
+            }
+            if sheet.sheet != certificate.sha256 {
+                found.changes.push("the text of the sheet was changed after it was signed".to_owned());
+            }
+            if found.id.is_empty() {
+                found.id.clone_from(&sheet.id);
+                found.doubts.push("the run is not signed, only the sheet is".to_owned());
+            }
+            if sheet.id != found.id || digest.is_some_and(|digest| digest != sheet.digest) {
+                found.changes.push("the sheet and the certificate in it are of two runs".to_owned());
+            }
+            let of = Statement {
+                what: "sheet".to_owned(),
+                id: sheet.id,
+                who: sheet.who,
+                kind: sheet.kind,
+                key: sheet.key,
+                at_us: sheet.at_us,
+                ..Statement::default()
+            };
+            found.take(&of, keys);
+        }
+    }
+    Ok(found)
+}
+
+impl Findings {
+    fn take_run(&mut self, seen: Verification, keys: &KeyList) {
+        for statement in &seen.signatures {
+            self.take(statement, keys);
+        }
+        if seen.seal.is_none() {
+            self.doubts
+                .push("the run has not ended: nothing is sealed".to_owned());
+        } else if seen.of_run().next().is_none() {
+            self.doubts
+                .push("the run is not signed; what its seal says stands below".to_owned());
+        }
+        if let Some(seal) = &seen.seal {
+            let as_found = match &seal.found {
+                Some(_) => ", as it was found when it came in",
+                None => "",
+            };
+            self.remarks.push(format!(
+                "seal {}, entry {} of database {}{as_found}",
+                seal.short(),
+                seal.entry,
+                seal.file.short()
+            ));
+        }
+        let pruned = seen.pruned.iter().map(|what| format!("{what} was pruned"));
+        self.remarks.extend(pruned);
+        self.changes.extend(seen.changes);
+    }
+
+    fn take(&mut self, signed: &Statement, keys: &KeyList) {
+        let standing = keys.standing(&signed.key, &signed.who, signed.at_us);
+        let (at, short) = (clock::local(signed.at_us), signed.short_key());
+        let name = format!("{} ({}, key {short})", signed.who, signed.kind);
+        let id = signed
+            .id
+            .get(signed.id.len().saturating_sub(8)..)
+            .unwrap_or_default();
+        let what = &signed.what;
+        let about = signed.about.as_ref().map_or_else(String::new, about);
+        self.said.push(format!(
+            "{what} {id}: signed by {name} at {at}; the key {}{about}",
+            standing.text()
+        ));
+        if !standing.is_good() {
+            self.doubts.push(format!(
+                "{what} {id}: the key of {name} {}",
+                standing.text()
+            ));
+        }
+        self.signatures.push(json!({
+            "what": what, "id": signed.id, "who": signed.who, "kind": signed.kind, "key": signed.key,
+            "at": rfc3339(signed.at_us), "trusted": standing.is_good(), "standing": standing.text(),
+        }));
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "what": self.what, "id": self.id,
+            "verified": self.changes.is_empty() && self.doubts.is_empty(),
+            "changes": self.changes, "doubts": self.doubts, "signatures": self.signatures, "remarks": self.remarks,
+        })
+    }
+
+    fn text(&self) -> String {
+        let mut lines = self.said.clone();
+        if self.changes.is_empty() {
+            lines.push(format!(
+                "unchanged: the {} is as it was {}",
+                self.what,
+                match self.signatures.is_empty() {
+                    true => "sealed",
+                    false => "signed",
+                }
+            ));
+        } else {
+            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
+            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
+        }
+        if !self.doubts.is_empty() {
+            lines.push("NOT VERIFIED:".to_owned());
+            lines.extend(self.doubts.iter().map(|doubt| format!("  {doubt}")));
+        }
+        lines.extend(self.remarks.iter().cloned());
+        lines.join("\n")
+    }
+}
+
+/// What a signed run says, in short.
+fn about(about: &About) -> String {
+    let injected = match &about.injected {
+        Some(faults) => format!(", with injected faults {faults}"),
+        None => String::new(),
+    };
+    format!(
+        "\n  unit {}: {}, {} steps, {} measured values, by {}, on {}, begun {}{injected}",
+        about.unit,
+        about.verdict,
+        about.steps,
+        about.measurements,
+        if about.operator.is_empty() {
+            "nobody named"
+        } else {
+            &about.operator
+        },
+        about.source,
+        clock::local(about.started_at_us)
+    )
+}
