@@ -22,6 +22,7 @@
 pub mod aboard;
 pub mod bench_worker;
 pub mod campaign;
+pub mod clauses;
 pub mod clock;
 pub mod coverage;
 pub mod data;

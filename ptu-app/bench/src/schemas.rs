@@ -9,7 +9,7 @@ use protocol::config::UnitConfig;
 use protocol::injection::FaultCatalogue;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
-use crate::{fleet, structure, symptoms};
+use crate::{clauses, fleet, structure, symptoms};
 
 /// A schema, and the files that it is of.
 pub struct FileSchema {
@@ -58,6 +58,7 @@ pub fn all() -> Vec<FileSchema> {
         file("diagnosis", &["diagnosis.toml"], of::<Settings>()),
         file("fleet", &["fleet.toml"], of::<fleet::FleetFile>()),
         file("symptoms", &["symptoms.toml"], of::<symptoms::Written>()),
+        file("clauses", &["clauses.toml"], of::<clauses::Written>()),
     ]
 }
 

@@ -1,6 +1,7 @@
 //! `ptu catalog`: what there is to name in commands and scripts.
 
 use btu_rig::procedure::describe::bit_names;
+use btu_rig::procedure::plan::Connection;
 use btu_rig::tcms::Consist;
 use btu_rig::train::{CarSet, MAX_CARS, Role, TrainData};
 use clap::{Args, ValueEnum};
@@ -8,13 +9,16 @@ use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
-use super::{Json, ScriptsOption};
+use super::{Json, ScriptsOption, answered};
+use ptu_bench::clauses;
 use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::run_diagnosis::choose;
+use ptu_bench::stdio;
 use ptu_bench::structure::Structure;
 use ptu_bench::symptoms;
 use ptu_bench::table::Table;
 
-/// Show faults, signals, speed codes, lines, parts, the structure, symptoms or a train's cars
+/// Show faults, signals, speed codes, lines, parts, the structure, symptoms, clauses or a train's cars
 #[derive(Debug, Args)]
 pub struct CatalogArguments {
     /// What to show
@@ -48,6 +52,8 @@ enum CatalogTopic {
     Structure,
     /// What may be wrong with a unit, and the parts it may come from
     Symptoms,
+    /// What the steps prove: clauses, their steps, and the injected faults that make these fail
+    Clauses,
     /// Masses and brake forces of a train's cars, its MT pairs and the whole of it
     Train,
 }
@@ -56,6 +62,7 @@ impl CatalogArguments {
     /// Prints the catalogue.
     pub fn run(self) -> Result<Exit, Failure> {
         let entries = match self.what {
+            CatalogTopic::Clauses => return self.clauses(),
             CatalogTopic::Faults => self.faults()?,
             CatalogTopic::Signals => signals(),
             CatalogTopic::Codes => self.codes()?,
@@ -100,6 +107,20 @@ impl CatalogArguments {
         let directory = self.scripts.find()?;
         let symptoms = symptoms::load(&directory, &directory.faults()?.lrus)?;
         Ok(symptoms.into_iter().map(entry).collect())
+    }
+
+    /// The matrix of clauses. A clause without a step, and a step without a clause, are findings: exit code 1.
+    fn clauses(&self) -> Result<Exit, Failure> {
+        let directory = self.scripts.find()?;
+        let chosen = choose(None, &directory, Connection::Btu)?;
+        for warning in &chosen.warnings {
+            stdio::note(warning);
+        }
+        let matrix = clauses::matrix(&clauses::load(&directory)?, &chosen.dictionary);
+        let is_whole =
+            matrix.clauses_without_step.is_empty() && matrix.steps_without_clause.is_empty();
+        let told = self.json.answer(|| &matrix, || clauses_text(&matrix));
+        answered(told, if is_whole { Exit::Passed } else { Exit::Failed })
     }
 
     fn codes(&self) -> Result<Vec<Value>, Failure> {
@@ -238,4 +259,38 @@ fn as_table(entries: &[Value]) -> String {
         }));
     }
     table.render()
+}
+
+fn clauses_text(matrix: &clauses::Matrix) -> String {
+    let mut table = Table::new(&[
+        "CLAUSE",
+        "STEPS",
+        "FAULTS",
+        "NOT SHOWN TO FAIL",
+        "DEMANDS",
+        "SOURCE",
+    ]);
+    for proof in &matrix.clauses {
+        table.row([
+            proof.clause.clone(),
+            proof.steps.len().to_string(),
+            proof.faults.len().to_string(),
+            proof.unproved.len().to_string(),
+            proof.text.clone(),
+            proof.source.clone(),
+        ]);
+    }
+    let mut text = table.render() + "\n\n";
+    for clause in &matrix.clauses_without_step {
+        text += &format!("clause {clause}: no step proves it\n");
+    }
+    for step in &matrix.steps_without_clause {
+        text += &format!("{step}: cites no clause\n");
+    }
+    text += &format!(
+        "{} of {} steps fail under an injected fault; the others are listed by --json as `unproved`\n",
+        matrix.steps - matrix.steps_without_fault,
+        matrix.steps
+    );
+    text
 }
