@@ -388,7 +388,7 @@ fn about(about: &About) -> String {
         about.steps,
         about.measurements,
         if about.operator.is_empty() {
-            "nobody named"
+            "a person not named"
         } else {
             &about.operator
         },
