@@ -254,8 +254,9 @@ pub fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
 fn spectrogram(picture: &Picture, duration_s: f64, words: &Words) -> Plot {
     let said = &words.signals;
     let (columns, shades, (low, high)) = shades(picture);
-    let (spectra, each_s) = picture.spectra();
+    let (spectra, _) = picture.spectra();
     let rows = spectra.first().map_or(0, Vec::len);
+    let (from_s, to_s) = picture.spectra_s();
     let highest = rows as f64 * picture.row_hz();
     let [low, high] = [low, high].map(|level| format!("{level:.0}"));
     Plot {
@@ -265,7 +266,7 @@ fn spectrogram(picture: &Picture, duration_s: f64, words: &Words) -> Plot {
         x_range: Some((0.0, duration_s)),
         y_reach: Some((0.0, highest)),
         raster: Some(Raster {
-            x: (0.0, (columns as f64 * each_s).min(duration_s)),
+            x: (from_s.min(duration_s), to_s.min(duration_s)),
             y: (0.0, highest),
             columns,
             shades,

@@ -1,13 +1,16 @@
 //! Signals as waveforms in files: made by the bench's generators, read by the unit's receivers.
 
+mod codes;
 #[cfg(test)]
 mod coil_tests;
 mod make;
+mod markers;
 mod picture;
 mod read;
 mod receive;
 #[cfg(test)]
 mod tests;
+mod twc;
 mod wav;
 
 pub use make::{Made, Samples, Strength, Wave, bytes_of, make, reference_hz, rest_hz, samples};

@@ -177,6 +177,14 @@ impl Picture {
         (columns.values(), each_s)
     }
 
+    /// From when to when the spectra are, s: each stands in the middle of what it is made of.
+    pub fn spectra_s(&self) -> (f64, f64) {
+        let Spectrum { hop, window, .. } = &self.spectrum;
+        let (spectra, each_s) = self.spectra();
+        let from_s = (window.len() - hop) as f64 / 2.0 / self.sample_hz;
+        (from_s, from_s + spectra.len() as f64 * each_s)
+    }
+
     /// Frequencies of a spectrum's row, Hz.
     pub fn row_hz(&self) -> f64 {
         let Spectrum { shown, window, .. } = &self.spectrum;

@@ -1,30 +1,25 @@
 //! The unit's receivers on the channels of a recording: they take samples block by block, each on a core of its own, and
 //! tell what they have heard.
 
-use ato_under_test::receivers::{
-    CodeReceiver, FskReceiver, Heard, MarkerReceiver, Passed, Received, Reception, Tones,
-};
-use protocol::config::{SpeedCode, UnitConfig};
+use ato_under_test::receivers::Tones;
+use protocol::config::UnitConfig;
 
+use super::codes::{Carrier, Codes};
+use super::markers::Markers;
 use super::picture::Picture;
-use super::read::{NotUnderstood, Reading, Source, Why};
+use super::read::{NotUnderstood, Reading, Why};
+use super::twc::Twc;
 
 /// How often the receivers of codes are asked, s: it is most of their work.
 const ASKED_EVERY_S: f64 = 0.1;
 /// Askings in a block.
 const ASKED_IN_BLOCK: usize = 10;
-/// A code that is not heard for so long has ended, s.
-const ENDS_AFTER_S: f64 = 0.3;
-/// Bytes of TWC that are farther apart are two messages, s.
-const APART_S: f64 = 0.2;
-/// Bytes after which a message that does not end is told as the next one.
-const LONGEST: usize = 4_096;
 /// What is louder than the weakest level that is decoded, and understood by no receiver, is told from this length on, s.
 const LEAST_UNKNOWN_S: f64 = 1.0;
 /// Least sample rate, times the highest frequency of a signal.
 const LEAST_RATE: f64 = 2.2;
 /// Most entries of each kind in an answer.
-const MOST: usize = 100_000;
+pub(super) const MOST: usize = 100_000;
 
 /// The receivers of all channels of a recording.
 pub struct Receivers<'a> {
@@ -173,16 +168,16 @@ impl Reading {
 
 /// When the samples of a block are.
 #[derive(Clone, Copy)]
-struct Clock {
+pub(super) struct Clock {
     /// Samples before the block.
     before: u64,
     sample_hz: f64,
-    asked_every: usize,
+    pub(super) asked_every: usize,
 }
 
 impl Clock {
     /// When the sample of this place is over, s.
-    fn at_s(self, place: usize) -> f64 {
+    pub(super) fn at_s(self, place: usize) -> f64 {
         (self.before + place as u64 + 1) as f64 / self.sample_hz
     }
 }
@@ -283,257 +278,6 @@ impl<'a> Channel<'a> {
         });
         let room = MOST.saturating_sub(reading.not_understood.len());
         reading.not_understood.extend(unknown.take(room));
-    }
-}
-
-/// The receivers of codes.
-struct Codes<'a> {
-    carriers: Vec<Carrier<'a>>,
-    done: Vec<Source>,
-    /// Of the last block: whether something was heard at each asking.
-    understood: Vec<bool>,
-}
-
-impl Codes<'_> {
-    fn take_block(&mut self, samples: &[f32], clock: Clock, (channel, unit): (usize, &UnitConfig)) {
-        self.understood.clear();
-        for (place, part) in samples.chunks(clock.asked_every).enumerate() {
-            let mut understood = false;
-            let at_s = clock.at_s((place + 1) * clock.asked_every - 1);
-            for carrier in &mut self.carriers {
-                part.iter()
-                    .for_each(|sample| carrier.receiver.take(*sample));
-                if part.len() == clock.asked_every {
-                    understood |= carrier.ask(unit, at_s, channel, &mut self.done);
-                }
-            }
-            self.understood.push(understood);
-        }
-        self.done.truncate(MOST);
-    }
-}
-
-/// The codes of one carrier.
-struct Carrier<'a> {
-    carrier_hz: f64,
-    receiver: CodeReceiver,
-    codes: Vec<&'a SpeedCode>,
-    rates_hz: Vec<f32>,
-    under_way: Option<Source>,
-    /// Askings whose mean it tells.
-    askings: f64,
-    heard_s: f64,
-}
-
-impl<'a> Carrier<'a> {
-    fn new(code: &'a SpeedCode, unit: &UnitConfig, sample_hz: f64) -> Self {
-        Self {
-            carrier_hz: code.carrier_hz,
-            receiver: CodeReceiver::new(
-                Reception::of(&unit.receiver, code.carrier_hz),
-                sample_hz as f32,
-            ),
-            codes: vec![code],
-            rates_hz: vec![code.rate_hz as f32],
-            under_way: None,
-            askings: 0.0,
-            heard_s: 0.0,
-        }
-    }
-
-    /// Whether something is heard now.
-    fn ask(
-        &mut self,
-        unit: &UnitConfig,
-        at_s: f64,
-        channel: usize,
-        done: &mut Vec<Source>,
-    ) -> bool {
-        let Some(heard) = self.receiver.heard(&self.rates_hz) else {
-            if at_s - self.heard_s > ENDS_AFTER_S {
-                done.extend(self.under_way.take());
-            }
-            return false;
-        };
-        self.heard_s = at_s;
-        let what = self.name(&heard, unit);
-        let began_s = (at_s - f64::from(self.receiver.window_s())).max(0.0);
-        match &mut self.under_way {
-            Some(source) if source.what == what => {
-                source.to_s = at_s;
-                self.askings += 1.0;
-                let mean = |mean: &mut f64, value: f32| {
-                    *mean += (f64::from(value) - *mean) / self.askings;
-                };
-                mean(&mut source.carrier_hz, heard.carrier_hz);
-                mean(&mut source.rate_hz, heard.rate_hz);
-                if let Some(level_mv) = &mut source.level_mv {
-                    mean(level_mv, heard.level_mv);
-                }
-                if let (Some(snr_db), Some(now)) = (&mut source.snr_db, heard.snr_db) {
-                    mean(snr_db, now);
-                }
-            }
-            under_way => {
-                self.askings = 1.0;
-                let source = Source {
-                    kind: "code",
-                    channel,
-                    from_s: began_s,
-                    to_s: at_s,
-                    what,
-                    carrier_hz: f64::from(heard.carrier_hz),
-                    rate_hz: f64::from(heard.rate_hz),
-                    level_mv: Some(f64::from(heard.level_mv)),
-                    snr_db: heard.snr_db.map(f64::from),
-                    bad_bytes: None,
-                };
-                done.extend(under_way.replace(source));
-            }
-        }
-        true
-    }
-
-    /// The code's name, as the unit decodes it.
-    fn name(&self, heard: &Heard, unit: &UnitConfig) -> String {
-        let receiver = &unit.receiver;
-        let is_carrier =
-            (f64::from(heard.carrier_hz) - self.carrier_hz).abs() <= receiver.carrier_tolerance_hz;
-        let code = self.codes.iter().find(|code| {
-            (f64::from(heard.rate_hz) - code.rate_hz).abs() <= receiver.rate_tolerance_hz
-        });
-        match code {
-            Some(code) if is_carrier => code.name.clone(),
-            _ => String::new(),
-        }
-    }
-}
-
-/// The receiver of TWC, and the bytes that belong together.
-struct Twc {
-    receiver: FskReceiver,
-    tones: Tones,
-    under_way: Option<Source>,
-    done: Vec<Source>,
-    /// Of the last block: whether it was within a message at each asking of the codes.
-    understood: Vec<bool>,
-}
-
-impl Twc {
-    fn new(unit: &UnitConfig, sample_hz: f64) -> Self {
-        let level_min = unit.receiver.level_min_mv as f32;
-        let tones = Tones::of(&unit.twc);
-        Self {
-            receiver: FskReceiver::new(tones, sample_hz as f32, level_min),
-            tones,
-            under_way: None,
-            done: Vec::new(),
-            understood: Vec::new(),
-        }
-    }
-
-    fn take_block(&mut self, samples: &[f32], clock: Clock, channel: usize) {
-        self.understood.clear();
-        for (place, sample) in samples.iter().enumerate() {
-            if let Some(received) = self.receiver.take(*sample) {
-                self.receive(received, clock.at_s(place), channel);
-            }
-            if (place + 1) % clock.asked_every == 0 {
-                self.understood.push(self.is_in_message(clock.at_s(place)));
-            }
-        }
-    }
-
-    fn is_in_message(&self, at_s: f64) -> bool {
-        (self.under_way.as_ref()).is_some_and(|source| at_s - source.to_s < APART_S)
-    }
-
-    fn receive(&mut self, received: Received, at_s: f64, channel: usize) {
-        let goes_on = self.is_in_message(at_s)
-            && (self.under_way.as_ref()).is_some_and(|source| source.what.len() < 3 * LONGEST);
-        if !goes_on {
-            self.done.extend(self.under_way.take());
-            self.done.truncate(MOST);
-        }
-        let tones = self.tones;
-        let byte_s = 11.0 / f64::from(tones.bit_rate);
-        let source = self.under_way.get_or_insert_with(|| Source {
-            kind: "twc",
-            channel,
-            from_s: at_s - byte_s,
-            to_s: at_s,
-            what: String::new(),
-            carrier_hz: f64::from(tones.middle_hz),
-            rate_hz: f64::from(tones.bit_rate),
-            level_mv: None,
-            snr_db: None,
-            bad_bytes: Some(0),
-        });
-        source.to_s = at_s;
-        match received {
-            Received::Byte(byte) => {
-                let blank = if source.what.is_empty() { "" } else { " " };
-                source.what.push_str(&format!("{blank}{byte:02x}"));
-            }
-            Received::Parity | Received::Framing => {
-                source.bad_bytes = source.bad_bytes.map(|bad| bad + 1);
-            }
-        }
-    }
-}
-
-/// The receiver of markers.
-struct Markers {
-    receiver: MarkerReceiver,
-    tones_hz: [f64; 4],
-    done: Vec<Source>,
-    /// Of the last block: whether a marker was being passed at each asking of the codes.
-    understood: Vec<bool>,
-}
-
-impl Markers {
-    fn new(unit: &UnitConfig, sample_hz: f64) -> Self {
-        let tones_hz = unit.marker.tones_hz;
-        let level_min = unit.receiver.level_min_mv as f32;
-        Self {
-            receiver: MarkerReceiver::new(tones_hz, sample_hz as f32, level_min),
-            tones_hz,
-            done: Vec::new(),
-            understood: Vec::new(),
-        }
-    }
-
-    fn take_block(&mut self, samples: &[f32], clock: Clock, channel: usize) {
-        self.understood.clear();
-        let mut passed_now = false;
-        for (place, sample) in samples.iter().enumerate() {
-            if let Some(passed) = self.receiver.take(*sample) {
-                passed_now = true;
-                self.pass(passed, clock.at_s(place), channel);
-            }
-            if (place + 1) % clock.asked_every == 0 {
-                self.understood
-                    .push(passed_now || self.receiver.is_passing());
-                passed_now = false;
-            }
-        }
-        self.done.truncate(MOST);
-    }
-
-    fn pass(&mut self, passed: Passed, at_s: f64, channel: usize) {
-        let at_s = at_s - f64::from(passed.ago_s);
-        self.done.push(Source {
-            kind: "marker",
-            channel,
-            from_s: at_s,
-            to_s: at_s,
-            what: format!("PSM{}", passed.marker),
-            carrier_hz: self.tones_hz[usize::from(passed.marker) - 1],
-            rate_hz: 0.0,
-            level_mv: Some(f64::from(passed.level_mv)),
-            snr_db: None,
-            bad_bytes: None,
-        });
     }
 }
 

@@ -226,11 +226,12 @@ fn channels_are_read_each_and_not_without_end() {
     assert_eq!(reading.not_understood[0].why, Why::Channels(20));
     write(1, 48_000);
     let mut bytes = std::fs::read(&path).expect("the file");
-    bytes[24..28].copy_from_slice(&4_000_000_000u32.to_le_bytes());
+    bytes[24..28].copy_from_slice(&2_000_000_000u32.to_le_bytes());
+    bytes[28..32].copy_from_slice(&4_000_000_000u32.to_le_bytes());
     std::fs::write(&path, bytes).expect("another rate");
     let refused = read(&path, &unit, FULL_SCALE_MV).expect_err("no recording");
     assert!(
-        refused.message.contains("4000000000 Hz"),
+        refused.message.contains("2000000000 Hz"),
         "{}",
         refused.message
     );

@@ -78,26 +78,24 @@ impl Wav {
             ..
         } = self.reader.spec();
         let channels = usize::from(channels);
-        let mut block = vec![Vec::with_capacity(frames); channels.min(most)];
-        let mut place = 0;
+        let mut block = vec![Vec::new(); channels.min(most)];
+        let (mut place, mut passed) = (0, 0);
         let mut pass = |sample: f64| {
             if let Some(channel) = block.get_mut(place) {
                 let mv = sample * full_scale_mv;
                 channel.push(if mv.is_finite() { mv as f32 } else { 0.0 });
             }
             place = (place + 1) % channels;
+            passed += 1;
         };
         let wanted = frames * channels;
-        let mut passed = 0;
-        let mut count = |()| passed += 1;
         let read: hound::Result<()> = match sample_format {
             SampleFormat::Float => (self.reader.samples::<f32>().take(wanted))
-                .try_for_each(|sample| sample.map(|sample| count(pass(f64::from(sample))))),
+                .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample)))),
             SampleFormat::Int => {
                 let full = 2f64.powi(i32::from(bits_per_sample) - 1);
-                (self.reader.samples::<i32>().take(wanted)).try_for_each(|sample| {
-                    sample.map(|sample| count(pass(f64::from(sample) / full)))
-                })
+                (self.reader.samples::<i32>().take(wanted))
+                    .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample) / full)))
             }
         };
         // A frame that is cut off in its middle is none.

@@ -134,11 +134,13 @@ fn listen(mut words: ChildStderr, gaps: &AtomicU64, last: &Mutex<String>) {
             let lower = said.to_ascii_lowercase();
             if lower.contains("underrun") || lower.contains("overrun") {
                 gaps.fetch_add(1, Ordering::Relaxed);
-            } else if lower.contains("fail") || lower.contains("error") || lower.contains("refused")
-            {
-                if let Ok(mut last) = last.lock() {
-                    *last = said;
-                }
+                continue;
+            }
+            let tells_why = ["fail", "error", "refused"]
+                .iter()
+                .any(|word| lower.contains(word));
+            if tells_why && let Ok(mut last) = last.lock() {
+                *last = said;
             }
         }
     }

@@ -17,7 +17,7 @@ pub use crate::signal::SAMPLE_HZ;
 pub use calibration::{Calibration, Calibrations, Direction};
 pub use play::{Lead, Played, play};
 pub use programs::{DEFAULT, DeviceFound, devices};
-pub use record::{MOST_RECORDED_S, Recorded, record, record_to_file};
+pub use record::{MOST_RECORDED_S, Recorded, Take, record, record_to_file};
 
 /// Channels of a card that are used.
 pub const CHANNELS: usize = 2;

@@ -17,6 +17,9 @@ const TOGETHER: usize = 960;
 /// Longest recording, s: a WAV file holds no more.
 pub const MOST_RECORDED_S: f64 = 3.0 * 3_600.0;
 
+/// Gets the samples of each channel, mV, block by block; its failure ends the recording.
+pub type Take<'a> = dyn FnMut(&[Vec<f32>]) -> Result<(), Failure> + 'a;
+
 /// What was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Recorded {
@@ -37,7 +40,7 @@ pub fn record(
     (device, full_scale_mv): (&str, [f64; CHANNELS]),
     seconds: Option<f64>,
     stop: &Stop,
-    take: &mut dyn FnMut(&[Vec<f32>]) -> Result<(), Failure>,
+    take: &mut Take<'_>,
 ) -> Result<Recorded, Failure> {
     let mut command = programs::carrier(Direction::Input, device)?;
     let mut carried = Carried::start(&mut command, false, stop)?;
@@ -59,7 +62,7 @@ pub fn record(
             }
             return Err(carried.failed("record from", device));
         }
-        let mut block = vec![Vec::with_capacity(together); CHANNELS];
+        let mut block = vec![Vec::new(); CHANNELS];
         for (place, sample) in bytes.chunks_exact(2).enumerate() {
             let channel = place % CHANNELS;
             let sample = i16::from_le_bytes([sample[0], sample[1]]);

@@ -371,7 +371,7 @@ impl CalibrateArguments {
                 return None;
             }
             // Asked for each 10 ms.
-            if at % 480 == 0
+            if at.is_multiple_of(480)
                 && let Some(typed) = &typed
             {
                 for line in typed.lines() {

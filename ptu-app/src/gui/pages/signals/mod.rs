@@ -42,7 +42,7 @@ impl SignalsPage {
         self.poll(ui, context);
         let first = FirstHalf {
             name: "signals",
-            width: 560.0,
+            width: 590.0,
             share: 0.5,
         };
         first.show(ui, |ui| {

@@ -38,6 +38,7 @@ struct Channel {
     envelope: Curve,
     spectrum: Curve,
     waterfall: ColorImage,
+    waterfall_s: (f64, f64),
     highest_hz: f64,
 }
 
@@ -101,6 +102,7 @@ impl Seen {
                 envelope: Curve::of_spans(picture.envelope()),
                 spectrum: Curve::new(spectrum.collect(), levels.len() as f64 * row_hz),
                 waterfall: ColorImage::new([columns, rows], pixels.collect()),
+                waterfall_s: picture.spectra_s(),
                 highest_hz: picture.row_hz() * rows as f64,
             }
         });
@@ -222,7 +224,10 @@ impl View {
         );
         if let Some(Some(texture)) = self.textures.get(self.channel) {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            painter.image(texture.id(), image, whole, Color32::WHITE);
+            let (from_s, to_s) = channel.waterfall_s;
+            let at = |s: f64| lane::x_at(image, window, s.min(window.to));
+            let there = Rect::from_x_y_ranges(at(from_s)..=at(to_s), image.y_range());
+            painter.image(texture.id(), there, whole, Color32::WHITE);
         }
         let gutter = Rect::from_x_y_ranges(area.left()..=curves.left(), image.y_range());
         lane::y_axis(

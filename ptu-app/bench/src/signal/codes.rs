@@ -1,0 +1,138 @@
+//! The receivers of codes on a channel, and the codes that they have heard.
+
+use ato_under_test::receivers::{CodeReceiver, Heard, Reception};
+use protocol::config::{SpeedCode, UnitConfig};
+
+use super::read::Source;
+use super::receive::{Clock, MOST};
+
+/// A code that is not heard for so long has ended, s.
+const ENDS_AFTER_S: f64 = 0.3;
+
+/// The receivers of codes.
+pub(super) struct Codes<'a> {
+    pub(super) carriers: Vec<Carrier<'a>>,
+    pub(super) done: Vec<Source>,
+    /// Of the last block: whether something was heard at each asking.
+    pub(super) understood: Vec<bool>,
+}
+
+impl Codes<'_> {
+    pub(super) fn take_block(
+        &mut self,
+        samples: &[f32],
+        clock: Clock,
+        (channel, unit): (usize, &UnitConfig),
+    ) {
+        self.understood.clear();
+        for (place, part) in samples.chunks(clock.asked_every).enumerate() {
+            let mut understood = false;
+            let at_s = clock.at_s((place + 1) * clock.asked_every - 1);
+            for carrier in &mut self.carriers {
+                part.iter()
+                    .for_each(|sample| carrier.receiver.take(*sample));
+                if part.len() == clock.asked_every {
+                    understood |= carrier.ask(unit, at_s, channel, &mut self.done);
+                }
+            }
+            self.understood.push(understood);
+        }
+        self.done.truncate(MOST);
+    }
+}
+
+/// The codes of one carrier.
+pub(super) struct Carrier<'a> {
+    pub(super) carrier_hz: f64,
+    receiver: CodeReceiver,
+    pub(super) codes: Vec<&'a SpeedCode>,
+    pub(super) rates_hz: Vec<f32>,
+    pub(super) under_way: Option<Source>,
+    /// Askings whose mean it tells.
+    askings: f64,
+    heard_s: f64,
+}
+
+impl<'a> Carrier<'a> {
+    pub(super) fn new(code: &'a SpeedCode, unit: &UnitConfig, sample_hz: f64) -> Self {
+        Self {
+            carrier_hz: code.carrier_hz,
+            receiver: CodeReceiver::new(
+                Reception::of(&unit.receiver, code.carrier_hz),
+                sample_hz as f32,
+            ),
+            codes: vec![code],
+            rates_hz: vec![code.rate_hz as f32],
+            under_way: None,
+            askings: 0.0,
+            heard_s: 0.0,
+        }
+    }
+
+    /// Whether something is heard now.
+    fn ask(
+        &mut self,
+        unit: &UnitConfig,
+        at_s: f64,
+        channel: usize,
+        done: &mut Vec<Source>,
+    ) -> bool {
+        let Some(heard) = self.receiver.heard(&self.rates_hz) else {
+            if at_s - self.heard_s > ENDS_AFTER_S {
+                done.extend(self.under_way.take());
+            }
+            return false;
+        };
+        self.heard_s = at_s;
+        let what = self.name(&heard, unit);
+        let began_s = (at_s - f64::from(self.receiver.window_s())).max(0.0);
+        match &mut self.under_way {
+            Some(source) if source.what == what => {
+                source.to_s = at_s;
+                self.askings += 1.0;
+                let mean = |mean: &mut f64, value: f32| {
+                    *mean += (f64::from(value) - *mean) / self.askings;
+                };
+                mean(&mut source.carrier_hz, heard.carrier_hz);
+                mean(&mut source.rate_hz, heard.rate_hz);
+                if let Some(level_mv) = &mut source.level_mv {
+                    mean(level_mv, heard.level_mv);
+                }
+                if let (Some(snr_db), Some(now)) = (&mut source.snr_db, heard.snr_db) {
+                    mean(snr_db, now);
+                }
+            }
+            under_way => {
+                self.askings = 1.0;
+                let source = Source {
+                    kind: "code",
+                    channel,
+                    from_s: began_s,
+                    to_s: at_s,
+                    what,
+                    carrier_hz: f64::from(heard.carrier_hz),
+                    rate_hz: f64::from(heard.rate_hz),
+                    level_mv: Some(f64::from(heard.level_mv)),
+                    snr_db: heard.snr_db.map(f64::from),
+                    bad_bytes: None,
+                };
+                done.extend(under_way.replace(source));
+            }
+        }
+        true
+    }
+
+    /// The code's name, as the unit decodes it.
+    fn name(&self, heard: &Heard, unit: &UnitConfig) -> String {
+        let receiver = &unit.receiver;
+        let is_carrier =
+            (f64::from(heard.carrier_hz) - self.carrier_hz).abs() <= receiver.carrier_tolerance_hz;
+        let code = self.codes.iter().find(|code| {
+            (f64::from(heard.rate_hz) - code.rate_hz).abs() <= receiver.rate_tolerance_hz
+        });
+        match code {
+            Some(code) if is_carrier => code.name.clone(),
+            _ => String::new(),
+        }
+    }
+}
