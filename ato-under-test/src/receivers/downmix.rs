@@ -107,7 +107,11 @@ impl Downmix {
             re: sample_mv * self.oscillator.re,
             im: sample_mv * self.oscillator.im,
         };
-        self.place = (self.place + 1) % self.length;
+        // A division would be the dearest part.
+        self.place += 1;
+        if self.place == self.length {
+            self.place = 0;
+        }
         self.oscillator = self.oscillator.times(self.turn);
         self.left -= 1;
         if self.left > 0 {

@@ -146,3 +146,46 @@ fn faults_that_fail(dictionary: &Dictionary, place: usize) -> BTreeSet<&str> {
         .map(|mode| mode.name.id.as_str())
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run_diagnosis::choose;
+    use btu_rig::procedure::plan::Connection;
+
+    /// Goal: every default step cites a clause, every clause has steps that an injected fault makes fail, and what is not
+    /// cited or not proved is named. Method: the shipped clauses and dictionary, whole and with a clause left out.
+    #[test]
+    fn each_default_step_cites_a_clause_and_what_is_open_is_named() {
+        let scripts = ScriptsDirectory::find(None).expect("scripts");
+        let dictionary = choose(None, &scripts, Connection::Btu)
+            .expect("a dictionary")
+            .dictionary;
+        let mut clauses = load(&scripts).expect("clauses");
+        let whole = matrix(&clauses, &dictionary);
+        assert_eq!(whole.steps_without_clause, Vec::<String>::new());
+        assert_eq!(whole.clauses_without_step, Vec::<String>::new());
+        for proof in &whole.clauses {
+            assert!(!proof.faults.is_empty(), "{}", proof.clause);
+            assert!(
+                proof.text_ko.chars().any(|letter| !letter.is_ascii()),
+                "{}",
+                proof.clause
+            );
+        }
+        let left_out = clauses.remove(0);
+        clauses.push(Clause {
+            id: "none".into(),
+            steps: vec!["no/such: step".into()],
+            ..left_out
+        });
+        let open = matrix(&clauses, &dictionary);
+        assert!(
+            open.steps_without_clause
+                .iter()
+                .all(|step| step.contains("limit_speed"))
+        );
+        assert!(!open.steps_without_clause.is_empty());
+        assert_eq!(open.clauses_without_step, ["none"]);
+    }
+}
