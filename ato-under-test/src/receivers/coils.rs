@@ -14,8 +14,8 @@ use super::sensor::SensorInput;
 /// Samples of a scan, and in a second.
 const SAMPLES: usize = COIL_PART * COIL_PARTS;
 const SAMPLE_HZ: f32 = SAMPLES as f32 * 100.0;
-/// Lines of the speed sensors, which take turns.
-const LINES: usize = 4;
+/// Coils and lines.
+const COILS: usize = 7;
 /// Scans without samples after which a coil has been silent for long, and its receiver rests.
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
@@ -51,11 +51,13 @@ pub struct Coils {
     twc_bytes: Vec<u8>,
     markers: MarkerReceiver,
     sensors: [SensorInput; 2],
+    /// Line A of each in this scan: both lines of a sample are looked at together.
+    lines_a: [[i16; SAMPLES]; 2],
     /// Last marker, how many there were, and samples since the last one.
     marker: (u8, u8, f32),
     /// Parts of this scan that came of each coil, and scans since the last.
-    parts: [u8; 4],
-    silent: [u8; 4],
+    parts: [u8; COILS],
+    silent: [u8; COILS],
     gains: Gains,
     /// The last code that was heard, and scans since.
     heard: Option<(Heard, u8)>,
@@ -88,9 +90,10 @@ impl Coils {
             twc_bytes: Vec::new(),
             markers: MarkerReceiver::new(marker.tones_hz, SAMPLE_HZ, weakest(marker.level_mv)),
             sensors: [SensorInput::default(); 2],
+            lines_a: [[0; SAMPLES]; 2],
             marker: (0, 0, f32::MAX),
-            parts: [0; 4],
-            silent: [RESTS_AFTER; 4],
+            parts: [0; COILS],
+            silent: [RESTS_AFTER; COILS],
             gains: Gains { atp: 1.0 },
             heard: None,
         }
@@ -128,7 +131,7 @@ impl Coils {
             self.parts[place] = 0;
         }
         let antenna_rests = self.silent[Coil::AtpAntenna.code() as usize] == RESTS_AFTER;
-        let sensors_rest = self.silent[Coil::SpeedSensors.code() as usize] == RESTS_AFTER;
+        let sensors_rest = self.silent[Coil::Sensor1A.code() as usize] == RESTS_AFTER;
         if antenna_rests && sensors_rest {
             return None;
         }
@@ -143,8 +146,8 @@ impl Coils {
             heard_for = Duration::from_ms(window_ms.saturating_sub(HEARD_EARLY_MS));
         }
         let [one, two] = &self.sensors;
-        let line_us = 1e6 * LINES as f32 / SAMPLE_HZ;
-        let age_us = |since: f32| (since * line_us).min(f32::from(u16::MAX)) as u16;
+        let sample_us = 1e6 / SAMPLE_HZ;
+        let age_us = |since: f32| (since * sample_us).min(f32::from(u16::MAX)) as u16;
         (input.tacho1_count, input.tacho1_edge_us) = (one.count(), age_us(one.since()));
         (input.tacho2_count, input.tacho2_edge_us) = (two.count(), age_us(two.since()));
         input.tacho_backward = u8::from(one.backward()) | u8::from(two.backward()) << 1;
@@ -204,10 +207,16 @@ impl Coils {
                     }
                 }
             }
-            _ => {
-                for lines in samples.chunks_exact(LINES) {
-                    self.sensors[0].take(in_mv(lines[0]), in_mv(lines[1]));
-                    self.sensors[1].take(in_mv(lines[2]), in_mv(lines[3]));
+            line => {
+                let (sensor, is_b) = ((line - 3) / 2, line % 2 == 0);
+                let from = usize::from(part) * COIL_PART;
+                let line_a = &mut self.lines_a[sensor][from..from + COIL_PART];
+                if !is_b {
+                    line_a.copy_from_slice(samples);
+                    return;
+                }
+                for (a, b) in line_a.iter().zip(samples) {
+                    self.sensors[sensor].take(in_mv(*a), in_mv(*b));
                 }
             }
         }

@@ -79,7 +79,7 @@ wire_bits! {
 }
 
 wire_enum! {
-    /// A coil or sensor whose waveform is sent as samples.
+    /// A coil or a line of a sensor whose waveform is sent as samples.
     Coil {
         /// ATP antenna.
         AtpAntenna = 0 "atp_antenna",
@@ -87,8 +87,14 @@ wire_enum! {
         TwcAntenna = 1 "twc_antenna",
         /// Marker antenna.
         MarkerAntenna = 2 "marker_antenna",
-        /// Both speed sensors.
-        SpeedSensors = 3 "speed_sensors",
+        /// Line A of speed sensor 1.
+        Sensor1A = 3 "sensor_1_a",
+        /// Line B of speed sensor 1.
+        Sensor1B = 4 "sensor_1_b",
+        /// Line A of speed sensor 2.
+        Sensor2A = 5 "sensor_2_a",
+        /// Line B of speed sensor 2.
+        Sensor2B = 6 "sensor_2_b",
     }
 }
 

@@ -187,8 +187,7 @@ layout! {
         coil: Coil,
         /// Part of the scan, 0 to 4.
         part: u8,
-        /// 96 samples of 0.1 mV, i16 each. Of the speed sensors: their four lines by turns, 12 000 a second each: sensor 1 A,
-        /// 1 B, 2 A, 2 B.
+        /// 96 samples of 0.1 mV, i16 each.
         samples: Samples,
     }
 }

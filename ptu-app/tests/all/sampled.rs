@@ -68,5 +68,5 @@ fn a_channel_that_is_wrong_is_explained() {
         "--signals",
         "sampled",
     ];
-    place.ptu(&serial).exits(2).explains(&["3.5 Mbit/s"]);
+    place.ptu(&serial).exits(2).explains(&["6 Mbit/s"]);
 }

@@ -11,8 +11,6 @@ use crate::waveform::{Channel, ChannelConfig, CodeWave, FskWave, MarkerWave, Sen
 /// Samples of a scan, and in a second.
 const SAMPLES: usize = COIL_PART * COIL_PARTS;
 pub const SAMPLE_HZ: f64 = SAMPLES as f64 * 100.0;
-/// Samples of a scan for each of the four lines of the speed sensors.
-const LINE_SAMPLES: usize = SAMPLES / 4;
 /// Speed at which a marker passes that was asked for, m/s.
 const ASKED_MPS: f64 = 20.0;
 
@@ -40,7 +38,7 @@ pub struct Coils {
     asked: Vec<(u8, f64)>,
     sensors: [SensorWave; 2],
     counts: [u16; 2],
-    channels: [Channel; 4],
+    channels: [Channel; 7],
 }
 
 impl Coils {
@@ -56,12 +54,9 @@ impl Coils {
                 .tones_hz
                 .map(|tone| MarkerWave::new(tone, marker.level_mv, marker.reach_m, SAMPLE_HZ)),
             asked: Vec::new(),
-            sensors: [
-                SensorWave::new(SAMPLE_HZ / 4.0),
-                SensorWave::new(SAMPLE_HZ / 4.0),
-            ],
+            sensors: [SensorWave::new(SAMPLE_HZ), SensorWave::new(SAMPLE_HZ)],
             counts: [0; 2],
-            channels: [(); 4].map(|()| Channel::new(channel, SAMPLE_HZ, random.fork())),
+            channels: [(); 7].map(|()| Channel::new(channel, SAMPLE_HZ, random.fork())),
         }
     }
 
@@ -98,8 +93,15 @@ impl Coils {
         self.finish(now, Coil::MarkerAntenna, &mut samples, link, out);
         (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, u16::MAX);
 
-        self.add_pulses(input, &mut samples);
-        self.finish(now, Coil::SpeedSensors, &mut samples, link, out);
+        let lines = [
+            [Coil::Sensor1A, Coil::Sensor1B],
+            [Coil::Sensor2A, Coil::Sensor2B],
+        ];
+        for (sensor, lines) in lines.into_iter().enumerate() {
+            let [mut a, mut b] = self.pulses(sensor, input);
+            self.finish(now, lines[0], &mut a, link, out);
+            self.finish(now, lines[1], &mut b, link, out);
+        }
         (input.tacho1_count, input.tacho2_count) = (0, 0);
         (input.tacho1_edge_us, input.tacho2_edge_us) = (u16::MAX, u16::MAX);
         input.tacho_backward = 0;
@@ -138,19 +140,21 @@ impl Coils {
         });
     }
 
-    fn add_pulses(&mut self, input: &IoInput, samples: &mut [f64; SAMPLES]) {
-        let counted = [input.tacho1_count, input.tacho2_count];
-        let ages_us = [input.tacho1_edge_us, input.tacho2_edge_us];
-        for (place, sensor) in self.sensors.iter_mut().enumerate() {
-            let before = std::mem::replace(&mut self.counts[place], counted[place]);
-            let count = counted[place].wrapping_sub(before);
-            let left = 1.0 - f64::from(ages_us[place]) / SCAN.as_us() as f64;
-            let last = left.clamp(0.0, 1.0) * LINE_SAMPLES as f64;
-            sensor.pulse(count, last, input.tacho_backward & 1 << place != 0);
-            for lines in samples.chunks_exact_mut(4) {
-                lines[2 * place..2 * place + 2].copy_from_slice(&sensor.step());
-            }
+    /// Both lines of a speed sensor.
+    fn pulses(&mut self, sensor: usize, input: &IoInput) -> [[f64; SAMPLES]; 2] {
+        let counted = [input.tacho1_count, input.tacho2_count][sensor];
+        let age_us = [input.tacho1_edge_us, input.tacho2_edge_us][sensor];
+        let before = std::mem::replace(&mut self.counts[sensor], counted);
+        let left = 1.0 - f64::from(age_us) / SCAN.as_us() as f64;
+        let last = left.clamp(0.0, 1.0) * SAMPLES as f64;
+        let backward = input.tacho_backward & 1 << sensor != 0;
+        let wave = &mut self.sensors[sensor];
+        wave.pulse(counted.wrapping_sub(before), last, backward);
+        let mut lines = [[0.0; SAMPLES]; 2];
+        for place in 0..SAMPLES {
+            [lines[0][place], lines[1][place]] = wave.step();
         }
+        lines
     }
 
     /// What disturbs a coil comes on top; silence is not sent.
@@ -163,7 +167,7 @@ impl Coils {
         out: &mut Vec<u8>,
     ) {
         self.channels[usize::from(coil.code())].disturb(samples);
-        let always = matches!(coil, Coil::AtpAntenna | Coil::SpeedSensors);
+        let always = !matches!(coil, Coil::TwcAntenna | Coil::MarkerAntenna);
         if !always && samples.iter().all(|sample| *sample == 0.0) {
             return;
         }

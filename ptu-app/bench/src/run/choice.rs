@@ -136,7 +136,7 @@ impl BenchChoice {
         }
         if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
             return Err(Failure::usage(
-                "--signals sampled needs 3.5 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH",
+                "--signals sampled needs 6 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH",
             ));
         }
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
