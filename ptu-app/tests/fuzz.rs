@@ -328,7 +328,7 @@ fn parquet_file() -> Vec<u8> {
         .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
         .exits(1);
     let export = ["trace", "export", "latest", "--out", "t.parquet"];
-    let part = ["--signals", "speed,eb,mode", "--window", "-0.2..0.2"];
+    let part = ["--signal", "speed,eb,mode", "--window", "-0.2..0.2"];
     place.ptu(&[&export[..], &part].concat()).exits(0);
     std::fs::read(place.path("t.parquet")).expect("written")
 }

@@ -39,7 +39,7 @@ enum Verb {
 #[derive(Debug, Args)]
 pub struct PartArguments {
     /// Only these signals
-    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
+    #[arg(long = "signal", value_name = "NAME[,NAME]", value_delimiter = ',')]
     pub signals: Vec<String>,
     /// Only this span, seconds from the trigger [default: all]
     #[arg(

@@ -233,7 +233,7 @@ fn a_trace_is_shown_and_exported() {
             ("signals", "list"),
         ],
     );
-    let two = place.json(&["trace", "show", "latest", "--signals", "speed,eb", "--json"]);
+    let two = place.json(&["trace", "show", "latest", "--signal", "speed,eb", "--json"]);
     let names: Vec<_> = list(&two["signals"])
         .iter()
         .map(|c| text(&c["name"]))
@@ -265,7 +265,7 @@ fn a_trace_is_shown_and_exported() {
     assert_eq!(times.len() as f64, number(&trace["rows"]));
     assert_eq!(times[number(&trace["trigger_row"]) as usize], 0.0);
     place
-        .ptu(&["trace", "show", "latest", "--signals", "speeed"])
+        .ptu(&["trace", "show", "latest", "--signal", "speeed"])
         .exits(2)
         .explains(&["speeed"]);
 }

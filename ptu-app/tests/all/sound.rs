@@ -197,7 +197,7 @@ fn a_stop_a_crash_and_a_tester_that_hangs_are_silent_at_once() {
             "both",
         ];
         let by = ["--measured", "500", "--seconds", "60", "--instrument", "x"];
-        let mut player = server.begin(&[&tone[..], &by, &["--uncertainty", "1%"]].concat());
+        let mut player = server.begin(&[&tone[..], &by, &["--within", "1%"]].concat());
         heard
             .recv_timeout(Duration::from_secs(20))
             .expect("it is heard");
@@ -229,7 +229,7 @@ fn levels_follow_the_calibration() {
     let Some(server) = SoundServer::start() else {
         return;
     };
-    let by = ["--instrument", "Fluke 87 serial 123", "--uncertainty", "2%"];
+    let by = ["--instrument", "Fluke 87 serial 123", "--within", "2%"];
     let output = ["signal", "calibrate", "--device", "coil", "--level", "500"];
     let measured = ["--measured", "480", "--seconds", "0.2"];
     let said = server.ptu(&[&output[..], &measured, &by].concat()).exits(0);
@@ -322,14 +322,14 @@ fn what_cannot_be_played_or_recorded_is_said() {
         "--instrument",
         "x",
     ];
-    let measured = ["--measured", "1", "--uncertainty"];
+    let measured = ["--measured", "1", "--within"];
     for wrong in ["-1%", "much", "101%"] {
         server
             .ptu(&[&calibrate[..], &measured, &[wrong]].concat())
             .exits(2);
     }
     server
-        .ptu(&[&calibrate[..], &["--uncertainty", "1%"]].concat())
+        .ptu(&[&calibrate[..], &["--within", "1%"]].concat())
         .exits(2)
         .explains(&["--measured"]);
 }

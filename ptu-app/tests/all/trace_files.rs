@@ -217,7 +217,7 @@ fn a_part_has_its_signals_and_its_span() {
     let trace = trace(600);
     kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
-        let part = ["--signals", "mode,speed", "--window", "-0.5..1"];
+        let part = ["--signal", "mode,speed", "--window", "-0.5..1"];
         let all = [&["trace", "export", "latest", "--out", file][..], &part].concat();
         place.ptu(&all).exits(0);
         let found = run_python("read_trace.py", &[&place.text_path(file)]);
@@ -252,13 +252,7 @@ fn a_part_has_its_signals_and_its_span() {
         said.out
     );
     let shown = place.ptu(&[
-        "trace",
-        "show",
-        "latest",
-        "--window",
-        "5..6",
-        "--signals",
-        "eb",
+        "trace", "show", "latest", "--window", "5..6", "--signal", "eb",
     ]);
     assert!(shown.exits(0).out.contains("1.1 s, without the trigger"));
 }

@@ -237,13 +237,7 @@ fn diff_keeps_to_the_signals_asked_for_and_names_what_is_missing() {
     let trace = first_trace(&place);
     let diff = |signals: &str| {
         place.json(&[
-            "trace",
-            "diff",
-            &trace,
-            "twin",
-            "--signals",
-            signals,
-            "--json",
+            "trace", "diff", &trace, "twin", "--signal", signals, "--json",
         ])
     };
     let signals: Vec<_> = list(&diff("speed,eb")["deviations"])
@@ -252,7 +246,7 @@ fn diff_keeps_to_the_signals_asked_for_and_names_what_is_missing() {
         .collect();
     assert_eq!(signals, ["eb"]);
     place
-        .ptu(&["trace", "diff", &trace, "twin", "--signals", "spede"])
+        .ptu(&["trace", "diff", &trace, "twin", "--signal", "spede"])
         .exits(2)
         .explains(&["spede", "catalog signals"]);
     let said = place.ptu(&["trace", "diff", &trace, &trace]).exits(0);

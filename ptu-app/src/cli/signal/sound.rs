@@ -82,8 +82,8 @@ pub struct RecordArguments {
 /// of the level is applied, and what the card makes of it is measured. The factor is stored for this user.
 ///
 /// Examples:
-///   ptu signal calibrate --device coil --level 500 --instrument 'Fluke 87 serial 123' --uncertainty 2%
-///   ptu signal calibrate --device coil.monitor --input --level 500 --instrument 'calibrator 7' --uncertainty 1%
+///   ptu signal calibrate --device coil --level 500 --instrument 'Fluke 87 serial 123' --within 2%
+///   ptu signal calibrate --device coil.monitor --input --level 500 --instrument 'calibrator 7' --within 1%
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct CalibrateArguments {
@@ -108,7 +108,7 @@ pub struct CalibrateArguments {
     #[arg(long, value_name = "TEXT")]
     instrument: String,
     /// Its uncertainty, as 2%
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    #[arg(long = "within", value_name = "PERCENT", value_parser = percent)]
     uncertainty: f64,
     #[command(flatten)]
     unit: super::UnitChoice,

@@ -27,7 +27,7 @@ use ptu_report::trace_io::{beside, is_importable};
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest
-///   ptu trace diff latest twin --signals speed,speed1,speed2,eb
+///   ptu trace diff latest twin --signal speed,speed1,speed2,eb
 ///   ptu trace diff latest oscilloscope.csv --shift -0.35
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
@@ -39,7 +39,7 @@ pub struct DiffArguments {
     #[arg(value_name = "B")]
     expected: String,
     /// Only these signals
-    #[arg(long, value_name = "NAME[,NAME]", value_delimiter = ',')]
+    #[arg(long = "signal", value_name = "NAME[,NAME]", value_delimiter = ',')]
     signals: Vec<String>,
     /// Shift a file's samples to this many seconds later; negative: earlier
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,

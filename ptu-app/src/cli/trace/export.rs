@@ -21,7 +21,7 @@ use ptu_report::trace_io::{Format, TracePart, export};
 ///
 /// Examples:
 ///   ptu trace export latest --out trace.parquet
-///   ptu trace export 59c2ce97 --out brake.csv --signals speed,limit,eb --window -2..5
+///   ptu trace export 59c2ce97 --out brake.csv --signal speed,limit,eb --window -2..5
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ExportArguments {

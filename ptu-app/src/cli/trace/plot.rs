@@ -127,7 +127,7 @@ pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
     if names.len() > LANES {
         let _ = writeln!(
             text,
-            "and {} more; choose with --signals",
+            "and {} more; choose with --signal",
             names.len() - LANES
         );
     }
