@@ -14,8 +14,11 @@ const DELAY_VALUES: f32 = 4.0;
 const MOST: usize = 128;
 /// The tone has faded when it is below this share of its strongest value, and values above it tell the place.
 const FADED: f32 = 0.6;
-/// Least level of a marker over the others' at the same time.
+/// Least level of a marker over the others' at the same time, and over all of its passage: noise is in each of them.
 const LEAST_RATIO: f32 = 2.0;
+const LEAST_RATIO_OF_ALL: f32 = 4.0;
+/// Fewest values of a passage: at 120 km/h a marker has nine.
+const FEWEST: u32 = 6;
 
 /// A marker that was passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +51,10 @@ struct Passage {
     /// Values of the envelope that each stands for, and the sum of those that do not fill one yet.
     each: usize,
     sum: (f32, usize),
+    /// Sums of its level and of the loudest other's, and how many.
+    own: f32,
+    others: f32,
+    count: u32,
 }
 
 impl MarkerReceiver {
@@ -77,13 +84,23 @@ impl MarkerReceiver {
 
     fn value(&mut self, levels: [f32; 4]) -> Option<Passed> {
         if let Some(passage) = &mut self.passage {
-            let level = levels[usize::from(passage.marker - 1)];
+            let own = usize::from(passage.marker - 1);
+            let level = levels[own];
+            let others = (levels.into_iter().enumerate()).filter(|other| other.0 != own);
+            passage.others += others.map(|other| other.1).fold(0.0, f32::max);
+            passage.own += level;
+            passage.count += 1;
             passage.add(level);
             if level >= FADED * passage.strongest && level >= self.level_min_mv {
                 return None;
             }
             let passed = passage.passed(1.0 / self.tones[0].envelope_hz());
+            let is_marker =
+                passage.count >= FEWEST && passage.own >= LEAST_RATIO_OF_ALL * passage.others;
             self.passage = None;
+            if !is_marker {
+                return None;
+            }
             self.fading = true;
             return Some(passed);
         }
@@ -99,6 +116,9 @@ impl MarkerReceiver {
                 length: 0,
                 each: 1,
                 sum: (0.0, 0),
+                own: 0.0,
+                others: 0.0,
+                count: 0,
             };
             passage.add(level);
             self.passage = Some(passage);
