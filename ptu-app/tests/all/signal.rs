@@ -44,7 +44,7 @@ fn what_was_heard_is_a_table_and_a_page() {
         .ptu(&["signal", "make", "code", "55", "c.wav"])
         .exits(0);
     place
-        .ptu(&["signal", "make", "twc", "01 fe 3c", "t.wav"])
+        .ptu(&["signal", "make", "twc", &"01 fe 3c ".repeat(60), "t.wav"])
         .exits(0);
     let said = place.ptu(&["signal", "read", "c.wav", "--csv"]).exits(0);
     let lines: Vec<_> = said.out.lines().collect();

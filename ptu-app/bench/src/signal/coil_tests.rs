@@ -69,9 +69,11 @@ fn pulses_are_counted_with_their_direction() {
                 if input.count() != before {
                     let at = f64::from((scan - 1) * scan_samples + place);
                     edges.push(at - f64::from(input.since()));
-                    // The first pulse after the turn is where the last one before it was.
+                    // The first pulse after the turn is where the last one before it was, and one may be on its way.
                     turned += u32::from(scan > 500);
-                    assert_eq!(input.backward(), turned > 1, "{per_s}/s in scan {scan}");
+                    if turned != 2 {
+                        assert_eq!(input.backward(), turned > 2, "{per_s}/s in scan {scan}");
+                    }
                 }
             }
         }

@@ -106,18 +106,17 @@ fn a_change_of_code_is_never_a_third_code() {
             let spliced = wave(*first).take(length).chain(wave(*second).take(40_000));
             let noise = Noise::new(500.0, snr_db, 320.0, RATE, (place * 8 + other) as u64);
             let noisy = spliced.zip(noise).map(|(signal, noise)| signal + noise);
-            let mut alike = (0.0, 0);
+            let mut alike = (None, 0);
             for rate in decided(noisy, &rates) {
                 asked += 1;
-                let Some(rate) = rate else {
-                    alike = (0.0, 0);
-                    continue;
+                heard += u32::from(rate.is_some());
+                let code =
+                    rate.and_then(|rate| rates.iter().find(|code| (rate - **code).abs() < 0.5));
+                alike = match code.is_some() && code == alike.0 {
+                    true => (code, alike.1 + 1),
+                    false => (code, 1),
                 };
-                heard += 1;
-                alike = match (rate - alike.0).abs() < 1.0 {
-                    true => (rate, alike.1 + 1),
-                    false => (rate, 1),
-                };
+                let Some(rate) = rate else { continue };
                 // A jump of the phase passes through the window; a unit waits until it has.
                 if alike.1 < UNTIL_DECIDED {
                     continue;

@@ -85,5 +85,6 @@ impl Twc {
 
 /// Of noise most bytes are damaged.
 pub(super) fn is_message(source: &Source) -> bool {
-    source.what.split_whitespace().count() as u32 >= source.bad_bytes.unwrap_or(0)
+    let good = source.what.split_whitespace().count() as u32;
+    good >= 2 && good > source.bad_bytes.unwrap_or(0)
 }
