@@ -83,14 +83,17 @@ impl SensorWave {
 
     /// The pulse of `began` is over at `at`, when the next begins, also of a wheel that turns much faster meanwhile.
     fn end_pulse(&mut self, began: f64, at: f64) {
-        let late = self
-            .changes
-            .iter()
-            .any(|change| change.0 >= at && change.1 == 0);
+        let middle = ((began + at) / 2.0).max(0.0);
+        let late = |line| {
+            let mut changes = self.changes.iter().rev();
+            changes
+                .find(|change| change.0 >= at && change.1 == line)
+                .copied()
+        };
+        let late = [late(0), late(1)];
         self.changes.retain(|change| change.0 < at);
-        if late {
-            self.changes
-                .push_back((((began + at) / 2.0).max(0.0), 0, false));
+        for (_, line, high) in late.into_iter().flatten() {
+            self.changes.push_back((middle, line, high));
         }
     }
 

@@ -40,7 +40,11 @@ fn each_code_is_read_as_it_was_made() {
             seconds: 3.0,
         };
         let reading = made(&wave, &path);
-        let [source] = &reading.sources[..] else {
+        // So much noise over all frequencies may look like bytes to a fast TWC.
+        let codes: Vec<_> = (reading.sources.iter())
+            .filter(|of| of.kind != "twc")
+            .collect();
+        let [source] = codes[..] else {
             panic!("{}: {reading:?}", code.name);
         };
         assert_eq!((source.kind, &source.what), ("code", &code.name));
