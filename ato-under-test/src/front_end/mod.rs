@@ -25,7 +25,6 @@ pub use stored_data::apply_stored_data_faults;
 pub use supply::{PowerAndClock, Supply, at_rate};
 
 use crate::com::IoImage;
-use crate::receivers::Gains;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
 
@@ -275,16 +274,14 @@ impl FrontEnd {
     }
 }
 
-/// What injected faults make of the waveforms in the ATP antenna.
-pub fn gains(faults: &Faults) -> Gains {
+/// What injected faults leave of the level of a waveform between rail and ATP receiver.
+pub fn atp_gain(faults: &Faults) -> f32 {
     let of = |place| match faults.at(place) {
         Some(Effect::Dead) => 0.0,
         Some(Effect::Gain { factor }) => factor as f32,
         _ => 1.0,
     };
-    Gains {
-        atp: of(Place::AtpAntenna) * of(Place::AtpReceiver),
-    }
+    of(Place::AtpAntenna) * of(Place::AtpReceiver)
 }
 
 /// A signal of the wire.

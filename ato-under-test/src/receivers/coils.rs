@@ -4,18 +4,18 @@ use alloc::vec::Vec;
 
 use protocol::Duration;
 use protocol::config::UnitConfig;
-use protocol::message::{COIL_PART, COIL_PARTS, COIL_STEP_MV, Coil, CoilSamples, IoInput};
+use protocol::message::{
+    COIL_PART, COIL_PARTS, COIL_SAMPLE_HZ, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples, IoInput,
+};
 
 use super::code::{CodeReceiver, Heard, Reception};
 use super::fsk::{FskReceiver, Received, Tones};
 use super::marker::MarkerReceiver;
 use super::sensor::SensorInput;
 
-/// Samples of a scan, and in a second.
-const SAMPLES: usize = COIL_PART * COIL_PARTS;
-const SAMPLE_HZ: f32 = SAMPLES as f32 * 100.0;
+const SAMPLE_HZ: f32 = COIL_SAMPLE_HZ as f32;
 /// Coils and lines.
-const COILS: usize = 7;
+const COILS: usize = Coil::ALL.len();
 /// Scans without samples after which a coil has been silent for long, and its receiver rests.
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
@@ -24,13 +24,6 @@ const HEARD_EARLY_MS: u64 = 60;
 const STANDS_IN: u8 = 3;
 /// Weakest level of TWC and of a marker, as a share of its configured one.
 const WEAKEST: f64 = 0.1;
-
-/// What an injected fault does to the waveforms of this scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gains {
-    /// From the rail to the ATP receiver.
-    pub atp: f32,
-}
 
 /// What the receivers make of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,13 +45,14 @@ pub struct Coils {
     markers: MarkerReceiver,
     sensors: [SensorInput; 2],
     /// Line A of each in this scan: both lines of a sample are looked at together.
-    lines_a: [[i16; SAMPLES]; 2],
+    lines_a: [[i16; COIL_SAMPLES]; 2],
     /// Last marker, how many there were, and samples since the last one.
     marker: (u8, u8, f32),
     /// Parts of this scan that came of each coil, and scans since the last.
     parts: [u8; COILS],
     silent: [u8; COILS],
-    gains: Gains,
+    /// What injected faults leave of the level between rail and ATP receiver.
+    atp_gain: f32,
     /// The last code that was heard, and scans since.
     heard: Option<(Heard, u8)>,
 }
@@ -90,49 +84,49 @@ impl Coils {
             twc_bytes: Vec::new(),
             markers: MarkerReceiver::new(marker.tones_hz, SAMPLE_HZ, weakest(marker.level_mv)),
             sensors: [SensorInput::default(); 2],
-            lines_a: [[0; SAMPLES]; 2],
+            lines_a: [[0; COIL_SAMPLES]; 2],
             marker: (0, 0, f32::MAX),
             parts: [0; COILS],
             silent: [RESTS_AFTER; COILS],
-            gains: Gains { atp: 1.0 },
+            atp_gain: 1.0,
             heard: None,
         }
     }
 
-    /// What faults do from now on.
-    pub fn set_gains(&mut self, gains: Gains) {
-        self.gains = gains;
+    /// What injected faults leave of the level between rail and ATP receiver, from now on.
+    pub fn set_atp_gain(&mut self, gain: f32) {
+        self.atp_gain = gain;
     }
 
     /// Takes samples of this scan; one that comes too late or twice is passed over.
     pub fn take(&mut self, samples: &CoilSamples) {
-        let Some(place) = place_of(samples.coil) else {
+        let place = usize::from(samples.coil.code());
+        if place >= COILS {
             return;
-        };
+        }
         if samples.part < self.parts[place] || usize::from(samples.part) >= COIL_PARTS {
             return;
         }
         while self.parts[place] < samples.part {
-            self.receive(place, &[0; COIL_PART]);
+            self.receive(samples.coil, &[0; COIL_PART]);
         }
-        self.receive(place, &samples.samples.0);
+        self.receive(samples.coil, &samples.samples.0);
         self.silent[place] = 0;
     }
 
     /// The end of a scan, with its input frame: what was received in it, if samples came of late.
     pub fn end_scan(&mut self, mut input: IoInput) -> Option<Sampled> {
-        for place in 0..self.parts.len() {
+        for (place, coil) in Coil::ALL.iter().enumerate() {
             if self.silent[place] < RESTS_AFTER {
                 while usize::from(self.parts[place]) < COIL_PARTS {
-                    self.receive(place, &[0; COIL_PART]);
+                    self.receive(*coil, &[0; COIL_PART]);
                 }
                 self.silent[place] += 1;
             }
             self.parts[place] = 0;
         }
-        let antenna_rests = self.silent[Coil::AtpAntenna.code() as usize] == RESTS_AFTER;
-        let sensors_rest = self.silent[Coil::Sensor1A.code() as usize] == RESTS_AFTER;
-        if antenna_rests && sensors_rest {
+        let rests = |coil: Coil| self.silent[usize::from(coil.code())] == RESTS_AFTER;
+        if rests(Coil::AtpAntenna) && rests(Coil::Sensor1A) {
             return None;
         }
         let mut heard_for = Duration::ZERO;
@@ -154,7 +148,7 @@ impl Coils {
         let age = (self.marker.2 / SAMPLE_HZ * 1e6) as u64;
         (input.marker, input.marker_edges) = (self.marker.0, self.marker.1);
         input.marker_edge_us = age.min(u64::from(u16::MAX)) as u16;
-        self.marker.2 += SAMPLES as f32;
+        self.marker.2 += COIL_SAMPLES as f32;
         Some(Sampled {
             input,
             heard_for,
@@ -173,56 +167,65 @@ impl Coils {
         self.heard.map(|(heard, _)| heard)
     }
 
-    /// Bytes received by TWC since they were taken last.
-    pub fn take_twc_bytes(&mut self) -> impl Iterator<Item = u8> + '_ {
-        self.twc_bytes.drain(..)
+    /// Bytes received by TWC since they were forgotten last.
+    pub fn twc_bytes(&self) -> &[u8] {
+        &self.twc_bytes
+    }
+
+    /// Forgets the bytes received by TWC.
+    pub fn forget_twc_bytes(&mut self) {
+        self.twc_bytes.clear();
     }
 
     /// One part of a coil's samples.
-    fn receive(&mut self, place: usize, samples: &[i16; COIL_PART]) {
-        let part = self.parts[place];
-        self.parts[place] += 1;
-        let in_mv = |sample: i16| f32::from(sample) * COIL_STEP_MV;
-        match place {
-            0 => {
+    fn receive(&mut self, coil: Coil, samples: &[i16; COIL_PART]) {
+        let parts = &mut self.parts[usize::from(coil.code())];
+        let from = usize::from(*parts) * COIL_PART;
+        *parts += 1;
+        match coil {
+            Coil::AtpAntenna => {
                 for sample in samples {
                     for (receiver, _) in &mut self.codes {
-                        receiver.take(in_mv(*sample) * self.gains.atp);
+                        receiver.take(in_mv(*sample) * self.atp_gain);
                     }
                 }
             }
-            1 => {
+            Coil::TwcAntenna => {
                 for sample in samples {
                     if let Some(Received::Byte(byte)) = self.twc.take(in_mv(*sample)) {
                         self.twc_bytes.push(byte);
                     }
                 }
             }
-            2 => {
-                let left = SAMPLES - usize::from(part) * COIL_PART;
-                for (until_end, sample) in (0..left).rev().zip(samples) {
+            Coil::MarkerAntenna => {
+                for (until_end, sample) in (0..COIL_SAMPLES - from).rev().zip(samples) {
                     if let Some(passed) = self.markers.take(in_mv(*sample)) {
                         let since = until_end as f32 + passed.ago_s * SAMPLE_HZ;
                         self.marker = (passed.marker, self.marker.1.wrapping_add(1), since);
                     }
                 }
             }
-            line => {
-                let (sensor, is_b) = ((line - 3) / 2, line % 2 == 0);
-                let from = usize::from(part) * COIL_PART;
-                let line_a = &mut self.lines_a[sensor][from..from + COIL_PART];
-                if !is_b {
-                    line_a.copy_from_slice(samples);
-                    return;
-                }
-                for (a, b) in line_a.iter().zip(samples) {
-                    self.sensors[sensor].take(in_mv(*a), in_mv(*b));
-                }
-            }
+            Coil::Sensor1A => self.keep_line_a(0, from, samples),
+            Coil::Sensor1B => self.receive_sensor(0, from, samples),
+            Coil::Sensor2A => self.keep_line_a(1, from, samples),
+            Coil::Sensor2B => self.receive_sensor(1, from, samples),
+            Coil::Unknown(_) => {}
+        }
+    }
+
+    fn keep_line_a(&mut self, sensor: usize, from: usize, samples: &[i16; COIL_PART]) {
+        self.lines_a[sensor][from..from + COIL_PART].copy_from_slice(samples);
+    }
+
+    /// Both lines of a sensor, when its line B comes.
+    fn receive_sensor(&mut self, sensor: usize, from: usize, line_b: &[i16; COIL_PART]) {
+        let line_a = &self.lines_a[sensor][from..from + COIL_PART];
+        for (a, b) in line_a.iter().zip(line_b) {
+            self.sensors[sensor].take(in_mv(*a), in_mv(*b));
         }
     }
 }
 
-fn place_of(coil: Coil) -> Option<usize> {
-    coil.is_known().then(|| usize::from(coil.code()))
+fn in_mv(sample: i16) -> f32 {
+    f32::from(sample) * COIL_STEP_MV
 }

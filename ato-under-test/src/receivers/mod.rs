@@ -10,7 +10,7 @@ mod marker;
 mod sensor;
 
 pub use code::{CodeReceiver, Heard, Reception};
-pub use coils::{Coils, Gains, Sampled};
+pub use coils::{Coils, Sampled};
 pub use fsk::{BitHeard, Demodulator, FskReceiver, Received, Tones};
 pub use marker::{MarkerReceiver, Passed};
 pub use sensor::SensorInput;

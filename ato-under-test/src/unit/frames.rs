@@ -2,6 +2,7 @@
 //! TEST modem, which both pass the TWC antenna.
 //! Injected faults of receivers and transmitters act here.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use protocol::injection::{Effect, Place};
@@ -11,6 +12,7 @@ use protocol::{Duration, Instant};
 
 use super::{Unit, report};
 use crate::com::{ArmConditions, Port};
+use crate::receivers::Coils;
 use crate::setup::Setup;
 use crate::twc::StationSender;
 
@@ -35,9 +37,13 @@ impl Unit {
                 self.ports.hear_tester(port);
             }
             match message {
-                Message::CoilSamples(samples) => self.coils.take(&samples),
+                Message::CoilSamples(samples) => {
+                    let config = &self.setup.config;
+                    let new = || Box::new(Coils::new(config));
+                    self.coils.get_or_insert_with(new).take(&samples);
+                }
                 Message::IoInput(input) => {
-                    let sampled = self.coils.end_scan(input);
+                    let sampled = self.coils.as_mut().and_then(|coils| coils.end_scan(input));
                     (self.image).latch(now, header.stamp_ms, input, sampled);
                     self.hear_loop();
                 }
@@ -80,9 +86,9 @@ impl Unit {
 
     /// What came through the loop as tones is frames again, which are received as any others.
     fn hear_loop(&mut self) {
-        let link = self.ports.link_mut(Port::Loop);
-        for byte in self.coils.take_twc_bytes() {
-            link.push(&[byte]);
+        if let Some(coils) = &mut self.coils {
+            self.ports.link_mut(Port::Loop).push(coils.twc_bytes());
+            coils.forget_twc_bytes();
         }
     }
 

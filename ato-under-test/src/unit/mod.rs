@@ -25,7 +25,7 @@ use crate::driverless::Stabling;
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
     DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
-    apply_stored_data_faults, gains,
+    apply_stored_data_faults, atp_gain,
 };
 use crate::guards::Guards;
 use crate::kernel::{EventLog, RunRecord, SelfTester};
@@ -59,7 +59,8 @@ pub struct Unit {
     tra: Tra,
     tcms: TcmsLink,
     image: IoImage,
-    coils: Coils,
+    /// Receivers of waveforms, from the first samples on.
+    coils: Option<Box<Coils>>,
     run_record: RunRecord,
     /// Log and record over power-ups.
     memory: Memory,
@@ -128,7 +129,7 @@ impl Unit {
             run_record: RunRecord::default(),
             memory,
             image: IoImage::new(ms(link.io_timeout_ms)),
-            coils: Coils::new(config),
+            coils: None,
             faults,
             guards: Guards::ALL,
             power: PowerAndClock::default(),
@@ -191,7 +192,9 @@ impl Unit {
         let clock_rate = self.faults.gain(Place::Clock);
         let now = self.power.own(now, clock_rate);
         self.image.set_clock_rate(clock_rate);
-        self.coils.set_gains(gains(&self.faults));
+        if let Some(coils) = &mut self.coils {
+            coils.set_atp_gain(atp_gain(&self.faults));
+        }
         self.receive_frames(now, out);
         self.read_inputs(now);
         self.test_self(now);

@@ -137,8 +137,12 @@ layout! {
 
 /// Samples of one [`CoilSamples`].
 pub const COIL_PART: usize = 96;
-/// Parts of a scan: 480 samples, 48 000 a second.
+/// Parts of a scan.
 pub const COIL_PARTS: usize = 5;
+/// Samples of a coil in a scan.
+pub const COIL_SAMPLES: usize = COIL_PART * COIL_PARTS;
+/// Samples of a coil in a second.
+pub const COIL_SAMPLE_HZ: u32 = 48_000;
 /// What one step of a sample stands for, mV: a coil takes up to 3.2 V.
 pub const COIL_STEP_MV: f32 = 0.1;
 

@@ -22,8 +22,8 @@ pub use enums::{
     StoreKind, TrainOrder,
 };
 pub use io::{
-    COIL_PART, COIL_PARTS, COIL_STEP_MV, CabEntries, CoilSamples, Crosstalk, IoInput, IoOutput,
-    Outputs, Samples, TrainLines, WheelEntry,
+    COIL_PART, COIL_PARTS, COIL_SAMPLE_HZ, COIL_SAMPLES, COIL_STEP_MV, CabEntries, CoilSamples,
+    Crosstalk, IoInput, IoOutput, Outputs, Samples, TrainLines, WheelEntry,
 };
 pub use layout::{
     Cursor, DecodeError, DecodeErrorKind, Field, FieldSpec, Layout, MessageSpec, WordSpec,

@@ -8,6 +8,10 @@ const MAX_ATTEMPTS: usize = 3;
 
 /// Something asked of the unit.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one request is under way at a time"
+)]
 pub enum Request {
     /// The whole arm exchange.
     Arm {

@@ -2,15 +2,16 @@
 
 use protocol::config::UnitConfig;
 use protocol::link::Link;
-use protocol::message::{COIL_PART, COIL_PARTS, COIL_STEP_MV, Coil, CoilSamples, IoInput};
+use protocol::message::{
+    COIL_PART, COIL_SAMPLE_HZ, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples, IoInput,
+};
 use protocol::{Instant, Random, SCAN};
 
 use super::motion::Motion;
 use crate::waveform::{Channel, ChannelConfig, CodeWave, FskWave, MarkerWave, SensorWave};
 
-/// Samples of a scan, and in a second.
-const SAMPLES: usize = COIL_PART * COIL_PARTS;
-pub const SAMPLE_HZ: f64 = SAMPLES as f64 * 100.0;
+const SAMPLES: usize = COIL_SAMPLES;
+const SAMPLE_HZ: f64 = COIL_SAMPLE_HZ as f64;
 /// Speed at which a marker passes that was asked for, m/s.
 const ASKED_MPS: f64 = 20.0;
 
@@ -38,7 +39,7 @@ pub struct Coils {
     asked: Vec<(u8, f64)>,
     sensors: [SensorWave; 2],
     counts: [u16; 2],
-    channels: [Channel; 7],
+    channels: [Channel; Coil::ALL.len()],
 }
 
 impl Coils {
@@ -56,7 +57,8 @@ impl Coils {
             asked: Vec::new(),
             sensors: [SensorWave::new(SAMPLE_HZ), SensorWave::new(SAMPLE_HZ)],
             counts: [0; 2],
-            channels: [(); 7].map(|()| Channel::new(channel, SAMPLE_HZ, random.fork())),
+            channels: [(); Coil::ALL.len()]
+                .map(|()| Channel::new(channel, SAMPLE_HZ, random.fork())),
         }
     }
 
@@ -150,11 +152,11 @@ impl Coils {
         let backward = input.tacho_backward & 1 << sensor != 0;
         let wave = &mut self.sensors[sensor];
         wave.pulse(counted.wrapping_sub(before), last, backward);
-        let mut lines = [[0.0; SAMPLES]; 2];
-        for place in 0..SAMPLES {
-            [lines[0][place], lines[1][place]] = wave.step();
+        let (mut line_a, mut line_b) = ([0.0; SAMPLES], [0.0; SAMPLES]);
+        for (a, b) in line_a.iter_mut().zip(&mut line_b) {
+            [*a, *b] = wave.step();
         }
-        lines
+        [line_a, line_b]
     }
 
     /// What disturbs a coil comes on top; silence is not sent.
