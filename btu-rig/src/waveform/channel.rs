@@ -2,6 +2,7 @@
 //! its frequency, dropouts and clipping.
 
 use protocol::Random;
+use protocol::config::{ConfigError, within};
 use serde::{Deserialize, Serialize};
 
 use super::{Phase, cosine};
@@ -56,33 +57,26 @@ impl ChannelConfig {
     /// Reads a channel.
     ///
     /// # Errors
-    /// It does not parse, or a value is negative or no number; with the key.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        let channel: Self = toml::from_str(text).map_err(|error| error.to_string())?;
-        for (key, value) in [
-            ("gain", channel.gain),
-            ("noise_mv", channel.noise_mv),
-            ("hum_mv", channel.hum_mv),
-            ("hum_hz", channel.hum_hz),
-            ("inverter_mv", channel.inverter_mv),
-            (
-                "inverter_hz",
-                channel.inverter_hz[0].min(channel.inverter_hz[1]),
-            ),
-            ("inverter_sweep_s", channel.inverter_sweep_s),
-            ("dropouts_per_s", channel.dropouts_per_s),
-            ("dropout_s", channel.dropout_s),
-            ("clip_mv", channel.clip_mv),
-        ] {
-            // A negated comparison so that not-a-number is refused, too.
-            if !(value >= 0.0 && value <= 1e6) {
-                return Err(format!("{key} = {value} is outside 0 .. 1000000"));
-            }
+    /// It does not parse, or a value is out of its range; with the key.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let channel: Self =
+            toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
+        protocol::check_ranges! { channel, "";
+            gain: 0.0, 1e6;
+            noise_mv: 0.0, 1e6;
+            hum_mv: 0.0, 1e6;
+            hum_hz: 0.0, 1e6;
+            hum_lines: 0.0, 200.0;
+            inverter_mv: 0.0, 1e6;
+            inverter_sweep_s: 0.0, 1e6;
+            dropouts_per_s: 0.0, 1e6;
+            dropout_s: 0.0, 1e6;
+            clip_mv: 0.0, 1e6;
         }
-        match channel.hum_lines {
-            0..=200 => Ok(channel),
-            lines => Err(format!("hum_lines = {lines} is outside 0 .. 200")),
+        for hz in channel.inverter_hz {
+            within("inverter_hz", hz, 0.0, 1e6)?;
         }
+        Ok(channel)
     }
 }
 
