@@ -10,8 +10,10 @@ use super::downmix::{Downmix, Phasor};
 const VALUES_PER_BIT: f32 = 20.0;
 /// Longest bit, values.
 const MOST: usize = 32;
-/// Least mean purity of a byte's bits; noise is none.
-const LEAST_PURITY: f32 = 0.65;
+/// Values of a bit that the filter makes one independent value of.
+const VALUES_OF_ONE: f32 = 3.3;
+/// Where between the purity of noise and that of a signal at Eb/N0 of 10 dB the least mean purity of a byte's bits lies.
+const BETWEEN: f32 = 0.76;
 /// Bits of a byte, with start, parity and stop bit.
 const BITS: f32 = 11.0;
 /// Share of a timing error that a change between bits corrects.
@@ -146,6 +148,7 @@ pub struct BitHeard {
 pub struct FskReceiver {
     demodulator: Demodulator,
     values_per_bit: f32,
+    least_purity: f32,
     level_min_mv: f32,
     last: f32,
     /// The bit that is received next, and the values until its end; none between bytes.
@@ -161,6 +164,7 @@ impl FskReceiver {
     pub fn new(tones: Tones, sample_hz: f32, level_min_mv: f32) -> Self {
         let demodulator = Demodulator::new(tones, sample_hz);
         Self {
+            least_purity: least_purity(demodulator.values_per_bit(tones.bit_rate)),
             values_per_bit: demodulator.values_per_bit(tones.bit_rate),
             demodulator,
             level_min_mv,
@@ -218,7 +222,7 @@ impl FskReceiver {
             9 => self.ones += u8::from(one),
             _ => {
                 self.bit = None;
-                if self.purity < LEAST_PURITY * BITS {
+                if self.purity < self.least_purity * BITS {
                     return None;
                 }
                 return Some(match (one, self.ones % 2) {
@@ -230,4 +234,12 @@ impl FskReceiver {
         }
         None
     }
+}
+
+/// Noise has power in each independent value of a bit, and the tones have two of these; a signal is in them whole.
+fn least_purity(values_per_bit: f32) -> f32 {
+    let values = (values_per_bit / VALUES_OF_ONE).max(2.0);
+    let of_noise = 2.0 / values;
+    let of_signal = (1.0 + 0.2) / (1.0 + 0.1 * values);
+    of_noise + BETWEEN * (of_signal - of_noise)
 }

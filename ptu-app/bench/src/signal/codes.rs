@@ -48,6 +48,10 @@ pub(super) struct Carrier<'a> {
     pub(super) codes: Vec<&'a SpeedCode>,
     pub(super) rates_hz: Vec<f32>,
     pub(super) under_way: Option<Source>,
+    /// What is heard now, and since when without a break, s.
+    now: Option<(String, f64)>,
+    /// How long another code is heard before it is listed, s: a jump of the phase passes meanwhile.
+    patience_s: f64,
     /// Askings whose mean it tells.
     askings: f64,
     heard_s: f64,
@@ -55,12 +59,14 @@ pub(super) struct Carrier<'a> {
 
 impl<'a> Carrier<'a> {
     pub(super) fn new(code: &'a SpeedCode, unit: &UnitConfig, sample_hz: f64) -> Self {
+        let reception = Reception::of(&unit.receiver, code.carrier_hz);
+        let receiver = CodeReceiver::new(reception, sample_hz as f32);
+        let detected_s = f64::from(unit.receiver.detect_ms) / 1_000.0;
         Self {
             carrier_hz: code.carrier_hz,
-            receiver: CodeReceiver::new(
-                Reception::of(&unit.receiver, code.carrier_hz),
-                sample_hz as f32,
-            ),
+            patience_s: detected_s - f64::from(receiver.window_s()),
+            receiver,
+            now: None,
             codes: vec![code],
             rates_hz: vec![code.rate_hz as f32],
             under_way: None,
@@ -78,6 +84,7 @@ impl<'a> Carrier<'a> {
         done: &mut Vec<Source>,
     ) -> bool {
         let Some(heard) = self.receiver.heard(&self.rates_hz) else {
+            self.now = None;
             if at_s - self.heard_s > ENDS_AFTER_S {
                 done.extend(self.under_way.take());
             }
@@ -85,7 +92,15 @@ impl<'a> Carrier<'a> {
         };
         self.heard_s = at_s;
         let what = self.name(&heard, unit);
-        let began_s = (at_s - f64::from(self.receiver.window_s())).max(0.0);
+        if self.now.as_ref().is_none_or(|(now, _)| *now != what) {
+            self.now = Some((what.clone(), at_s));
+        }
+        let since_s = self.now.as_ref().map_or(at_s, |(_, since_s)| *since_s);
+        let is_other = (self.under_way.as_ref()).is_some_and(|source| source.what != what);
+        if is_other && at_s - since_s < self.patience_s {
+            return true;
+        }
+        let began_s = (since_s - f64::from(self.receiver.window_s())).max(0.0);
         match &mut self.under_way {
             Some(source) if source.what == what => {
                 source.to_s = at_s;

@@ -8,7 +8,7 @@ use super::codes::{Carrier, Codes};
 use super::markers::Markers;
 use super::picture::Picture;
 use super::read::{NotUnderstood, Reading, Why};
-use super::twc::{Twc, is_message};
+use super::twc::Twc;
 
 /// How often the receivers of codes are asked, s: it is most of their work.
 const ASKED_EVERY_S: f64 = 0.1;
@@ -255,11 +255,7 @@ impl<'a> Channel<'a> {
 
     fn tell(&self, reading: &mut Reading) {
         let twc = self.twc.iter();
-        let of_twc = twc.flat_map(|twc| {
-            twc.done
-                .iter()
-                .chain(twc.under_way.iter().filter(|of| is_message(of)))
-        });
+        let of_twc = twc.flat_map(|twc| twc.done.iter().chain(&twc.under_way));
         let under_way = (self.codes.carriers.iter()).flat_map(|of| of.under_way.as_ref());
         let of_markers = self.markers.iter().flat_map(|markers| &markers.done);
         let all = self

@@ -53,7 +53,7 @@ impl Twc {
         let goes_on = self.is_in_message(at_s)
             && (self.under_way.as_ref()).is_some_and(|source| source.what.len() < 3 * LONGEST);
         if !goes_on {
-            self.done.extend(self.under_way.take().filter(is_message));
+            self.done.extend(self.under_way.take());
             self.done.truncate(MOST);
         }
         let tones = self.tones;
@@ -81,10 +81,4 @@ impl Twc {
             }
         }
     }
-}
-
-/// Of noise most bytes are damaged.
-pub(super) fn is_message(source: &Source) -> bool {
-    let good = source.what.split_whitespace().count() as u32;
-    good >= 2 && good > source.bad_bytes.unwrap_or(0)
 }
