@@ -1,5 +1,6 @@
 //! `ptu signal`: waveforms in files and at a sound card: make, read, play and record them.
 
+mod calibrate;
 mod sound;
 
 use std::path::PathBuf;
@@ -42,7 +43,7 @@ enum SignalVerb {
     Read(ReadArguments),
     Play(sound::PlayArguments),
     Record(sound::RecordArguments),
-    Calibrate(sound::CalibrateArguments),
+    Calibrate(calibrate::CalibrateArguments),
     /// List the sound devices, and how each is calibrated
     Devices,
 }

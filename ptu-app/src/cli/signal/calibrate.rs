@@ -1,0 +1,230 @@
+//! `ptu signal calibrate`: what a sample of a sound card stands for, by an instrument.
+
+use clap::Args;
+use protocol::config::UnitConfig;
+
+use super::positive;
+use super::sound::{Channel, Device};
+use crate::cli::print_out;
+use crate::sound_file;
+use ptu_bench::clock;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::signal;
+use ptu_bench::sound::{
+    self, CHANNELS, Calibration, Calibrations, Direction, Lead, SAMPLE_HZ, Side,
+};
+use ptu_bench::stdio;
+use ptu_bench::stop::Stop;
+use ptu_bench::typed::{Typed, somebody_is_there};
+
+/// How long the reference is heard where nobody is asked, s.
+const REFERENCE_S: f64 = 5.0;
+/// How long a level at an input is measured, s.
+const MEASURED_S: f64 = 1.0;
+
+/// Calibrate a channel of a sound card against an instrument
+///
+/// Output: a carrier is played at the level, and what the instrument at the coil shows is asked for. Input: a carrier
+/// of the level is applied, and what the card makes of it is measured. The factor is stored for this user.
+///
+/// Examples:
+///   ptu signal calibrate --device coil --level 500 --instrument 'Fluke 87 serial 123' --within 2%
+///   ptu signal calibrate --device coil.monitor --input --level 500 --instrument 'calibrator 7' --within 1%
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct CalibrateArguments {
+    #[command(flatten)]
+    device: Device,
+    /// Channel
+    #[arg(long, value_name = "atp|twc|both", default_value = "atp")]
+    channel: Channel,
+    /// Calibrate the input: a carrier of this level is applied to it
+    #[arg(long, conflicts_with_all = ["measured", "seconds"])]
+    input: bool,
+    /// Level of the reference, mV rms
+    #[arg(long, value_name = "MV", default_value_t = 500.0, value_parser = positive)]
+    level: f64,
+    /// What the instrument showed, mV rms [default: asked for while the reference is heard]
+    #[arg(long, value_name = "MV", value_parser = positive)]
+    measured: Option<f64>,
+    /// With --measured: how long the reference is heard, s [default: 5]
+    #[arg(long, value_name = "S", value_parser = positive, requires = "measured")]
+    seconds: Option<f64>,
+    /// The instrument, with its serial number
+    #[arg(long, value_name = "TEXT")]
+    instrument: String,
+    /// Its uncertainty, as 2%
+    #[arg(long = "within", value_name = "PERCENT", value_parser = percent)]
+    uncertainty: f64,
+    #[command(flatten)]
+    unit: super::UnitChoice,
+}
+
+impl CalibrateArguments {
+    pub fn run(self) -> Result<Exit, Failure> {
+        let unit = self.unit.find()?;
+        let file = sound_file::usual()?;
+        let mut known = Calibrations::load(&file)?;
+        let device = self.device.device.as_str();
+        let stop = Stop::default();
+        stop.listen();
+        let direction = if self.input {
+            Direction::Input
+        } else {
+            Direction::Output
+        };
+        let now = known.full_scale_mv(device, direction);
+        let measured = match self.input {
+            true => self.applied((device, now), &unit, &stop)?,
+            false => self.heard((device, now), &unit, &stop)?,
+        };
+        if stop.presses() > 0 {
+            stdio::note("stopped: nothing was stored");
+            return Ok(Exit::Aborted);
+        }
+        let mut lines = Vec::new();
+        for (side, (now, measured)) in Side::ALL.into_iter().zip(now.into_iter().zip(measured)) {
+            if !self.channel.has(side) {
+                continue;
+            }
+            // Output: a whole sample made more than was thought. Input: it was made by less.
+            let full_scale_mv = match self.input {
+                true => now * self.level / measured,
+                false => now * measured / self.level,
+            };
+            if !(1e-3..1e9).contains(&full_scale_mv) {
+                return Err(Failure::usage(format!(
+                    "channel {}: {measured:.3} mV where {} mV were expected cannot be right",
+                    side.name(),
+                    self.level
+                )));
+            }
+            known.keep(
+                Calibration {
+                    device: device.to_owned(),
+                    direction,
+                    channel: side,
+                    full_scale_mv,
+                    at_us: clock::now_us(),
+                    instrument: self.instrument.clone(),
+                    uncertainty_percent: self.uncertainty,
+                },
+                &file,
+            )?;
+            lines.push(format!(
+                "{device}, channel {}: full scale is {full_scale_mv:.1} mV ± {} %, by {}",
+                side.name(),
+                self.uncertainty,
+                self.instrument
+            ));
+        }
+        print_out(&lines.join("\n"))
+    }
+
+    /// What the instrument shows while the reference is played.
+    fn heard(
+        &self,
+        device: (&str, [f64; CHANNELS]),
+        unit: &UnitConfig,
+        stop: &Stop,
+    ) -> Result<[f64; CHANNELS], Failure> {
+        if self.measured.is_none() && !somebody_is_there() {
+            return Err(Failure::usage(
+                "nobody can be asked here: give what the instrument showed with --measured",
+            ));
+        }
+        let seconds = match self.measured {
+            Some(_) => self.seconds.unwrap_or(REFERENCE_S),
+            None => f64::MAX,
+        };
+        let typed = self.measured.is_none().then(Typed::listen);
+        if typed.is_some() {
+            stdio::note(&format!(
+                "a carrier of {} mV rms is played: type what the instrument at the coil shows, mV rms, and Enter",
+                self.level
+            ));
+        }
+        let mut answer = self.measured;
+        let tones = signal::reference_hz(unit);
+        let rate = f64::from(SAMPLE_HZ);
+        let mut at = 0u64;
+        let samples = std::iter::from_fn(|| {
+            if at as f64 >= seconds * rate {
+                return None;
+            }
+            // Asked for each 10 ms.
+            if at.is_multiple_of(480)
+                && let Some(typed) = &typed
+            {
+                for line in typed.lines() {
+                    match positive(line.trim_end_matches("mV").trim()) {
+                        Ok(number) => answer = Some(number),
+                        Err(why) => stdio::note(&why),
+                    }
+                }
+                if answer.is_some() {
+                    return None;
+                }
+            }
+            let mut together = [0.0; CHANNELS];
+            for (place, side) in Side::ALL.into_iter().enumerate() {
+                if self.channel.has(side) {
+                    let turns = (at as f64 * tones[place] / rate).fract();
+                    let amplitude = self.level * std::f64::consts::SQRT_2;
+                    together[place] = amplitude * (std::f64::consts::TAU * turns).cos();
+                }
+            }
+            at += 1;
+            Some(together)
+        });
+        let played = sound::play(samples, Lead::Within, device, stop)?;
+        if played.clipped > 0 {
+            return Err(Failure::usage(format!(
+                "the device cannot make {} mV: choose a lower --level",
+                self.level
+            )));
+        }
+        Ok([answer.unwrap_or(0.0); CHANNELS])
+    }
+
+    /// What the device shows of the level that is applied: all within 20 Hz of the reference.
+    fn applied(
+        &self,
+        device: (&str, [f64; CHANNELS]),
+        unit: &UnitConfig,
+        stop: &Stop,
+    ) -> Result<[f64; CHANNELS], Failure> {
+        let tones = signal::reference_hz(unit);
+        let rate = f64::from(SAMPLE_HZ);
+        let mut sums = [[0.0; 2]; CHANNELS];
+        let mut count = 0usize;
+        let half = (MEASURED_S * rate) as usize;
+        // The first second is the card's own beginning.
+        sound::record(device, Some(2.0 * MEASURED_S), stop, &mut |block| {
+            for place in 0..block[0].len() {
+                if count >= half {
+                    let hann = 0.5
+                        - 0.5 * (std::f64::consts::TAU * (count - half) as f64 / half as f64).cos();
+                    for ((sum, samples), hz) in sums.iter_mut().zip(block).zip(tones) {
+                        let angle = std::f64::consts::TAU * (count as f64 * hz / rate).fract();
+                        let value = hann * f64::from(samples[place]);
+                        sum[0] += value * angle.cos();
+                        sum[1] += value * angle.sin();
+                    }
+                }
+                count += 1;
+            }
+            Ok(())
+        })?;
+        // Half of the amplitude times the mean of the window, which is a half.
+        Ok(sums.map(|[re, im]| re.hypot(im) * 4.0 / half as f64 / std::f64::consts::SQRT_2))
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.trim_end_matches('%').trim().parse();
+    match number {
+        Ok(number) if (0.0..=100.0).contains(&number) => Ok(number),
+        _ => Err("an uncertainty is 0 to 100 %, as 2%".to_owned()),
+    }
+}
