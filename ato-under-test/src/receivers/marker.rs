@@ -189,7 +189,7 @@ impl Passage {
     }
 }
 
-/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c; none of a line.
+/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c; a line has none.
 fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Option<f32> {
     let determinant = |m: [[f32; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])

@@ -53,7 +53,7 @@ impl Instrument {
 }
 
 impl Store {
-    /// Registers an instrument, or states anew what is known of it.
+    /// Registers an instrument, or states again what is known of it.
     ///
     /// # Errors
     /// A text is too long, or the file does not take it.
