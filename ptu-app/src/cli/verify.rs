@@ -24,6 +24,7 @@ const DATABASE: &[u8] = b"SQLite format 3\0";
 ///   ptu verify latest                      the last run of the database
 ///   ptu verify sheet.html --keys depot.keys
 ///   ptu verify run.ptucert
+///   ptu verify ptu:01a2…/220d…             what a scanner reads of a printed sheet
 ///   ptu verify history.db                  all of a file
 ///
 /// Exit codes: 0 signed by a key that is trusted, and unchanged, 1 changed, not signed, or signed by a key that is not
@@ -31,7 +32,8 @@ const DATABASE: &[u8] = b"SQLite format 3\0";
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct VerifyArguments {
-    /// A run (an id, its beginning or end, or `latest`), a database file, an .html sheet or a .ptucert file
+    /// A run (an id, its beginning or end, `latest`, or what the code of a sheet says), a database file, an .html sheet or
+    /// a .ptucert file
     #[arg(value_name = "RUN|FILE")]
     what: String,
     #[command(flatten)]
@@ -79,15 +81,33 @@ impl VerifyArguments {
         if looks_like_a_file(&self.what) {
             return Err(Failure::usage(format!("there is no file {}", self.what)));
         }
+        // Of a code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
+        let code = self.what.strip_prefix("ptu:");
+        let (asked, digest) = match code.map(|code| code.split_once('/')) {
+            None => (self.what.as_str(), None),
+            Some(Some((run, digest))) => (run, Some(digest)),
+            Some(None) => return Err(Failure::usage("a code of a sheet reads ptu:RUN/SHA-256")),
+        };
         let store = self.database.open_read_only()?;
-        let id = store.resolve_run(&self.what)?;
+        let id = store.resolve_run(asked)?;
         let seen = store.verify_run(id)?;
+        let is_other = |digest: &str| seen.seal.as_ref().is_none_or(|seal| seal.digest != digest);
+        let is_other = digest.is_some_and(is_other);
         let mut found = Findings {
             what: "run",
             id: id.to_string(),
             ..Findings::default()
         };
         found.take_run(seen, keys);
+        match digest {
+            Some(_) if is_other => {
+                (found.changes).push("the run in the database is not the one of the sheet".into())
+            }
+            Some(_) => found
+                .remarks
+                .push("the run in the database is the one of the sheet".into()),
+            None => {}
+        }
         Ok(found)
     }
 
@@ -227,7 +247,8 @@ impl VerifyArguments {
 fn looks_like_a_file(name: &str) -> bool {
     let ending = PathBuf::from(name);
     let ending = ending.extension().and_then(|ending| ending.to_str());
-    name.contains(['/', '\\']) || matches!(ending, Some("db" | "html" | "ptucert"))
+    let is_code = name.starts_with("ptu:");
+    (!is_code && name.contains(['/', '\\'])) || matches!(ending, Some("db" | "html" | "ptucert"))
 }
 
 /// A sheet by the certificate in it.

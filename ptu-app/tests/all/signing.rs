@@ -96,8 +96,20 @@ fn a_signed_run_is_verified_in_each_of_its_forms() {
         .exits(0)
         .prints(&["signed 1 runs", "unchanged"]);
 
-    // A changed word of the sheet, its certificate, the certificate file, the database.
+    // What a scanner reads of the sheet on paper.
     let page = place.read("sheet.html");
+    let code = page.split_once("aria-label=\"ptu:").expect("a code").1;
+    let code = format!("ptu:{}", code.split_once('"').expect("its end").0);
+    verify(&place, &code)
+        .exits(0)
+        .prints(&["the run in the database is the one of the sheet"]);
+    let run = code.split_once('/').expect("a run").0;
+    verify(&place, &format!("{run}/{}", "0".repeat(64)))
+        .exits(1)
+        .prints(&["the run in the database is not the one of the sheet"]);
+    verify(&place, run).exits(2).explains(&["ptu:RUN/SHA-256"]);
+
+    // A changed word of the sheet, its certificate, the certificate file, the database.
     assert!(page.contains("Kim, key "));
     place.write("other.html", &page.replace("SIM-0001", "SIM-0002"));
     verify(&place, "other.html")

@@ -287,7 +287,7 @@ mod tests {
                     texts.extend(plot.series.iter().map(|series| series.name.clone()));
                     texts.extend(plot.places.iter().map(|place| place.name.clone()));
                 }
-                Block::NewPage | Block::Signatures(..) => {}
+                Block::NewPage | Block::Code(..) | Block::Signatures(..) => {}
             }
         }
         texts

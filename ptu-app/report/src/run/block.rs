@@ -1,5 +1,6 @@
 //! The blocks of a test sheet, which page and PDF are made from.
 
+use super::code::Code;
 use crate::limits::places;
 use crate::plot::Plot;
 
@@ -34,6 +35,8 @@ pub enum Block {
     Plot(Box<Plot>),
     /// What follows begins a page.
     NewPage,
+    /// A code for a scanner, and what is done with it.
+    Code(Box<Code>, String),
     /// Lines to sign on: who, and the word for the date.
     Signatures(Vec<String>, String),
 }

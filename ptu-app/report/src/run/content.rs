@@ -4,6 +4,7 @@
 use fault_db::{FaultState, RunState, RunSummary, StepRecord, Verdict};
 
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
+use super::code::Code;
 use super::diagnosis::diagnosis;
 use super::plots::plots;
 use super::settled::settled;
@@ -312,14 +313,16 @@ fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.seal, seal(sheet, words)),
         (report.signed_by, signed_by(sheet, words)),
     ];
-    vec![
+    let code = Code::of(&sheet.run).map(|code| Block::Code(code.into(), report.scanned.into()));
+    let facts = facts.into_iter().chain(continued);
+    let facts = facts.map(|(name, value)| (sentence(name), value));
+    [
         Block::Heading(report.the_run.into()),
-        Block::Facts(
-            (facts.into_iter().chain(continued))
-                .map(|(name, value)| (sentence(name), value))
-                .collect(),
-        ),
+        Block::Facts(facts.collect()),
     ]
+    .into_iter()
+    .chain(code)
+    .collect()
 }
 
 /// The seal of the run, by which a printed sheet can be checked against the database.

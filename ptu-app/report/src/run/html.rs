@@ -48,6 +48,7 @@ fn drawn(block: &Block) -> Markup {
         Block::Text(tone, text) => markup! { p class=(class(*tone)) { (text) } },
         Block::Table(of) => table(of),
         Block::Plot(plot) => markup! { figure { (plot.svg()) } },
+        Block::Code(code, below) => markup! { div.code { (code.svg()) p.soft { (below) } } },
         Block::NewPage => markup! { div.new-page {} },
         Block::Signatures(who, date) => markup! {
             div.signatures {

@@ -6,6 +6,7 @@
 
 pub(crate) mod block;
 mod case;
+mod code;
 mod compare;
 mod content;
 mod diagnosis;

@@ -4,12 +4,16 @@ use super::font::FontMetrics;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
 use super::{plot, table};
 use crate::run::block::{Block, Tone};
+use crate::run::code::Code;
 
 /// Size of running words, and from line to line.
 const SIZE: f32 = 8.2;
 const LINE: f32 = 11.2;
 /// Names of facts take so much.
 const NAMES: f32 = 130.0;
+
+/// Edge of a code for a scanner: 34 mm.
+const CODE: f32 = 96.0;
 
 /// Length of a line to write on.
 const BLANK: f32 = 170.0;
@@ -52,6 +56,7 @@ fn block(block: &Block, letters: &FontMetrics) -> Vec<Piece> {
             all
         }
         Block::Plot(of) => vec![plot::piece(of)],
+        Block::Code(code, below) => vec![scanned(code, below, letters)],
         Block::NewPage => vec![Piece {
             on_new_page: true,
             ..Piece::default()
@@ -153,6 +158,26 @@ fn fact(name: &str, value: &str, letters: &FontMetrics) -> Piece {
     Piece {
         items: vec![column(names, MARGIN, Ink::Soft), said],
         height: lines as f32 * LINE + 1.0,
+        ..Piece::default()
+    }
+}
+
+/// A code for a scanner, and beside it what is done with it.
+fn scanned(code: &Code, beside: &str, letters: &FontMetrics) -> Piece {
+    let dot = CODE / code.width as f32;
+    let mut items = vec![Item::Drawing(MARGIN, 0.0, CODE, CODE, code.text.clone())];
+    for (x, y, length) in &code.dark {
+        let (x, y, length) = (*x as f32 * dot, *y as f32 * dot, *length as f32 * dot);
+        items.push(Item::Area(MARGIN + x, y, length, dot, Ink::Black));
+    }
+    let left = CODE + 14.0;
+    let lines = letters.lines(beside, SIZE, INSIDE - left);
+    let base = |number| CODE / 2.0 + LINE * number as f32;
+    let lines = (0..).map(base).zip(lines).collect();
+    items.push(Item::lines(MARGIN + left, SIZE, Ink::Soft, lines));
+    Piece {
+        items,
+        height: CODE + 4.0,
         ..Piece::default()
     }
 }
