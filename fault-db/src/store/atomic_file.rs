@@ -49,14 +49,11 @@ impl AtomicFile {
     /// Of the file system; the old file is still there then.
     pub fn replace(self) -> std::io::Result<()> {
         std::fs::rename(&self.beside, &self.to)?;
-        // Makes the rename survive a power cut, too; not every file system can sync a folder.
-        if let Ok(folder) = std::fs::File::open(folder_of(&self.to)) {
-            let _ = folder.sync_all();
-        }
+        sync_names(&self.to);
         Ok(())
     }
 
-    /// Gives it a name that must be free.
+    /// Gives it a name that must be free. What was written must be on the disk already.
     ///
     /// # Errors
     /// [`ErrorKind::AlreadyExists`], or of the file system; another name can be tried then.
@@ -66,10 +63,12 @@ impl AtomicFile {
             Err(error)
                 if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
             {
-                self.rename(name)
+                self.rename(name)?;
             }
-            done => done,
+            done => done?,
         }
+        sync_names(name);
+        Ok(())
     }
 
     /// Copies a whole file, compacted, beside `to`.
@@ -167,6 +166,13 @@ impl Drop for AtomicFile {
             name.push(end);
             let _ = std::fs::remove_file(name);
         }
+    }
+}
+
+/// Makes a new name of a file survive a power cut, too; not every file system can sync a folder.
+fn sync_names(file: &Path) {
+    if let Ok(folder) = std::fs::File::open(folder_of(file)) {
+        let _ = folder.sync_all();
     }
 }
 
