@@ -45,6 +45,9 @@ use recording::Recording;
 
 /// Time a unit may take from power-up until ATP sets Automatic.
 const READY_WITHIN: Duration = Duration::from_ms(10_000);
+/// The station data of the departure, which come every 250 ms, are heard by then: before it ATP may set Automatic by
+/// those of the arrival, under which no run begins.
+const DEPARTURE_HEARD: Duration = Duration::from_ms(500);
 /// Time from the start button until ATP sets Automatic Run.
 const RUN_WITHIN: Duration = Duration::from_ms(2_000);
 /// Time from Automatic Run until the train moves.
@@ -270,7 +273,9 @@ impl Drive {
         let moving = truth.speed_mps != 0.0;
         let late = |since: Instant, limit: Duration| now.since(since) >= limit;
         match self.phase {
-            Phase::Preparing { .. } if mode == Some(Mode::Automatic) => {
+            Phase::Preparing { since }
+                if mode == Some(Mode::Automatic) && late(since, DEPARTURE_HEARD) =>
+            {
                 if let Err(Refusal(text)) = rig.apply(now, &Stimulus::Start) {
                     return Some(Ending::Refused(text));
                 }
