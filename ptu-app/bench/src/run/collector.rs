@@ -77,7 +77,9 @@ pub struct Collector<'a> {
     run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,
-    /// Steps that passed, by procedure and name.
+    /// The steps that a search for a fault could have run; such a run that passed without all of them accepts nothing.
+    searched: Option<usize>,
+    /// Steps of a search that passed, by procedure and name.
     passed: BTreeSet<(String, String)>,
     link_lost: bool,
     /// The tester itself could not go on.
@@ -85,8 +87,13 @@ pub struct Collector<'a> {
 }
 
 impl<'a> Collector<'a> {
-    /// A collector that records in `store`.
-    pub fn new(store: RunStore, listener: &'a mut dyn Listener, made: BenchContents) -> Self {
+    /// A collector that records in `store`; `searched` = the steps that a search for a fault could run.
+    pub fn new(
+        store: RunStore,
+        listener: &'a mut dyn Listener,
+        made: BenchContents,
+        searched: Option<usize>,
+    ) -> Self {
         Self {
             store,
             listener,
@@ -103,6 +110,7 @@ impl<'a> Collector<'a> {
             says_why: false,
             run_says_why: false,
             finished: 0,
+            searched,
             passed: BTreeSet::new(),
             link_lost: false,
             broken_off: false,
@@ -233,7 +241,7 @@ impl<'a> Collector<'a> {
 
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
         let index = self.next_index(result.verdict);
-        if result.verdict == Verdict::Passed {
+        if self.searched.is_some() && result.verdict == Verdict::Passed {
             self.passed
                 .insert((procedure.id.clone(), result.name.clone()));
         }
@@ -292,14 +300,7 @@ impl<'a> Collector<'a> {
     ///
     /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
     /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
-    ///
-    /// `searched` = the steps that a search for a fault could have run; one that passed without all of them accepts nothing.
-    pub fn finish(
-        mut self,
-        id: Id,
-        stopped: Option<Verdict>,
-        searched: Option<usize>,
-    ) -> (RunStore, Outcome) {
+    pub fn finish(mut self, id: Id, stopped: Option<Verdict>) -> (RunStore, Outcome) {
         if let Some(verdict) = stopped
             && !self.is_finished()
         {
@@ -307,7 +308,7 @@ impl<'a> Collector<'a> {
         }
         self.broken_off = stopped == Some(Verdict::Error) && self.verdict == Verdict::Error;
         let mut verdict = self.overall();
-        if let Some(of) = searched.filter(|of| self.passed.len() < *of)
+        if let Some(of) = self.searched.filter(|of| self.passed.len() < *of)
             && is_passed(verdict)
         {
             verdict = Verdict::Inconclusive;

@@ -125,7 +125,8 @@ pub fn run_on(
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let mut collector = Collector::new(run_store, listener, made);
+    let searched = plan.adaptive.as_ref().map(|_| steps_of(&plan.tasks));
+    let mut collector = Collector::new(run_store, listener, made, searched);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
         std::thread::scope(|scope| match &plan.adaptive {
@@ -154,8 +155,7 @@ pub fn run_on(
     if worked.is_err() {
         collector.broken_off("the program failed in this run");
     }
-    let searched = plan.adaptive.as_ref().map(|_| steps_of(&plan.tasks));
-    let (run_store, outcome) = collector.finish(id, left_out(stop), searched);
+    let (run_store, outcome) = collector.finish(id, left_out(stop));
     let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
