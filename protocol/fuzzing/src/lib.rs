@@ -3,7 +3,7 @@
 //! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
 //! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
 //!
-//! `FUZZ_RUNS` is the number of executions of each reader in place of the usual one, `FUZZ_SEED` another seed.
+//! `CAMPAIGN=N` does so many times the usual ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
 
 #![allow(
     clippy::print_stdout,
@@ -29,6 +29,20 @@ const LOOK: Duration = Duration::from_millis(500);
 const MOST_MEMORY_KB: u64 = 512 << 10;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;
+
+/// How much a campaign does: what the check does of it, or so many times more as `CAMPAIGN` says.
+pub fn amount(of_the_check: u64) -> u64 {
+    of_the_check * set("CAMPAIGN").unwrap_or(1)
+}
+
+/// Seed of a campaign.
+pub fn seed() -> u64 {
+    set("CAMPAIGN_SEED").unwrap_or(1)
+}
+
+fn set(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
 
 /// A reader under test.
 pub struct Fuzz {
@@ -69,9 +83,7 @@ impl Fuzz {
     /// # Panics
     /// The reader did, or took too much memory. Ends the process if it takes too long.
     pub fn run(self, runs: u64, mut read: impl FnMut(&[u8])) {
-        let set = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-        let runs = set("FUZZ_RUNS").unwrap_or(runs);
-        let seed: u64 = set("FUZZ_SEED").unwrap_or(1);
+        let (runs, seed) = (amount(runs), seed());
         let mut mutator = Mutator::new(seed, &self.name);
         let watch = Watch::begin(&self.name);
         let began = Instant::now();
@@ -125,8 +137,15 @@ fn keep(name: &str, input: &[u8]) -> String {
 
 /// Most memory this process has had, kB; 0 where the system does not tell.
 fn most_memory_kb() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    memory_kb("self", "VmHWM")
+}
+
+/// What the system says of a process's memory, kB, as `VmRSS` of `self` or of a number; 0 where it does not tell.
+pub fn memory_kb(process: &str, key: &str) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix(':'));
     let number = line.and_then(|line| line.split_whitespace().next());
     number.and_then(|number| number.parse().ok()).unwrap_or(0)
 }

@@ -1,7 +1,11 @@
 //! Every reader of bytes from outside, fed with damaged ones: none panics, takes longer than 10 s, or takes more
-//! than 512 MB. Each is fed as often as a check has time for; `FUZZ_RUNS=1000000` feeds each a million times.
+//! than 512 MB. Each is fed as often as a check has time for; `CAMPAIGN=50` feeds each fifty times as often.
 
+#[path = "../common/mod.rs"]
 mod common;
+
+mod signals;
+mod signed;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
