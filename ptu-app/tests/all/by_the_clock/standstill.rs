@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::served::{Observer, Running, Unit, passes, released};
 use crate::common::{Place, list, number, text};
+use fuzzing::amount;
 use protocol::message::{Message, Outputs, StatusBits};
 
 /// Steps of a second or two.
@@ -82,6 +83,10 @@ fn a_step_in_which_the_tester_stood_still_is_repeated_and_no_fault_of_the_unit()
 /// in the ramp, so that the brake is not applied yet.
 #[test]
 fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
+    (0..amount(1)).for_each(|_| killed_in_an_overspeed_step());
+}
+
+fn killed_in_an_overspeed_step() {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
     let mut run = Running::start(&place, &unit, &["atp/overspeed", "--step", "code 25*"]);
@@ -113,16 +118,24 @@ fn killed_in_an_overspeed_step_the_unit_brakes_within_a_second() {
 }
 
 /// Goal: no test signal outlives its tester. Method: killed in the step of the next code, after most of the
-/// time that of the code before took.
+/// time that of the code before took; a campaign also kills earlier.
 #[test]
 fn killed_in_an_overspeed_step_of_the_test_board_the_test_signals_go_within_a_second() {
+    let turns = amount(1);
+    for turn in 1..=turns {
+        killed_in_a_step_of_the_test_board(0.5 + 0.2 * turn as f64 / turns as f64);
+    }
+}
+
+/// Killed after this share of the time that the step before took.
+fn killed_in_a_step_of_the_test_board(share: f64) {
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
     let mut run = Running::start(&place, &unit, &["ptu/overspeed", "--step", "code ?5*"]);
     let steps = run.recorded_steps(2);
     assert_eq!(steps[0]["verdict"], "passed", "{}", steps[0]);
     std::thread::sleep(Duration::from_secs_f64(
-        0.7 * number(&steps[0]["bench_time_s"]),
+        share * number(&steps[0]["bench_time_s"]),
     ));
     run.kill();
     let killed = Instant::now();
