@@ -19,7 +19,9 @@ pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error
     };
     let reason = said.message().to_owned();
     match *said.code() {
-        SqlState::QUERY_CANCELED | SqlState::LOCK_NOT_AVAILABLE => StoreError::ServerBusy {
+        SqlState::QUERY_CANCELED
+        | SqlState::LOCK_NOT_AVAILABLE
+        | SqlState::TOO_MANY_CONNECTIONS => StoreError::ServerBusy {
             path,
             doing,
             reason,
@@ -28,7 +30,6 @@ pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error
         | SqlState::INVALID_PASSWORD
         | SqlState::INVALID_AUTHORIZATION_SPECIFICATION
         | SqlState::INVALID_CATALOG_NAME
-        | SqlState::TOO_MANY_CONNECTIONS
         | SqlState::READ_ONLY_SQL_TRANSACTION => StoreError::ServerRefuses { path, reason },
         SqlState::DISK_FULL | SqlState::OUT_OF_MEMORY => StoreError::ServerRefuses { path, reason },
         SqlState::ADMIN_SHUTDOWN
