@@ -94,13 +94,14 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
     // It may have been restored from a backup.
     applier.is_older = true;
     applier.apply(set)?;
+    // As they came: the server compares these seals with its own events.
+    applier.seal_the_rest(BY_SYNC)?;
     // Occurrences on other laptops are not known in this file.
     file.execute(
         "UPDATE fault_event SET seen = min(seen, (SELECT occurrences FROM fault f
             WHERE f.seq = fault_event.fault)) WHERE seq > ?1",
         &values![applier.before.event],
     )?;
-    applier.seal_the_rest(BY_SYNC)?;
     // Received events need not be sent back.
     file.execute(
         "DELETE FROM outbox WHERE seq > ?1",
