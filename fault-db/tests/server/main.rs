@@ -13,6 +13,7 @@ mod crash;
 mod guarded;
 mod hostile_rows;
 mod insert_only;
+mod many_laptops;
 mod rights;
 mod sealed;
 mod shared_faults;
