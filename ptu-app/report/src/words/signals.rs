@@ -5,7 +5,7 @@ use super::wordings;
 wordings! {
     /// Waveforms: read, made, recorded and played.
     Signals {
-        title: "Signals", "신호 파형";
+        title: "Waves", "신호 파형";
         report: "Waveforms in a file", "파일의 신호 파형";
         file: "file", "파일";
         length: "length", "길이";
