@@ -58,7 +58,7 @@ wordings! {
         signed_by: "Signed with a key by", "전자 서명";
         signed: "{who}, key {key}, {at}", "{who}, 키 {key}, {at}";
         unsigned: "unsigned", "서명 없음";
-        scanned: "For a scanner: `ptu verify` with what this code says compares the run in the history with this sheet", "스캐너용: 이 코드의 내용을 `ptu verify` 뒤에 입력하면 이력에 있는 시험이 이 성적서와 같은지 확인합니다";
+        scanned: "For a scanner: the run, and the SHA-256 of its content as this sheet has it", "스캐너용: 시험 번호와, 이 성적서가 나타내는 시험 내용의 SHA-256";
         scripts: "Scripts", "스크립트";
         script: "Script", "스크립트";
         summary: "Verdicts", "판정 요약";
