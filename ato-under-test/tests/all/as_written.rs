@@ -8,9 +8,9 @@ use ato_under_test::{LOG_CAPACITY, RUN_ROWS};
 use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{
-    Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, ENUMS, FieldSpec, IoInput,
-    IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status, StatusBits,
-    StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines, TwcOrders,
+    Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, CoilSamples, ENUMS, FieldSpec,
+    IoInput, IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status,
+    StatusBits, StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines, TwcOrders,
 };
 use protocol::{CYCLE, Duration, Instant, SCAN};
 
@@ -306,6 +306,11 @@ fn holding(rule: &Rule, value: i64) -> Act {
                 bench.station = Some(data);
             }
         }
+        "CoilSamples" => {
+            let mut samples = CoilSamples::default();
+            samples.samples.0.fill(i16::MAX);
+            bench.send(set(samples.into(), value));
+        }
         "Subscribe" => bench.send(set(Subscribe::default().into(), value)),
         other => panic!("{other}"),
     })
@@ -340,7 +345,9 @@ fn what_holds_in_place_of_an_unknown_value_is_what_is_written() {
                 // What changes nothing is accepted, and held above.
                 "passed over" if rule.spec.name == "TestRelease" => continue,
                 "passed over" => (beside(&rule, value), beside(&rule, 0)),
-                "no marker" => (holding(&rule, value), Box::new(|_| {})),
+                "no marker" | "the samples are passed over" => {
+                    (holding(&rule, value), Box::new(|_| {}))
+                }
                 "not neutral" => (holding(&rule, value), holding(&rule, 1)),
                 "the frame is as good as lost" => {
                     (holding(&rule, value), Box::new(|bench| bench.tcms = None))

