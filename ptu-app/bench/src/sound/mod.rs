@@ -1,7 +1,7 @@
 //! Waveforms to and from a sound card with two channels: the coil of speed codes (ATP) and that of TWC.
 //!
 //! No library of the system is needed to build: what carries the samples is a program of the sound server, or of ALSA, as
-//! a child process ([`programs`]). Its samples go through a pipe that holds few of them. When this program is stopped,
+//! a child process (`programs`). Its samples go through a pipe that holds few of them. When this program is stopped,
 //! killed or stuck, the pipe ends or runs dry, and the card falls silent.
 
 mod calibration;
