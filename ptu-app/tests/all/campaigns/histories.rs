@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use fault_db::Store;
 use ptu_bench::clock;
@@ -12,8 +11,6 @@ use crate::common::{Place, record_bad_unit};
 
 /// Steps of the run, each of which fails and is told.
 const STEPS: usize = 20;
-/// Each thing is done so often to know how long it takes.
-const TIMED: u32 = 3;
 /// What begins the line that tells of one.
 const TOLD_STEP: &str = "failed  fails: ";
 /// Rows that may only become more, or, where something is deleted, fewer.
@@ -85,8 +82,6 @@ pub struct Victim {
     pub exit_code: i32,
     before: Rows,
     after: Rows,
-    /// How long it takes undisturbed, at least.
-    pub time: Duration,
 }
 
 /// What is done: name, arguments, the file that is written, the exit code.
@@ -121,7 +116,7 @@ const DEEDS: [(&str, &[&str], &str, i32); 8] = [
 /// All that is done, tried once without disturbance.
 pub fn victims(base: &Base) -> Vec<Victim> {
     let victim = |(name, arguments, file, exit_code)| {
-        let mut place = base.copy();
+        let place = base.copy();
         let mut victim = Victim {
             name,
             arguments,
@@ -129,16 +124,10 @@ pub fn victims(base: &Base) -> Vec<Victim> {
             exit_code,
             before: rows(&place.path(file)).unwrap_or_default(),
             after: Rows::default(),
-            time: Duration::MAX,
         };
-        for _ in 0..TIMED {
-            place = base.copy();
-            let began = Instant::now();
-            let output = victim.command(&place).output().expect("ptu starts");
-            victim.time = victim.time.min(began.elapsed());
-            assert_eq!(output.status.code(), Some(exit_code), "{name}: {output:?}");
-            assert!(!output.stdout.is_empty(), "{name} says what it did");
-        }
+        let output = victim.command(&place).output().expect("ptu starts");
+        assert_eq!(output.status.code(), Some(exit_code), "{name}: {output:?}");
+        assert!(!output.stdout.is_empty(), "{name} says what it did");
         victim.after = rows(&place.path(file)).expect("a history");
         let changes = victim.before != victim.after || name == "rebuild";
         assert!(changes, "{name} does something");

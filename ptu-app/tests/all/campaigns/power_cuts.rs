@@ -216,10 +216,10 @@ fn a_power_cut_at_any_sync_loses_nothing_that_was_told() {
         let syncs = deeds.iter().filter(|deed| is_sync(deed)).count();
         assert!(syncs > 0, "{}", victim.name);
         let every = (syncs / amount(2) as usize).max(1);
-        let (mut place_of, mut states) = (0, 0);
+        let (mut sync, mut states) = (0, 0);
         for deed in deeds {
-            place_of += usize::from(is_sync(&deed));
-            if is_sync(&deed) && place_of % every == 0 {
+            sync += usize::from(is_sync(&deed));
+            if is_sync(&deed) && sync % every == 0 {
                 states += judge(&victim, &disk, &base, &mut random);
             }
             disk.does(deed);

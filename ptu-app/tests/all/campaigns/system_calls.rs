@@ -5,8 +5,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 
-/// Calls that are shown: SQLite writes with the second, all else with the first.
-const SHOWN: &str = "trace=write,pwrite64,ftruncate,fsync,fdatasync,\
+/// Calls that change a file or a folder: SQLite writes with the second, all else with the first.
+pub const CALLS: &str = "write,pwrite64,ftruncate,fsync,fdatasync,\
      unlink,unlinkat,link,linkat,rename,renameat,renameat2";
 /// Longest text of a call that is shown whole, bytes.
 const LONGEST: &str = "4000000";
@@ -59,10 +59,12 @@ impl Deed {
     }
 }
 
-/// `strace` with these options, and behind them a program as it would be started.
+/// `strace` of these calls with more options, and behind them a program as it would be started.
 pub fn strace(options: &[&str], program: &Command) -> Command {
     let mut command = Command::new("strace");
-    command.arg("-f").args(options).arg("--");
+    let calls = format!("trace={CALLS}");
+    command.args(["-f", "-e", "signal=none", "-e", &calls]);
+    command.args(options).arg("--");
     command.arg(program.get_program()).args(program.get_args());
     command.envs(
         program
@@ -78,18 +80,7 @@ pub fn traced(program: &Command, folder: &Path) -> (ExitStatus, Vec<Deed>) {
     // Named files, so that what its own children say is told from what it says.
     let [log, out, err] = ["calls", "out", "err"].map(|name| folder.join(name));
     let into = log.display().to_string();
-    let options = [
-        "-y",
-        "-xx",
-        "-s",
-        LONGEST,
-        "-e",
-        "signal=none",
-        "-e",
-        SHOWN,
-        "-o",
-        &into,
-    ];
+    let options = ["-y", "-xx", "-s", LONGEST, "-o", &into];
     let made = |path| File::create(path).expect("a file");
     let mut traced = strace(&options, program);
     let status = traced.stdout(made(&out)).stderr(made(&err)).status();
