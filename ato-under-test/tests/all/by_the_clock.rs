@@ -112,7 +112,7 @@ fn a_hang_up_closes_the_socket_like_a_termination() {
         unit.signal(signal);
         client.hear_for(Duration::from_secs(5));
         assert!(client.closed, "{signal}");
-        let ended = unit.child.wait().expect("the unit's end");
+        let ended = unit.program.0.wait().expect("the unit's end");
         assert!(!ended.success(), "{signal}");
     }
 }

@@ -1,36 +1,14 @@
 //! A client written from `protocol/WIRE.md` alone, in another language, talks to the served unit:
 //! if the text and the unit ever differ, this fails. Both go in lock step: what holds the machine up holds neither.
 
-use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output};
 
-struct Served(Child);
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
+use crate::served::Served;
 
 /// A unit on a pseudo-terminal, and the terminal's name.
 fn serve() -> (Served, String) {
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_ato-under-test"))
-        .args(["--pty", "--lock-step"])
-        .arg("--scripts")
-        .arg(scripts)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("ato-under-test starts");
-    let mut name = String::new();
-    let out = child.stdout.take().expect("stdout");
-    BufReader::new(out)
-        .read_line(&mut name)
-        .expect("the port's name");
-    (Served(child), name.trim().to_owned())
+    Served::start(&["--pty", "--lock-step"])
 }
 
 fn client(arguments: &[&str]) -> Output {

@@ -83,7 +83,7 @@ fn round(
             }
         });
         if figures.frames() * 10 >= amount * (figures.memory_kb.len() as u64 + 1) {
-            let pid = unit.child.id().to_string();
+            let pid = unit.program.0.id().to_string();
             figures.memory_kb.push(fuzzing::memory_kb(&pid, "VmRSS"));
         }
     }

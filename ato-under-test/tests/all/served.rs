@@ -1,4 +1,4 @@
-//! The unit's program, served on a TCP socket by the clock, and a client of it.
+//! The unit's program as it is served, and a client of one on a TCP socket by the clock.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -12,46 +12,58 @@ use protocol::message::{Identify, Message};
 /// Reading takes no longer, unless the computer stands still, which is no time of the test's.
 const MOMENT: Duration = Duration::from_millis(20);
 
-/// A served unit; ends with the value.
-pub struct Unit {
-    pub child: Child,
-    address: SocketAddr,
-}
+/// The program of a served unit; ends with the value.
+pub struct Served(pub Child);
 
-impl Unit {
-    pub fn serve() -> Self {
+impl Served {
+    /// Starts it with these arguments, and gives the port or address that it says.
+    pub fn start(arguments: &[&str]) -> (Self, String) {
         let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
         // A hang-up acts whether or not whoever runs the tests ignores it.
         let mut child = Command::new("env")
             .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_ato-under-test")])
-            .args(["--tcp", "127.0.0.1:0", "--scripts"])
+            .args(arguments)
+            .arg("--scripts")
             .arg(scripts)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .expect("ato-under-test starts");
-        let mut address = String::new();
+        let mut place = String::new();
         let out = child.stdout.take().expect("stdout");
         BufReader::new(out)
-            .read_line(&mut address)
-            .expect("its address");
+            .read_line(&mut place)
+            .expect("its port or address");
+        (Self(child), place.trim().to_owned())
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A unit served on a TCP socket; ends with the value.
+pub struct Unit {
+    pub program: Served,
+    address: SocketAddr,
+}
+
+impl Unit {
+    pub fn serve() -> Self {
+        let (program, address) = Served::start(&["--tcp", "127.0.0.1:0"]);
         Self {
-            child,
-            address: address.trim().parse().expect("an address"),
+            program,
+            address: address.parse().expect("an address"),
         }
     }
 
     pub fn signal(&self, name: &str) {
-        let pid = self.child.id().to_string();
+        let pid = self.program.0.id().to_string();
         let sent = Command::new("kill").args(["-s", name, &pid]).status();
         assert!(sent.expect("kill").success());
-    }
-}
-
-impl Drop for Unit {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

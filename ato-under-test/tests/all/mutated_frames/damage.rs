@@ -198,7 +198,7 @@ impl Damager {
             }
             _ => {
                 let stamp = body[6..10].try_into().expect("four bytes");
-                // Not late, but of before the frame that each scan begins with.
+                // Not late, but earlier than the frame that each scan begins with.
                 let each_scan = [Channel::Ptu, Channel::Io].map(Channel::code);
                 let by = match each_scan.contains(&body[1]) && self.random.chance(0.5) {
                     true => 200 + self.random.below(280),
