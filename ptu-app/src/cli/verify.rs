@@ -91,21 +91,20 @@ impl VerifyArguments {
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(asked)?;
         let seen = store.verify_run(id)?;
-        let is_other = |digest: &str| seen.seal.as_ref().is_none_or(|seal| seal.digest != digest);
-        let is_other = digest.is_some_and(is_other);
+        let is_same = digest.map(|digest| has_content(&seen, digest));
         let mut found = Findings {
             what: "run",
             id: id.to_string(),
             ..Findings::default()
         };
         found.take_run(seen, keys);
-        match digest {
-            Some(_) if is_other => {
+        match is_same {
+            Some(true) => {
+                (found.remarks).push("the run in the database is the one of the sheet".into())
+            }
+            Some(false) => {
                 (found.changes).push("the run in the database is not the one of the sheet".into())
             }
-            Some(_) => found
-                .remarks
-                .push("the run in the database is the one of the sheet".into()),
             None => {}
         }
         Ok(found)
@@ -224,10 +223,7 @@ impl VerifyArguments {
                 .remarks
                 .push("the database here does not have this run".to_owned()),
             Some(seen) => {
-                let same = seen
-                    .seal
-                    .is_some_and(|seal| seal.digest == statement.digest);
-                if !same {
+                if !has_content(&seen, &statement.digest) {
                     found
                         .changes
                         .push("the run in the database is not what was signed".to_owned());
@@ -241,6 +237,11 @@ impl VerifyArguments {
             }
         }
     }
+}
+
+/// Whether a run was sealed with this SHA-256 of its content.
+fn has_content(seen: &Verification, digest: &str) -> bool {
+    (seen.seal.as_ref()).is_some_and(|seal| seal.digest == digest)
 }
 
 /// Whether a name is meant as that of a file.
