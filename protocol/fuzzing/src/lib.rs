@@ -3,7 +3,7 @@
 //! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
 //! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
 //!
-//! `CAMPAIGN=N` does so many times the usual ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
+//! `CAMPAIGN=N` does N times the usual amount ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
 
 #![allow(
     clippy::print_stdout,
@@ -30,7 +30,7 @@ const MOST_MEMORY_KB: u64 = 512 << 10;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;
 
-/// How much a campaign does: what the check does of it, or so many times more as `CAMPAIGN` says.
+/// How much a campaign does: the amount of the check, times the number in `CAMPAIGN`.
 pub fn amount(of_the_check: u64) -> u64 {
     of_the_check * set("CAMPAIGN").unwrap_or(1)
 }

@@ -13,7 +13,7 @@ use crate::common::{Place, number};
 
 /// Sections of line 8.
 const SECTIONS: u64 = 12;
-/// So many times over line 8 are 8 hours of service, and enough.
+/// Journeys over line 8 that take more than 8 hours of service together.
 const ROUNDS: u64 = 20;
 const HOURS: f64 = 8.0;
 /// Procedures of which a repetition takes the tester little time, and how many steps one of each has.
