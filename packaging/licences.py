@@ -20,7 +20,7 @@ packages = {package["id"]: package for package in metadata["packages"]}
 nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
 # What is linked: dependencies of the two programs, those for tests and builds alone left out.
 linked, ahead = set(), [
-    package["id"] for package in metadata["packages"] if package["name"] in ("ptu-app", "ato-under-test")
+    package["id"] for package in metadata["packages"] if package["name"] in ("ptu-app", "ptu-window", "ato-under-test")
 ]
 while ahead:
     package = ahead.pop()

@@ -1,20 +1,13 @@
-//! The program `ptu`: its command line and its window.
+//! The program `ptu`: its command line.
 //!
-//! * [`cli`]: the command line, one file per verb;
-//! * [`gui`]: the technician's window.
+//! * [`cli`]: one file per verb. `ptu gui` starts the program `ptu-window`.
 //!
 //! Of the workspace only `ptu-app`, its crates `ptu-bench` and `ptu-report` and the served unit's program read clocks;
 //! the database crate opens its own files and connections.
 
 pub mod cli;
 mod console;
-mod distances;
 mod event_stream;
-mod fault_months;
-#[cfg(feature = "window")]
-pub mod gui;
 mod operator;
 mod run_recording;
-mod sound_file;
 mod sparkline;
-mod trend;

@@ -10,7 +10,7 @@ if not exist "%from%ptu.exe" (
 )
 
 if not exist "%target%" mkdir "%target%"
-for %%f in (ptu.exe ato-under-test.exe) do (
+for %%f in (ptu.exe ptu-window.exe ato-under-test.exe) do (
     copy /y "%from%%%f" "%target%\%%f" >nul
     if errorlevel 1 (
         echo install: cannot write %target%\%%f; close the program and run this again
@@ -42,7 +42,7 @@ if errorlevel 1 (
 )
 powershell -NoProfile -Command ^
     "$l = (New-Object -ComObject WScript.Shell).CreateShortcut([Environment]::GetFolderPath('Programs') + '\ptu.lnk');" ^
-    "$l.TargetPath = $env:target + '\ptu.exe'; $l.Arguments = 'gui'; $l.WorkingDirectory = $env:USERPROFILE; $l.Save();" ^
+    "$l.TargetPath = $env:target + '\ptu-window.exe'; $l.WorkingDirectory = $env:USERPROFILE; $l.Save();" ^
     "[Environment]::SetEnvironmentVariable('PTU_INSTALLED', $null, 'User')"
 if errorlevel 1 echo install: no link was made in the start menu
 :done

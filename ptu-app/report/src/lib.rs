@@ -6,6 +6,7 @@
 //! * [`drive`], [`campaign`], [`diagnosis`]: reports of those;
 //! * [`trace_view`]: prepares traces for drawing, independent of the window; [`trace_io`]: trace files;
 //! * [`event_lines`]: the stream of a run for other programs; [`history_files`]: the history as Parquet partitions;
+//! * [`fault_months`], [`distances`], [`trend`]: the history as counts by month, faults by distance, values over time;
 //! * [`words`]: the texts in two languages; [`fonts`]: the font for them; [`limits`]: values and limits.
 
 pub mod campaign;
@@ -14,9 +15,11 @@ mod certificate;
 mod coverage;
 pub mod csv;
 pub mod diagnosis;
+pub mod distances;
 pub mod drive;
 pub mod event_lines;
 pub mod event_text;
+pub mod fault_months;
 pub mod fonts;
 pub mod history_files;
 mod json;
@@ -36,6 +39,7 @@ pub mod ticks;
 pub mod trace_io;
 pub mod trace_notes;
 pub mod trace_view;
+pub mod trend;
 mod without_korean;
 pub mod words;
 

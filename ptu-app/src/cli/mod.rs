@@ -2,16 +2,11 @@
 
 mod campaign;
 mod catalog;
-mod database;
 mod db;
 mod diagnose;
 mod doctor;
 mod drive;
 mod faults;
-#[cfg(feature = "window")]
-mod gui;
-#[cfg(not(feature = "window"))]
-#[path = "no_window.rs"]
 mod gui;
 mod help;
 mod help_files;
@@ -38,21 +33,18 @@ mod verify;
 #[cfg(test)]
 mod words;
 
-use std::path::PathBuf;
-
 use clap::builder::RangedI64ValueParser;
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
-pub use database::Database;
-use fault_db::{Address, Store};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use fault_db::Store;
 use output::Json;
 use serde::Serialize;
 
 use ptu_bench::clock;
-use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
 use ptu_bench::platform::running_program;
 use ptu_bench::run::loading;
 use ptu_bench::stdio;
+use ptu_options::{Database, ScriptsOption, WindowOptions, refuse_password};
 use ptu_report::json_text;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
@@ -74,7 +66,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     // What an argument's own comment says stands in the help; one here would hide its exit codes and examples.
-    Gui(Box<gui::GuiArguments>),
+    Gui(Box<WindowOptions>),
     Run(Box<run::RunArguments>),
     Diagnose(diagnose::DiagnoseArguments),
     /// Show recorded runs
@@ -116,15 +108,7 @@ impl Cli {
     /// # Errors
     /// It holds a server's password. Looked at first: whatever else is wrong would be shown as it stands.
     pub fn asked() -> Result<Self, Failure> {
-        let mut arguments = std::env::args_os().skip(1);
-        if arguments.any(|argument| Address::holds_password(&argument.to_string_lossy())) {
-            return Err(Failure::usage(
-                "the command line holds a password, and every program on this computer can read it there: leave \
-                 it out of the address and put it into ~/.pgpass (a line HOST:PORT:DATABASE:USER:PASSWORD, chmod \
-                 600), into a file named with ?passfile=FILE, or into PGPASSWORD; and change it, if others work \
-                 here",
-            ));
-        }
+        refuse_password()?;
         let matches = help::sectioned(help::flowing(Self::command())).try_get_matches();
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
@@ -146,10 +130,11 @@ impl Cli {
     pub fn run(self) -> Result<Exit, Failure> {
         loading::load_apart(running_program());
         let Some(verb) = self.verb else {
-            return gui::GuiArguments::usual()?.run();
+            return Err(gui::start(std::iter::empty()));
         };
         match verb {
-            Verb::Gui(arguments) => arguments.run(),
+            // The window reads the options itself; here they are only checked and told in the help.
+            Verb::Gui(_) => Err(gui::start(std::env::args_os().skip(2))),
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),
@@ -189,21 +174,6 @@ fn told(error: &clap::Error) -> Exit {
             Exit::Bench
         }
         _ => Exit::Passed,
-    }
-}
-
-/// Where procedures and data files are.
-#[derive(Debug, Args)]
-pub struct ScriptsOption {
-    /// Directory with procedures, units/ and lines/, alone [default: ./scripts, or above the program; else the user's and
-    /// the system's own files over those in the program]
-    #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
-    scripts: Option<PathBuf>,
-}
-
-impl ScriptsOption {
-    fn find(&self) -> Result<ScriptsDirectory, Failure> {
-        ScriptsDirectory::find(self.scripts.as_deref())
     }
 }
 

@@ -6,8 +6,8 @@ use ptu_report::run::page::{Item, pages};
 use ptu_report::words::Language;
 use serde_json::Value;
 
+use crate::common::is_english;
 use crate::common::{Place, list, number, record_bad_unit, relay_fault, text};
-use crate::report::is_english;
 
 /// A unit whose relay was slow and was replaced, and the id of the fault.
 fn repaired() -> (Place, String) {

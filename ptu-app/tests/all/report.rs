@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Place, list, text};
+use crate::common::{Place, is_english, list, text};
 use fault_db::Store;
 use ptu_report::run::{Sheet, html};
 use ptu_report::words::Language;
@@ -188,24 +188,6 @@ fn every_step_measurement_symptom_and_reason_of_a_limit_has_korean() {
         missing.is_empty(),
         "not in scripts/korean.toml: {missing:?}"
     );
-}
-
-/// Three plain words in a row, but for the signs of a condition: `lamps without failure`.
-pub fn is_english(text: &str) -> bool {
-    let is_plain = |word: &str| {
-        let word = word
-            .trim_end_matches([',', '.', ':', ';', ')'])
-            .trim_start_matches('(');
-        word.len() > 1
-            && !["with", "without"].contains(&word)
-            && word
-                .chars()
-                .all(|c| c.is_ascii_lowercase() || c == '\'' || c == '-')
-    };
-    let words: Vec<_> = text.split_whitespace().collect();
-    words
-        .windows(3)
-        .any(|words| words.iter().all(|word| is_plain(word)))
 }
 
 #[test]

@@ -1,12 +1,10 @@
 //! What the end-to-end tests share: a place of its own for each test, and the program run in it.
 
-#![allow(dead_code, reason = "each of the two test programs uses its part")]
+#![allow(dead_code, reason = "each of the test programs uses its part")]
 
-pub mod display;
 pub mod proxy;
 pub mod served;
 pub mod terminal;
-pub mod window;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -81,7 +79,7 @@ impl Place {
 
     /// `ptu` with these arguments, not started yet.
     pub fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ptu"));
+        let mut command = Command::new(program("ptu"));
         command
             .args(arguments)
             .current_dir(self.folder.path())
@@ -202,7 +200,29 @@ pub fn relay_fault(place: &Place) -> Value {
 
 /// The scripts directory of the workspace.
 pub fn scripts() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts")
+    workspace().join("scripts")
+}
+
+/// The folder of the repository: this one, whichever crate's tests run.
+pub fn workspace() -> &'static Path {
+    let mut above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let top = above.find(|folder| folder.join("Cargo.lock").is_file());
+    top.expect("the workspace")
+}
+
+/// A program of the workspace, built beside the running test program.
+pub fn program(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("a test program");
+    let built = test.ancestors().nth(2).expect("the folder of the build");
+    let program = built
+        .join(name)
+        .with_extension(std::env::consts::EXE_EXTENSION);
+    assert!(
+        program.is_file(),
+        "{} is not built: build the workspace",
+        program.display()
+    );
+    program
 }
 
 /// Copies a folder with all in it over another.
@@ -281,4 +301,22 @@ pub fn has_shape(value: &Value, keys: &[(&str, &str)]) {
             "\"{key}\" is no {kind} in {value}"
         );
     }
+}
+
+/// Three plain words in a row, but for the signs of a condition: `lamps without failure`.
+pub fn is_english(text: &str) -> bool {
+    let is_plain = |word: &str| {
+        let word = word
+            .trim_end_matches([',', '.', ':', ';', ')'])
+            .trim_start_matches('(');
+        word.len() > 1
+            && !["with", "without"].contains(&word)
+            && word
+                .chars()
+                .all(|c| c.is_ascii_lowercase() || c == '\'' || c == '-')
+    };
+    let words: Vec<_> = text.split_whitespace().collect();
+    words
+        .windows(3)
+        .any(|words| words.iter().all(|word| is_plain(word)))
 }

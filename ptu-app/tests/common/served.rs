@@ -54,18 +54,11 @@ impl Unit {
     /// Aboard a train, its maintenance port on a new pseudo-terminal.
     pub fn aboard(arguments: &[&str]) -> Self {
         let train = [&["train", "--pty"], arguments].concat();
-        Self::start(Path::new(env!("CARGO_BIN_EXE_ptu")), &train, "serial:")
+        Self::start(&super::program("ptu"), &train, "serial:")
     }
 
     fn serve(arguments: &[&str], scheme: &str) -> Self {
-        // Another package's program stands beside ours, if it was built.
-        let program = Path::new(env!("CARGO_BIN_EXE_ptu")).with_file_name("ato-under-test");
-        assert!(
-            program.is_file(),
-            "{} is not built; run `cargo test --workspace`",
-            program.display()
-        );
-        Self::start(&program, arguments, scheme)
+        Self::start(&super::program("ato-under-test"), arguments, scheme)
     }
 
     fn start(program: &Path, arguments: &[&str], scheme: &str) -> Self {

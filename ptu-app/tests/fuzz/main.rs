@@ -31,7 +31,6 @@ use protocol::line::{self, Line};
 use protocol::link::{End, Link};
 use protocol::message::{Address as Party, CATALOGUE, Channel as WireChannel, Message};
 use protocol::{Backlog, Duration, Instant};
-use ptu_app::gui::Settings;
 use ptu_bench::clock::{self, Span};
 use ptu_bench::drive::{SectionChoice, Setting};
 use ptu_bench::link::Endpoint;
@@ -421,15 +420,7 @@ fn matrices_and_dictionaries() {
 }
 
 #[test]
-fn settings_and_recordings() {
-    let folder = memory();
-    let file = folder.path().join("window.json");
-    let kept = serde_json::to_vec_pretty(&Settings::default()).expect("JSON");
-    fuzz("window-settings", [kept]).run(20_000, |bytes| {
-        std::fs::write(&file, bytes).expect("written");
-        let settings = Settings::load(&file);
-        assert!(settings.zoom.is_finite());
-    });
+fn recordings() {
     let made = r#"{"source":"sim","serial":"S","unit_config":{"name":"sg100","sha256":"a"},"line":{"name":"line8","sha256":"b"},
         "train":{"name":"line6","sha256":"c"},"seed":1,"scatter":null,"realtime":false}"#;
     fuzz_text("bench-made", [made], 60_000, |text| {

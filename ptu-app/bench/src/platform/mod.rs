@@ -13,7 +13,9 @@ use windows as system;
 
 pub use system::files::{identity, readable_by_others};
 pub use system::ports::{closed_to_user, is_probed_by_others};
-pub use system::process::{computer_name, leave_own_console, ready_output, running_program};
+pub use system::process::{
+    become_program, computer_name, leave_own_console, ready_output, running_program,
+};
 pub use system::signals::survive_file_limit;
 
 pub(crate) use system::files::{keep_to_owner, make_folder, real_path};

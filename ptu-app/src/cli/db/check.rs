@@ -9,62 +9,60 @@ use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::table::Table;
 
-impl Database {
-    pub(super) fn check(&self, json: Json) -> Result<Exit, Failure> {
-        let report = match self.open_read_only() {
-            Err(failure) if self.has_older_schema() => self.check_updated_copy(failure)?,
-            store => store?.check()?,
-        };
-        let found = || match report.problems.is_empty() {
-            true => format!(
-                "no damage; {} traces read, {} runs fit their seals",
-                report.traces, report.runs
-            ),
-            false => text(&report),
-        };
-        let told = json.answer(|| &report, || found() + &besides(&report));
-        let exit = match report.problems.is_empty() {
-            true => Exit::Passed,
-            false => Exit::Bench,
-        };
-        answered(told, exit)
-    }
+pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
+    let report = match database.open_read_only() {
+        Err(failure) if has_older_schema(database) => check_updated_copy(database, failure)?,
+        store => store?.check()?,
+    };
+    let found = || match report.problems.is_empty() {
+        true => format!(
+            "no damage; {} traces read, {} runs fit their seals",
+            report.traces, report.runs
+        ),
+        false => text(&report),
+    };
+    let told = json.answer(|| &report, || found() + &besides(&report));
+    let exit = match report.problems.is_empty() {
+        true => Exit::Passed,
+        false => Exit::Bench,
+    };
+    answered(told, exit)
+}
 
-    /// Whether it is a file of an earlier version, which is read once it is brought up to date.
-    fn has_older_schema(&self) -> bool {
-        let opened = self.file().map(|path| Store::open_read_only(&path));
-        matches!(opened, Ok(Err(StoreError::OlderSchema { .. })))
-    }
+/// Whether it is a file of an earlier version, which is read once it is brought up to date.
+fn has_older_schema(database: &Database) -> bool {
+    let opened = database.file().map(|path| Store::open_read_only(&path));
+    matches!(opened, Ok(Err(StoreError::OlderSchema { .. })))
+}
 
-    /// Checks a copy that is brought up to date; the file stays as it is. Bringing it up to date changes nothing that
-    /// its seals cover.
-    fn check_updated_copy(&self, failure: Failure) -> Result<CheckReport, Failure> {
-        let path = self.file()?;
-        let cannot = |error: std::io::Error| {
-            Failure::bench(format!(
-                "{failure}; and it cannot be copied to be checked: {error}"
-            ))
-        };
-        let folder = tempfile::tempdir().map_err(cannot)?;
-        let copy = folder.path().join("copy.db");
-        std::fs::copy(&path, &copy).map_err(cannot)?;
-        let beside = |path: &Path, end: &str| {
-            let mut name = path.as_os_str().to_owned();
-            name.push(end);
-            PathBuf::from(name)
-        };
-        if beside(&path, "-wal").exists() {
-            std::fs::copy(beside(&path, "-wal"), beside(&copy, "-wal")).map_err(cannot)?;
-        }
-        let store = Store::open(&copy, clock::open_options())?;
-        let mut report = store.check()?;
-        store.close()?;
-        report.remarks.push(format!(
-            "{} is of an earlier version of this program: a copy that was brought up to date was checked",
-            path.display()
-        ));
-        Ok(report)
+/// Checks a copy that is brought up to date; the file stays as it is. Bringing it up to date changes nothing that
+/// its seals cover.
+fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckReport, Failure> {
+    let path = database.file()?;
+    let cannot = |error: std::io::Error| {
+        Failure::bench(format!(
+            "{failure}; and it cannot be copied to be checked: {error}"
+        ))
+    };
+    let folder = tempfile::tempdir().map_err(cannot)?;
+    let copy = folder.path().join("copy.db");
+    std::fs::copy(&path, &copy).map_err(cannot)?;
+    let beside = |path: &Path, end: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(end);
+        PathBuf::from(name)
+    };
+    if beside(&path, "-wal").exists() {
+        std::fs::copy(beside(&path, "-wal"), beside(&copy, "-wal")).map_err(cannot)?;
     }
+    let store = Store::open(&copy, clock::open_options())?;
+    let mut report = store.check()?;
+    store.close()?;
+    report.remarks.push(format!(
+        "{} is of an earlier version of this program: a copy that was brought up to date was checked",
+        path.display()
+    ));
+    Ok(report)
 }
 
 /// What is to be known besides, and where the chain of seals ends.

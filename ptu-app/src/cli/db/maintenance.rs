@@ -9,11 +9,11 @@ use fault_db::{
 use serde_json::{json, to_value};
 
 use super::check::sealed;
-use crate::cli::database::only_file;
 use crate::cli::{Database, Json, answered, print_json, print_out, since_argument};
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::stdio;
+use ptu_options::only_file;
 use ptu_report::history_files::{Exported, export_history};
 
 /// Which traces may be deleted; those of faults that are not closed never are.
@@ -37,81 +37,80 @@ pub(super) struct PruneArguments {
     dry_run: bool,
 }
 
-impl Database {
-    pub(super) fn backup(&self, to: &Path) -> Result<Exit, Failure> {
-        self.open_read_only()?.backup(only_file(to)?)?;
-        // Of the copy: another process may have recorded more into the file meanwhile.
-        let head = fault_db::Store::open_read_only(to)?.head()?;
-        let head = head.map(|head| format!("\n{}", sealed(&head)));
-        print_out(&format!(
-            "copied to {}{}",
-            to.display(),
-            head.unwrap_or_default()
-        ))
-    }
+pub(super) fn backup(database: &Database, to: &Path) -> Result<Exit, Failure> {
+    database.open_read_only()?.backup(only_file(to)?)?;
+    // Of the copy: another process may have recorded more into the file meanwhile.
+    let head = fault_db::Store::open_read_only(to)?.head()?;
+    let head = head.map(|head| format!("\n{}", sealed(&head)));
+    print_out(&format!(
+        "copied to {}{}",
+        to.display(),
+        head.unwrap_or_default()
+    ))
+}
 
-    pub(super) fn import(&self, from: &Path, json: Json) -> Result<Exit, Failure> {
-        let from = only_file(from)?;
-        let store = self.open_or_make()?;
-        let counts = store.import(from);
-        let counts = counts.map_err(|error| of_named_file(from, error))?;
-        // What was known before needs no telling again; what came just now may be a rival of it.
-        let conflicts = match counts.events {
-            0 => Vec::new(),
-            _ => store.conflicts()?,
-        };
-        tell_merged(&counts, &conflicts, json)
-    }
+pub(super) fn import(database: &Database, from: &Path, json: Json) -> Result<Exit, Failure> {
+    let from = only_file(from)?;
+    let store = database.open_or_make()?;
+    let counts = store.import(from);
+    let counts = counts.map_err(|error| of_named_file(from, error))?;
+    // What was known before needs no telling again; what came just now may be a rival of it.
+    let conflicts = match counts.events {
+        0 => Vec::new(),
+        _ => store.conflicts()?,
+    };
+    tell_merged(&counts, &conflicts, json)
+}
 
-    pub(super) fn export(&self, to: &Path, json: Json) -> Result<Exit, Failure> {
-        let to = only_file(to)?;
-        let store = self.open_read_only()?;
-        let counts = store.export(to, clock::open_options());
-        let counts = counts.map_err(|error| of_named_file(to, error))?;
-        tell_merged(&counts, &[], json)
-    }
+pub(super) fn export(database: &Database, to: &Path, json: Json) -> Result<Exit, Failure> {
+    let to = only_file(to)?;
+    let store = database.open_read_only()?;
+    let counts = store.export(to, clock::open_options());
+    let counts = counts.map_err(|error| of_named_file(to, error))?;
+    tell_merged(&counts, &[], json)
+}
 
-    pub(super) fn export_parquet(&self, to: &Path, json: Json) -> Result<Exit, Failure> {
-        let done = export_history(&self.open_read_only()?, to)?;
-        let text = || {
-            let Exported {
-                written,
-                unchanged,
-                removed,
-            } = &done;
-            format!(
-                "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
-                to.display()
-            )
-        };
-        json.answer(|| &done, text)
-    }
+pub(super) fn export_parquet(database: &Database, to: &Path, json: Json) -> Result<Exit, Failure> {
+    let done = export_history(&database.open_read_only()?, to)?;
+    let text = || {
+        let Exported {
+            written,
+            unchanged,
+            removed,
+        } = &done;
+        format!(
+            "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
+            to.display()
+        )
+    };
+    json.answer(|| &done, text)
+}
 
-    pub(super) fn prune(&self, arguments: &PruneArguments) -> Result<Exit, Failure> {
-        let rule = PruneRule {
-            older_than_us: arguments.older_than,
-            passed_only: arguments.passed_only,
-            max_file_bytes: arguments.max_size,
-            keep_unsent: !arguments.unsent_too,
-            dry_run: arguments.dry_run,
-            at_us: clock::now_us(),
-        };
-        print_out(&pruned(&self.open()?.prune(&rule)?, arguments.dry_run))
-    }
+pub(super) fn prune(database: &Database, arguments: &PruneArguments) -> Result<Exit, Failure> {
+    let rule = PruneRule {
+        older_than_us: arguments.older_than,
+        passed_only: arguments.passed_only,
+        max_file_bytes: arguments.max_size,
+        keep_unsent: !arguments.unsent_too,
+        dry_run: arguments.dry_run,
+        at_us: clock::now_us(),
+    };
+    print_out(&pruned(&database.open()?.prune(&rule)?, arguments.dry_run))
+}
 
-    pub(super) fn rebuild(&self) -> Result<Exit, Failure> {
-        let differed = self.open()?.rebuild(clock::now_us())?;
-        let mut said = "counts by day and month, repairs, sums of measured values and search words made again; \
-             runs, faults, traces and seals are as they were"
+pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
+    let differed = database.open()?.rebuild(clock::now_us())?;
+    let mut said =
+        "counts by day and month, repairs, sums of measured values and search words made again; \
+         runs, faults, traces and seals are as they were"
             .to_owned();
-        if !differed.is_empty() {
-            said += "\nuntil now, and on record from now on:";
-        }
-        for what in differed {
-            said += &format!("\n  {what}");
-        }
-        print_out(&said)
+    if !differed.is_empty() {
+        said += "\nuntil now, and on record from now on:";
     }
+    for what in differed {
+        said += &format!("\n  {what}");
+    }
+    print_out(&said)
 }
 
 /// An error with the advice for a file that was not named with --db, if it is of that file.

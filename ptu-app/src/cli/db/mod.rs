@@ -77,17 +77,17 @@ impl DbArguments {
     /// Does it.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
-            Verb::Check { json } => self.database.check(json),
-            Verb::Rebuild => self.database.rebuild(),
-            Verb::Backup { to } => self.database.backup(&to),
-            Verb::Import { from, json } => self.database.import(&from, json),
+            Verb::Check { json } => check::check(&self.database, json),
+            Verb::Rebuild => maintenance::rebuild(&self.database),
+            Verb::Backup { to } => maintenance::backup(&self.database, &to),
+            Verb::Import { from, json } => maintenance::import(&self.database, &from, json),
             Verb::Export { to, parquet, json } => match (to, parquet) {
-                (Some(to), _) => self.database.export(&to, json),
-                (None, folder) => self
-                    .database
-                    .export_parquet(&folder.unwrap_or_default(), json),
+                (Some(to), _) => maintenance::export(&self.database, &to, json),
+                (None, folder) => {
+                    maintenance::export_parquet(&self.database, &folder.unwrap_or_default(), json)
+                }
             },
-            Verb::Prune(arguments) => self.database.prune(&arguments),
+            Verb::Prune(arguments) => maintenance::prune(&self.database, &arguments),
             Verb::Sync(arguments) => arguments.run(&self.database),
             Verb::Server(arguments) => arguments.run(),
             Verb::Query(arguments) => arguments.query(&self.database),

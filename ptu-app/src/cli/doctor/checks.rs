@@ -5,6 +5,7 @@ use std::path::Path;
 use fault_db::{Address, Store, StoreError};
 
 use super::Finding;
+use crate::cli::gui;
 use ptu_bench::clock::{ClockState, local_minute as day, now_us};
 use ptu_bench::data::ScriptsDirectory;
 use ptu_bench::failure::Failure;
@@ -112,8 +113,8 @@ pub(super) fn ports() -> Vec<Finding> {
 /// The window can open.
 pub(super) fn display() -> Finding {
     const SUBJECT: &str = "display";
-    if cfg!(not(feature = "window")) {
-        return Finding::ok(SUBJECT, "this program was built without the window");
+    if !gui::window().is_file() {
+        return Finding::ok(SUBJECT, "the window is not installed");
     }
     let named = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     if cfg!(not(target_os = "linux")) {

@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, check_unit};
-use crate::trend::{TimeSeries, Trend};
 use ptu_bench::clock::{Span, rfc3339, utc_day};
 use ptu_bench::data;
 use ptu_bench::failure::{Exit, Failure, did_you_mean};
+use ptu_report::trend::{TimeSeries, Trend};
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///
@@ -74,9 +74,9 @@ impl TrendArguments {
             data::write(file, trend_plot::page(&trend))?;
         }
         if self.output.is_json() {
-            return crate::cli::print_json(&trend.json());
+            return crate::cli::print_json(&json(&trend));
         }
-        self.output.print(trend.keys(), &trend.rows(), || {
+        self.output.print(keys(&trend), &rows(&trend), || {
             trend_text::text(&trend, self.limit as usize)
         })
     }
@@ -179,88 +179,86 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-impl Trend {
-    /// Keys of the values, or of the days, in their order.
-    fn keys(&self) -> &'static [&'static str] {
-        match self.course {
-            TimeSeries::Points(_) => &[
-                "at",
-                "run_id",
-                "unit_serial",
-                "value",
-                "unit",
-                "low",
-                "high",
-                "verdict",
-            ],
-            TimeSeries::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
-        }
+/// Keys of the values, or of the days, in their order.
+fn keys(trend: &Trend) -> &'static [&'static str] {
+    match trend.course {
+        TimeSeries::Points(_) => &[
+            "at",
+            "run_id",
+            "unit_serial",
+            "value",
+            "unit",
+            "low",
+            "high",
+            "verdict",
+        ],
+        TimeSeries::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
     }
+}
 
-    /// The values, or the days.
-    fn rows(&self) -> Vec<Value> {
-        match &self.course {
-            TimeSeries::Points(points) => points
-                .iter()
-                .map(|point| {
-                    json!({
-                        "at": rfc3339(point.at_us), "run_id": point.run_id.to_string(),
-                        "unit_serial": point.unit_serial, "value": point.value, "unit": point.unit,
-                        "low": point.low, "high": point.high, "verdict": point.verdict.as_str(),
-                    })
-                })
-                .collect(),
-            TimeSeries::Days(days, _) => days
-                .iter()
-                .map(|day| {
-                    json!({
-                        "day": rfc3339(day.day_us), "n": day.n, "mean": day.mean,
-                        "least": day.least, "most": day.most, "not_passed": day.not_passed,
-                    })
-                })
-                .collect(),
-        }
-    }
-
-    fn json(&self) -> Value {
-        let mut value = json!({
-            "measurement": self.query.measurement, "unit": self.limits.unit,
-            "low": self.limits.low, "high": self.limits.high, "procedures": self.procedures,
-            "steps": self.steps,
-        });
-        match &self.course {
-            TimeSeries::Points(_) => value["points"] = self.rows().into(),
-            TimeSeries::Days(_, units) => {
-                value["days"] = self.rows().into();
-                value["units"] = json!(units);
-            }
-        }
-        let (low, high) = (self.limits.low, self.limits.high);
-        let process = self.process.as_ref();
-        value["capability"] = json!(process.and_then(|process| process.capability(low, high)));
-        value["forecast"] = process
-            .and_then(|process| process.forecast(low, high))
-            .map_or(Value::Null, |forecast| {
+/// The values, or the days.
+fn rows(trend: &Trend) -> Vec<Value> {
+    match &trend.course {
+        TimeSeries::Points(points) => points
+            .iter()
+            .map(|point| {
                 json!({
-                    "limit": forecast.limit, "at": rfc3339(forecast.at_us),
-                    "earliest": rfc3339(forecast.earliest_us),
-                    "latest": forecast.latest_us.map(rfc3339),
+                    "at": rfc3339(point.at_us), "run_id": point.run_id.to_string(),
+                    "unit_serial": point.unit_serial, "value": point.value, "unit": point.unit,
+                    "low": point.low, "high": point.high, "verdict": point.verdict.as_str(),
                 })
-            });
-        value["process"] = process.map_or(Value::Null, |process| {
-            let mut value = json!(process);
-            value["signs"] = process
-                .signs
-                .iter()
-                .map(|sign| {
-                    json!({
-                        "kind": sign.kind, "times": sign.times,
-                        "first_at": rfc3339(sign.first_at_us), "last_at": rfc3339(sign.last_at_us),
-                    })
+            })
+            .collect(),
+        TimeSeries::Days(days, _) => days
+            .iter()
+            .map(|day| {
+                json!({
+                    "day": rfc3339(day.day_us), "n": day.n, "mean": day.mean,
+                    "least": day.least, "most": day.most, "not_passed": day.not_passed,
                 })
-                .collect();
-            value
-        });
-        value
+            })
+            .collect(),
     }
+}
+
+fn json(trend: &Trend) -> Value {
+    let mut value = json!({
+        "measurement": trend.query.measurement, "unit": trend.limits.unit,
+        "low": trend.limits.low, "high": trend.limits.high, "procedures": trend.procedures,
+        "steps": trend.steps,
+    });
+    match &trend.course {
+        TimeSeries::Points(_) => value["points"] = rows(trend).into(),
+        TimeSeries::Days(_, units) => {
+            value["days"] = rows(trend).into();
+            value["units"] = json!(units);
+        }
+    }
+    let (low, high) = (trend.limits.low, trend.limits.high);
+    let process = trend.process.as_ref();
+    value["capability"] = json!(process.and_then(|process| process.capability(low, high)));
+    value["forecast"] = process
+        .and_then(|process| process.forecast(low, high))
+        .map_or(Value::Null, |forecast| {
+            json!({
+                "limit": forecast.limit, "at": rfc3339(forecast.at_us),
+                "earliest": rfc3339(forecast.earliest_us),
+                "latest": forecast.latest_us.map(rfc3339),
+            })
+        });
+    value["process"] = process.map_or(Value::Null, |process| {
+        let mut value = json!(process);
+        value["signs"] = process
+            .signs
+            .iter()
+            .map(|sign| {
+                json!({
+                    "kind": sign.kind, "times": sign.times,
+                    "first_at": rfc3339(sign.first_at_us), "last_at": rfc3339(sign.last_at_us),
+                })
+            })
+            .collect();
+        value
+    });
+    value
 }

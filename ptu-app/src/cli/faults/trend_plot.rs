@@ -1,10 +1,10 @@
 //! A trend drawn on a page: values, limits, control limits, the line through them.
 
 use crate::cli::made_by;
-use crate::trend::{TimeSeries, Trend};
 use ptu_report::plot::{Plot, Series, Style};
 use ptu_report::plot_page::PlotPage;
 use ptu_report::run::html;
+use ptu_report::trend::{TimeSeries, Trend};
 use ptu_report::words::Language;
 
 /// Microseconds of a day.

@@ -6,7 +6,6 @@ use protocol::config::UnitConfig;
 use super::positive;
 use super::sound::{Channel, Device};
 use crate::cli::print_out;
-use crate::sound_file;
 use ptu_bench::clock;
 use ptu_bench::failure::{Exit, Failure};
 use ptu_bench::signal;
@@ -16,6 +15,7 @@ use ptu_bench::sound::{
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
 use ptu_bench::typed::{Typed, somebody_is_there};
+use ptu_options::sound_file;
 
 /// How long the reference is heard where nobody is asked, s.
 const REFERENCE_S: f64 = 5.0;

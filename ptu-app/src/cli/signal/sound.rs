@@ -6,7 +6,6 @@ use clap::{Args, ValueEnum};
 
 use super::{Noisy, Scale, hex, positive};
 use crate::cli::print_out;
-use crate::sound_file;
 use ptu_bench::clock;
 use ptu_bench::data::check_writable;
 use ptu_bench::failure::{Exit, Failure};
@@ -17,6 +16,7 @@ use ptu_bench::sound::{
 use ptu_bench::stdio;
 use ptu_bench::stop::Stop;
 use ptu_bench::table::Table;
+use ptu_options::sound_file;
 
 /// Play a WAV file, a speed code or TWC on a sound card
 ///

@@ -1,6 +1,5 @@
 //! What judges times by the clock: one after the other, when nothing else runs.
 
 mod acceptance;
-mod idle;
 mod pace;
 mod standstill;

@@ -1,9 +1,7 @@
-//! What a unit remembers over power-ups, read over its port: by commands, and by the buttons of the window.
+//! What a unit remembers over power-ups, read over its port: by commands.
 
 use crate::common::served::{Running, Unit};
-use crate::common::window::Window;
 use crate::common::{Place, list, number, text};
-use ptu_app::gui::{Page, Settings};
 use serde_json::Value;
 
 fn import(place: &Place, unit: &Unit) -> Value {
@@ -75,22 +73,6 @@ fn a_unit_that_never_drove_has_no_run_to_pull() {
         .ptu(&["record", "pull", "--unit", "sim"])
         .exits(2)
         .explains(&["simulated unit"]);
-}
-
-#[test]
-fn the_windows_buttons_read_the_unit_that_is_not_connected() {
-    let unit = Unit::on_tcp(&["--serial-no", "MEM-3"]);
-    let mut settings = Settings {
-        page: Page::Faults,
-        ..Settings::default()
-    };
-    settings.unit.endpoint = unit.address.clone();
-    let mut window = Window::with(Place::new(), crate::common::scripts(), settings);
-    window.click("Import the unit's log");
-    window.wait_for_part("MEM-3:");
-    window.click("Traces");
-    window.click("Pull the run record");
-    window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
 }
 
 /// Goal: a laptop on a train reads all that is whole of a damaged memory, and is told what is not. Method: the memory of a

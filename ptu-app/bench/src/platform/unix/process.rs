@@ -1,6 +1,8 @@
 //! This computer, this process and others.
 
+use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use rustix::process::{Pid, test_kill_process};
 
@@ -36,3 +38,8 @@ pub fn ready_output() {}
 
 /// No program has a terminal made for it.
 pub fn leave_own_console() {}
+
+/// This process becomes the command's. Returns only if the command cannot be started.
+pub fn become_program(command: &mut Command) -> std::io::Error {
+    command.exec()
+}

@@ -1,6 +1,7 @@
 //! This computer, this process and others.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use super::calls;
 
@@ -29,4 +30,19 @@ pub fn ready_output() {
 /// console leaves it there.
 pub fn leave_own_console() {
     calls::leave_own_console();
+}
+
+/// This process stays until the command ends, leaves the console that was made for it, and ends as the command does.
+/// Returns only if the command cannot be started.
+pub fn become_program(command: &mut Command) -> std::io::Error {
+    match command.spawn() {
+        Err(error) => error,
+        Ok(mut child) => {
+            leave_own_console();
+            match child.wait() {
+                Err(error) => error,
+                Ok(status) => std::process::exit(status.code().unwrap_or(1)),
+            }
+        }
+    }
 }

@@ -1,0 +1,149 @@
+//! `--db`: selects the history, a file or a server.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use fault_db::{Address, Store, StoreError};
+
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::{owner_only, stdio};
+
+/// Names a history for all commands that are given none.
+const VARIABLE: &str = "PTU_DB";
+/// Among the options: after all others but `--help`.
+const LAST: usize = 998;
+
+/// Which history.
+#[derive(Debug, Args)]
+pub struct Database {
+    /// Database file, or postgres://USER@HOST/DATABASE [default: history.db in the user's data directory]
+    /// [env: PTU_DB]
+    // Read by us: clap would show a variable that is set as an option that has to be given.
+    #[arg(long, value_name = "FILE", global = true, display_order = LAST)]
+    db: Option<PathBuf>,
+}
+
+/// The server that was named where a file could have been, if it was one.
+fn as_address(path: &Path) -> Option<Result<Address, StoreError>> {
+    let text = path.to_string_lossy();
+    Address::is_meant(&text).then(|| text.parse())
+}
+
+/// A file that is named beside `--db`; not a server, whose address would be taken for a file's name.
+pub fn only_file(path: &Path) -> Result<&Path, Failure> {
+    match as_address(path) {
+        None => Ok(path),
+        Some(address) => Err(StoreError::NotAFile {
+            path: address?.to_string().into(),
+        }
+        .into()),
+    }
+}
+
+/// Where it is.
+enum DatabasePlace {
+    File(PathBuf),
+    Server(Address),
+}
+
+impl Database {
+    fn place(&self) -> Result<DatabasePlace, Failure> {
+        let Some(path) = self.named() else {
+            let file = directories::ProjectDirs::from("", "", "ptu")
+                .map(|directories| directories.data_dir().join("history.db"));
+            return file.map(DatabasePlace::File).ok_or_else(|| {
+                Failure::usage("no user data directory; name a database with --db")
+            });
+        };
+        if path.as_os_str().is_empty() {
+            return Err(Failure::usage(format!(
+                "{VARIABLE} is empty; let it name a database, or unset it"
+            )));
+        }
+        Ok(match as_address(&path) {
+            Some(address) => DatabasePlace::Server(address?),
+            None => DatabasePlace::File(path),
+        })
+    }
+
+    /// What the user named, if anything.
+    fn named(&self) -> Option<PathBuf> {
+        let variable = || std::env::var_os(VARIABLE).map(PathBuf::from);
+        self.db.clone().or_else(variable)
+    }
+
+    /// Its path, of a file; for what a server does not do.
+    pub fn file(&self) -> Result<PathBuf, Failure> {
+        match self.place()? {
+            DatabasePlace::File(path) => Ok(path),
+            DatabasePlace::Server(address) => Err(StoreError::NotAFile {
+                path: address.to_string().into(),
+            }
+            .into()),
+        }
+    }
+
+    /// The server, if it is one; for what tells a server from a file by itself.
+    pub fn server(&self) -> Result<Option<Address>, Failure> {
+        Ok(match self.place()? {
+            DatabasePlace::File(_) => None,
+            DatabasePlace::Server(address) => Some(address),
+        })
+    }
+
+    /// Opens one that is there for writing: a name that is mistyped makes none.
+    pub fn open(&self) -> Result<Store, Failure> {
+        match self.place()? {
+            DatabasePlace::File(path) if !path.exists() => Err(StoreError::Missing { path }.into()),
+            _ => self.open_or_make(),
+        }
+    }
+
+    /// A file that was named has to be there, as the name may be mistyped; the user's own may be made.
+    pub fn check_named(&self) -> Result<(), Failure> {
+        match self.place()? {
+            DatabasePlace::File(path) if self.named().is_some() && !path.exists() => {
+                Err(StoreError::Missing { path }.into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Opens it for writing, and makes a file if need be: for what brings runs in.
+    pub fn open_or_make(&self) -> Result<Store, Failure> {
+        match self.place()? {
+            DatabasePlace::File(_) => self.open_file(),
+            DatabasePlace::Server(address) => Ok(Store::connect(&address, clock::ids())?),
+        }
+    }
+
+    /// The same, of a file; the user's own data directory is made if need be: for runs.
+    pub fn open_file(&self) -> Result<Store, Failure> {
+        let path = self.file()?;
+        if self.named().is_none() {
+            owner_only::folder_of(&path)?;
+        }
+        if let Some(told) = owner_only::told_if_shared(&path) {
+            stdio::note(&told);
+        }
+        Ok(Store::open(&path, clock::open_options())?)
+    }
+
+    /// Opens it for reading.
+    pub fn open_read_only(&self) -> Result<Store, Failure> {
+        Ok(match self.place()? {
+            DatabasePlace::File(path) => {
+                let store = Store::open_read_only(&path)?;
+                for stranger in store.foreign_objects()? {
+                    stdio::note(&format!(
+                        "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
+                        path.display()
+                    ));
+                }
+                store
+            }
+            DatabasePlace::Server(address) => Store::connect_read_only(&address)?,
+        })
+    }
+}

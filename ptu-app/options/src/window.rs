@@ -1,0 +1,54 @@
+//! The options of `ptu gui`, which `ptu-window` takes as they are.
+
+use btu_rig::rig::Harness;
+use clap::Args;
+
+use super::{Database, Page, ScriptsOption};
+use ptu_bench::link::Endpoint;
+use ptu_report::words::Language;
+
+/// Open the technician's window
+///
+/// Examples:
+///   ptu gui                     as it was left
+///   ptu gui --lang ko           in Korean
+///   ptu gui --page traces       with the traces in front
+///   ptu gui --unit sim          connected to the simulated unit at once
+///   ptu gui --create --db b.db     with a database that is made
+///   ptu gui --db postgres://kim@depot/history   reads the history of a server
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub struct WindowOptions {
+    /// Language, en or ko [default: as it was left]
+    #[arg(long, value_name = "LANGUAGE")]
+    pub lang: Option<Language>,
+    #[allow(
+        missing_docs,
+        reason = "a comment would be the help, which names the pages"
+    )]
+    #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
+    pub page: Option<Page>,
+    /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Endpoint>,
+    /// Whether the bench harness is connected: auto, none or bench [default: as it was left]
+    #[arg(long, value_name = "WHICH")]
+    pub harness: Option<Harness>,
+    /// Faults to inject into the simulated unit, see `ptu catalog faults`
+    #[arg(
+        long,
+        value_name = "FAULT[,FAULT]",
+        value_delimiter = ',',
+        requires = "unit"
+    )]
+    pub inject: Vec<String>,
+    /// Make the database that --db names if it is not there
+    #[arg(long)]
+    pub create: bool,
+    #[allow(missing_docs, reason = "a comment would be part of the help")]
+    #[command(flatten)]
+    pub database: Database,
+    #[allow(missing_docs, reason = "a comment would be part of the help")]
+    #[command(flatten)]
+    pub scripts: ScriptsOption,
+}

@@ -1,0 +1,263 @@
+//! The window: takes what other threads have produced, then draws the frame and the page.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
+
+use super::Page;
+use super::data_paths::DataPaths;
+use super::data_watch::DataWatch;
+use super::frame::{Frame, only_look};
+use super::messages::{About, Messages};
+use super::page_context::Destination;
+use super::page_context::PageContext;
+use super::pages::Pages;
+use super::query_worker::QueryWorker;
+use super::settings::Settings;
+use super::units::{Unit, Units};
+use super::{fonts, theme};
+use ptu_bench::bench_worker::{Wake, Watched};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::stop::Stop;
+use ptu_report::words::Words;
+
+/// How often a window that is being closed looks whether all units are let go.
+const CLOSING: Duration = Duration::from_millis(50);
+
+/// What a window is opened with.
+pub struct Options {
+    /// Where database and scripts are.
+    pub paths: DataPaths,
+    /// What was kept from the last time.
+    pub settings: Settings,
+    /// Where it is kept; none = nowhere.
+    pub settings_file: Option<PathBuf>,
+    /// Connect the unit at once.
+    pub connect: bool,
+    /// Pressed when the system asks the program to end.
+    pub interrupted: Stop,
+}
+
+/// The window.
+pub struct App {
+    queries: QueryWorker,
+    database: DataWatch,
+    /// The person was told that it is gone.
+    told_gone: bool,
+    units: Units,
+    settings: Settings,
+    /// The name of the operator as it was written last.
+    operator: String,
+    saved: Settings,
+    settings_file: Option<PathBuf>,
+    messages: Messages,
+    frame: Frame,
+    pages: Pages,
+    go_to: Vec<Destination>,
+    closing: bool,
+    closed: bool,
+    /// The person knows that outputs were not confirmed safe.
+    noted_not_safe: bool,
+    /// The system asks the program to end.
+    interrupted: Stop,
+}
+
+impl App {
+    /// A window that is not shown yet; `wake` has it shown again.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn new(context: &Context, options: Options, wake: Wake) -> Result<Self, Failure> {
+        fonts::set(context);
+        theme::set(context);
+        let settings = options.settings;
+        let mut units = Units::new(settings.unit.clone(), wake.clone())?;
+        let database = DataWatch::new(options.paths.clone(), wake.clone())?;
+        let queries = QueryWorker::new(options.paths, wake)?;
+        if options.connect {
+            units.chosen_mut().connect(&queries);
+        }
+        Ok(Self {
+            units,
+            queries,
+            database,
+            told_gone: false,
+            saved: settings.clone(),
+            operator: settings.operator.clone(),
+            settings,
+            settings_file: options.settings_file,
+            messages: Messages::default(),
+            frame: Frame::default(),
+            pages: Pages::default(),
+            go_to: Vec::new(),
+            closing: false,
+            closed: false,
+            noted_not_safe: false,
+            interrupted: options.interrupted,
+        })
+    }
+
+    /// One frame.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.follow_operator();
+        let words = self.settings.language.words();
+        self.units.lock(self.settings.locked);
+        self.units.poll(words, &mut self.messages);
+        self.tell_if_gone(words);
+        self.apply_settings(ui.ctx());
+        self.close_in_order(ui.ctx());
+        let mut page_context = PageContext {
+            words,
+            queries: &self.queries,
+            database: &self.database,
+            units: &mut self.units,
+            settings: &mut self.settings,
+            messages: &mut self.messages,
+            go_to: &mut self.go_to,
+        };
+        self.frame.keys(ui, &mut page_context);
+        self.pages.poll(&mut page_context);
+        Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut page_context));
+        Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut page_context));
+        Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut page_context));
+        if page_context.settings.locked {
+            Panel::top("locked").show(ui, |ui| self.frame.locked(ui, &mut page_context));
+        }
+        let page = page_context.settings.page;
+        page_context.units.watch(match page {
+            Page::Bench => Watched::All,
+            Page::Procedures if page_context.settings.live_plot => Watched::Curves,
+            _ => Watched::Bar,
+        });
+        CentralPanel::default().show(ui, |ui| {
+            if page_context.settings.locked {
+                only_look(ui);
+            }
+            self.pages.show(page, ui, &mut page_context);
+        });
+        if self.closing {
+            let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
+            self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
+        }
+        for to in std::mem::take(page_context.go_to) {
+            page_context.settings.page = self.pages.go_to(to, &mut page_context);
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// The units, for who drives the window from outside.
+    pub fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// Questions to the database and to files, likewise.
+    pub fn queries(&self) -> &QueryWorker {
+        &self.queries
+    }
+
+    /// It is closed: every run recorded, every unit disarmed.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The settings as they are now.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The page shown.
+    pub fn page(&self) -> Page {
+        self.settings.page
+    }
+
+    /// Told when the database goes, and no longer when it is back.
+    fn tell_if_gone(&mut self, words: &Words) {
+        let gone = self.database.is_gone();
+        if std::mem::replace(&mut self.told_gone, gone) == gone {
+            return;
+        }
+        self.messages.over(About::Database);
+        if gone {
+            let file = self.queries.paths().database.display().to_string();
+            self.messages
+                .trouble_about(About::Database, words.frame.database_gone, file);
+        }
+    }
+
+    /// Notes when the name was written; one of another shift is asked for again, unless a run goes on under it.
+    fn follow_operator(&mut self) {
+        let now_us = clock::now_us();
+        if self.settings.operator != self.operator || self.settings.operator_at_us == 0 {
+            self.operator.clone_from(&self.settings.operator);
+            self.settings.operator_at_us = now_us;
+        }
+        let running = |unit: &Unit| unit.run.as_ref().is_some_and(|run| run.is_running());
+        if !self.units.iter().any(running) {
+            self.settings.forget_operator(now_us);
+        }
+    }
+
+    fn apply_settings(&mut self, context: &Context) {
+        let theme = if self.settings.dark {
+            egui::Theme::Dark
+        } else {
+            egui::Theme::Light
+        };
+        if context.theme() != theme {
+            context.set_theme(theme);
+        }
+        context.set_zoom_factor(self.settings.zoom);
+        self.settings.density.keep(context);
+    }
+
+    /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.
+    fn close_in_order(&mut self, context: &Context) {
+        let asked = context.input(|input| input.viewport().close_requested());
+        if (asked || self.interrupted.presses() > 0) && !self.closing {
+            self.closing = true;
+            self.save(context);
+        }
+        if !self.closing {
+            return;
+        }
+        let let_go = self.units.close();
+        // The person is to know before the window is gone.
+        let known = !self.units.any_not_safe() || self.noted_not_safe;
+        if let_go && known {
+            self.closed = true;
+            context.send_viewport_cmd(ViewportCommand::Close);
+        } else {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            context.request_repaint_after(CLOSING);
+        }
+    }
+
+    fn save(&mut self, context: &Context) {
+        self.settings.unit = self.units.chosen().choice.clone();
+        let size =
+            context.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));
+        self.settings.window_size = size.or(self.settings.window_size);
+        if self.settings == self.saved {
+            return;
+        }
+        let Some(file) = &self.settings_file else {
+            return;
+        };
+        // Not worth keeping the window open for.
+        if self.settings.save(file).is_ok() {
+            self.saved = self.settings.clone();
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        theme::ground(visuals).to_normalized_gamma_f32()
+    }
+}

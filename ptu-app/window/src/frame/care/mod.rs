@@ -1,0 +1,202 @@
+//! The care of the history: exchange with a server, import of another file, backup, check.
+
+mod work;
+
+use std::path::PathBuf;
+
+use eframe::egui::{Button, Id, Key, RichText, ScrollArea, TextEdit, Ui, Window, pos2};
+use fault_db::{Address, LastSync};
+
+use crate::parts::{Job, typed};
+use crate::request::{CachedResponse, Request};
+use crate::{PageContext, Palette};
+use ptu_bench::clock;
+use ptu_report::words::fill;
+
+/// Width of the dialog and of its fields, points.
+const WIDE: f32 = 560.0;
+const FIELD: f32 = 380.0;
+/// From the edge of the window to the dialog, and title and edges of the dialog.
+const LEFT: f32 = 20.0;
+const AROUND: f32 = 120.0;
+
+/// The dialog, and what it does.
+#[derive(Default)]
+pub struct Care {
+    open: bool,
+    address: String,
+    /// The address was proposed once: what is typed in its place stays.
+    proposed: bool,
+    without_traces: bool,
+    file: String,
+    job: Job,
+    last: CachedResponse<Vec<LastSync>>,
+    /// Of which data the last syncs are known.
+    asked: Option<(usize, u64)>,
+}
+
+impl Care {
+    /// The button that opens it, and the dialog while it is open.
+    pub fn button(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        if self.job.poll(context, words.care.failed) {
+            self.asked = None;
+        }
+        let button = ui.selectable_label(self.open, words.care.title);
+        if button.clicked() {
+            self.open = !self.open;
+        }
+        if !self.open {
+            return;
+        }
+        self.keep_up(context);
+        let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
+        let high = ui.ctx().content_rect().height() - AROUND;
+        Window::new(words.care.title)
+            .id(Id::unique("care"))
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .default_width(WIDE)
+            .default_pos(pos2(LEFT, button.rect.bottom() + LEFT))
+            .show(ui.ctx(), |ui| {
+                ScrollArea::vertical()
+                    .max_height(high)
+                    .show(ui, |ui| self.contents(ui, context));
+            });
+        self.open = open;
+    }
+
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        if context.only_reads().is_some() {
+            return;
+        }
+        let wanted = Some(context.data_version());
+        if self.asked != wanted {
+            self.asked = wanted;
+            let last = context.queries.run(|paths| Ok(paths.read()?.last_syncs()?));
+            self.last.request(last);
+        }
+        self.last.poll();
+    }
+
+    fn contents(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        if context.settings.locked {
+            super::only_look(ui);
+        }
+        ui.set_width(WIDE);
+        let file = context.queries.paths().database.display().to_string();
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(words.care.file).color(Palette::of(ui).quiet));
+            ui.label(file);
+        });
+        if self.job.is_under_way() {
+            // A server's check is short, and cannot be stopped.
+            let stops = context.only_reads().is_none();
+            self.job.progress(ui, words, stops);
+        } else {
+            self.job.result(ui);
+        }
+        ui.separator();
+        if let Some(why) = context.only_reads() {
+            ui.label(why);
+            let check = ui.add_enabled(!self.job.is_under_way(), Button::new(words.care.check));
+            if check.clicked() {
+                work::check(&mut self.job, context);
+            }
+            return;
+        }
+        self.sync(ui, context);
+        ui.separator();
+        self.files(ui, context);
+        let (faults, traces) = (words.faults.title, words.traces.title);
+        let logs = fill(words.care.logs, &[("faults", &faults), ("traces", &traces)]);
+        ui.label(RichText::new(logs).color(Palette::of(ui).quiet));
+    }
+
+    fn sync(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.care;
+        match self.last.get() {
+            Request::Ready(last) if last.is_empty() => {
+                ui.label(words.never_synced);
+            }
+            Request::Ready(last) => {
+                for sync in last {
+                    let at = clock::local(sync.at_us);
+                    let said = [
+                        ("at", &at as &dyn std::fmt::Display),
+                        ("server", &sync.server),
+                        ("n", &sync.waiting),
+                    ];
+                    ui.label(fill(words.last_synced, &said));
+                }
+            }
+            Request::Failed(why) => {
+                let why = context.words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(context.words.common.loading);
+            }
+        }
+        if let (false, Some(last)) = (self.proposed, self.last.get().value()) {
+            // As it was typed: a stored one tells where the server is, and not how it is reached.
+            let latest = last.first().map(|sync| sync.server.clone());
+            let typed = typed(&context.settings.server);
+            self.address = typed.or(latest).unwrap_or_default();
+            self.proposed = true;
+        }
+        let address = &mut self.address;
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(words.server);
+            ui.add(TextEdit::singleline(address).desired_width(FIELD))
+                .labelled_by(label.id)
+                .on_hover_text(words.address_hint);
+        });
+        let parsed = address.trim().parse::<Address>();
+        let mut with_traces = !self.without_traces;
+        let clicked = ui.horizontal_wrapped(|ui| {
+            ui.checkbox(&mut with_traces, words.with_traces);
+            let may = parsed.is_ok() && !self.job.is_under_way();
+            ui.add_enabled(may, Button::new(words.sync))
+                .on_disabled_hover_text(words.address_hint)
+                .clicked()
+        });
+        self.without_traces = !with_traces;
+        if let (true, Ok(parsed)) = (clicked.inner, parsed) {
+            context.settings.server = match parsed.has_password() {
+                true => parsed.to_string(),
+                false => address.trim().to_owned(),
+            };
+            let address = parsed;
+            work::sync(&mut self.job, context, address, with_traces);
+        }
+    }
+
+    fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.care;
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(words.other_file);
+            ui.add(TextEdit::singleline(&mut self.file).desired_width(FIELD))
+                .labelled_by(label.id);
+        });
+        let file = typed(&self.file).map(PathBuf::from);
+        let free = !self.job.is_under_way();
+        ui.horizontal_wrapped(|ui| {
+            let named = free && file.is_some();
+            let import = ui.add_enabled(named, Button::new(words.import));
+            let backup = ui.add_enabled(named, Button::new(words.backup));
+            let check = ui.add_enabled(free, Button::new(words.check));
+            if check.clicked() {
+                work::check(&mut self.job, context);
+            }
+            let Some(file) = file else { return };
+            if import.clicked() {
+                work::import(&mut self.job, context, file);
+            } else if backup.clicked() {
+                work::backup(&mut self.job, context, file);
+            }
+        });
+    }
+}

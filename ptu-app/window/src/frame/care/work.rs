@@ -1,0 +1,145 @@
+//! What the dialog has done on a thread of its own.
+
+use std::path::{Path, PathBuf};
+
+use fault_db::{Address, Store, StoreError, SyncOptions};
+
+use crate::PageContext;
+use crate::parts::{Done, Job, Told};
+use ptu_bench::failure::Failure;
+use ptu_bench::platform::computer_name;
+use ptu_bench::{clock, process_id};
+use ptu_report::care::{self, Said};
+use ptu_report::words::{Words, fill};
+
+/// Exchanges the history with a server.
+pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, traces: bool) {
+    let words = context.words;
+    let said = (words.care.connecting.to_owned(), words.care.failed);
+    job.begin(context, said, move |paths, told| {
+        let store = paths.open()?;
+        let server = Store::connect(&address, clock::ids())?;
+        let mut options = SyncOptions {
+            laptop: &computer_name(),
+            traces,
+            as_copy: false,
+            is_alive: &process_id::is_alive,
+            now_us: &clock::now_us,
+            go_on: &mut |progress| {
+                told.say(care::progress(progress, words));
+                told.stop.presses() == 0
+            },
+        };
+        let outcome = store.sync(&server, &mut options);
+        let outcome = outcome.map_err(|error| of_copy(error, words))?;
+        store.close()?;
+        Ok(done(care::synced(&outcome, words)))
+    });
+}
+
+/// Adds what another file has.
+pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
+    let words = context.words;
+    let shown = file.display().to_string();
+    let said = fill(words.care.importing, &[("file", &shown)]);
+    job.begin(context, (said, words.care.failed), move |paths, told| {
+        let store = stopped_by(told, paths.open()?)?;
+        let counts = match store.import(&file) {
+            Err(StoreError::Stopped) => return Ok(stopped(words)),
+            done => done.map_err(|error| of_file(&file, error, words))?,
+        };
+        // What was taken stays: nothing stops from here on.
+        store.stop_when(|| false)?;
+        // What was known before needs no telling again; what came just now may be a rival of it.
+        let conflicts = match counts.events {
+            0 => Vec::new(),
+            _ => store.conflicts()?,
+        };
+        store.close()?;
+        Ok(done(care::imported(&counts, &conflicts, words)))
+    });
+}
+
+/// Copies the history.
+pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
+    let words = context.words;
+    let shown = file.display().to_string();
+    let said = fill(words.care.backing_up, &[("file", &shown)]);
+    job.begin(context, (said, words.care.failed), move |paths, told| {
+        match stopped_by(told, paths.read()?)?.backup(&file) {
+            Err(StoreError::Stopped) => return Ok(stopped(words)),
+            done => done.map_err(|error| of_file(&file, error, words))?,
+        }
+        // Of the copy: another program may have recorded more into the file meanwhile.
+        let head = Store::open_read_only(&file)?.head()?;
+        let text = fill(words.care.backed_up, &[("file", &shown)]);
+        let notes = head.map(|head| care::chain(&head, words));
+        Ok(done(Said {
+            text,
+            notes: notes.into_iter().collect(),
+        }))
+    });
+}
+
+/// Looks for damage and for what was changed.
+pub fn check(job: &mut Job, context: &mut PageContext<'_>) {
+    let words = context.words;
+    let said = (words.care.checking.to_owned(), words.care.failed);
+    job.begin(context, said, move |paths, told| {
+        let store = match paths.is_server() {
+            true => paths.read()?,
+            false => stopped_by(told, paths.read()?)?,
+        };
+        match store.check() {
+            Err(StoreError::Stopped) => Ok(stopped(words)),
+            report => Ok(done(care::checked(&report?, words))),
+        }
+    });
+}
+
+/// The store, whose work ends when the person stops it.
+fn stopped_by(told: &Told, store: Store) -> Result<Store, StoreError> {
+    let stop = told.stop.clone();
+    store.stop_when(move || stop.presses() > 0)?;
+    Ok(store)
+}
+
+/// Work that was stopped before it had done anything that stays.
+fn stopped(words: &Words) -> Done {
+    done(Said {
+        text: words.care.nothing_done.to_owned(),
+        notes: Vec::new(),
+    })
+}
+
+/// An error about a file that was named here.
+fn of_file(file: &Path, error: StoreError, words: &Words) -> Failure {
+    let shown = file.display().to_string();
+    match &error {
+        StoreError::Missing { path } if path == file => {
+            Failure::bench(fill(words.care.no_file, &[("file", &shown)]))
+        }
+        StoreError::TargetExists { .. } => {
+            Failure::bench(fill(words.care.is_there, &[("file", &shown)]))
+        }
+        _ => error.into(),
+    }
+}
+
+/// An error of a sync.
+fn of_copy(error: StoreError, words: &Words) -> Failure {
+    match error {
+        StoreError::EarlierCopy { .. } | StoreError::ForkedCopy { .. } => {
+            Failure::bench(words.care.is_copy)
+        }
+        _ => error.into(),
+    }
+}
+
+fn done(said: Said) -> Done {
+    Done {
+        text: said.text,
+        notes: said.notes,
+        broken_off: None,
+    }
+}

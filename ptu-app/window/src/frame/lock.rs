@@ -1,0 +1,44 @@
+//! The lock between two shifts: the window shows what goes on and stops everything, and does nothing else until somebody
+//! gives a name. It is a name and no password.
+
+use eframe::egui::{Button, Key, RichText, Ui};
+
+use crate::parts::{ActionPlace, name_edit};
+use crate::{PageContext, Palette, Sizes};
+
+/// Width of the field for a name, points.
+const NAME: f32 = 220.0;
+/// How strong what cannot be clicked is painted: it is still to be read.
+const STRENGTH: f32 = 0.75;
+
+/// What follows in `ui` can be read and not clicked.
+pub fn only_look(ui: &mut Ui) {
+    ui.visuals_mut().disabled_alpha = STRENGTH;
+    ui.disable();
+}
+
+/// Says that the window is locked, and takes the name that opens it.
+pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = &context.words.frame;
+    let sizes = Sizes::of(ui);
+    let settings = &mut *context.settings;
+    ui.label(
+        RichText::new(words.locked)
+            .size(sizes.text)
+            .color(Palette::of(ui).warn)
+            .strong(),
+    );
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label(context.words.case.your_name);
+        let edit = name_edit(&mut settings.operator, NAME);
+        let name = ui.add(edit).labelled_by(label.id);
+        let entered = name.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let named = !settings.operator.trim().is_empty();
+        let place = ActionPlace::new(ui, "lock", named);
+        let opened = ui.add_enabled(named, Button::new(words.unlock));
+        if named && (entered || place.clicked(&opened)) {
+            settings.locked = false;
+        }
+        ui.label(RichText::new(words.lock_is_no_password).color(Palette::of(ui).quiet));
+    });
+}

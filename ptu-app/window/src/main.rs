@@ -1,0 +1,96 @@
+//! `ptu-window`: the technician's window. `ptu gui` starts it with the same options.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use fault_db::Store;
+use ptu_bench::failure::{Exit, Failure};
+use ptu_bench::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
+use ptu_bench::run::loading;
+use ptu_bench::stop::Stop;
+use ptu_options::{WindowOptions, refuse_password};
+use ptu_window::{DataPaths, Options, Settings, open};
+
+#[derive(Debug, Parser)]
+#[command(name = "ptu-window", version)]
+struct CommandLine {
+    #[command(flatten)]
+    options: WindowOptions,
+}
+
+fn main() -> ExitCode {
+    survive_file_limit();
+    ready_output();
+    match run() {
+        Ok(exit) => ExitCode::from(exit.code()),
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.exit.code())
+        }
+    }
+}
+
+/// Opens the window, or loads scripts for the process of the window that asks for them.
+fn run() -> Result<Exit, Failure> {
+    if std::env::args_os()
+        .nth(1)
+        .is_some_and(|word| word == loading::WORD)
+    {
+        return loading::serve().map(|()| Exit::Passed);
+    }
+    refuse_password()?;
+    let asked = CommandLine::parse().options;
+    loading::load_apart(running_program());
+    open(options(asked)?)?;
+    Ok(Exit::Passed)
+}
+
+/// What the window is opened with: what was asked for, over what was kept from the last time.
+fn options(asked: WindowOptions) -> Result<Options, Failure> {
+    if !asked.create {
+        asked
+            .database
+            .check_named()
+            .map_err(|failure| Failure::bench(format!("{failure}; `ptu gui --create` makes it")))?;
+    }
+    let settings_file = Settings::usual_file();
+    let mut settings = settings_file
+        .as_deref()
+        .map(Settings::load)
+        .unwrap_or_default();
+    settings.language = asked.lang.unwrap_or(settings.language);
+    settings.page = asked.page.unwrap_or(settings.page);
+    let scripts = asked.scripts.find()?;
+    let paths = match asked.database.server()? {
+        Some(_) if asked.unit.is_some() => {
+            return Err(Failure::usage(
+                "a server's history is only read: without --unit, or with --db FILE",
+            ));
+        }
+        Some(server) => {
+            // Before there is a window to say it in.
+            Store::connect_read_only(&server)?;
+            DataPaths::of_server(server, scripts)
+        }
+        None => DataPaths::new(asked.database.file()?, scripts),
+    };
+    settings.unit.harness = asked.harness.unwrap_or(settings.unit.harness);
+    if let Some(unit) = &asked.unit {
+        settings.unit.endpoint = unit.to_string();
+        settings.unit.faults = asked.inject;
+        // Before there is a window to say it in.
+        settings
+            .unit
+            .clone()
+            .with_offered_faults()
+            .setup(&paths.scripts)?;
+    }
+    leave_own_console();
+    Ok(Options {
+        paths,
+        settings,
+        settings_file,
+        connect: asked.unit.is_some(),
+        interrupted: Stop::default(),
+    })
+}

@@ -1,0 +1,134 @@
+//! Frames with a heading, and names with values in columns.
+
+use eframe::egui::{
+    Align2, AsIdSalt, Color32, FontId, FontSelection, Frame, Margin, Painter, Pos2, Rect, RichText,
+    Role, Sense, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
+};
+
+use crate::Palette;
+
+/// Height of a name with its value.
+const LINE: f32 = 17.0;
+/// Size of names.
+const NAME: f32 = 12.0;
+/// Size of values.
+const VALUE: f32 = 14.0;
+/// Share of a column that its name may have, and the most that a name needs.
+const NAME_SHARE: f32 = 0.52;
+const NAME_MOST: f32 = 118.0;
+/// Between columns.
+const BETWEEN: f32 = 14.0;
+
+pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
+    framed(ui, |ui| {
+        heading(ui, title);
+        add(ui);
+    });
+}
+
+/// A frame around what belongs together.
+pub fn framed(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    Frame::new()
+        .fill(ground(&Palette::of(ui)))
+        .corner_radius(4)
+        .inner_margin(Margin::symmetric(8, 4))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.spacing_mut().item_spacing.y = 2.0;
+            add(ui);
+        });
+}
+
+/// A frame's heading.
+pub fn heading(ui: &mut Ui, title: &str) {
+    let quiet = Palette::of(ui).quiet;
+    ui.label(RichText::new(title).size(NAME).color(quiet).strong());
+}
+
+/// Behind what belongs together.
+pub fn ground(palette: &Palette) -> Color32 {
+    if palette.dark {
+        Color32::from_gray(20)
+    } else {
+        Color32::from_gray(240)
+    }
+}
+
+pub struct Fact {
+    pub name: &'static str,
+    pub value: String,
+    /// The value's colour; none = as text is.
+    pub colour: Option<Color32>,
+}
+
+impl Fact {
+    /// A value like any other.
+    pub fn new(name: &'static str, value: impl Into<String>) -> Self {
+        Self {
+            name,
+            value: value.into(),
+            colour: None,
+        }
+    }
+
+    /// A value that stands out.
+    pub fn coloured(mut self, colour: Option<Color32>) -> Self {
+        self.colour = colour;
+        self
+    }
+}
+
+/// Names with values, filled column by column.
+pub fn facts(ui: &mut Ui, columns: usize, facts: &[Fact]) {
+    let palette = Palette::of(ui);
+    let rows = facts.len().div_ceil(columns.max(1));
+    let size = vec2(ui.available_width(), rows as f32 * LINE);
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let width = (area.width() + BETWEEN) / columns.max(1) as f32;
+    for (place, fact) in facts.iter().enumerate() {
+        let (column, row) = (place / rows.max(1), place % rows.max(1));
+        let corner = area.min + vec2(column as f32 * width, row as f32 * LINE);
+        let rect = Rect::from_min_size(corner, vec2(width - BETWEEN, LINE));
+        let name_width = (rect.width() * NAME_SHARE).min(NAME_MOST);
+        let name = RichText::new(fact.name).size(NAME).color(palette.quiet);
+        write(
+            ui,
+            pos2(rect.left(), rect.center().y),
+            name_width - 4.0,
+            name,
+        );
+        let colour = fact.colour.unwrap_or(ui.visuals().strong_text_color());
+        let value = RichText::new(&fact.value).size(VALUE).color(colour);
+        let at = pos2(rect.left() + name_width, rect.center().y);
+        write(ui, at, rect.width() - name_width, value);
+        named(ui, rect, ("fact", fact.name), || {
+            format!("{}: {}", fact.name, fact.value)
+        });
+    }
+}
+
+/// One line of text from here on, cut where it has no room.
+pub fn write(ui: &Ui, left_middle: Pos2, width: f32, text: RichText) {
+    let galley = WidgetText::from(text).into_galley(
+        ui,
+        Some(TextWrapMode::Truncate),
+        width,
+        FontSelection::Default,
+    );
+    let at = left_middle - vec2(0.0, galley.size().y / 2.0);
+    ui.painter().galley(at, galley, ui.visuals().text_color());
+}
+
+/// Gives what is painted a name that screen readers tell, and that is told in full when pointed at.
+pub fn named(ui: &Ui, rect: Rect, salt: impl AsIdSalt, name: impl Fn() -> String) {
+    let response = ui.interact(rect, ui.scope_id().with(salt), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name()));
+    if response.hovered() {
+        response.on_hover_text(name());
+    }
+}
+
+/// Text of one size, where it is told.
+pub fn put(painter: &Painter, at: Pos2, align: Align2, size: f32, colour: Color32, text: &str) {
+    painter.text(at, align, text, FontId::proportional(size), colour);
+}

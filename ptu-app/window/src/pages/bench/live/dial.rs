@@ -1,0 +1,243 @@
+//! Speeds on one scale: measured and true as needles, limit and target as marks.
+
+use std::f32::consts::{PI, TAU};
+
+use eframe::egui::{
+    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
+};
+use protocol::signal::Signal;
+
+use super::View;
+use super::card::{ground, named, put};
+use crate::Palette;
+use crate::pages::bench::scale::Dial;
+use crate::pages::bench::text::UNKNOWN;
+use ptu_report::words::Bench;
+
+/// The dial begins here and goes round so far, clockwise from the right.
+const BEGIN: f32 = 0.81 * PI;
+const ROUND: f32 = 0.69 * TAU;
+/// Half the width of a mark's foot.
+const MARK: f32 = 7.0;
+/// Points of an arc.
+const FINE: usize = 48;
+/// Width of the legend beside the dial.
+const LEGEND: f32 = 158.0;
+
+/// The dial's face.
+struct DialFace {
+    middle: Pos2,
+    radius: f32,
+    scale: Dial,
+}
+
+impl DialFace {
+    fn at(&self, kmh: f64, radius: f32) -> Pos2 {
+        let angle = BEGIN + ROUND * self.scale.share(kmh);
+        self.middle + radius * Vec2::angled(angle)
+    }
+
+    fn arc(&self, painter: &Painter, from_kmh: f64, to_kmh: f64, radius: f32, stroke: Stroke) {
+        let step = (to_kmh - from_kmh) / FINE as f64;
+        let points = (0..=FINE).map(|i| self.at(from_kmh + step * i as f64, radius));
+        painter.add(Shape::line(points.collect(), stroke));
+    }
+
+    /// A triangle that points at a speed, from outside or from inside.
+    fn mark(&self, painter: &Painter, kmh: f64, tip: f32, foot: f32, colour: Color32) {
+        let tip = self.at(kmh, tip);
+        let foot = self.at(kmh, foot);
+        let across = (foot - tip).rot90().normalized() * MARK;
+        painter.add(Shape::convex_polygon(
+            vec![tip, foot + across, foot - across],
+            colour,
+            Stroke::NONE,
+        ));
+    }
+}
+
+pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Palette) {
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let words = &view.words.bench;
+    let painter = ui.painter_at(area);
+    painter.rect_filled(area, 4.0, ground(palette));
+    let speeds = [
+        Signal::Speed,
+        Signal::TrainSpeed,
+        Signal::Limit,
+        Signal::Target,
+    ]
+    .map(|signal| view.seen.value(signal));
+    let [measured, _, limit, _] = speeds;
+    let strong = ui.visuals().strong_text_color();
+    let colours = [strong, palette.accent, palette.bad, palette.good];
+
+    let room = area.with_max_x(area.right() - LEGEND);
+    let radius = (room.width() / 2.0 - 12.0).min(room.height() * 0.53);
+    let face = DialFace {
+        middle: pos2(room.center().x, room.top() + radius + 11.0),
+        radius,
+        scale,
+    };
+    paint_face(&painter, &face, limit, palette);
+    paint_speeds(&painter, &face, speeds, colours);
+    let digits = measured.map_or(UNKNOWN.to_owned(), |kmh| format!("{kmh:.1}"));
+    let over = measured
+        .zip(limit)
+        .is_some_and(|(speed, limit)| speed > limit);
+    let colour = if over { palette.bad } else { strong };
+    put(
+        &painter,
+        face.middle + vec2(0.0, 2.0),
+        Align2::CENTER_CENTER,
+        30.0,
+        colour,
+        &digits,
+    );
+    let unit_at = face.middle + vec2(0.0, 25.0);
+    put(
+        &painter,
+        unit_at,
+        Align2::CENTER_CENTER,
+        12.0,
+        palette.quiet,
+        "km/h",
+    );
+    legend(ui, area, speeds, colours, words, palette);
+}
+
+/// Marks at limit and target, needles at the true and the measured speed.
+fn paint_speeds(
+    painter: &Painter,
+    face: &DialFace,
+    [measured, truth, limit, target]: [Option<f64>; 4],
+    colours: [Color32; 4],
+) {
+    if let Some(limit) = limit {
+        face.mark(
+            painter,
+            limit,
+            face.radius - 3.0,
+            face.radius + 10.0,
+            colours[2],
+        );
+    }
+    if let Some(target) = target {
+        face.mark(
+            painter,
+            target,
+            face.radius - 9.0,
+            face.radius - 22.0,
+            colours[3],
+        );
+    }
+    if let Some(truth) = truth {
+        let needle = [
+            face.at(truth, face.radius * 0.38),
+            face.at(truth, face.radius - 2.0),
+        ];
+        painter.line_segment(needle, Stroke::new(2.0, colours[1]));
+    }
+    if let Some(measured) = measured {
+        face.mark(
+            painter,
+            measured,
+            face.radius - 4.0,
+            face.radius * 0.36,
+            colours[0],
+        );
+    }
+}
+
+fn paint_face(painter: &Painter, face: &DialFace, limit: Option<f64>, palette: &Palette) {
+    let full = face.scale.full_kmh;
+    let ring = Stroke::new(3.0, palette.quiet);
+    face.arc(painter, 0.0, full, face.radius, ring);
+    if let Some(limit) = limit {
+        let beyond = Stroke::new(5.0, palette.bad);
+        face.arc(painter, limit, full, face.radius, beyond);
+    }
+    for kmh in face.scale.strokes() {
+        let points = [face.at(kmh, face.radius), face.at(kmh, face.radius - 6.0)];
+        painter.line_segment(points, Stroke::new(1.0, palette.quiet));
+    }
+    for kmh in face.scale.numbers() {
+        let points = [face.at(kmh, face.radius), face.at(kmh, face.radius - 9.0)];
+        painter.line_segment(points, Stroke::new(2.0, palette.quiet));
+        let at = face.at(kmh, face.radius - 19.0);
+        let number = format!("{kmh:.0}");
+        put(
+            painter,
+            at,
+            Align2::CENTER_CENTER,
+            12.0,
+            palette.quiet,
+            &number,
+        );
+    }
+}
+
+fn legend(
+    ui: &Ui,
+    area: Rect,
+    speeds: [Option<f64>; 4],
+    colours: [Color32; 4],
+    words: &Bench,
+    palette: &Palette,
+) {
+    let names = [words.measured, words.true_speed, words.limit, words.target];
+    let height = (area.height() - 8.0) / 4.0;
+    for (place, ((speed, colour), name)) in speeds.into_iter().zip(colours).zip(names).enumerate() {
+        let corner = pos2(
+            area.right() - LEGEND,
+            area.top() + 4.0 + place as f32 * height,
+        );
+        let rect = Rect::from_min_size(corner, vec2(LEGEND - 8.0, height));
+        let painter = ui.painter();
+        swatch(
+            painter,
+            pos2(rect.left() + 8.0, rect.center().y),
+            place,
+            colour,
+        );
+        let name_at = pos2(rect.left() + 22.0, rect.top() + height * 0.28);
+        put(
+            painter,
+            name_at,
+            Align2::LEFT_CENTER,
+            12.0,
+            palette.quiet,
+            name,
+        );
+        let value = match speed {
+            Some(kmh) => format!("{kmh:.1} km/h"),
+            None => words.not_known.to_owned(),
+        };
+        let (size, ink) = match speed {
+            Some(_) => (19.0, colour),
+            None => (13.0, palette.quiet),
+        };
+        let value_at = pos2(rect.left() + 22.0, rect.top() + height * 0.67);
+        put(painter, value_at, Align2::LEFT_CENTER, size, ink, &value);
+        named(ui, rect, ("speed", place), || format!("{name}: {value}"));
+    }
+}
+
+/// How a speed is drawn on the dial, in small.
+fn swatch(painter: &Painter, at: Pos2, place: usize, colour: Color32) {
+    let triangle = |tip: Vec2, left: Vec2, right: Vec2| {
+        let points = vec![at + tip, at + left, at + right];
+        painter.add(Shape::convex_polygon(points, colour, Stroke::NONE));
+    };
+    match place {
+        0 => triangle(vec2(6.0, -6.0), vec2(-6.0, 0.0), vec2(0.0, 6.0)),
+        1 => {
+            painter.line_segment(
+                [at + vec2(-6.0, 6.0), at + vec2(6.0, -6.0)],
+                Stroke::new(2.0, colour),
+            );
+        }
+        2 => triangle(vec2(0.0, 6.0), vec2(-6.0, -5.0), vec2(6.0, -5.0)),
+        _ => triangle(vec2(0.0, -6.0), vec2(-6.0, 5.0), vec2(6.0, 5.0)),
+    }
+}

@@ -1,0 +1,197 @@
+//! Buttons for manual stimuli: enabled only while the stimulus is permitted, with the reason otherwise.
+
+use std::ops::RangeInclusive;
+
+use btu_rig::procedure::plan::Connection;
+use btu_rig::stimulus::{StationData, Stimulus};
+use eframe::egui::emath::Numeric;
+use eframe::egui::{
+    Align, Button, Checkbox, ComboBox, DragValue, Id, Layout, Response, RichText, Role, Ui,
+    WidgetInfo, vec2,
+};
+
+use crate::pages::bench::live_copy::BenchSnapshot;
+use crate::{Messages, Palette};
+use ptu_bench::bench_worker::BenchWorker;
+use ptu_report::words::{Words, fill};
+
+/// Width of a row's name.
+const NAME: f32 = 138.0;
+
+/// What the page remembers of what was given, because no signal tells it.
+#[derive(Debug, Default)]
+pub struct StimuliGiven {
+    pub laid: Option<u16>,
+    pub station: Option<StationData>,
+}
+
+/// Controls of one frame that give stimuli to the bench.
+pub struct StimulusPanel<'a> {
+    pub bench: &'a BenchWorker,
+    /// The bench at the beginning of the frame.
+    pub seen: &'a BenchSnapshot,
+    pub words: &'static Words,
+    pub messages: &'a mut Messages,
+    pub given: &'a mut StimuliGiven,
+}
+
+impl StimulusPanel<'_> {
+    /// How the unit is reached.
+    pub fn connection(&self) -> Connection {
+        self.bench.live().connection.unwrap_or(Connection::Btu)
+    }
+
+    pub fn words(&self) -> &'static Words {
+        self.words
+    }
+
+    /// A button that gives a stimulus, known by what stands on it.
+    pub fn button(&mut self, ui: &mut Ui, text: &str, stimulus: Stimulus) {
+        self.add(ui, Button::new(text), stimulus);
+    }
+
+    /// A button among others of a row, known by the row's name, too; marked while it is in force.
+    pub fn choice(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        text: &str,
+        in_force: bool,
+        stimulus: Stimulus,
+    ) -> bool {
+        let shown = if in_force {
+            RichText::new(text).strong().underline()
+        } else {
+            RichText::new(text)
+        };
+        let button = Button::new(shown).selected(in_force);
+        let response = self.add(ui, button, stimulus);
+        let enabled = response.enabled();
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, enabled, in_force, format!("{name}: {text}"))
+        });
+        response.clicked()
+    }
+
+    /// Two buttons, on and off.
+    pub fn switch(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        state: Option<bool>,
+        stimulus: impl Fn(bool) -> Stimulus,
+    ) {
+        let words = &self.words.bench;
+        for (on, text) in [(true, words.on), (false, words.off)] {
+            self.choice(ui, name, text, state == Some(on), stimulus(on));
+        }
+    }
+
+    /// Gives it, unless something has changed since the frame began.
+    pub fn give(&mut self, stimulus: Stimulus) {
+        match self.bench.apply(stimulus) {
+            Ok(()) => match stimulus {
+                Stimulus::MarkersAlong { section } => self.given.laid = section,
+                Stimulus::Station(data) | Stimulus::PtuTwc(data) => {
+                    self.given.station = Some(data);
+                }
+                _ => {}
+            },
+            Err(why) => {
+                let what = stimulus.to_string();
+                let text = fill(self.words.frame.not_done, &[("what", &what)]);
+                self.messages.trouble(text, self.words.bench.refusal(why));
+            }
+        }
+    }
+
+    /// Whether a stimulus can be given now, or in words why not.
+    pub fn may(&self, stimulus: &Stimulus) -> Result<(), &'static str> {
+        let permitted = self.bench.permits(stimulus);
+        permitted.map_err(|why| self.words.bench.refusal(why))
+    }
+
+    fn add(&mut self, ui: &mut Ui, button: Button<'_>, stimulus: Stimulus) -> Response {
+        let may = self.may(&stimulus);
+        let mut response = ui.add_enabled(may.is_ok(), button);
+        if let Err(why) = may {
+            response = response.on_disabled_hover_text(why);
+        }
+        if response.clicked() {
+            self.give(stimulus);
+        }
+        response
+    }
+}
+
+/// A row with its name at the left.
+pub fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, Id)) {
+    ui.horizontal_top(|ui| {
+        let height = ui.spacing().interact_size.y;
+        let layout = Layout::left_to_right(Align::Center);
+        let label = ui.allocate_ui_with_layout(vec2(NAME, height), layout, |ui| {
+            ui.set_min_width(NAME);
+            ui.label(RichText::new(name).color(Palette::of(ui).quiet))
+        });
+        ui.spacing_mut().item_spacing.x = 5.0;
+        ui.horizontal_wrapped(|ui| add(ui, label.inner.id));
+    });
+}
+
+/// A number filled in, of a row that has only this.
+pub fn number<N: Numeric>(
+    ui: &mut Ui,
+    label: Id,
+    value: &mut N,
+    range: RangeInclusive<N>,
+    unit: &str,
+) {
+    let suffix = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    let span = range.end().to_f64() - range.start().to_f64();
+    let drag = DragValue::new(value)
+        .range(range)
+        .speed((span / 2_000.0).max(0.01))
+        .max_decimals(if N::INTEGRAL { 0 } else { 2 })
+        .suffix(suffix);
+    ui.add(drag).labelled_by(label);
+}
+
+/// A number filled in, of a row that has several.
+pub fn named_number<N: Numeric>(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut N,
+    range: RangeInclusive<N>,
+    unit: &str,
+) {
+    let label = ui.label(name).id;
+    number(ui, label, value, range, unit);
+}
+
+/// One of several, filled in.
+pub fn one_of<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    label: Id,
+    value: &mut T,
+    all: impl IntoIterator<Item = (T, String)>,
+) {
+    let all: Vec<_> = all.into_iter().collect();
+    let chosen = all.iter().find(|(one, _)| one == value);
+    let text = chosen.map_or("", |(_, text)| text.as_str());
+    let combo = ComboBox::from_id_salt(label).selected_text(text);
+    let response = combo.show_ui(ui, |ui| {
+        for (one, text) in &all {
+            ui.selectable_value(value, *one, text);
+        }
+    });
+    response.response.labelled_by(label);
+}
+
+/// Yes or no, filled in.
+pub fn check(ui: &mut Ui, text: &str, value: &mut bool) {
+    ui.add(Checkbox::new(value, text));
+}

@@ -1,0 +1,181 @@
+//! What shows that it is this part: its place in the structure, and the trace of the failed check beside that of a good unit.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::{Procedure, Verdict};
+use eframe::egui::{RichText, Ui};
+use fault_db::Id;
+use protocol::LruId;
+use protocol::signal::Signal;
+
+use super::chain::chain;
+use crate::pages::traces::SmallTrace;
+use crate::request::Request;
+use crate::{DataPaths, PageContext, Palette};
+use ptu_bench::bench_worker::Progress;
+use ptu_bench::failure::Failure;
+use ptu_bench::structure::{Chain, Structure};
+use ptu_report::naming::{PartNames, place};
+use ptu_report::trace_view::listing::{self, OpenTrace};
+use ptu_report::words::Words;
+
+/// Signals of the check that are drawn, at most.
+const SIGNALS: usize = 4;
+
+/// What is read, and what is drawn of it.
+pub struct Evidence {
+    part: String,
+    read: Request<Read>,
+    names: PartNames,
+    chain: Option<Chain>,
+    trace: Option<SmallTrace>,
+}
+
+/// A check that did not pass.
+#[derive(Clone)]
+struct FailedCheck {
+    procedure: Arc<Procedure>,
+    index: usize,
+    /// As results name it.
+    name: String,
+    suspect: Option<LruId>,
+}
+
+struct Read {
+    names: PartNames,
+    chain: Option<Chain>,
+    trace: Option<OpenTrace>,
+    signals: Vec<String>,
+}
+
+impl Evidence {
+    /// Asks for what shows that `part` failed in this run; `trace` is shown where the check that names it has none.
+    pub fn ask(
+        part: &str,
+        (run, trace): (Id, Option<Id>),
+        progress: &Progress,
+        context: &PageContext<'_>,
+    ) -> Self {
+        let checks = failed_checks(progress);
+        let of = part.to_owned();
+        let question = move |paths: &DataPaths| read(paths, run, trace, &of, checks);
+        Self {
+            part: part.to_owned(),
+            read: Request::Pending(context.queries.run(question)),
+            names: PartNames::default(),
+            chain: None,
+            trace: None,
+        }
+    }
+
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        self.read.poll();
+        if let Request::Ready(_) = &self.read
+            && let Request::Ready(read) = std::mem::take(&mut self.read)
+        {
+            (self.names, self.chain) = (read.names, read.chain);
+            let small = |opened| SmallTrace::beside_twin(opened, &read.signals, context);
+            self.trace = read.trace.map(small);
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.poll(context);
+        }
+    }
+
+    pub fn show(&mut self, ui: &mut Ui, words: &Words) {
+        let quiet = Palette::of(ui).quiet;
+        if let Some(way) = &self.chain {
+            ui.add_space(6.0);
+            ui.label(RichText::new(words.case.way).color(quiet));
+            chain(ui, way, &self.part, &self.names, words);
+        }
+        let Some(trace) = &mut self.trace else {
+            return;
+        };
+        ui.add_space(6.0);
+        ui.horizontal_wrapped(|ui| {
+            let said = match (trace.is_pending(), trace.has_twin()) {
+                (true, _) => words.traces.making_twin,
+                (false, true) => words.case.beside_twin,
+                (false, false) => words.case.no_twin,
+            };
+            if trace.is_pending() {
+                ui.spinner();
+            }
+            ui.label(RichText::new(said).color(quiet));
+        });
+        trace.show(ui, words.case.beside_twin, words);
+    }
+}
+
+fn failed_checks(run: &Progress) -> Vec<FailedCheck> {
+    let of = |progress: &ptu_bench::bench_worker::ProcedureProgress| {
+        let failed = progress.results.iter();
+        let failed = failed.filter(|result| result.verdict == Verdict::Failed);
+        let checks = failed.map(|result| FailedCheck {
+            procedure: progress.procedure.clone(),
+            index: result.index,
+            name: result.name.clone(),
+            suspect: result.suspect.clone(),
+        });
+        checks.collect::<Vec<_>>()
+    };
+    run.procedures.iter().flat_map(of).collect()
+}
+
+/// The first failed check that names the part, or else the first one that the part is on the way of.
+fn read(
+    paths: &DataPaths,
+    run: Id,
+    trace: Option<Id>,
+    part: &str,
+    mut checks: Vec<FailedCheck>,
+) -> Result<Read, Failure> {
+    let structure = Structure::load(&paths.scripts, &paths.scripts.faults()?)?;
+    let part: Option<LruId> = part.parse().ok();
+    checks.sort_by_key(|check| check.suspect != part);
+    let on_way = checks.iter().find_map(|check| {
+        let step = check.procedure.steps.get(check.index)?;
+        Some((
+            check,
+            step,
+            structure.chain(&check.procedure, step, part.as_ref()?)?,
+        ))
+    });
+    let store = paths.read()?;
+    let shows = |message: &str| {
+        on_way.as_ref().is_some_and(|(check, ..)| {
+            place(message).is_some_and(|(procedure, step, _)| {
+                procedure == check.procedure.id && step == check.name
+            })
+        })
+    };
+    let seen = store.run_occurrences(run)?;
+    let of_check = seen.iter().find(|seen| shows(&seen.message));
+    let trace = of_check.and_then(|seen| seen.trace_id).or(trace);
+    let names = PartNames::of(&paths.scripts);
+    let opened = match trace {
+        Some(trace) => Some(listing::open(&store, &names, trace, Some(run))?),
+        None => None,
+    };
+    let mut signals: Vec<Signal> = Vec::new();
+    if let Some((_, step, _)) = &on_way {
+        step.for_each_signal(&mut |signal| {
+            if !signals.contains(&signal) {
+                signals.push(signal);
+            }
+        });
+    }
+    let known = |name: &&str| {
+        opened
+            .as_ref()
+            .is_some_and(|open| open.view.place(name).is_some())
+    };
+    let signals = signals.iter().map(|signal| signal.name()).filter(known);
+    Ok(Read {
+        signals: signals.take(SIGNALS).map(str::to_owned).collect(),
+        chain: on_way.map(|(_, _, chain)| chain),
+        trace: opened,
+        names,
+    })
+}

@@ -1,0 +1,143 @@
+//! What the history knows of a unit: open faults and earlier repairs.
+
+use eframe::egui::{RichText, Ui};
+use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
+
+use crate::parts::{link, repair_line};
+use crate::request::{CachedResponse, Request};
+use crate::{DataPaths, Destination, PageContext, Palette, Sizes};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_report::naming::PartNames;
+use ptu_report::words::{Words, fill};
+
+/// As many faults are read for their repairs, the latest first.
+const MOST: u32 = 50;
+/// As many lines of each kind are shown.
+const SHOWN: usize = 5;
+
+/// The history of one unit, read when it is asked for.
+#[derive(Default)]
+pub struct KnownUnit {
+    of: Option<(String, (usize, u64))>,
+    history: CachedResponse<History>,
+}
+
+#[derive(Default)]
+struct History {
+    open: Vec<FaultSummary>,
+    /// When and what, the latest first.
+    repairs: Vec<(i64, RepairRecord)>,
+    parts: PartNames,
+}
+
+impl KnownUnit {
+    pub fn poll(&mut self) {
+        self.history.poll();
+    }
+
+    /// Reads the history of this unit unless it is known.
+    pub fn keep(&mut self, serial: &str, context: &PageContext<'_>) {
+        let of = (serial.to_owned(), context.data_version());
+        if self.of.as_ref() == Some(&of) {
+            return;
+        }
+        self.of = Some(of);
+        let serial = serial.to_owned();
+        let asked = context.queries.run(move |paths| read(paths, serial));
+        self.history.request(asked);
+    }
+
+    /// Serial number of the part that is in the unit, as its last repair has it.
+    pub fn serial_of(&self, part: &str) -> Option<String> {
+        let repairs = &self.history.get().value()?.repairs;
+        let last = repairs.iter().find(|(_, repair)| repair.part == part);
+        last.and_then(|(_, repair)| repair.serial_new.clone())
+    }
+
+    /// What people call a part.
+    pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
+        let history = self.history.get().value();
+        history.map_or(id, |known| known.parts.name(id, words.language))
+    }
+
+    pub fn show(&self, ui: &mut Ui, words: &Words, go_to: &mut Vec<Destination>) {
+        let history = match self.history.get() {
+            Request::Ready(history) => history,
+            Request::Failed(why) => {
+                let why = words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
+                return;
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+                return;
+            }
+        };
+        if history.open.is_empty() && history.repairs.is_empty() {
+            let quiet = Palette::of(ui).quiet;
+            ui.label(RichText::new(words.case.nothing_known).color(quiet));
+            return;
+        }
+        let open = history.open.iter().map(|fault| {
+            let at = clock::local(fault.last_at_us);
+            let said = history.parts.fault(fault.cause(), &fault.message, words);
+            format!("{at}  {said}")
+        });
+        for (place, said) in open.take(SHOWN).enumerate() {
+            heading(ui, words.case.open_faults, place);
+            ui.label(said);
+        }
+        for (place, (at_us, repair)) in history.repairs.iter().take(SHOWN).enumerate() {
+            heading(ui, words.case.repairs, place);
+            let part = history.parts.name(&repair.part, words.language);
+            let said = format!("{}  {part}", clock::local(*at_us));
+            repair_line(ui, words, &said, repair, go_to);
+        }
+        if let Some((serial, _)) = &self.of
+            && link(ui, fill(words.life.open, &[("serial", serial)])).clicked()
+        {
+            go_to.push(Destination::Life(serial.clone()));
+        }
+    }
+}
+
+/// A title above the first line.
+fn heading(ui: &mut Ui, title: &str, place: usize) {
+    if place == 0 {
+        ui.label(RichText::new(title).size(Sizes::of(ui).text).strong());
+    }
+}
+
+fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
+    let mut history = History {
+        parts: PartNames::of(&paths.scripts),
+        ..History::default()
+    };
+    if !paths.is_there() {
+        return Ok(history);
+    }
+    let store = paths.read()?;
+    let filter = FaultFilter {
+        unit: Some(serial),
+        limit: Some(MOST),
+        ..FaultFilter::default()
+    };
+    let faults = match store.faults(&filter) {
+        // A unit that was never here.
+        Err(StoreError::NotFound { .. }) => return Ok(history),
+        faults => faults?,
+    };
+    for fault in faults {
+        let events = store.fault(fault.id)?.events.into_iter();
+        let repairs = events.filter_map(|event| Some((event.at_us, event.repair?)));
+        history.repairs.extend(repairs);
+        if matches!(fault.state, FaultState::Open | FaultState::Acknowledged) {
+            history.open.push(fault);
+        }
+    }
+    history.repairs.sort_by_key(|(at_us, _)| -at_us);
+    // A repair of a case is written at each of its faults.
+    history.repairs.dedup();
+    Ok(history)
+}

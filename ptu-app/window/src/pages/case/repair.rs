@@ -1,0 +1,180 @@
+//! What was done: part, serial numbers, note.
+
+use std::collections::BTreeSet;
+
+use eframe::egui::{ComboBox, Grid, RichText, Ui};
+use fault_db::{FaultAction, Id, RepairRecord};
+
+use super::known::KnownUnit;
+use super::result::Found;
+use super::{CasePage, large};
+use crate::messages::Written;
+use crate::parts::{ActionPlace, field, go_on, name_edit, named_combo, note_edit, typed};
+use crate::request::Request;
+use crate::{DataPaths, PageContext, Sizes};
+use ptu_bench::clock::now_us;
+use ptu_bench::failure::Failure;
+use ptu_report::words::fill;
+
+/// Width of a field, points.
+const FIELD: f32 = 300.0;
+
+/// The form, and what becomes of it.
+#[derive(Default)]
+pub struct Repair {
+    run: Option<Id>,
+    /// Parts to choose from, the likeliest first.
+    parts: Vec<String>,
+    pub part: String,
+    serial_old: String,
+    serial_new: String,
+    note: String,
+    /// Answers with a fault of the case, and when the repair was written.
+    saving: Request<Option<Written>>,
+    written: Option<Written>,
+}
+
+impl Repair {
+    /// Fills in what is known: the part that was found, and the serial number it has by its last repair.
+    pub fn prepare(&mut self, found: &Found, known: &KnownUnit) {
+        if self.run == Some(found.run) {
+            return;
+        }
+        let part = found.parts.first().cloned().unwrap_or_default();
+        *self = Self {
+            run: Some(found.run),
+            serial_old: known.serial_of(&part).unwrap_or_default(),
+            parts: found.parts.clone(),
+            part,
+            ..Self::default()
+        };
+    }
+
+    /// True once it has been stored.
+    pub fn poll(&mut self, known: &KnownUnit, context: &mut PageContext<'_>) -> bool {
+        if !self.saving.poll() {
+            return false;
+        }
+        let words = &context.words.case;
+        match std::mem::take(&mut self.saving) {
+            Request::Failed(why) => {
+                context.messages.trouble(words.not_recorded, why);
+                false
+            }
+            Request::Ready(written) => {
+                self.written = written;
+                let part = known.part_name(&self.part, context.words);
+                let said = fill(words.recorded, &[("part", &part)]);
+                match written {
+                    Some(written) => context.messages.note_written(said, written),
+                    None => context.messages.note(said),
+                }
+                true
+            }
+            Request::Idle | Request::Pending(_) => false,
+        }
+    }
+
+    /// A fault that was repaired: its case is this one.
+    pub fn fault(&self) -> Option<Id> {
+        self.written.map(|written| written.fault)
+    }
+
+    /// True once if the repair was taken back.
+    pub fn is_undone(&mut self, context: &PageContext<'_>) -> bool {
+        let is_undone = |written: &mut Written| context.messages.was_taken_back(*written);
+        self.written.take_if(is_undone).is_some()
+    }
+
+    /// A part was put in, or it is said what else was done.
+    fn says_what(&self) -> bool {
+        !self.serial_new.trim().is_empty() || !self.note.trim().is_empty()
+    }
+
+    fn record(&self) -> RepairRecord {
+        RepairRecord {
+            part: self.part.trim().to_owned(),
+            serial_old: typed(&self.serial_old),
+            serial_new: typed(&self.serial_new),
+            note: self.note.trim().to_owned(),
+        }
+    }
+}
+
+impl CasePage {
+    pub(super) fn repair(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        let known = &self.known;
+        let form = &mut self.repair;
+        Grid::new("repair").num_columns(2).show(ui, |ui| {
+            ui.label(RichText::new(words.part).size(Sizes::of(ui).text));
+            let before = form.part.clone();
+            let name = |part: &str| known.part_name(part, context.words).to_owned();
+            let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
+            let combo = combo.width(FIELD).show_ui(ui, |ui| {
+                for part in &form.parts {
+                    ui.selectable_value(&mut form.part, part.clone(), name(part));
+                }
+            });
+            named_combo(&combo.response, words.part, &name(&form.part));
+            if form.part != before {
+                form.serial_old = known.serial_of(&form.part).unwrap_or_default();
+            }
+            ui.end_row();
+            let size = Sizes::of(ui).text;
+            let title = |name: &str| RichText::new(name).size(size);
+            let (old, new) = (&mut form.serial_old, &mut form.serial_new);
+            let fields = [
+                field(ui, title(words.serial_old), name_edit(old, FIELD)),
+                field(ui, title(words.serial_new), name_edit(new, FIELD)),
+                field(ui, title(words.note), note_edit(&mut form.note, FIELD)),
+            ];
+            go_on(ui, &fields);
+        });
+        self.name(ui, context);
+        let form = &mut self.repair;
+        let who = context.settings.operator.trim().to_owned();
+        let may = !who.is_empty() && form.says_what() && form.saving.is_idle();
+        let place = ActionPlace::new(ui, "case save", form.saving.is_idle());
+        let hint = match who.is_empty() {
+            true => words.name_first,
+            false => words.serial_or_note,
+        };
+        let save = large(ui, words.save, may).on_disabled_hover_text(hint);
+        if let (true, Some(run)) = (place.clicked(&save), form.run) {
+            let repair = form.record();
+            let store = move |paths: &DataPaths| store(paths, run, &repair, &who);
+            form.saving = Request::Pending(context.queries.run(store));
+        }
+    }
+}
+
+/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases, at one time, by which
+/// it is undone; the first of them.
+fn store(
+    paths: &DataPaths,
+    run: Id,
+    repair: &RepairRecord,
+    who: &str,
+) -> Result<Option<Written>, Failure> {
+    let (store, at_us) = (paths.open()?, now_us());
+    let mut faults: Vec<Id> = store
+        .run_occurrences(run)?
+        .iter()
+        .map(|seen| seen.fault)
+        .collect();
+    faults.sort_unstable();
+    faults.dedup();
+    let mut first = None;
+    let mut done = BTreeSet::new();
+    for fault in faults {
+        // One before may have been of the same case; a second repair of it would be another one.
+        let state = store.fault(fault)?.fault.state;
+        if !done.contains(&fault) && state.next(FaultAction::Repair).is_ok() {
+            let (named, rest) = store.repair_case(fault, repair, who, at_us)?;
+            done.extend(rest.iter().chain([&named]).map(|changed| changed.id));
+            first.get_or_insert(Written { fault, at_us });
+        }
+    }
+    Ok(first)
+}

@@ -1,0 +1,120 @@
+//! The units seen last: a click fills in where one is reached and its serial number.
+
+use eframe::egui::{Button, RichText, Ui, vec2};
+use fault_db::{RunFilter, RunSummary};
+
+use crate::parts::ActionPlace;
+use crate::request::CachedResponse;
+use crate::{PageContext, Sizes};
+use ptu_bench::clock;
+use ptu_bench::process_id;
+use ptu_bench::run::BenchChoice;
+use ptu_report::naming::DOT;
+
+/// As many runs are looked at, the latest first.
+const MOST: u32 = 200;
+/// As many units are offered.
+const SHOWN: usize = 4;
+/// The fault of the demonstration: a check shows it, and its part can be replaced and proved.
+const DEMONSTRATED: &str = "eb_relay.slow";
+
+/// Units of the history, each with the run that saw it last.
+#[derive(Default)]
+pub struct SeenUnits {
+    version: Option<(usize, u64)>,
+    runs: CachedResponse<Vec<RunSummary>>,
+}
+
+impl SeenUnits {
+    pub fn poll(&mut self) {
+        self.runs.poll();
+    }
+
+    /// Shows them while no unit is connected; where none was ever tested, a demonstration is offered.
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_up(context);
+        if self.runs.items().is_empty() {
+            if self.runs.get().value().is_some() {
+                demonstration(ui, context);
+            }
+            return;
+        }
+        let words = context.words;
+        ui.add_space(8.0);
+        ui.label(
+            RichText::new(words.case.seen_last)
+                .size(Sizes::of(ui).text)
+                .strong(),
+        );
+        let choice = &mut context.units.chosen_mut().choice;
+        ui.horizontal_wrapped(|ui| {
+            for run in self.runs.items() {
+                let place = match run.source.as_str() {
+                    "sim" => words.frame.simulated,
+                    other => other,
+                };
+                let at = clock::local(run.started_at_us);
+                let name = [&*run.unit_serial, place, &at].join(DOT);
+                let on = choice.serial == run.unit_serial && choice.endpoint == run.source;
+                let button = Button::new(RichText::new(name).size(Sizes::of(ui).text)).selected(on);
+                if ui
+                    .add(button.min_size(vec2(0.0, Sizes::of(ui).target)))
+                    .clicked()
+                {
+                    choice.endpoint.clone_from(&run.source);
+                    choice.serial.clone_from(&run.unit_serial);
+                }
+            }
+        });
+    }
+
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let version = context.data_version();
+        if self.version == Some(version) {
+            return;
+        }
+        self.version = Some(version);
+        self.runs.request(context.queries.run(|paths| {
+            if !paths.is_there() {
+                return Ok(Vec::new());
+            }
+            let filter = RunFilter {
+                limit: Some(MOST),
+                ..RunFilter::default()
+            };
+            let runs = paths.read()?.runs(&filter, &process_id::is_alive)?;
+            let mut seen: Vec<RunSummary> = Vec::new();
+            for run in runs {
+                let is_new = seen
+                    .iter()
+                    .all(|other| other.unit_serial != run.unit_serial);
+                if seen.len() < SHOWN && is_new && is_place(&run.source) {
+                    seen.push(run);
+                }
+            }
+            Ok(seen)
+        }));
+    }
+}
+
+/// The whole way of a case, on the simulated unit with a fault.
+fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = &context.words.case;
+    ui.add_space(8.0);
+    ui.label(RichText::new(words.first_start).size(Sizes::of(ui).text));
+    let place = ActionPlace::new(ui, "demonstration", ());
+    let begin = super::large(ui, words.demonstrate, true);
+    if place.clicked(&begin) {
+        let unit = context.units.chosen_mut();
+        unit.choice = BenchChoice {
+            faults: vec![DEMONSTRATED.into()],
+            ..BenchChoice::default()
+        };
+        unit.connect(context.queries);
+    }
+}
+
+/// A unit can be reached there; a record that was read from a file, or lock step, is no place.
+fn is_place(source: &str) -> bool {
+    source == "sim" || source.starts_with("serial:") || source.starts_with("tcp:")
+}

@@ -1,0 +1,183 @@
+//! Diagnosis: the part to replace, why, and what to check next.
+
+mod candidates;
+
+use diagnosis::Reason;
+use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use fault_db::Id;
+
+use crate::parts::{FirstHalf, RunList};
+use crate::request::Request;
+use crate::{DataPaths, Destination, PageContext, Palette};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_bench::run_diagnosis::{Answer, diagnose_run};
+use ptu_report::naming::{PartNames, place};
+use ptu_report::words::{Words, fill};
+
+/// Size of the conclusion, points: it is read first, and may fill two lines.
+const HEADLINE: f32 = 20.0;
+const RUNS: FirstHalf = FirstHalf {
+    name: "diagnosed runs",
+    width: 270.0,
+    share: 0.3,
+};
+
+#[derive(Default)]
+pub struct DiagnosisPage {
+    runs: RunList,
+    run: Option<Id>,
+    answer: Request<NamedAnswer>,
+}
+
+/// An answer, what people call the parts, and what the run's traces show.
+pub struct NamedAnswer {
+    answer: Answer,
+    parts: PartNames,
+    /// Part, message and trace of each fault that has one.
+    traced: Vec<(String, String, Id)>,
+}
+
+impl NamedAnswer {
+    fn of(paths: &DataPaths, run: Id) -> Result<Self, Failure> {
+        let store = paths.read()?;
+        let traced = store.run_occurrences(run)?.into_iter();
+        let traced = traced.filter_map(|seen| Some((seen.lru, seen.message, seen.trace_id?)));
+        Ok(Self {
+            answer: diagnose_run(&store, &paths.scripts, run)?,
+            parts: PartNames::of(&paths.scripts),
+            traced: traced.collect(),
+        })
+    }
+
+    /// What a trace shows.
+    fn shown_by(&self, trace: Id, words: &Words) -> String {
+        let shown = self.traced.iter().find(|(.., id)| *id == trace);
+        shown.map_or_else(
+            || trace.short(),
+            |(part, message, _)| self.parts.fault(part, message, words),
+        )
+    }
+
+    /// The trace of the step that a reason is about.
+    fn trace_of(&self, reason: &Reason) -> Option<Id> {
+        let check = reason.step.as_ref()?;
+        let mut traced = self.traced.iter();
+        let about = |message: &str| {
+            place(message).is_some_and(|(procedure, step, _)| {
+                procedure == check.procedure && step == check.step
+            })
+        };
+        Some(traced.find(|(_, message, _)| about(message))?.2)
+    }
+}
+
+impl DiagnosisPage {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.answer.poll();
+        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
+        if run != self.run {
+            self.ask(run, context);
+        }
+        CentralPanel::default().show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                self.runs.tell_other_unit(ui, context.words);
+                self.answer(ui, context);
+            });
+        });
+    }
+
+    /// Shows the diagnosis of this run.
+    pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
+        self.runs.choose(run, context);
+        self.ask(Some(run), context);
+    }
+
+    fn ask(&mut self, run: Option<Id>, context: &PageContext<'_>) {
+        self.run = run;
+        self.answer = run.map_or(Request::Idle, |run| {
+            Request::Pending(
+                context
+                    .queries
+                    .run(move |paths| NamedAnswer::of(paths, run)),
+            )
+        });
+    }
+
+    fn answer(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.diagnosis;
+        let palette = Palette::of(ui);
+        let named = match &self.answer {
+            Request::Ready(named) => named,
+            Request::Idle => {
+                ui.label(words.choose_run);
+                return;
+            }
+            Request::Pending(_) => {
+                ui.spinner();
+                return;
+            }
+            Request::Failed(why) => {
+                ui.label(RichText::new(words.no_answer).color(palette.bad).strong());
+                ui.label(&*context.words.trouble(why));
+                return;
+            }
+        };
+        let answer = &named.answer;
+        self.head(ui, context, answer);
+        for warning in &answer.warnings {
+            ui.label(RichText::new(format!("⚠ {warning}")).color(palette.warn));
+        }
+        ui.separator();
+        candidates::ranked(ui, context, named);
+        let from = context.words.report.origin(answer.dictionary_from);
+        let from = fill(words.dictionary, &[("from", &from)]);
+        ui.label(RichText::new(from).small().color(palette.quiet));
+    }
+
+    fn head(&self, ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
+        let words = context.words;
+        let run = &answer.run.run;
+        let time = clock::local(run.started_at_us);
+        let of_run = fill(
+            words.diagnosis.of_run,
+            &[("unit", &run.unit_serial), ("time", &time)],
+        );
+        let of_run = ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
+        of_run.on_hover_text(run.id.to_string());
+        let conclusion = words.sentence(&answer.diagnosis.conclusion);
+        ui.label(RichText::new(conclusion).strong().size(HEADLINE));
+        next_check(ui, context, answer);
+        if ui.button(words.diagnosis.report).clicked() {
+            context.go_to.push(Destination::Report(run.id));
+        }
+    }
+}
+
+fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
+    let words = &context.words.diagnosis;
+    let Some(next) = &answer.diagnosis.next_check else {
+        ui.label(RichText::new(words.settled).color(Palette::of(ui).quiet));
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(words.next_check);
+        let check = next.check.to_string();
+        ui.label(RichText::new(context.words.content(&check)).strong());
+        let gains = fill(
+            words.gains,
+            &[
+                ("bits", &format!("{:.2}", next.gain_bits)),
+                ("time", &format!("{:.0} s", next.cost_s)),
+            ],
+        );
+        ui.label(RichText::new(gains).color(Palette::of(ui).quiet));
+        if ui.button(RichText::new(words.run_it).strong()).clicked() {
+            context.go_to.push(Destination::RunStep {
+                procedure: next.check.procedure.clone(),
+                step: next.check.step.clone(),
+                unit: answer.run.run.unit_serial.clone(),
+            });
+        }
+    });
+}

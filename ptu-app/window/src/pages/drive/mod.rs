@@ -1,0 +1,136 @@
+//! Automatic runs of a whole train on a simulated unit, from station to station: what `ptu drive` does, with its figures and
+//! plots in the window.
+
+mod form;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui::{RichText, Ui};
+
+use crate::parts::{Done, Job, show_sheet};
+use crate::request::Request;
+use crate::{PageContext, Palette};
+use form::{Form, Offered};
+use ptu_bench::drive::{Driven, drive_all};
+use ptu_bench::pool::cores;
+use ptu_report::drive::Results;
+use ptu_report::run::page::{Page, pages};
+use ptu_report::words::{Language, fill};
+
+/// Where the thread that drives puts what was driven.
+type Slot = Arc<Mutex<Option<Vec<Driven>>>>;
+
+#[derive(Default)]
+pub struct DrivePage {
+    offered: Request<Offered>,
+    form: Form,
+    job: Job,
+    driven: Slot,
+    sheet: Option<Arc<Results>>,
+    /// Counts sheets: another one is looked at from its top.
+    number: usize,
+    pages: Request<Vec<Page>>,
+    /// Language of the pages.
+    language: Option<Language>,
+}
+
+impl DrivePage {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        self.poll(context);
+        ui.label(words.drive.explained);
+        match &self.offered {
+            Request::Ready(offered) => {
+                let free = !self.job.is_under_way();
+                let mut asked = false;
+                ui.horizontal_wrapped(|ui| {
+                    if !free {
+                        ui.disable();
+                    }
+                    self.form.show(ui, words, offered);
+                    asked = ui.button(words.drive.drive).clicked();
+                });
+                if asked {
+                    self.begin(context);
+                }
+            }
+            Request::Failed(why) => {
+                let said = RichText::new(words.drive.cannot_list).color(Palette::of(ui).bad);
+                ui.label(said.strong());
+                ui.label(why);
+                if ui.button(words.common.refresh).clicked() {
+                    self.offered = Request::Idle;
+                }
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+            }
+        }
+        if self.job.is_under_way() {
+            self.job.progress(ui, words, true);
+            return;
+        }
+        self.job.result(ui);
+        match &self.pages {
+            Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
+            Request::Failed(why) => {
+                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+            }
+            Request::Pending(_) => {
+                ui.label(words.common.loading);
+            }
+            Request::Idle => {}
+        }
+    }
+
+    /// Takes what has come, and has it laid out in the window's language.
+    fn poll(&mut self, context: &mut PageContext<'_>) {
+        if self.offered.is_idle() {
+            self.offered = Request::Pending(context.queries.run(Offered::read));
+        }
+        self.offered.poll();
+        if self.job.poll(context, context.words.drive.cannot_drive) {
+            let mut driven = self.driven.lock().unwrap_or_else(PoisonError::into_inner);
+            let runs = driven.take().filter(|runs| !runs.is_empty());
+            self.sheet = runs.map(|runs| Arc::new(Results::of_runs(runs)));
+            (self.pages, self.language) = (Request::Idle, None);
+            self.number += 1;
+        }
+        let language = context.words.language;
+        if let Some(sheet) = self
+            .sheet
+            .clone()
+            .filter(|_| self.language != Some(language))
+        {
+            self.language = Some(language);
+            let laid = move |_: &_| pages(&*sheet, language.words());
+            self.pages = Request::Pending(context.queries.run(laid));
+        }
+        self.pages.poll();
+    }
+
+    fn begin(&mut self, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let form = self.form.clone();
+        self.driven = Slot::default();
+        let slot = self.driven.clone();
+        let told = (words.common.loading.to_owned(), words.drive.cannot_drive);
+        self.job.begin(context, told, move |paths, told| {
+            let cases = form.request()?.cases(&paths.scripts)?;
+            let of = cases.len();
+            let so_far = |wording, done: usize| fill(wording, &[("done", &done), ("of", &of)]);
+            let mut tell = |done| told.say(so_far(words.drive.driving, done));
+            let runs = drive_all(cases, cores(), &told.stop, &mut tell);
+            let text = match runs.len() < of {
+                true => so_far(words.drive.stopped, runs.len()),
+                false => String::new(),
+            };
+            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(runs);
+            Ok(Done {
+                text,
+                notes: Vec::new(),
+                broken_off: None,
+            })
+        });
+    }
+}

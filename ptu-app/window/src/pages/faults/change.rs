@@ -1,0 +1,193 @@
+//! Changes to a fault: state, repairs and notes.
+
+use eframe::egui::{Button, Grid, RichText, Ui};
+use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
+
+use crate::messages::Written;
+use crate::parts::{ActionPlace, field, name_edit, note_edit, typed};
+use crate::request::Request;
+use crate::{PageContext, Palette};
+use ptu_bench::clock::now_us;
+use ptu_report::words::{Words, fill};
+
+/// States a person can bring a fault to.
+const TOWARDS: [FaultState; 5] = [
+    FaultState::Acknowledged,
+    FaultState::Repaired,
+    FaultState::Verified,
+    FaultState::Closed,
+    FaultState::Open,
+];
+
+/// Room for the names of the fields, and how wide these are, points.
+const NAMES: f32 = 200.0;
+const NARROWEST: f32 = 120.0;
+const WIDEST: f32 = 420.0;
+
+/// The form, and what becomes of it.
+#[derive(Default)]
+pub struct Change {
+    form: Form,
+    /// Answers with the fault that was changed, and when.
+    under_way: Request<Written>,
+    /// What is being recorded, as its button says it.
+    what: &'static str,
+}
+
+/// What is written about one fault.
+#[derive(Default)]
+struct Form {
+    of: Option<Id>,
+    note: String,
+    serial_old: String,
+    serial_new: String,
+}
+
+impl Form {
+    fn about(of: Id) -> Self {
+        Self {
+            of: Some(of),
+            ..Self::default()
+        }
+    }
+
+    /// What has to be written before a person brings the fault to a state: why it is verified without a run, or which
+    /// part was put in or what was done instead.
+    fn missing_reason(&self, to: FaultState, words: &Words) -> Option<&'static str> {
+        let nothing = |text: &String| text.trim().is_empty();
+        if !nothing(&self.note) {
+            return None;
+        }
+        match to {
+            FaultState::Verified => Some(words.faults.verify_reason),
+            FaultState::Repaired if nothing(&self.serial_old) && nothing(&self.serial_new) => {
+                Some(words.faults.repair_reason)
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Change {
+    /// The fault a change of which has just been stored.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) -> Option<Id> {
+        if !self.under_way.poll() {
+            return None;
+        }
+        match std::mem::take(&mut self.under_way) {
+            Request::Failed(why) => {
+                context
+                    .messages
+                    .trouble(context.words.faults.not_changed, why);
+                None
+            }
+            Request::Ready(changed) => {
+                let said = fill(context.words.faults.recorded, &[("what", &self.what)]);
+                context.messages.note_written(said, changed);
+                if self.form.of == Some(changed.fault) {
+                    self.form = Form::about(changed.fault);
+                }
+                Some(changed.fault)
+            }
+            Request::Idle | Request::Pending(_) => None,
+        }
+    }
+
+    /// Shows it: only what the fault's state allows, and nothing while that state is being read again.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        fault: &FaultSummary,
+        is_stale: bool,
+    ) {
+        let words = context.words;
+        if let Some(why) = context.only_reads() {
+            ui.label(RichText::new(why).color(Palette::of(ui).quiet));
+            return;
+        }
+        if self.form.of != Some(fault.id) {
+            // What was begun about another fault is not meant for this one.
+            self.form = Form::about(fault.id);
+        }
+        let wide = (ui.available_width() - NAMES).clamp(NARROWEST, WIDEST);
+        Grid::new("change").num_columns(2).show(ui, |ui| {
+            let operator = &mut context.settings.operator;
+            field(ui, words.common.operator, name_edit(operator, wide));
+            field(ui, words.common.note, note_edit(&mut self.form.note, wide));
+            if fault.state.next(FaultAction::Repair).is_ok() {
+                let (old, new) = (&mut self.form.serial_old, &mut self.form.serial_new);
+                field(ui, words.faults.serial_old, name_edit(old, wide));
+                field(ui, words.faults.serial_new, name_edit(new, wide));
+            }
+        });
+        let who = context.settings.operator.trim().to_owned();
+        let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
+        let place = ActionPlace::new(ui, "fault", (fault.id, fault.state.as_str()));
+        ui.add_enabled_ui(may, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for state in TOWARDS {
+                    if fault.state.next(FaultAction::towards(state)).is_err() {
+                        continue;
+                    }
+                    let reason = self.form.missing_reason(state, words);
+                    let button = ui.add_enabled(reason.is_none(), Button::new(name(state, words)));
+                    let button = button.on_disabled_hover_text(reason.unwrap_or_default());
+                    if place.clicked(&button) {
+                        self.bring(context, fault, state, &who);
+                    }
+                }
+                let written = !self.form.note.trim().is_empty();
+                let add = ui.add_enabled(written, Button::new(words.faults.add_note));
+                if place.clicked(&add) {
+                    self.what = words.faults.add_note;
+                    let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
+                    self.under_way = Request::Pending(context.queries.run(move |paths| {
+                        let at_us = now_us();
+                        paths.open()?.add_note(id, &who, &note, at_us)?;
+                        Ok(Written { fault: id, at_us })
+                    }));
+                }
+            });
+        });
+        if who.is_empty() {
+            ui.label(RichText::new(words.faults.who_first).color(Palette::of(ui).quiet));
+        }
+    }
+
+    fn bring(
+        &mut self,
+        context: &PageContext<'_>,
+        fault: &FaultSummary,
+        state: FaultState,
+        who: &str,
+    ) {
+        self.what = name(state, context.words);
+        let repair = RepairRecord {
+            part: fault.cause().to_owned(),
+            serial_old: typed(&self.form.serial_old),
+            serial_new: typed(&self.form.serial_new),
+            note: self.form.note.clone(),
+        };
+        let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
+        self.under_way = Request::Pending(context.queries.run(move |paths| {
+            let (store, at_us) = (paths.open()?, now_us());
+            if state == FaultState::Repaired {
+                store.repair_case(id, &repair, &who, at_us)?;
+            } else {
+                store.set_case_state(id, state, &who, &note, at_us)?;
+            }
+            Ok(Written { fault: id, at_us })
+        }));
+    }
+}
+
+fn name(state: FaultState, words: &Words) -> &'static str {
+    match state {
+        FaultState::Acknowledged => words.faults.acknowledge,
+        FaultState::Repaired => words.faults.repair,
+        FaultState::Verified => words.faults.verify,
+        FaultState::Closed => words.faults.close,
+        FaultState::Open => words.faults.reopen,
+    }
+}

@@ -1,0 +1,199 @@
+//! One fault: its repairs and notes, its occurrences, and the freeze frame of each.
+
+use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
+use fault_db::{FaultDetail, FaultEvent, FreezeSample};
+
+use super::list::state_chip;
+use crate::parts::{link, repair_line, serial_link};
+use crate::{Destination, Palette};
+use ptu_bench::clock;
+use ptu_report::event_text::{cause_text, correction_text, note_text};
+use ptu_report::limits::short;
+use ptu_report::naming::{self, PartNames};
+use ptu_report::words::{Words, fill};
+
+/// Occurrences shown at most; the command line shows all.
+const MOST: usize = 50;
+/// Where a freeze frame has two signals beside each other, points.
+const TWO_BESIDE: f32 = 560.0;
+
+/// What the fault is and where it stands.
+pub fn head(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    detail: &FaultDetail,
+    go_to: &mut Vec<Destination>,
+) {
+    let fault = &detail.fault;
+    ui.horizontal_wrapped(|ui| {
+        let name = parts.fault(&fault.lru, &fault.message, words);
+        ui.label(RichText::new(name).strong().size(19.0));
+        state_chip(ui, words, fault.state);
+    });
+    let (first, last) = (
+        clock::local(fault.first_at_us),
+        clock::local(fault.last_at_us),
+    );
+    ui.scope(|ui| {
+        let seen = fill(
+            words.faults.times_seen,
+            &[
+                ("n", &fault.occurrences),
+                ("first", &first),
+                ("last", &last),
+            ],
+        );
+        let part = part(words, detail, parts);
+        let code = naming::code(fault.code, &fault.code_name, words);
+        let id = fault.id.to_string();
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(words.common.unit).color(Palette::of(ui).quiet));
+            serial_link(ui, words, &fault.unit_serial, go_to);
+        });
+        for (what, value) in [
+            (words.common.part, &*part),
+            (words.common.code, &code),
+            (words.common.number, &id),
+            (
+                words.common.severity,
+                words.report.severity(&fault.severity),
+            ),
+            (words.faults.seen, &seen),
+        ] {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(what).color(Palette::of(ui).quiet));
+                ui.label(value);
+            });
+        }
+    });
+}
+
+/// The part that it points at, the one that it comes from, and how many other faults do.
+fn part(words: &Words, detail: &FaultDetail, parts: &PartNames) -> String {
+    let fault = &detail.fault;
+    let part = parts.name(&fault.lru, words.language);
+    let cause = parts.name(fault.cause(), words.language);
+    let said = match detail.case.len() {
+        0 => cause.to_owned(),
+        n => fill(words.faults.case_of, &[("cause", &cause), ("n", &n)]),
+    };
+    match cause == part {
+        true => said,
+        false => fill(
+            words.faults.with_cause,
+            &[("part", &part), ("cause", &said)],
+        ),
+    }
+}
+
+/// Events, occurrences and the freeze frame of the latest.
+pub fn rest(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    detail: &FaultDetail,
+    go_to: &mut Vec<Destination>,
+) {
+    ui.separator();
+    ui.label(RichText::new(words.faults.what_was_done).strong());
+    // What a run found was not done by anybody, and stands above.
+    let is_finding =
+        |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
+    let events = detail.history().into_iter();
+    for event in events.filter(|event| !is_finding(event)) {
+        show_event(ui, (words, parts), event, (detail, go_to));
+        if let Some(correction) = &event.correction {
+            let said = correction_text(correction, words);
+            let said = RichText::new(said).color(Palette::of(ui).warn);
+            ui.indent((event.id, "withdrawn"), |ui| ui.label(said));
+        }
+    }
+    ui.separator();
+    ui.label(RichText::new(words.faults.occurrences).strong());
+    for seen in detail.occurrences.iter().take(MOST) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(clock::local(seen.at_us));
+            if let Some(trace) = seen.trace_id
+                && ui.button(words.faults.to_trace).clicked()
+            {
+                go_to.push(Destination::Trace(trace));
+            }
+            if ui.button(words.faults.to_run).clicked() {
+                go_to.push(Destination::Report(seen.run_id));
+            }
+            if ui.button(words.faults.to_diagnosis).clicked() {
+                go_to.push(Destination::Diagnosis(seen.run_id));
+            }
+            ui.label(RichText::new(&*words.content(&seen.message)).color(Palette::of(ui).quiet));
+        });
+    }
+    if let Some(latest) = detail.occurrences.first() {
+        if let Some(trace) = latest.trace_id
+            && link(ui, words.faults.freeze_trace).clicked()
+        {
+            go_to.push(Destination::Trace(trace));
+        }
+        CollapsingHeader::new(words.faults.freeze_frame)
+            .default_open(true)
+            .show(ui, |ui| freeze_frame(ui, words, &latest.freeze));
+    }
+}
+
+fn show_event(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    event: &FaultEvent,
+    (detail, go_to): (&FaultDetail, &mut Vec<Destination>),
+) {
+    let name = |part: &str| parts.name(part, words.language).to_owned();
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(clock::local(event.at_us)).color(Palette::of(ui).quiet));
+        match event.state {
+            Some(state) => state_chip(ui, words, state),
+            None => {
+                let cause = event.cause.as_ref();
+                ui.label(cause.map_or(words.common.note, |_| words.faults.cause));
+                if let Some(cause) = cause {
+                    ui.label(cause_text(cause, name));
+                }
+            }
+        }
+        if !event.who.is_empty() {
+            ui.label(RichText::new(&event.who).strong());
+        }
+    });
+    if let Some(repair) = &event.repair {
+        ui.indent(event.id.to_string(), |ui| {
+            repair_line(ui, words, &name(&repair.part), repair, go_to);
+        });
+        return;
+    }
+    let said = note_text(detail, event, words);
+    if !said.is_empty() {
+        ui.indent(event.id.to_string(), |ui| ui.label(&*said));
+    }
+}
+
+fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
+    let beside = if ui.available_width() < TWO_BESIDE {
+        1
+    } else {
+        2
+    };
+    Grid::new(("freeze", beside))
+        .num_columns(2 * beside)
+        .striped(true)
+        .show(ui, |ui| {
+            for pair in samples.chunks(beside) {
+                for sample in pair {
+                    ui.label(words.signal(&sample.name));
+                    let value = match (&sample.label, sample.value) {
+                        (Some(label), _) => words.state(&sample.name, label).into_owned(),
+                        (None, Some(value)) => format!("{} {}", short(value), sample.unit),
+                        (None, None) => words.faults.not_known.to_owned(),
+                    };
+                    ui.label(RichText::new(value).strong());
+                }
+                ui.end_row();
+            }
+        });
+}

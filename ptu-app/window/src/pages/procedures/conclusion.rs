@@ -1,0 +1,72 @@
+//! What is said of a run that has ended: its diagnosis, or what it proves of repairs.
+
+use super::ProceduresPage;
+use crate::PageContext;
+use crate::request::Request;
+use ptu_bench::failure::Exit;
+use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
+use ptu_report::proof_text;
+
+/// What is said of a run that has ended.
+pub struct Concluded {
+    /// The conclusion, or what the run says of repairs before it.
+    pub text: String,
+    /// The diagnosis of a run that failed.
+    pub answer: Option<Box<Answer>>,
+    /// Of a run that passed.
+    pub proofs: Vec<RepairProof>,
+}
+
+impl ProceduresPage {
+    /// Requests the diagnosis of a run that failed, and of one that passed what it says of repairs.
+    pub(super) fn conclude(&mut self, context: &PageContext<'_>) {
+        self.conclusion.poll();
+        self.traced.poll();
+        let run = context.units.chosen().run.as_ref();
+        let Some(outcome) = run.and_then(|run| run.ended.as_ref()?.as_ref()) else {
+            return;
+        };
+        if self.concluded == Some(outcome.id) {
+            return;
+        }
+        self.concluded = Some(outcome.id);
+        let id = outcome.id;
+        self.traced = Request::Pending(context.queries.run(move |paths| {
+            let seen = paths.read()?.run_occurrences(id)?.into_iter();
+            let traced = seen.filter_map(|seen| Some((seen.message, seen.trace_id?)));
+            Ok(traced.collect())
+        }));
+        self.conclusion = match outcome.exit {
+            Exit::Failed => {
+                let words = context.words;
+                Request::Pending(context.queries.run(move |paths| {
+                    let store = paths.open()?;
+                    let answer = diagnose_run(&store, &paths.scripts, id)?;
+                    let conclusion = words.sentence(&answer.diagnosis.conclusion);
+                    let text = match answer.attribute(&store) {
+                        Ok(()) => conclusion.into_owned(),
+                        // The part is known all the same.
+                        Err(failure) => format!("{conclusion} ({failure})"),
+                    };
+                    Ok(Concluded {
+                        text,
+                        answer: Some(Box::new(answer)),
+                        proofs: Vec::new(),
+                    })
+                }))
+            }
+            Exit::Passed => {
+                let words = context.words;
+                Request::Pending(context.queries.run(move |paths| {
+                    let proofs = prove_repairs(&paths.open()?, &paths.scripts, id)?;
+                    Ok(Concluded {
+                        text: proof_text(&proofs, words),
+                        answer: None,
+                        proofs,
+                    })
+                }))
+            }
+            _ => Request::Idle,
+        };
+    }
+}

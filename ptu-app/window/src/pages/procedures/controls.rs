@@ -1,0 +1,118 @@
+//! Run, pause, single step, stop.
+
+use eframe::egui::{Button, DragValue, RichText, Ui};
+
+use super::ProceduresPage;
+use crate::parts::{ActionPlace, name_edit};
+use crate::request::Request;
+use crate::units::Unit;
+use crate::{PageContext, Palette};
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::Procedures;
+
+/// Most repetitions of a run.
+const MOST: u32 = 10_000;
+
+impl ProceduresPage {
+    pub(super) fn controls(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        ui.horizontal_wrapped(|ui| {
+            let unit = context.units.chosen();
+            let phase = unit.phase();
+            let live_state = unit.bench.live_state();
+            let state = (
+                unit.id,
+                phase == Phase::Running,
+                live_state.paused(),
+                unit.bench.stop_presses(),
+            );
+            let place = ActionPlace::new(ui, "run", state);
+            if phase == Phase::Running {
+                running(ui, context, &place);
+            } else {
+                self.begin(ui, context, phase, &place);
+            }
+            let words = &context.words.procedures;
+            ui.toggle_value(&mut context.settings.live_plot, words.live_signals)
+                .on_hover_text(words.live_signals_hint);
+        });
+    }
+
+    fn begin(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        phase: Phase,
+        place: &ActionPlace,
+    ) {
+        let words = &context.words.procedures;
+        let sound = matches!(&self.suite, Request::Ready(suite) if suite.errors.is_empty());
+        let may = context.units.chosen().may_run() && sound && self.orders.is_empty();
+        let run = Button::new(RichText::new(words.run).strong().size(17.0));
+        let run = ui.add_enabled(may, run);
+        let why_not = why_not(context.units.chosen(), words);
+        if place.clicked(&run.on_disabled_hover_text(why_not)) {
+            self.order(context.units.chosen().id, false, context);
+        }
+        let find = ui.add_enabled(may, Button::new(words.find_part));
+        if place.clicked(&find.on_hover_text(words.find_part_hint)) {
+            self.order(context.units.chosen().id, true, context);
+        }
+        if context.units.count() > 1 {
+            let idle = context.units.iter().filter(|unit| unit.may_run());
+            let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
+            let may = sound && !ready.is_empty() && self.orders.is_empty();
+            let all = ui.add_enabled(may, Button::new(words.run_all));
+            if place.clicked(&all) {
+                for unit in ready {
+                    self.order(unit, false, context);
+                }
+            }
+        }
+        ui.add(
+            DragValue::new(&mut self.repeat)
+                .range(1..=MOST)
+                .suffix(format!(" × {}", words.repeat)),
+        );
+        ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
+        let label = ui.label(words.operator);
+        ui.add(name_edit(&mut context.settings.operator, 120.0))
+            .labelled_by(label.id);
+        if phase != Phase::Idle {
+            ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
+        }
+    }
+}
+
+/// Why a unit cannot be run now.
+pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
+    match unit.phase() {
+        Phase::Idle => words.about_to_begin,
+        _ => words.connect_first,
+    }
+}
+
+fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
+    let words = &context.words.procedures;
+    let worker = &context.units.chosen().bench;
+    let live_state = worker.live_state();
+    let paused = live_state.paused();
+    let pause = if paused { words.resume } else { words.pause };
+    if place.clicked(&ui.button(pause)) {
+        live_state.pause(!paused);
+    }
+    if ui
+        .add_enabled(paused, Button::new(words.single_step))
+        .clicked()
+    {
+        live_state.single_step();
+    }
+    let stop = if worker.stop_presses() == 0 {
+        words.stop
+    } else {
+        words.stop_again
+    };
+    let stop = Button::new(RichText::new(stop).strong());
+    if place.clicked(&ui.add(stop)) {
+        worker.stop_run();
+    }
+}

@@ -1,0 +1,340 @@
+//! The procedures page: select steps, run them, follow the run.
+
+mod conclusion;
+mod controls;
+mod overview;
+mod prepare;
+mod present;
+mod results;
+mod selection;
+mod tree;
+mod wanted;
+
+use std::sync::Arc;
+
+use btu_rig::procedure::plan::Connection;
+use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
+
+use super::bench::{BenchSnapshot, Plot, chosen};
+use crate::messages::About;
+use crate::parts::{FirstHalf, RunNoteForm};
+use crate::request::Request;
+use crate::{PageContext, Palette};
+pub use conclusion::Concluded;
+use prepare::{Prepared, RunSettings, ShownSuite};
+pub use present::present;
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::run::{BenchChoice, Suite};
+use ptu_report::naming::PartNames;
+use results::ResultsView;
+pub use results::measurements;
+use selection::Selection;
+use wanted::Wanted;
+
+const TREE: FirstHalf = FirstHalf {
+    name: "procedures",
+    width: 380.0,
+    share: 0.35,
+};
+
+/// Least height of the live signals, what their heading takes of it, and what is left to the run above, points.
+const LIVE_LEAST: f32 = 140.0;
+const LIVE_HEADING: f32 = 48.0;
+const RUN_LEAST: f32 = 120.0;
+/// Share of the page that they take until the divider is dragged.
+const LIVE_SHARE: f32 = 0.3;
+
+pub struct ProceduresPage {
+    suite: Request<Arc<Suite>>,
+    /// What the suite was loaded for.
+    loaded_for: Option<BenchChoice>,
+    /// Nothing = everything but what is on request.
+    selection: Option<Selection>,
+    /// What people call the parts.
+    parts: Request<PartNames>,
+    find: String,
+    repeat: u32,
+    stop_on_fail: bool,
+    orders: Vec<PendingOrder>,
+    /// Times everything had been stopped when these were looked at last.
+    stops: u64,
+    /// What to run as soon as the suite is there, on a unit by its own number.
+    wanted: Option<(Wanted, u64)>,
+    shown: ResultsView,
+    /// The conclusion of the diagnosis of the last run.
+    conclusion: Request<Concluded>,
+    concluded: Option<fault_db::Id>,
+    /// What the faults of that run said, with their traces.
+    traced: Request<Vec<(String, fault_db::Id)>>,
+    note: RunNoteForm,
+    plot: Plot,
+}
+
+/// An order that is being prepared.
+struct PendingOrder {
+    /// The unit it is for, by its own number.
+    unit: u64,
+    order: Request<Prepared>,
+}
+
+impl Default for ProceduresPage {
+    fn default() -> Self {
+        Self {
+            suite: Request::Idle,
+            loaded_for: None,
+            selection: None,
+            parts: Request::Idle,
+            find: String::new(),
+            repeat: 1,
+            stop_on_fail: false,
+            orders: Vec::new(),
+            stops: 0,
+            wanted: None,
+            shown: ResultsView::default(),
+            conclusion: Request::Idle,
+            concluded: None,
+            traced: Request::Idle,
+            note: RunNoteForm::default(),
+            plot: Plot::default(),
+        }
+    }
+}
+
+impl ProceduresPage {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_loaded(context);
+        TREE.show(ui, |ui| self.tree(ui, context));
+        CentralPanel::default().show(ui, |ui| {
+            self.controls(ui, context);
+            overview::overview(ui, context);
+            ui.separator();
+            if let Request::Ready(suite) = &self.suite
+                && !suite.errors.is_empty()
+            {
+                script_errors(ui, suite, context);
+            }
+            let room = ui.available_height();
+            let live =
+                context.settings.live_plot && context.units.chosen().phase() != Phase::Offline;
+            // A low window has them at the top of what scrolls.
+            let scrolls = live && room < LIVE_LEAST + RUN_LEAST;
+            if live && !scrolls {
+                let panel = Panel::bottom("live signals").resizable(true);
+                let panel = panel.default_size((room * LIVE_SHARE).max(LIVE_LEAST));
+                panel
+                    .size_range(LIVE_LEAST..=room - RUN_LEAST)
+                    .show(ui, |ui| {
+                        let height = ui.available_height();
+                        live_signals(ui, &mut self.plot, height, context);
+                    });
+            }
+            // What is said of a run scrolls as one, so that each part of it is reached in a low window.
+            ScrollArea::vertical()
+                .id_salt("run")
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    if scrolls {
+                        live_signals(ui, &mut self.plot, LIVE_LEAST, context);
+                    }
+                    self.run(ui, context);
+                });
+        });
+    }
+
+    /// Something is about to be run.
+    pub fn has_orders(&self) -> bool {
+        self.wanted.is_some() || !self.orders.is_empty()
+    }
+
+    /// What is said of the last run of the chosen unit, once it is known.
+    pub fn concluded(&self) -> Option<(fault_db::Id, &Request<Concluded>)> {
+        Some((self.concluded?, &self.conclusion))
+    }
+
+    /// Scripts are loaded for the unit's configuration, line and train: again when these change.
+    fn keep_loaded(&mut self, context: &PageContext<'_>) {
+        let choice = &context.units.chosen().choice;
+        let loaded_for = self.loaded_for.as_ref();
+        let same = loaded_for.is_some_and(|loaded| loaded.same_files(choice));
+        if !same {
+            self.load(context);
+        }
+    }
+
+    fn load(&mut self, context: &PageContext<'_>) {
+        let parts = context
+            .queries
+            .run(|paths| Ok(PartNames::of(&paths.scripts)));
+        self.parts = Request::Pending(parts);
+        let choice = context.units.chosen().choice.clone();
+        self.loaded_for = Some(choice.clone());
+        self.suite = Request::Pending(
+            context
+                .queries
+                .run(move |paths| prepare::load(paths, &choice).map(Arc::new)),
+        );
+    }
+
+    /// Takes what has come, whatever page is in front.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if self.stops != context.units.stops() || context.settings.locked {
+            // Nothing begins by itself after everything was stopped, nor while no name has been given.
+            self.stops = context.units.stops();
+            self.orders.clear();
+            self.wanted = None;
+        }
+        if self.suite.poll()
+            && let Request::Failed(why) = &self.suite
+        {
+            let said = context.words.procedures.not_loaded;
+            context.messages.trouble(said, why.clone());
+        }
+        self.parts.poll();
+        self.run_wanted(context);
+        self.note.poll(context.words, context.messages);
+        self.poll_orders(context);
+        self.conclude(context);
+    }
+
+    /// What is chosen, or would be run without a choice.
+    fn chosen(&self, connection: Connection) -> Selection {
+        let usual = || {
+            let suite = self.suite.value();
+            suite.map(|suite| Selection::usual(&suite.procedures, connection))
+        };
+        let chosen = self.selection.clone().or_else(usual);
+        chosen.unwrap_or_default()
+    }
+
+    /// Has an order of what is chosen made for a unit.
+    fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
+        let how = RunSettings {
+            operator: context.settings.operator.clone(),
+            repeat: if adaptive { 1 } else { self.repeat },
+            stop_on_fail: !adaptive && self.stop_on_fail,
+            adaptive,
+            symptom: None,
+        };
+        let connection = context.units.of_id(unit).map(|unit| unit.connection());
+        if let Some(connection) = connection {
+            let selection = self.chosen(connection);
+            self.order_of(unit, selection, how, context);
+        }
+    }
+
+    fn order_of(
+        &mut self,
+        id: u64,
+        selection: Selection,
+        how: RunSettings,
+        context: &mut PageContext<'_>,
+    ) {
+        let (Some(suite), Some(loaded_for)) = (self.suite.value(), &self.loaded_for) else {
+            return;
+        };
+        let shown = ShownSuite {
+            suite: suite.clone(),
+            loaded_for: loaded_for.clone(),
+        };
+        let Some(unit) = context.units.of_id(id) else {
+            return;
+        };
+        let (choice, serial, connection) = (unit.choice.clone(), unit.name(), unit.connection());
+        context.messages.over(About::Run(id));
+        let order = context.queries.run(move |paths| {
+            let unit = (serial.as_str(), connection);
+            prepare::order(paths, &choice, unit, &selection, how, &shown)
+        });
+        self.orders.push(PendingOrder {
+            unit: id,
+            order: Request::Pending(order),
+        });
+    }
+
+    /// Begins what is ready, unless something else has taken the bench meanwhile.
+    fn poll_orders(&mut self, context: &mut PageContext<'_>) {
+        let words = &context.words.procedures;
+        for mut ordered in std::mem::take(&mut self.orders) {
+            ordered.order.poll();
+            match ordered.order {
+                Request::Ready(Prepared::Order(order)) => {
+                    let unit = context.units.of_id(ordered.unit);
+                    if unit.is_some_and(|unit| unit.begin(*order)) {
+                        self.shown = ResultsView::default();
+                    } else {
+                        let run = About::Run(ordered.unit);
+                        context.messages.trouble_about(run, words.not_begun, "");
+                    }
+                }
+                Request::Ready(Prepared::Changed) => {
+                    context.messages.trouble(words.scripts_changed, "");
+                    self.load(context);
+                }
+                Request::Failed(why) => {
+                    let run = About::Run(ordered.unit);
+                    context.messages.trouble_about(run, words.not_begun, why);
+                }
+                order => self.orders.push(PendingOrder { order, ..ordered }),
+            }
+        }
+    }
+
+    fn run(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let unit = context.units.chosen();
+        let Some(run) = &unit.run else {
+            ui.label(words.procedures.choose_and_run);
+            return;
+        };
+        // The text of other scripts would show another line than the one that ran.
+        let suite = self.suite.value();
+        let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
+        let texts = texts.map(|suite| &suite.texts);
+        let answer = present::present(ui, words, run, texts, true);
+        let note = (&mut self.note, context.settings.operator.as_str());
+        results::after_run(ui, (words, context.queries), run, note, context.go_to);
+        // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
+        let conclusion = match &self.conclusion {
+            Request::Ready(concluded) => Some(concluded.text.as_str()),
+            Request::Pending(_) => Some(words.common.loading),
+            Request::Idle | Request::Failed(_) => None,
+        };
+        if let Some(conclusion) = conclusion.filter(|_| self.concluded == run.id()) {
+            ui.label(RichText::new(conclusion).strong().size(17.0));
+        }
+        let traced = self.traced.value().filter(|_| self.concluded == run.id());
+        let traced = traced.map(Vec::as_slice).unwrap_or_default();
+        let ways = (traced, &mut *context.go_to);
+        let unnamed = PartNames::default();
+        let named = (words, self.parts.value().unwrap_or(&unnamed));
+        results::results(ui, named, run, &mut self.shown, texts, ways);
+        if let Some(yes) = answer {
+            context.units.chosen_mut().answer(yes);
+        }
+    }
+}
+
+/// The chosen signals of the last seconds below the run, as on the page Bench.
+fn live_signals(ui: &mut Ui, plot: &mut Plot, height: f32, context: &mut PageContext<'_>) {
+    let unit = context.units.chosen();
+    let seen = BenchSnapshot::of(&unit.bench);
+    let plotted = &mut context.settings.plotted;
+    let signals = chosen(plotted);
+    plot.take(&unit.bench, &signals);
+    let height = height.max(LIVE_LEAST) - LIVE_HEADING;
+    plot.show(ui, height, &signals, plotted, (context.words, &seen));
+}
+
+fn script_errors(ui: &mut Ui, suite: &Suite, context: &PageContext<'_>) {
+    let bad = Palette::of(ui).bad;
+    let said = context.words.procedures.script_errors;
+    ui.label(RichText::new(format!("⚠ {said}")).color(bad).strong());
+    ScrollArea::vertical()
+        .id_salt("script errors")
+        .max_height(160.0)
+        .show(ui, |ui| {
+            for error in &suite.errors {
+                ui.label(RichText::new(error).monospace());
+            }
+        });
+}

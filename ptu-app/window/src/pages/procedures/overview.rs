@@ -1,0 +1,56 @@
+//! The progress of several units side by side.
+
+use eframe::egui::{Grid, ProgressBar, Ui};
+
+use crate::parts::verdict_chip;
+use crate::{PageContext, Palette};
+use ptu_bench::bench_worker::Phase;
+use ptu_report::words::fill;
+
+/// A line for each unit when there are several.
+pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
+    if context.units.count() < 2 {
+        return;
+    }
+    let words = context.words;
+    let mut choose = None;
+    Grid::new("units")
+        .num_columns(4)
+        .striped(true)
+        .show(ui, |ui| {
+            for (place, unit) in context.units.iter().enumerate() {
+                let chosen = place == context.units.chosen_place();
+                let name = format!("{}: {}", place + 1, unit.name());
+                if ui.selectable_label(chosen, name).clicked() {
+                    choose = Some(place);
+                }
+                let phase = unit.phase();
+                ui.label(match phase {
+                    Phase::Offline => words.frame.not_connected,
+                    Phase::Connecting => words.frame.connecting,
+                    Phase::Idle | Phase::Running | Phase::MakingSafe => words.frame.connected,
+                });
+                let Some(run) = &unit.run else {
+                    ui.end_row();
+                    continue;
+                };
+                ui.add(ProgressBar::new(run.share()).desired_width(160.0));
+                let counts: [(&str, &dyn std::fmt::Display); 3] = [
+                    ("done", &run.done),
+                    ("all", &run.steps),
+                    ("bad", &run.not_passed),
+                ];
+                ui.horizontal(|ui| {
+                    if let Some(Some(outcome)) = &run.ended {
+                        verdict_chip(ui, outcome.verdict, words);
+                    }
+                    let quiet = Palette::of(ui).quiet;
+                    ui.colored_label(quiet, fill(words.procedures.progress, &counts));
+                });
+                ui.end_row();
+            }
+        });
+    if let Some(place) = choose {
+        context.units.choose(place);
+    }
+}

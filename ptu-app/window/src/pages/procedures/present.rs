@@ -1,0 +1,130 @@
+//! The current step: what it waits for, its prompt, its script line and its measurements.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
+
+use super::results::{measurements, source};
+use super::tree::{minutes, title};
+use crate::Palette;
+use crate::parts::{ActionPlace, verdict_chip};
+use ptu_bench::bench_worker::{Progress, RunPosition};
+use ptu_report::words::{Words, fill};
+
+/// Lines shown before and after the script's present one.
+const AROUND: Range<u32> = 2..5;
+
+/// How far the run is, and the step under way, with the text of its script if there is one, or without the script's path
+/// for an operator; what the operator answers.
+pub fn present(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    texts: Option<&BTreeMap<String, String>>,
+    with_path: bool,
+) -> Option<bool> {
+    head(ui, words, run);
+    if !run.is_running() {
+        return None;
+    }
+    let Some(present) = &run.present else {
+        ui.label(words.procedures.bringing_up);
+        return None;
+    };
+    let progress = run.procedures.get(present.procedure)?;
+    let procedure = &progress.procedure;
+    let name = match with_path {
+        true => format!("{}: {}", procedure.id, present.name),
+        false => words.content(&present.name).into_owned(),
+    };
+    ui.label(RichText::new(name).strong().size(17.0));
+    ui.label(RichText::new(title(procedure, words)).italics());
+    waits(ui, words, present);
+    let answer = prompt(ui, words, present);
+    let Some(step) = run.step() else {
+        return answer;
+    };
+    if let Some(note) = &step.note {
+        ui.label(format!("{}: {note}", words.common.note));
+    }
+    source(ui, texts, &procedure.path, step.line, AROUND);
+    measurements(ui, words, &present.measured);
+    answer
+}
+
+fn head(ui: &mut Ui, words: &Words, run: &Progress) {
+    let procedures = &words.procedures;
+    let quiet = Palette::of(ui).quiet;
+    let of_unit = fill(procedures.of_unit, &[("unit", &run.unit)]);
+    ui.label(RichText::new(of_unit).color(quiet));
+    ui.horizontal_wrapped(|ui| {
+        ui.add(
+            ProgressBar::new(run.share())
+                .desired_width(260.0)
+                .show_percentage(),
+        );
+        let counts: [(&str, &dyn std::fmt::Display); 3] = [
+            ("done", &run.done),
+            ("all", &run.steps),
+            ("bad", &run.not_passed),
+        ];
+        ui.label(fill(procedures.progress, &counts));
+        match &run.ended {
+            Some(Some(outcome)) => {
+                verdict_chip(ui, outcome.verdict, words);
+            }
+            Some(None) => {
+                ui.colored_label(Palette::of(ui).bad, words.frame.run_failed);
+            }
+            None => {
+                let elapsed = minutes(run.elapsed_s());
+                ui.label(fill(procedures.elapsed, &[("time", &elapsed)]));
+                if let Some(left) = run.left_s() {
+                    ui.label(fill(procedures.left, &[("time", &minutes(left))]));
+                }
+            }
+        }
+    });
+}
+
+fn waits(ui: &mut Ui, words: &Words, present: &RunPosition) {
+    let palette = Palette::of(ui);
+    if let Some(next) = &present.paused {
+        let said = fill(words.procedures.paused, &[("step", next)]);
+        ui.label(RichText::new(said).color(palette.warn).strong());
+    } else if let Some(waiting) = &present.waiting {
+        let left = format!("{:.1}", waiting.left_s());
+        let said = fill(
+            words.procedures.waiting,
+            &[("what", &waiting.what), ("left", &left)],
+        );
+        ui.label(RichText::new(said).color(palette.quiet));
+    }
+}
+
+fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
+    let prompt = present.prompt.as_ref()?;
+    let place = ActionPlace::new(ui, "prompt", &prompt.what);
+    let mut answer = None;
+    let warn = Palette::of(ui).warn;
+    Frame::new()
+        .stroke((2.0, warn))
+        .inner_margin(Margin::same(10))
+        .corner_radius(4)
+        .show(ui, |ui| {
+            ui.label(RichText::new(words.procedures.asked).color(warn).small());
+            ui.label(RichText::new(&prompt.what).size(17.0));
+            ui.horizontal(|ui| {
+                let yes = ui.button(RichText::new(words.procedures.yes).strong());
+                if place.clicked(&yes) {
+                    answer = Some(true);
+                }
+                if place.clicked(&ui.button(words.procedures.no)) {
+                    answer = Some(false);
+                }
+                ui.label(format!("{:.0} s", prompt.left_s()));
+            });
+        });
+    answer
+}

@@ -1,0 +1,193 @@
+//! The tree of scripts and steps.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
+use btu_rig::procedure::plan::Connection;
+use eframe::egui::{
+    Checkbox, Label, Response, RichText, ScrollArea, TextEdit, Ui, collapsing_header,
+};
+
+use super::ProceduresPage;
+use super::selection::{Selection, Share, possible};
+use crate::request::Request;
+use crate::{PageContext, Palette};
+use ptu_report::words::{Language, Words, fill};
+
+impl ProceduresPage {
+    pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        ui.horizontal(|ui| {
+            let label = ui.label(words.procedures.find);
+            ui.add(TextEdit::singleline(&mut self.find).desired_width(130.0))
+                .labelled_by(label.id);
+            if ui.button(words.procedures.reload).clicked() {
+                self.load(context);
+            }
+        });
+        let suite = match &self.suite {
+            Request::Ready(suite) => suite,
+            Request::Failed(why) => {
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
+                return;
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+                return;
+            }
+        };
+        let connection = context.units.chosen().connection();
+        let before = self.chosen(connection);
+        let mut chosen = before.clone();
+        ui.horizontal(|ui| {
+            if ui.button(words.procedures.all).clicked() {
+                chosen = Selection::usual(&suite.procedures, connection);
+            }
+            if ui.button(words.procedures.none).clicked() {
+                chosen = Selection::default();
+            }
+        });
+        let (steps, time) = chosen.extent(&suite.procedures);
+        let time = minutes(time.as_secs());
+        let said = fill(
+            words.procedures.chosen,
+            &[("steps", &steps), ("time", &time)],
+        );
+        ui.label(RichText::new(said).color(Palette::of(ui).quiet));
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (folder, procedures) in folders(&suite.procedures) {
+                let found = procedures.iter().filter(|known| matches(known, &self.find));
+                let found: Vec<_> = found.collect();
+                show_folder(ui, words, folder, &found, connection, &mut chosen);
+            }
+        });
+        if chosen != before {
+            self.selection = Some(chosen);
+        }
+    }
+}
+
+fn show_folder(
+    ui: &mut Ui,
+    words: &Words,
+    folder: &str,
+    found: &[&Arc<Procedure>],
+    connection: Connection,
+    chosen: &mut Selection,
+) {
+    if found.is_empty() {
+        return;
+    }
+    let can = || {
+        found
+            .iter()
+            .copied()
+            .filter(|known| possible(known, connection))
+    };
+    let share = chosen.share_of(can());
+    let id = ui.make_persistent_id(("folder", folder));
+    collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true)
+        .show_header(ui, |ui| {
+            if tick(ui, share, RichText::new(folder).strong()).clicked() {
+                for procedure in can() {
+                    chosen.set(procedure, share != Share::All && !procedure.on_request);
+                }
+            }
+        })
+        .body(|ui| {
+            for procedure in found {
+                match possible(procedure, connection) {
+                    true => show_procedure(ui, words, procedure, chosen),
+                    false => show_skipped(ui, words, procedure),
+                }
+            }
+        });
+}
+
+/// A procedure that this connection cannot do: why it would be skipped.
+fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
+    let text = RichText::new(format!("{}: {}", procedure.id, words.procedures.skipped));
+    let label = ui.add_enabled(false, Label::new(text));
+    label.on_disabled_hover_text(format!(
+        "{}. {}",
+        title(procedure, words),
+        words.procedures.needs_harness
+    ));
+}
+
+fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mut Selection) {
+    let share = chosen.share(procedure);
+    let id = ui.make_persistent_id(&procedure.id);
+    collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false)
+        .show_header(ui, |ui| {
+            let response = tick(ui, share, RichText::new(&procedure.id));
+            if response.on_hover_text(title(procedure, words)).clicked() {
+                chosen.set(procedure, share != Share::All);
+            }
+            if procedure.on_request {
+                let quiet = Palette::of(ui).quiet;
+                ui.label(
+                    RichText::new(words.procedures.on_request)
+                        .small()
+                        .color(quiet),
+                );
+            }
+        })
+        .body(|ui| {
+            ui.label(RichText::new(title(procedure, words)).italics());
+            for (place, step) in procedure.steps.iter().enumerate() {
+                let mut on = chosen.has(procedure, place);
+                let response = ui.checkbox(&mut on, &*words.content(&step.name));
+                let changed = response.changed();
+                if let Some(note) = &step.note {
+                    response.on_hover_text(note);
+                }
+                if changed {
+                    chosen.set_step(procedure, place, on);
+                }
+            }
+        });
+}
+
+/// A box for something of which a part may be chosen.
+fn tick(ui: &mut Ui, share: Share, text: RichText) -> Response {
+    let mut on = share == Share::All;
+    ui.add(Checkbox::new(&mut on, text).indeterminate(share == Share::Some))
+}
+
+/// What a procedure checks, in the language chosen if the script says it.
+pub fn title<'a>(procedure: &'a Procedure, words: &Words) -> &'a str {
+    match (words.language, &procedure.title_ko) {
+        (Language::Korean, Some(korean)) => korean,
+        _ => &procedure.title,
+    }
+}
+
+fn matches(procedure: &Procedure, find: &str) -> bool {
+    let find = find.trim().to_lowercase();
+    let has = |text: &str| text.to_lowercase().contains(&find);
+    has(&procedure.id)
+        || has(&procedure.title)
+        || procedure.title_ko.as_deref().is_some_and(has)
+        || procedure.steps.iter().any(|step| has(&step.name))
+}
+
+/// Seconds as `3:07`.
+pub fn minutes(seconds: f64) -> String {
+    let seconds = seconds.round().max(0.0) as u64;
+    format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+/// Procedures by their folder, in order.
+fn folders(procedures: &[Arc<Procedure>]) -> Vec<(&str, &[Arc<Procedure>])> {
+    let folder = |procedure: &Arc<Procedure>| procedure.id.rfind('/').unwrap_or(0);
+    let name = |procedure: &'_ Arc<Procedure>| procedure.id[..folder(procedure)].to_owned();
+    procedures
+        .chunk_by(|a, b| name(a) == name(b))
+        .filter_map(|chunk| {
+            chunk
+                .first()
+                .map(|first| (&first.id[..folder(first)], chunk))
+        })
+        .collect()
+}

@@ -1,0 +1,113 @@
+//! What another page asks to be run: a step, the search for a part, the proof of a repair.
+
+use std::collections::BTreeSet;
+
+use btu_rig::procedure::plan::Connection;
+
+use super::prepare::RunSettings;
+use super::selection::Selection;
+use super::{ProceduresPage, controls};
+use crate::PageContext;
+use ptu_bench::symptoms::Symptom;
+use ptu_report::words::fill;
+
+/// What another page asks to be run.
+pub(super) enum Wanted {
+    Step {
+        procedure: String,
+        step: String,
+    },
+    /// As few steps as it takes to find the faulty part.
+    Part(Option<Symptom>),
+    /// These procedures, and those that suspect the part.
+    Prove {
+        procedures: BTreeSet<String>,
+        part: String,
+    },
+}
+
+impl ProceduresPage {
+    /// Runs this step on the chosen unit if it is the one called `unit`.
+    pub fn run_step(
+        &mut self,
+        procedure: String,
+        step: String,
+        unit: &str,
+        context: &mut PageContext<'_>,
+    ) {
+        let words = &context.words.procedures;
+        let chosen = context.units.chosen();
+        if !chosen.may_run() {
+            context
+                .messages
+                .trouble(controls::why_not(chosen, words), "");
+        } else if chosen.name() != unit {
+            let said = fill(words.other_unit, &[("unit", &unit)]);
+            context.messages.trouble(said, "");
+        } else {
+            self.want(Wanted::Step { procedure, step }, context);
+        }
+    }
+
+    /// Finds the faulty part of the chosen unit, which was brought with this symptom.
+    pub fn find_part(&mut self, symptom: Option<Symptom>, context: &mut PageContext<'_>) {
+        self.want(Wanted::Part(symptom), context);
+    }
+
+    /// Runs these procedures on the chosen unit, and those that suspect this part.
+    pub fn prove(
+        &mut self,
+        procedures: BTreeSet<String>,
+        part: String,
+        context: &mut PageContext<'_>,
+    ) {
+        self.want(Wanted::Prove { procedures, part }, context);
+    }
+
+    fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
+        self.wanted = Some((wanted, context.units.chosen().id));
+        self.keep_loaded(context);
+    }
+
+    /// Runs what another page asked for, once the suite is there; what is chosen here stays chosen.
+    pub(super) fn run_wanted(&mut self, context: &mut PageContext<'_>) {
+        let Some(suite) = self.suite.value() else {
+            return;
+        };
+        let Some((wanted, unit)) = self.wanted.take() else {
+            return;
+        };
+        let connection = context.units.of_id(unit).map(|unit| unit.connection());
+        let connection = connection.unwrap_or(Connection::Btu);
+        let mut how = RunSettings {
+            operator: context.settings.operator.clone(),
+            repeat: 1,
+            stop_on_fail: false,
+            adaptive: false,
+            symptom: None,
+        };
+        let all = &suite.procedures;
+        let (selection, what) = match wanted {
+            Wanted::Step { procedure, step } => {
+                let found = all.iter().find(|known| known.id == procedure);
+                let only = found.map(|found| Selection::only(found, &step));
+                (only.unwrap_or_default(), format!("{procedure} {step}"))
+            }
+            Wanted::Part(symptom) => {
+                how.adaptive = true;
+                how.symptom = symptom;
+                (Selection::usual(all, connection), String::new())
+            }
+            Wanted::Prove { procedures, part } => {
+                let selection = Selection::proof(all, connection, &procedures, &part);
+                (selection, part)
+            }
+        };
+        if selection.extent(all).0 == 0 {
+            let said = context.words.procedures.no_such_step;
+            context.messages.trouble(said, what);
+            return;
+        }
+        self.order_of(unit, selection, how, context);
+    }
+}

@@ -1,0 +1,94 @@
+//! Chooses the file of a report and writes it.
+
+use std::path::{Path, PathBuf};
+
+use super::{Asked, SheetOf};
+use crate::data_paths::DataPaths;
+use crate::parts::usual_folder;
+use ptu_bench::failure::Failure;
+use ptu_bench::new_file::NewFile;
+use ptu_bench::process_id;
+use ptu_report::run::{CaseSheet, RunComparison};
+use ptu_report::{self, Target};
+
+/// Endings a typed name may have; the one of the format asked for takes its place.
+const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
+
+/// A name for this sheet, in the folder of the file named before.
+pub fn named_after(of: SheetOf, before: &str) -> String {
+    let folder = Path::new(before.trim()).parent();
+    let folder = folder.map_or_else(usual_folder, Path::to_path_buf);
+    let name = match of {
+        SheetOf::Compared { before, after, .. } => {
+            format!("compared-{}-{}.pdf", before.short(), after.short())
+        }
+        SheetOf::Run(run) | SheetOf::Case { run, .. } => format!("sheet-{}.pdf", run.short()),
+    };
+    folder.join(name).to_string_lossy().into_owned()
+}
+
+/// What was typed, with this ending and from the root; none of nothing.
+pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
+    let typed = typed.trim();
+    let lower = typed.to_ascii_lowercase();
+    let known = ENDINGS.iter().find(|known| lower.ends_with(*known));
+    let stem = typed.get(..typed.len() - known.map_or(0, |known| known.len()))?;
+    let named = !stem.is_empty() && !stem.ends_with(['/', std::path::MAIN_SEPARATOR]);
+    let path = PathBuf::from(format!("{stem}{ending}"));
+    named.then(|| std::path::absolute(&path).unwrap_or(path))
+}
+
+/// Writes the report of a run or a case to the file wanted, or beside it if that is there already; which it was.
+///
+/// # Errors
+/// The file cannot be written, or the database not be read.
+pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<PathBuf, Failure> {
+    let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
+    let file = NewFile::begin(wanted)?;
+    let (store, scripts) = (paths.read()?, &paths.scripts);
+    let language = asked.language;
+    let content = match asked.of {
+        SheetOf::Run(run) => {
+            let run = store.run(run, &process_id::is_alive)?;
+            ptu_report::run_content(&target, &store, scripts, &run, language)?
+        }
+        SheetOf::Case { fault, .. } => {
+            let case = CaseSheet::gather(&store, scripts, fault, &asked.depot, false)?;
+            ptu_report::case_content(&target, &case, language)?
+        }
+        SheetOf::Compared { before, after, all } => {
+            let compared = RunComparison::gather(&store, before, after, all)?;
+            ptu_report::comparison_content(&target, &compared, language)?
+        }
+    };
+    ptu_report::write_beside(&target, file, &content)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_the_ending_of_its_format_whatever_was_typed() {
+        let file = |typed: &str| with_ending(typed, ".html").map(|path| path.display().to_string());
+        let some = |path: &str| Some(path.to_owned());
+        assert_eq!(file("/a/sheet.pdf"), some("/a/sheet.html"));
+        assert_eq!(file(" /a/sheet.PDF "), some("/a/sheet.html"));
+        assert_eq!(file("/a/시험 v1.2"), some("/a/시험 v1.2.html"));
+        assert!(file("sheet").is_some_and(|path| path.starts_with('/')));
+        for nothing in ["", "  ", "/a/", ".pdf", "/a/.csv"] {
+            assert_eq!(file(nothing), None, "{nothing}");
+        }
+    }
+
+    #[test]
+    fn the_sheet_of_the_next_run_is_saved_in_the_folder_of_the_last() {
+        let run: fault_db::Id = "0198c0de-0000-7000-8000-00000000cafe"
+            .parse()
+            .expect("an id");
+        let beside = format!("/reports/sheet-{}.pdf", run.short());
+        let of = SheetOf::Run(run);
+        assert_eq!(named_after(of, "/reports/mine.html"), beside);
+        assert!(named_after(of, "").ends_with(&format!("sheet-{}.pdf", run.short())));
+    }
+}

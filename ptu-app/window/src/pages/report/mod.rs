@@ -1,0 +1,273 @@
+//! The test sheet of a run: shown as it will be printed, and written to a file.
+
+mod bar;
+mod compare;
+mod file;
+
+use std::path::PathBuf;
+
+use eframe::egui::{CentralPanel, RichText, Ui};
+use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
+
+use crate::parts::{FirstHalf, NoteOn, RunList, RunNoteForm, show_sheet};
+use crate::request::Request;
+use crate::{Density, PageContext, Palette, Sizes};
+use compare::ComparedWith;
+use ptu_report::naming::PartNames;
+use ptu_report::run::page::{Page, pages};
+use ptu_report::run::{CaseSheet, RunComparison, Sheet, SheetTrace};
+use ptu_report::words::{Language, Words, fill};
+
+const RUNS: FirstHalf = FirstHalf {
+    name: "reported runs",
+    width: 270.0,
+    share: 0.25,
+};
+
+#[derive(Default)]
+pub struct ReportPage {
+    runs: RunList,
+    /// The sheet asked for, and the one shown until that is there.
+    asked: Request<Shown>,
+    shown: Option<Shown>,
+    asked_for: Option<Asked>,
+    /// Version of the data it was asked for.
+    version: (usize, u64),
+    /// When the page was last shown, in passes of the window.
+    pass: u64,
+    /// Language of the sheet; none = the window's.
+    language: Option<Language>,
+    file: String,
+    writing: Request<PathBuf>,
+    /// The file written last of the run that is shown.
+    written: Option<PathBuf>,
+    note: RunNoteForm,
+    with: ComparedWith,
+}
+
+/// What a sheet says besides what is stored.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Asked {
+    of: SheetOf,
+    language: Language,
+    depot: String,
+}
+
+/// What a sheet is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SheetOf {
+    Run(Id),
+    /// A fault's case, after this run.
+    Case {
+        fault: Id,
+        run: Id,
+    },
+    /// Two runs of a unit; with what passed in both, if wanted.
+    Compared {
+        before: Id,
+        after: Id,
+        all: bool,
+    },
+}
+
+impl SheetOf {
+    /// The run it ends with.
+    fn run(self) -> Id {
+        match self {
+            Self::Run(run) | Self::Case { run, .. } | Self::Compared { after: run, .. } => run,
+        }
+    }
+}
+
+struct Shown {
+    of: SheetOf,
+    pages: Vec<Page>,
+    /// Its traces with the faults each shows.
+    traces: Vec<(Id, String)>,
+    /// Something in it did not pass.
+    faulty: bool,
+}
+
+impl ReportPage {
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
+        let of = run.map(|run| self.with.sheet_of(run));
+        self.keep_up(ui, context, of);
+        CentralPanel::default().show(ui, |ui| {
+            self.runs.tell_other_unit(ui, context.words);
+            self.sheet(ui, false, context);
+        });
+    }
+
+    pub fn open(&mut self, run: Id, context: &mut PageContext<'_>) {
+        self.runs.choose(run, context);
+        self.with = ComparedWith::default();
+        self.ask(SheetOf::Run(run), context);
+    }
+
+    /// This sheet, without the list of runs.
+    pub fn show_one(&mut self, of: SheetOf, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.keep_up(ui, context, Some(of));
+        let brief = Sizes::of(ui).density == Density::Operator;
+        self.sheet(ui, brief, context);
+    }
+
+    /// Asks when another run is to be shown, and again when something may have been added to this one:
+    /// the data have changed, or the page was away.
+    fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, of: Option<SheetOf>) {
+        let pass = ui.ctx().cumulative_pass_nr();
+        let away = pass > self.pass + 1;
+        let pending = matches!(self.asked, Request::Pending(_));
+        let again = (away || context.data_version() != self.version) && !pending;
+        self.pass = pass;
+        let Some(of) = of else {
+            (self.asked, self.shown, self.asked_for) = (Request::Idle, None, None);
+            return;
+        };
+        if again || self.asked_for.as_ref() != Some(&self.wanted(of, context)) {
+            self.ask(of, context);
+        }
+    }
+
+    fn ask(&mut self, of: SheetOf, context: &PageContext<'_>) {
+        if self.asked_for.as_ref().is_none_or(|asked| asked.of != of) {
+            self.shown = None;
+            self.file = file::named_after(of, &self.file);
+            self.written = None;
+        }
+        let wanted = self.wanted(of, context);
+        self.asked_for = Some(wanted.clone());
+        self.version = context.data_version();
+        self.asked = Request::Pending(context.queries.run(move |paths| {
+            let store = paths.read()?;
+            let scripts = &paths.scripts;
+            let words = wanted.language.words();
+            let shown = |pages, run: &RunDetail, traces: Option<&[SheetTrace]>| {
+                let seen = store.run_occurrences(run.run.id)?;
+                let parts = PartNames::of(scripts);
+                let traces = traces.unwrap_or_default().iter().map(|trace| trace.id);
+                let traces = traces.collect();
+                Ok(Shown::new(
+                    of,
+                    pages,
+                    &run.run,
+                    traces,
+                    (&seen, &parts),
+                    words,
+                ))
+            };
+            match of {
+                SheetOf::Run(run) => {
+                    let sheet = Sheet::gather(&store, scripts, run)?;
+                    shown(pages(&sheet, words)?, &sheet.run, Some(&sheet.traces))
+                }
+                SheetOf::Case { fault, .. } => {
+                    let case = CaseSheet::gather(&store, scripts, fault, &wanted.depot, false)?;
+                    let last = case.last();
+                    shown(pages(&case, words)?, &last.run, Some(&last.traces))
+                }
+                SheetOf::Compared { before, after, all } => {
+                    let compared = RunComparison::gather(&store, before, after, all)?;
+                    shown(pages(&compared, words)?, &compared.b, None)
+                }
+            }
+        }));
+    }
+
+    /// The run that is shown or will be, alone or as the end of a case.
+    fn run(&self) -> Option<Id> {
+        self.asked_for.as_ref().map(|asked| asked.of.run())
+    }
+
+    fn wanted(&self, of: SheetOf, context: &PageContext<'_>) -> Asked {
+        Asked {
+            of,
+            language: self.language(context),
+            depot: context.settings.depot.clone(),
+        }
+    }
+
+    /// The sheet's language.
+    fn language(&self, context: &PageContext<'_>) -> Language {
+        self.language.unwrap_or(context.words.language)
+    }
+
+    /// Takes what has come, whatever page is in front.
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if self.asked.poll() {
+            match std::mem::take(&mut self.asked) {
+                Request::Ready(shown) => self.shown = Some(shown),
+                other => self.asked = other,
+            }
+        }
+        if self.writing.poll() {
+            match std::mem::take(&mut self.writing) {
+                Request::Ready(path) => {
+                    let file = path.display();
+                    let said = fill(context.words.report.written, &[("file", &file)]);
+                    context.messages.note(said);
+                    self.written = Some(path);
+                }
+                Request::Failed(why) => context
+                    .messages
+                    .trouble(context.words.report.not_written, why),
+                Request::Idle | Request::Pending(_) => {}
+            }
+        }
+        if let Some(noted) = self.note.poll(context.words, context.messages)
+            && self.run().map(NoteOn::Run) == Some(noted)
+            && let Some(asked) = &self.asked_for
+        {
+            self.ask(asked.of, context);
+        }
+    }
+
+    /// The sheet below its bar; `brief` = only with what writes and prints it, which leaves more room for it.
+    fn sheet(&mut self, ui: &mut Ui, brief: bool, context: &mut PageContext<'_>) {
+        let words = context.words;
+        if let Request::Failed(why) = &self.asked {
+            let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
+            ui.label(said.strong());
+            ui.label(&*context.words.trouble(why));
+            return;
+        }
+        if self.shown.is_none() {
+            ui.label(match self.asked {
+                Request::Pending(_) => words.common.loading,
+                _ => words.report.choose_run,
+            });
+            return;
+        }
+        self.bar(ui, brief, context);
+        ui.separator();
+        if let Some(shown) = &self.shown {
+            show_sheet(ui, shown.of.run(), &shown.pages);
+        }
+    }
+}
+
+impl Shown {
+    fn new(
+        of: SheetOf,
+        pages: Vec<Page>,
+        run: &RunSummary,
+        traces: Vec<Id>,
+        (seen, parts): (&[RunOccurrence], &PartNames),
+        words: &Words,
+    ) -> Self {
+        let shows = |trace: Id| {
+            let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
+            let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, words));
+            said.collect::<Vec<_>>().join("; ")
+        };
+        Self {
+            of,
+            pages,
+            traces: traces
+                .into_iter()
+                .map(|trace| (trace, shows(trace)))
+                .collect(),
+            faulty: run.steps_not_passed > 0 || run.faults > 0,
+        }
+    }
+}

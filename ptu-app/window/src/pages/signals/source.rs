@@ -1,0 +1,281 @@
+//! What is opened, recorded, saved or played: a file, a device, and the work on them.
+
+use std::path::PathBuf;
+use std::sync::{Arc, PoisonError};
+
+use eframe::egui::{ComboBox, RichText, TextEdit, Ui};
+use protocol::config::UnitConfig;
+
+use super::Slot;
+use super::generator::{Made, Order};
+use super::seen::Seen;
+use crate::parts::{Done, Job, Told, named_combo, usual_folder};
+use crate::{PageContext, Palette};
+use ptu_bench::new_file::free_beside;
+use ptu_bench::signal::{self, FULL_SCALE_MV, Receivers};
+use ptu_bench::sound::{
+    self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
+};
+use ptu_options::sound_file;
+use ptu_report::words::{Words, fill};
+
+/// Width of a list, points.
+const WIDE: f32 = 200.0;
+/// While it is recorded the picture is made again after so many samples: twice a second.
+const AGAIN: usize = SAMPLE_HZ as usize / 2;
+
+/// The file and the devices that are chosen.
+pub struct Source {
+    file: String,
+    input: String,
+    output: String,
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        let default = || sound::DEFAULT.to_owned();
+        let file = usual_folder().join("signal.wav");
+        Self {
+            file: file.display().to_string(),
+            input: default(),
+            output: default(),
+        }
+    }
+}
+
+/// What is to be done with the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Asked {
+    Open,
+    Record,
+}
+
+impl Source {
+    pub fn show(&mut self, ui: &mut Ui, devices: &Result<Vec<DeviceFound>, String>, words: &Words) {
+        let said = &words.signals;
+        ui.horizontal(|ui| {
+            let label = ui.label(words.common.file);
+            let wide = ui.available_width() - 12.0;
+            ui.add(TextEdit::singleline(&mut self.file).desired_width(wide))
+                .labelled_by(label.id);
+        });
+        match devices {
+            Err(why) => {
+                ui.label(RichText::new(said.no_sound).color(Palette::of(ui).warn))
+                    .on_hover_text(why);
+            }
+            Ok(devices) => {
+                ui.horizontal_wrapped(|ui| {
+                    let of = |direction| {
+                        let of = devices.iter().filter(move |of| of.direction == direction);
+                        of.map(|of| of.name.as_str())
+                    };
+                    choose(ui, said.input, &mut self.input, of(Direction::Input));
+                    choose(ui, said.output, &mut self.output, of(Direction::Output));
+                });
+            }
+        }
+    }
+
+    /// What is asked for.
+    pub fn buttons(&self, ui: &mut Ui, words: &Words) -> Option<Asked> {
+        let mut asked = None;
+        ui.horizontal(|ui| {
+            if ui.button(words.signals.open).clicked() {
+                asked = Some(Asked::Open);
+            }
+            let record = ui.button(words.signals.record);
+            if record.on_hover_text(words.signals.record_hint).clicked() {
+                asked = Some(Asked::Record);
+            }
+        });
+        asked
+    }
+
+    /// Reads or records, and puts how it looks into the slot.
+    pub fn begin(
+        &self,
+        asked: Asked,
+        (job, slot): (&mut Job, Slot),
+        unit: Arc<UnitConfig>,
+        context: &mut PageContext<'_>,
+    ) {
+        let words = context.words;
+        let (file, device) = (PathBuf::from(self.file.trim()), self.input.clone());
+        let told = (words.common.loading.to_owned(), words.signals.not_done);
+        job.begin(context, told, move |_, told| {
+            let show = |seen: Seen, told: &Told| {
+                *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(seen);
+                told.say(String::new());
+            };
+            if asked == Asked::Open {
+                let (reading, pictures) = signal::read_and_picture(&file, &unit, FULL_SCALE_MV)?;
+                show(Seen::of(reading, &pictures), told);
+                return Ok(done(String::new(), Vec::new()));
+            }
+            let file = free_beside(&file);
+            let known = Calibrations::load(&sound_file::usual()?)?;
+            let full_scale_mv = known.full_scale_mv(&device, Direction::Input);
+            let mut receivers = Receivers::new(CHANNELS, f64::from(SAMPLE_HZ), &unit, true);
+            let mut waiting = vec![Vec::new(); CHANNELS];
+            let mut count = 0;
+            let device_of = (device.as_str(), full_scale_mv);
+            let mut hear = |block: &[Vec<f32>]| {
+                for (waiting, block) in waiting.iter_mut().zip(block) {
+                    waiting.extend_from_slice(block);
+                }
+                if waiting[0].len() < AGAIN {
+                    return;
+                }
+                let now: Vec<Vec<f32>> = waiting
+                    .iter_mut()
+                    .map(|waiting| waiting.drain(..AGAIN).collect())
+                    .collect();
+                receivers.take(&now);
+                count += AGAIN;
+                let (reading, pictures) = receivers.so_far();
+                let so_far = format!("{:.1} s", count as f64 / f64::from(SAMPLE_HZ));
+                *slot.lock().unwrap_or_else(PoisonError::into_inner) =
+                    Some(Seen::of(reading, &pictures));
+                told.say(fill(words.signals.recording, &[("time", &so_far)]));
+            };
+            let recorded = sound::record_to_file(&file, device_of, None, &told.stop, &mut hear)?;
+            receivers.take(&waiting);
+            let (reading, pictures) = receivers.end(None);
+            show(Seen::of(reading, &pictures), told);
+            let seconds = format!("{:.2}", recorded.seconds);
+            let file = file.display().to_string();
+            let mut notes = uncalibrated(&known, &device, Direction::Input, words);
+            for (channel, clipped) in Side::ALL.into_iter().zip(recorded.clipped) {
+                if clipped > 0 {
+                    let channel = name(channel);
+                    let values: [(&str, &dyn std::fmt::Display); 2] =
+                        [("n", &clipped), ("channel", &channel)];
+                    notes.push(fill(words.signals.too_loud, &values));
+                }
+            }
+            notes.extend(gaps(recorded.overruns, words));
+            let text = fill(
+                words.signals.recorded,
+                &[("file", &file), ("time", &seconds)],
+            );
+            Ok(done(text, notes))
+        });
+    }
+
+    /// Saves or plays what the generator makes.
+    pub fn begin_made(
+        &self,
+        made: Made,
+        job: &mut Job,
+        unit: Arc<UnitConfig>,
+        context: &mut PageContext<'_>,
+    ) {
+        let words = context.words;
+        let (file, device) = (PathBuf::from(self.file.trim()), self.output.clone());
+        let told = (words.signals.playing.to_owned(), words.signals.not_done);
+        job.begin(context, told, move |_, told| {
+            let Made {
+                wave,
+                strength,
+                order,
+            } = made;
+            if order == Order::Save {
+                let path = free_beside(&file);
+                let made = signal::make(&wave, &unit, strength, (&path, FULL_SCALE_MV))?;
+                let path = path.display().to_string();
+                let clipped = cut_off(made.clipped, words);
+                return Ok(done(
+                    fill(words.common.saved, &[("file", &path)]),
+                    clipped.into_iter().collect(),
+                ));
+            }
+            let known = Calibrations::load(&sound_file::usual()?)?;
+            let full_scale_mv = known.full_scale_mv(&device, Direction::Output);
+            let samples = signal::samples(&wave, &unit, strength)?;
+            let side = match wave {
+                signal::Wave::Code { .. } => Side::Atp,
+                signal::Wave::Twc(_) | signal::Wave::Marker { .. } => Side::Twc,
+            };
+            let lead = match side {
+                Side::Atp => Lead::Within,
+                Side::Twc => Lead::of_twc(&unit, strength.level_mv),
+            };
+            let on_one =
+                samples.map(move |mv| Side::ALL.map(|of| if of == side { mv } else { 0.0 }));
+            let played = sound::play(on_one, lead, (&device, full_scale_mv), &told.stop)?;
+            let mut notes = uncalibrated(&known, &device, Direction::Output, words);
+            notes.extend(cut_off(played.clipped, words));
+            notes.extend(gaps(played.underruns, words));
+            let seconds = format!("{:.2}", played.seconds);
+            Ok(done(
+                fill(words.signals.played, &[("time", &seconds)]),
+                notes,
+            ))
+        });
+    }
+}
+
+fn done(text: String, notes: Vec<String>) -> Done {
+    Done {
+        text,
+        notes,
+        broken_off: None,
+    }
+}
+
+fn cut_off(clipped: u64, words: &Words) -> Option<String> {
+    (clipped > 0).then(|| fill(words.signals.cut_off, &[("n", &clipped)]))
+}
+
+fn gaps(count: u64, words: &Words) -> Option<String> {
+    (count > 0).then(|| fill(words.signals.gaps, &[("n", &count)]))
+}
+
+fn name(channel: Side) -> &'static str {
+    match channel {
+        Side::Atp => "ATP",
+        Side::Twc => "TWC",
+    }
+}
+
+/// Which channels nobody has calibrated.
+fn uncalibrated(
+    known: &Calibrations,
+    device: &str,
+    direction: Direction,
+    words: &Words,
+) -> Vec<String> {
+    let without = Side::ALL
+        .into_iter()
+        .filter(|side| known.of(device, direction, *side).is_none());
+    let without: Vec<_> = without.map(name).collect();
+    match without.is_empty() {
+        true => Vec::new(),
+        false => vec![fill(
+            words.signals.uncalibrated,
+            &[("device", &device), ("channels", &without.join(", "))],
+        )],
+    }
+}
+
+/// A device, with the name of what it is for before it.
+fn choose<'a>(
+    ui: &mut Ui,
+    said: &str,
+    chosen: &mut String,
+    offered: impl Iterator<Item = &'a str>,
+) {
+    ui.label(said);
+    let shown = chosen.clone();
+    let combo = ComboBox::from_id_salt(said)
+        .selected_text(&shown)
+        .width(WIDE)
+        .truncate();
+    let combo = combo.show_ui(ui, |ui| {
+        for device in std::iter::once(sound::DEFAULT).chain(offered) {
+            ui.selectable_value(chosen, device.to_owned(), device);
+        }
+    });
+    named_combo(&combo.response, said, &shown);
+}

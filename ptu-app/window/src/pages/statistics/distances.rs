@@ -1,0 +1,110 @@
+//! Faults for each 10 000 km by month, and the file with the odometer readings they are computed of.
+
+use std::collections::BTreeMap;
+
+use eframe::egui::{RichText, TextEdit, Ui};
+
+use super::counted::Counted;
+use super::{of_month, shown_months};
+use crate::page_context::Destination;
+use crate::parts::UnitFilter;
+use crate::parts::bars::{Bar, Chart};
+use crate::{PageContext, Palette};
+use ptu_report::fault_months::{Month, OnTheWay};
+use ptu_report::words::{Words, fill};
+
+/// Width of the field for the file, points.
+const FIELD: f32 = 320.0;
+
+/// The file, as it is typed.
+#[derive(Default)]
+pub struct DistancesFile {
+    typed: Option<String>,
+}
+
+impl DistancesFile {
+    /// The chart, and the field below it; true when the file is to be read again.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        (counted, units): (&Counted, &UnitFilter),
+        context: &mut PageContext<'_>,
+    ) -> bool {
+        let words = context.words;
+        let said = &words.statistics;
+        let quiet = Palette::of(ui).quiet;
+        ui.separator();
+        match &counted.on_the_way {
+            Some(Ok(months)) => {
+                let month = chart(ui, words, counted, months);
+                let month = month.map(|month| of_month(month, units));
+                context.go_to.extend(month.map(Destination::Faults));
+            }
+            Some(Err(why)) => {
+                let why = words.trouble(why);
+                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
+            }
+            None if counted.asked.unit.is_some() => {
+                ui.label(RichText::new(said.distances_of_all).color(quiet));
+            }
+            None => {
+                ui.label(RichText::new(said.no_distances).color(quiet));
+            }
+        }
+        let kept = &mut context.settings.distances;
+        let typed = self.typed.get_or_insert_with(|| kept.clone());
+        let mut again = false;
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(said.odometers);
+            ui.add(TextEdit::singleline(typed).desired_width(FIELD))
+                .labelled_by(label.id)
+                .on_hover_text(said.odometers_hint);
+            again = ui.button(said.read_odometers).clicked();
+        });
+        if again {
+            typed.trim().clone_into(kept);
+        }
+        again
+    }
+}
+
+/// The month whose bar was clicked.
+fn chart<'a>(
+    ui: &mut Ui,
+    words: &Words,
+    counted: &'a Counted,
+    known: &BTreeMap<String, OnTheWay>,
+) -> Option<&'a Month> {
+    let said = &words.statistics;
+    let quiet = Palette::of(ui).quiet;
+    let with_rate = shown_months(counted).iter().filter_map(|month| {
+        let of = known.get(&month.name)?;
+        let rate = of.per_10000_km()?;
+        let km = format!("{:.0}", of.km);
+        let numbers = [
+            ("n", &of.faults as &dyn std::fmt::Display),
+            ("km", &km),
+            ("trains", &of.trains),
+        ];
+        let bar = Bar {
+            name: month.name.clone(),
+            value: (100.0 * rate).round() / 100.0,
+            more: fill(said.rate_is, &numbers),
+        };
+        Some((month, bar))
+    });
+    let (months, bars): (Vec<_>, Vec<_>) = with_rate.unzip();
+    if bars.is_empty() {
+        ui.label(RichText::new(said.no_distance_known).color(quiet));
+        return None;
+    }
+    let chart = Chart {
+        title: said.per_10000_km,
+        width: ui.available_width(),
+        leads: true,
+        sums: false,
+    };
+    let clicked = chart.in_time(ui, &bars);
+    ui.label(RichText::new(said.rate_of).color(quiet));
+    months.get(clicked?).copied()
+}

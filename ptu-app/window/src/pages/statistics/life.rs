@@ -1,0 +1,188 @@
+//! The life of a unit, a train or a part, by its serial number.
+
+use eframe::egui::{Grid, Key, RichText, ScrollArea, TextWrapMode, Ui};
+use fault_db::{Life, LifeEvent, LifeOf, LifeWhat};
+
+use crate::page_context::Destination;
+use crate::parts::{link, name_edit, rows, typed};
+use crate::request::{CachedResponse, Request};
+use crate::{DataPaths, PageContext, Palette};
+use ptu_bench::clock;
+use ptu_bench::failure::Failure;
+use ptu_report::life;
+use ptu_report::naming::PartNames;
+use ptu_report::words::{Words, fill};
+
+/// Width of the field, points.
+const FIELD: f32 = 120.0;
+
+/// The search field, and the lives that were found.
+#[derive(Default)]
+pub struct LifeView {
+    typed: String,
+    /// The serial number that is shown.
+    of: Option<String>,
+    found: CachedResponse<(Vec<Life>, PartNames)>,
+    /// What was asked last, and of which data.
+    asked: Option<(String, (usize, u64))>,
+}
+
+impl LifeView {
+    /// Shows the life of what has this serial number.
+    pub fn open(&mut self, serial: &str) {
+        serial.clone_into(&mut self.typed);
+        self.of = typed(serial);
+    }
+
+    /// The field, and the button.
+    pub fn search(&mut self, ui: &mut Ui, words: &Words) {
+        let label = ui.label(words.life.search);
+        let field = ui.add(name_edit(&mut self.typed, FIELD));
+        let field = field.labelled_by(label.id);
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if ui.button(words.life.show).clicked() || entered {
+            self.of = typed(&self.typed);
+        }
+    }
+
+    /// Draws it in place of the statistics; false if no serial number is asked for.
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
+        let Some(serial) = self.of.clone() else {
+            return false;
+        };
+        let words = context.words;
+        self.keep_up(&serial, context);
+        if ui.button(words.life.back).clicked() {
+            self.of = None;
+        }
+        match self.found.get() {
+            Request::Ready((lives, parts)) => {
+                if lives.is_empty() {
+                    ui.label(fill(words.life.nothing, &[("serial", &serial)]));
+                }
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    for life in lives {
+                        show(ui, (words, parts), life, context.go_to);
+                    }
+                });
+            }
+            Request::Failed(why) => {
+                let said = RichText::new(words.life.not_read).color(Palette::of(ui).bad);
+                ui.label(said.strong());
+                ui.label(&*words.trouble(why));
+                if ui.button(words.common.refresh).clicked() {
+                    self.asked = None;
+                }
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+            }
+        }
+        true
+    }
+
+    fn keep_up(&mut self, serial: &str, context: &PageContext<'_>) {
+        let wanted = (serial.to_owned(), context.data_version());
+        if self.asked.as_ref() != Some(&wanted) {
+            let serial = serial.to_owned();
+            let pending = context.queries.run(move |paths| read(paths, &serial));
+            match self.asked.replace(wanted.clone()) {
+                Some((before, _)) if before == wanted.0 => self.found.request(pending),
+                _ => self.found.request_other(pending),
+            }
+        }
+        self.found.poll();
+    }
+}
+
+fn read(paths: &DataPaths, serial: &str) -> Result<(Vec<Life>, PartNames), Failure> {
+    let lives = paths.read()?.lives(serial)?;
+    Ok((lives, PartNames::of(&paths.scripts)))
+}
+
+fn show(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    life: &Life,
+    go_to: &mut Vec<Destination>,
+) {
+    ui.label(RichText::new(life::title(life, words)).strong().size(19.0));
+    if !life.stays.is_empty() {
+        stays(ui, (words, parts), life, go_to);
+    }
+    ui.label(RichText::new(words.life.stored).strong());
+    let count = life.events.len();
+    rows(ui, ui.spacing().interact_size.y, count, |ui, range| {
+        // The latest first, as every list has it.
+        for entry in life.events.iter().rev().skip(range.start).take(range.len()) {
+            row(ui, (words, parts), (life.of, entry), go_to);
+        }
+    });
+    ui.separator();
+}
+
+fn stays(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    life: &Life,
+    go_to: &mut Vec<Destination>,
+) {
+    Grid::new((life.of.as_str(), &life.serial))
+        .num_columns(4)
+        .striped(true)
+        .show(ui, |ui| {
+            let quiet = Palette::of(ui).quiet;
+            for name in [
+                words.life.stays(life.of),
+                words.life.from,
+                words.life.until,
+                words.life.runs,
+            ] {
+                ui.label(RichText::new(name).color(quiet));
+            }
+            ui.end_row();
+            for stay in &life.stays {
+                let [place, from, until, runs] = life::stay(life.of, stay, words, parts);
+                let other = match life.of {
+                    LifeOf::Unit => &stay.place,
+                    LifeOf::Train | LifeOf::Part => &stay.unit,
+                };
+                if link(ui, place).clicked() {
+                    go_to.push(Destination::Life(other.clone()));
+                }
+                ui.label(from);
+                ui.label(until);
+                ui.label(runs);
+                ui.end_row();
+            }
+        });
+}
+
+/// One entry, which leads to its run or its fault.
+fn row(
+    ui: &mut Ui,
+    (words, parts): (&Words, &PartNames),
+    (of, entry): (LifeOf, &LifeEvent),
+    go_to: &mut Vec<Destination>,
+) {
+    let to = match &entry.what {
+        LifeWhat::Run(run) => Some(Destination::Report(run.id)),
+        LifeWhat::Fault(fault) => fault
+            .faults
+            .first()
+            .map(|fault| Destination::Fault(fault.id)),
+    };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(clock::local(entry.at_us)).color(Palette::of(ui).quiet));
+        if of != LifeOf::Unit {
+            ui.label(RichText::new(&entry.unit).strong());
+        }
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        let said = life::happened(entry, words, parts);
+        let row = ui.selectable_label(false, &said);
+        // Longer than the row.
+        if row.on_hover_text(said).clicked() {
+            go_to.extend(to);
+        }
+    });
+}

@@ -1,0 +1,104 @@
+//! Trigger and faults in the trace's window, as links and as flags above the lanes.
+
+use eframe::egui::{Align2, FontId, Painter, Rect, RichText, Stroke, Ui, pos2};
+
+use super::bar;
+use super::row::Sheet;
+use crate::Palette;
+use crate::parts::{lane, link};
+use ptu_report::naming::DOT;
+use ptu_report::trace_view::listing::Event;
+use ptu_report::trace_view::{Cursor, TracePlot};
+use ptu_report::words::Words;
+
+/// Height of the strip above the lanes.
+pub const STRIP: f32 = 34.0;
+/// Rows of names in it.
+const ROWS: usize = 2;
+/// Links shown at most; a fault that comes every second would fill the page.
+const LINKS: usize = 40;
+
+/// What happened, each a way to where it did.
+pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
+    let palette = Palette::of(ui);
+    let opened = scene.opened().clone();
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(words.traces.events).color(palette.quiet));
+        for event in opened.events.iter().take(LINKS) {
+            let text = format!("{} {}", bar::place(scene, event.row), name(event, words));
+            let link = link(ui, text);
+            let link = match &event.fault {
+                Some(fault) => link.on_hover_text(&fault.code),
+                None => link,
+            };
+            if link.clicked() {
+                let place = scene.axis().at(event.row);
+                scene.camera().centre(place);
+            }
+        }
+        if opened.events.len() > LINKS {
+            ui.label("…");
+        }
+    });
+}
+
+/// Flags in the strip, with lines down through the lanes; the cursors above all.
+pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
+    let Sheet {
+        scene,
+        words,
+        palette,
+        ..
+    } = sheet;
+    let window = scene.window();
+    let mut free = [f32::NEG_INFINITY; ROWS];
+    for event in &scene.opened().events {
+        let x = lane::x_at(lanes, window, scene.axis().at(event.row));
+        if !lanes.x_range().contains(x) {
+            continue;
+        }
+        let colour = match event.fault {
+            None => palette.accent,
+            Some(_) => palette.bad,
+        };
+        painter.vline(x, strip.top()..=lanes.bottom(), Stroke::new(1.0, colour));
+        // A name that would lie over another one is left out; the links have them all.
+        if let Some(row) = free.iter().position(|free| x > *free) {
+            let y = strip.top() + row as f32 * STRIP / ROWS as f32;
+            let at = pos2(x + 3.0, y);
+            let font = FontId::proportional(lane::TEXT);
+            // The part alone; the links say the rest.
+            let name = name(event, words).split(DOT).next().unwrap_or_default();
+            let text = painter.text(at, Align2::LEFT_TOP, name, font, colour);
+            free[row] = text.right() + 6.0;
+        }
+    }
+    for (cursor, letter) in [(Cursor::A, "A"), (Cursor::B, "B")] {
+        let Some(row) = scene.cursor(cursor) else {
+            continue;
+        };
+        let x = lane::x_at(lanes, window, scene.axis().at(row));
+        if !lanes.x_range().contains(x) {
+            continue;
+        }
+        painter.vline(
+            x,
+            strip.bottom()..=lanes.bottom(),
+            Stroke::new(1.5, palette.warn),
+        );
+        let flag = Rect::from_min_size(pos2(x - 7.0, strip.bottom() - 14.0), [14.0, 14.0].into());
+        painter.rect_filled(flag, 2.0, palette.warn);
+        let ground = if palette.dark {
+            eframe::egui::Color32::BLACK
+        } else {
+            eframe::egui::Color32::WHITE
+        };
+        let font = FontId::proportional(lane::TEXT);
+        painter.text(flag.center(), Align2::CENTER_CENTER, letter, font, ground);
+    }
+}
+
+fn name<'a>(event: &'a Event, words: &'a Words) -> &'a str {
+    let said = event.fault.as_ref().map(|fault| fault.said(words.language));
+    said.unwrap_or(words.traces.trigger)
+}

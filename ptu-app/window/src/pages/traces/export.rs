@@ -1,0 +1,163 @@
+//! Exports the view as a picture or as a table.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+use eframe::egui::{Button, ColorImage, Rect, TextEdit, Ui};
+use fault_db::Id;
+
+use super::signals::name_input;
+use crate::PageContext;
+use crate::parts::usual_folder;
+use crate::query_worker::Pending;
+use ptu_bench::new_file::{NewFile, cannot_write};
+use ptu_report::trace_view::csv::csv;
+use ptu_report::trace_view::{Kind, TracePlot};
+use ptu_report::words::fill;
+
+/// What is to be written, and what is under way.
+#[derive(Default)]
+pub struct Export {
+    /// Path without its ending.
+    name: String,
+    /// The window's picture, the part of it wanted, and its pixels per point.
+    picture: Option<(Receiver<Arc<ColorImage>>, Rect, f32)>,
+    writing: Vec<Pending<PathBuf>>,
+}
+
+impl Export {
+    /// Another trace is open; this is the name for what is exported of it.
+    pub fn name_after(&mut self, name: String) {
+        self.name = name;
+    }
+
+    /// Name and buttons; `rect` is what the picture is of.
+    pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
+        let words = &context.words.traces;
+        ui.label(context.words.common.file);
+        let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
+        name_input(&edit, words.file_name);
+        let edit = edit.on_hover_text(words.file_name);
+        let named = !self.name.trim().is_empty();
+        if ui.add_enabled(named, Button::new(words.save_png)).clicked() {
+            // What has the keyboard is not part of the picture.
+            edit.surrender_focus();
+            let (sender, receiver) = mpsc::channel();
+            let wake = context.queries.wake().clone();
+            ui.ctx().request_screenshot(move |image| {
+                // Another trace may have been opened since.
+                let _ = sender.send(image);
+                wake();
+            });
+            self.picture = Some((receiver, rect, ui.pixels_per_point()));
+        }
+        if ui.add_enabled(named, Button::new(words.save_csv)).clicked() {
+            self.write_csv(scene, context);
+        }
+    }
+
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        let taken = self
+            .picture
+            .as_ref()
+            .and_then(|(receiver, rect, scale)| Some((receiver.try_recv().ok()?, *rect, *scale)));
+        if let Some((image, rect, scale)) = taken {
+            self.picture = None;
+            let name = self.name.clone();
+            let question = move |_: &_| {
+                let part = image.region(&rect, Some(scale));
+                let place = with_ending(&name, "png");
+                let mut file = NewFile::begin(&place)?;
+                encode(&part, &mut file).map_err(|error| cannot_write(&place, &error))?;
+                file.finish_beside()
+            };
+            self.writing.push(context.queries.run(question));
+        }
+        let words = context.words;
+        self.writing.retain(|pending| match pending.take() {
+            None => true,
+            Some(Ok(path)) => {
+                let file = path.display().to_string();
+                context
+                    .messages
+                    .note(fill(words.common.saved, &[("file", &file)]));
+                false
+            }
+            Some(Err(failure)) => {
+                context
+                    .messages
+                    .trouble(words.traces.cannot_save, failure.message);
+                false
+            }
+        });
+    }
+
+    fn write_csv(&mut self, scene: &TracePlot, context: &PageContext<'_>) {
+        let opened = scene.opened().clone();
+        let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
+        let rows = scene.rows_in_view();
+        let axis = (scene.axis().kind() == Kind::Distance).then(|| scene.axis().clone());
+        let name = self.name.clone();
+        let question = move |_: &_| {
+            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
+            let place = with_ending(&name, "csv");
+            let mut file = NewFile::begin(&place)?;
+            let written = file.write_all(text.as_bytes());
+            written.map_err(|error| cannot_write(&place, &error))?;
+            file.finish_beside()
+        };
+        self.writing.push(context.queries.run(question));
+    }
+}
+
+/// The usual name for what is exported of a trace.
+pub fn usual_name(id: Id) -> String {
+    let file = usual_folder().join(format!("trace-{}", id.short()));
+    file.display().to_string()
+}
+
+/// The name with this ending, which may have been typed with it.
+fn with_ending(name: &str, ending: &str) -> PathBuf {
+    let name = name.trim();
+    let name = name.strip_suffix(&format!(".{ending}")).unwrap_or(name);
+    format!("{name}.{ending}").into()
+}
+
+fn encode(image: &ColorImage, file: impl Write) -> Result<(), png::EncodingError> {
+    let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    let pixels: Vec<u8> = image.pixels.iter().flat_map(|p| p.to_array()).collect();
+    encoder.write_header()?.write_image_data(&pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use super::*;
+
+    #[test]
+    fn a_typed_file_extension_is_not_added_twice() {
+        for (typed, made) in [("a", "a.csv"), (" b.csv ", "b.csv"), ("c.v2", "c.v2.csv")] {
+            assert_eq!(with_ending(typed, "csv"), PathBuf::from(made));
+        }
+    }
+
+    #[test]
+    fn a_written_picture_is_read_back_unchanged() {
+        let image = ColorImage::filled([3, 2], eframe::egui::Color32::from_rgb(1, 2, 3));
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("picture.png");
+        encode(&image, File::create(&path).expect("file")).expect("encoded");
+        let file = std::io::BufReader::new(File::open(&path).expect("file"));
+        let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut pixels).expect("a frame");
+        assert_eq!((info.width, info.height), (3, 2));
+        assert_eq!(pixels[..4], [1, 2, 3, 255]);
+    }
+}

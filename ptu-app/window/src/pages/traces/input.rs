@@ -1,0 +1,174 @@
+//! Pointer and keyboard input over the lanes.
+
+use eframe::egui::{Event, EventFilter, Key, PointerButton, Rect, Response, Ui};
+
+use super::bar::ZOOM;
+use crate::parts::lane;
+use ptu_report::trace_view::{Cursor, TracePlot};
+
+/// How much one point of wheel zooms.
+const WHEEL: f64 = 0.005;
+/// Share of the view one press of an arrow moves.
+const PAN: f64 = 0.1;
+/// A stretch shorter than this share of the view was a click.
+const SHORTEST: f64 = 0.01;
+/// A cursor nearer than that to the pointer is taken along.
+const NEAR: f32 = 6.0;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Drag {
+    #[default]
+    View,
+    Cursor(Cursor),
+    /// A stretch to zoom to, from this place of the axis on.
+    Stretch(f64),
+}
+
+/// Wheel, drag and click over the lanes, which lie in `rect`.
+pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, drag: &mut Drag) {
+    let width = f64::from(rect.width().max(1.0));
+    let share = |x: f32| f64::from(x - rect.left()) / width;
+    if let Some(at) = response.hover_pos().filter(|at| rect.contains(*at)) {
+        let (wheel, zoom) = ui.input_mut(|input| {
+            let wheel = std::mem::take(&mut input.smooth_scroll_delta);
+            (wheel, f64::from(input.zoom_delta()))
+        });
+        let times = (-f64::from(wheel.y) * WHEEL).exp() / zoom.max(0.01);
+        if times != 1.0 {
+            scene.camera().zoom(share(at.x), times);
+        }
+        if wheel.x != 0.0 {
+            scene.camera().pan(-f64::from(wheel.x) / width);
+        }
+    }
+    let near = |scene: &TracePlot, cursor: Cursor, x: f32| {
+        scene.cursor(cursor).is_some_and(|row| {
+            let at = lane::x_at(rect, scene.window(), scene.axis().at(row));
+            (at - x).abs() <= NEAR
+        })
+    };
+    if response.drag_started()
+        && let Some(from) = ui.input(|input| input.pointer.press_origin())
+    {
+        let taken = [Cursor::A, Cursor::B]
+            .into_iter()
+            .find(|cursor| near(scene, *cursor, from.x));
+        *drag = taken.map_or(Drag::View, Drag::Cursor);
+        if response.drag_started_by(PointerButton::Secondary) {
+            *drag = Drag::Stretch(scene.window().at(share(from.x)));
+        }
+    }
+    if response.drag_stopped()
+        && let (Drag::Stretch(from), Some(at)) = (*drag, response.interact_pointer_pos())
+    {
+        *drag = Drag::View;
+        let to = scene.window().at(share(at.x));
+        if (to - from).abs() > scene.window().length() * SHORTEST {
+            scene.zoom_to(from, to);
+        }
+    }
+    if response.dragged() {
+        match (*drag, response.interact_pointer_pos()) {
+            (Drag::Cursor(cursor), Some(at)) => {
+                let place = scene.window().at(share(at.x));
+                scene.put(cursor, place);
+            }
+            (Drag::Stretch(_), _) => {}
+            _ => scene
+                .camera()
+                .pan(-f64::from(response.drag_delta().x) / width),
+        }
+    }
+    if response.clicked() {
+        response.request_focus();
+        if let Some(at) = response.interact_pointer_pos() {
+            let shift = ui.input(|input| input.events.iter().any(shifted_click));
+            let cursor = if shift { Cursor::B } else { Cursor::A };
+            let place = scene.window().at(share(at.x));
+            scene.put(cursor, place);
+        }
+    }
+}
+
+/// A click that was made with Shift, whatever the keyboard did since.
+fn shifted_click(event: &Event) -> bool {
+    matches!(event, Event::PointerButton { pressed: false, modifiers, .. } if modifiers.shift)
+}
+
+/// Keys, unless something else has the keyboard.
+pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
+    let filter = EventFilter {
+        horizontal_arrows: true,
+        escape: true,
+        ..EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let focused = ui.memory(|memory| memory.focused());
+    if focused.is_some_and(|id| id != response.id) {
+        return;
+    }
+    let (pressed, shift) = ui.input(|input| {
+        let plain = !input.modifiers.command && !input.modifiers.alt;
+        let count = |keys: &[Key]| -> usize {
+            let all = keys.iter().map(|key| input.num_presses(*key)).sum();
+            if plain { all } else { 0 }
+        };
+        let pressed = [
+            count(&[Key::Plus, Key::Equals]),
+            count(&[Key::Minus]),
+            count(&[Key::ArrowLeft]),
+            count(&[Key::ArrowRight]),
+            count(&[Key::F, Key::Home]),
+            count(&[Key::A]),
+            count(&[Key::B]),
+            count(&[Key::Comma]),
+            count(&[Key::Period]),
+            count(&[Key::Escape]),
+            count(&[Key::Backspace]),
+        ];
+        (pressed, input.modifiers.shift)
+    });
+    let [
+        closer,
+        wider,
+        left,
+        right,
+        fit,
+        a,
+        b,
+        back,
+        on,
+        none,
+        before,
+    ] = pressed;
+    let pointer = response.hover_pos().filter(|at| rect.contains(*at));
+    let share = pointer.map_or(0.5, |at| f64::from((at.x - rect.left()) / rect.width()));
+    if closer + wider > 0 {
+        let times = ZOOM.powi(closer as i32 - wider as i32);
+        scene.camera().zoom(share, times);
+    }
+    if left + right > 0 {
+        scene.camera().pan(PAN * (right as f64 - left as f64));
+    }
+    if fit > 0 {
+        scene.remember();
+        scene.camera().fit();
+    }
+    for _ in 0..before {
+        scene.zoom_back();
+    }
+    let place = scene.window().at(share);
+    if a > 0 {
+        scene.put(Cursor::A, place);
+    }
+    if b > 0 {
+        scene.put(Cursor::B, place);
+    }
+    let stepped = if shift { Cursor::B } else { Cursor::A };
+    if back + on > 0 {
+        scene.step(stepped, on as isize - back as isize);
+    }
+    if none > 0 {
+        scene.clear_cursors();
+    }
+}

@@ -1,0 +1,198 @@
+//! The list of recorded traces by run, latest first.
+
+use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use fault_db::Id;
+
+use crate::parts::{MemoryReader, Stored, UnitFilter};
+use crate::request::{CachedResponse, Request};
+use crate::{PageContext, Palette};
+use ptu_report::naming::PartNames;
+use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
+use ptu_report::words::{Words, fill};
+
+/// The list's own state.
+#[derive(Default)]
+pub struct TraceList {
+    runs: CachedResponse<Vec<ListedRun>>,
+    filter: String,
+    units: UnitFilter,
+    /// What fits the filter, by run and trace; computed again when either changes.
+    shown: Vec<(usize, Option<usize>)>,
+    /// Version of the data it was asked for.
+    version: (usize, u64),
+    /// The run record of the chosen unit.
+    unit_record: UnitRecord,
+}
+
+/// The button that pulls it.
+struct UnitRecord(MemoryReader);
+
+impl Default for UnitRecord {
+    fn default() -> Self {
+        Self(MemoryReader::of(Stored::Runs))
+    }
+}
+
+impl TraceList {
+    /// Shows it; the trace that was clicked, and its run.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &mut PageContext<'_>,
+        chosen: Option<Id>,
+    ) -> Option<(Id, Id)> {
+        let words = context.words;
+        self.keep_up(context);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(words.traces.recorded).strong());
+            if ui.button(words.common.refresh).clicked() {
+                self.runs = CachedResponse::default();
+            }
+        });
+        if self.unit_record.0.show(ui, context) {
+            self.runs = CachedResponse::default();
+        }
+        let edit = TextEdit::singleline(&mut self.filter)
+            .hint_text(words.traces.filter)
+            .desired_width(f32::INFINITY);
+        let edit = ui.add(edit);
+        super::signals::name_input(&edit, words.traces.filter);
+        if self.units.show(ui, context) | edit.changed() {
+            self.apply();
+        }
+        let runs = match self.runs.get() {
+            Request::Ready(runs) => runs,
+            Request::Failed(why) => {
+                let text = format!("{}: {}", words.traces.cannot_list, words.trouble(why));
+                ui.label(RichText::new(text).color(Palette::of(ui).bad));
+                return None;
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+                return None;
+            }
+        };
+        if runs.is_empty() {
+            ui.label(words.traces.none_recorded);
+        } else if self.shown.is_empty() {
+            ui.label(words.traces.none_fits);
+        }
+        let mut clicked = None;
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        // Both kinds of row are as tall, or scrolling would jump.
+        let height = super::ROW;
+        ui.spacing_mut().interact_size.y = height;
+        ScrollArea::vertical().auto_shrink(false).show_rows(
+            ui,
+            height,
+            self.shown.len(),
+            |ui, rows| {
+                for (run, trace) in self.shown.get(rows).into_iter().flatten() {
+                    let run = &runs[*run];
+                    match trace.map(|trace| &run.traces[trace]) {
+                        None => run_row(ui, run, words),
+                        Some(trace) => {
+                            if trace_row(ui, trace, chosen == Some(trace.id), words) {
+                                clicked = Some((trace.id, run.id));
+                            }
+                        }
+                    }
+                }
+                if runs.len() >= RUNS as usize {
+                    ui.label(fill(words.traces.only_newest, &[("runs", &RUNS)]));
+                }
+            },
+        );
+        clicked
+    }
+
+    /// The latest trace and its run.
+    pub fn latest(&self) -> Option<(Id, Id)> {
+        let mut runs = self.runs.items().iter();
+        let run = runs.find(|run| self.units.takes(&run.unit))?;
+        Some((run.traces.first()?.id, run.id))
+    }
+
+    /// Unit and date of a run; unknown ones are empty.
+    pub fn whose(&self, run: Option<Id>) -> (&str, &str) {
+        let mut runs = self.runs.items().iter();
+        let found = runs.find(|listed| Some(listed.id) == run);
+        found.map_or(("", ""), |run| (&run.unit, &run.began))
+    }
+
+    /// All traces with their runs, the latest run first.
+    pub fn all(&self) -> impl Iterator<Item = (&ListedRun, &ListedTrace)> {
+        self.runs
+            .items()
+            .iter()
+            .flat_map(|run| run.traces.iter().map(move |trace| (run, trace)))
+    }
+
+    /// Asks when it was not asked yet, and when the data have changed since.
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let version = context.data_version();
+        if version != self.version || self.runs.get().is_idle() {
+            self.version = version;
+            let question = context
+                .queries
+                .run(|paths| listing::list(&paths.read()?, &PartNames::of(&paths.scripts)));
+            self.runs.request(question);
+        }
+        if self.runs.poll() {
+            self.apply();
+        }
+    }
+
+    fn apply(&mut self) {
+        self.shown.clear();
+        for (place, run) in self.runs.items().iter().enumerate() {
+            if !self.units.takes(&run.unit) {
+                continue;
+            }
+            let traces = run.traces.iter().enumerate();
+            let mut fitting = traces
+                .filter(|(_, trace)| trace.fits(&self.filter))
+                .peekable();
+            if fitting.peek().is_some() {
+                self.shown.push((place, None));
+            }
+            self.shown
+                .extend(fitting.map(|(trace, _)| (place, Some(trace))));
+        }
+    }
+}
+
+fn run_row(ui: &mut Ui, run: &ListedRun, words: &Words) {
+    let palette = Palette::of(ui);
+    let (verdict, colour) = match run.verdict {
+        Some(verdict) => (
+            words.common.stored_verdict(verdict),
+            palette.stored_verdict(verdict),
+        ),
+        None => (words.common.interrupted, palette.warn),
+    };
+    let injected = run.injected.as_deref().unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(&run.unit).strong())
+            .on_hover_text(format!("{} {injected}", run.id.short()));
+        ui.label(RichText::new(verdict).color(colour).small());
+        ui.label(RichText::new(&run.began).small().color(palette.quiet));
+    });
+}
+
+fn trace_row(ui: &mut Ui, trace: &ListedTrace, chosen: bool, words: &Words) -> bool {
+    let what = match trace.faults.as_slice() {
+        [] => words.traces.no_fault.to_owned(),
+        _ => trace.said(words.language),
+    };
+    let codes: Vec<_> = trace
+        .faults
+        .iter()
+        .map(|fault| fault.code.as_str())
+        .collect();
+    let (id, codes) = (trace.id.short(), codes.join(", "));
+    let hint = format!("{what}\n{codes}\n{id}, {:.1} s", trace.length_s);
+    ui.selectable_label(chosen, what)
+        .on_hover_text(hint)
+        .clicked()
+}

@@ -1,0 +1,213 @@
+//! The traces page: lanes on one axis, cursors, and the trace of a good unit behind.
+
+mod bar;
+mod compared_trace;
+mod dropped;
+mod events;
+mod export;
+mod input;
+mod lanes;
+mod list;
+mod notes;
+mod record_comparison;
+mod row;
+mod signals;
+mod small;
+mod table;
+
+use std::sync::Arc;
+
+use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
+use fault_db::Id;
+
+use crate::parts::{FirstHalf, link};
+use crate::query_worker::Pending;
+use crate::{Destination, PageContext, Palette};
+use compared_trace::OverlayRequest;
+use export::Export;
+use lanes::LaneCache;
+use list::TraceList;
+use notes::TraceNotes;
+use ptu_report::naming::PartNames;
+use ptu_report::trace_view::TracePlot;
+use ptu_report::trace_view::listing::{self, OpenTrace};
+use ptu_report::words::fill;
+use record_comparison::RecordComparison;
+pub use small::SmallTrace;
+
+/// Height of a row of controls.
+const ROW: f32 = 24.0;
+const LIST: FirstHalf = FirstHalf {
+    name: "recorded traces",
+    width: 300.0,
+    share: 0.3,
+};
+
+#[derive(Default)]
+pub struct TracesPage {
+    list: TraceList,
+    opening: Option<Pending<(OpenTrace, String)>>,
+    scene: Option<TracePlot>,
+    trouble: Option<String>,
+    behind: OverlayRequest,
+    export: Export,
+    record: RecordComparison,
+    notes: TraceNotes,
+    painted: LaneCache,
+    find_signal: String,
+    /// Name for a layout, as it is typed.
+    layout_name: String,
+    choosing: bool,
+    told: bool,
+}
+
+impl TracesPage {
+    /// Shows it.
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        self.poll(context);
+        let words = &context.words.traces;
+        let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
+        let clicked = LIST.show(ui, |ui| self.list.show(ui, context, chosen));
+        // The latest trace is what most people come for.
+        let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
+        if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
+            self.read(id, Some(run), context);
+        }
+        CentralPanel::default()
+            .frame(Frame::central_panel(ui.style()).inner_margin(4))
+            .show(ui, |ui| self.central(ui, context));
+        match (dropped::file(ui, context), &mut self.scene) {
+            (Some(file), Some(scene)) => self.behind.ask_file(&file, scene, context),
+            (Some(_), None) => context.messages.note(words.open_first),
+            (None, _) => {}
+        }
+    }
+
+    pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
+        self.read(id, None, context);
+    }
+
+    fn read(&mut self, id: Id, run: Option<Id>, context: &PageContext<'_>) {
+        self.trouble = None;
+        let question = context.queries.run(move |paths| {
+            Ok((
+                listing::open(&paths.read()?, &PartNames::of(&paths.scripts), id, run)?,
+                export::usual_name(id),
+            ))
+        });
+        self.opening = Some(question);
+    }
+
+    fn poll(&mut self, context: &mut PageContext<'_>) {
+        if let Some(answer) = self.opening.as_ref().and_then(Pending::take) {
+            self.opening = None;
+            match answer {
+                Ok((opened, name)) => {
+                    self.export.name_after(name);
+                    self.behind = OverlayRequest::default();
+                    self.scene = Some(TracePlot::new(Arc::new(opened), &context.settings.lanes));
+                }
+                Err(failure) => {
+                    self.scene = None;
+                    context
+                        .messages
+                        .trouble(context.words.traces.cannot_open, &failure.message);
+                    self.trouble = Some(failure.message);
+                }
+            }
+        }
+        if let Some(scene) = &mut self.scene {
+            self.behind.poll(scene, context);
+            self.notes.poll(scene.opened().id, context);
+        }
+        self.export.poll(context);
+    }
+
+    fn central(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let Some(scene) = &mut self.scene else {
+            match &self.trouble {
+                _ if self.opening.is_some() => ui.label(words.common.loading),
+                Some(why) => {
+                    let text = format!("{}: {why}", words.traces.cannot_open);
+                    ui.label(RichText::new(text).color(Palette::of(ui).bad))
+                }
+                None => ui.label(words.traces.choose_one),
+            };
+            return;
+        };
+        // Words stand on one line with what they name.
+        ui.spacing_mut().interact_size.y = ROW;
+        heading(ui, scene, &self.list, context);
+        bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
+        let rect = self.painted.rect;
+        ui.horizontal_wrapped(|ui| {
+            self.record.bar(ui, scene, context);
+            self.behind.bar(ui, scene, &self.list, context);
+            // What the comparison says needs the row for itself.
+            if !self.behind.is_asked() {
+                ui.separator();
+                self.export.bar(ui, scene, rect, context);
+            }
+        });
+        if self.behind.is_asked() {
+            ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, context));
+        }
+        events::links(ui, scene, words);
+        self.notes.bar(ui, scene, context);
+        if self.choosing {
+            Panel::right("signals of the trace")
+                .default_size(260.0)
+                .size_range(200.0..=400.0)
+                .show(ui, |ui| {
+                    let typed = (&mut self.find_signal, &mut self.layout_name);
+                    signals::choose(ui, scene, typed, context);
+                });
+        }
+        if self.told {
+            Panel::bottom("statistics of the trace")
+                .resizable(true)
+                .default_size(170.0)
+                .size_range(80.0..=420.0)
+                .show(ui, |ui| table::statistics(ui, scene, words));
+        }
+        CentralPanel::default()
+            .frame(Frame::NONE)
+            .show(ui, |ui| self.painted.lanes(ui, scene, &self.notes, words));
+    }
+}
+
+/// Whose trace it is, what is amiss with it, and ways on from here.
+fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
+    let words = context.words;
+    let opened = scene.opened();
+    ui.horizontal_wrapped(|ui| {
+        let (unit, when) = list.whose(opened.run);
+        let known = |text| match text {
+            "" => words.traces.not_known,
+            text => text,
+        };
+        let (unit, when) = (known(unit), known(when));
+        let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
+        let title = ui.label(RichText::new(title).strong());
+        title.on_hover_text(opened.id.to_string());
+        let data = opened.view.data();
+        let warn = Palette::of(ui).warn;
+        for (amiss, text) in [
+            (data.partial, words.traces.cut_short),
+            (data.gaps, words.traces.has_gaps),
+        ] {
+            if amiss {
+                ui.label(RichText::new(text).color(warn));
+            }
+        }
+        if let Some(run) = opened.run {
+            if link(ui, words.traces.to_report).clicked() {
+                context.go_to.push(Destination::Report(run));
+            }
+            if link(ui, words.traces.to_diagnosis).clicked() {
+                context.go_to.push(Destination::Diagnosis(run));
+            }
+        }
+    });
+}

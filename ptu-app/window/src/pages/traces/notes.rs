@@ -1,0 +1,131 @@
+//! Notes at places of the trace: a list, a flag at each place, and the field for one at cursor A.
+
+use eframe::egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use fault_db::{Id, TracePlace};
+
+use super::row::Sheet;
+use crate::parts::{NoteOn, RunNoteForm, lane, link, name_edit};
+use crate::request::CachedResponse;
+use crate::{PageContext, Palette};
+use ptu_bench::table::cut;
+use ptu_report::trace_notes::TraceNote;
+use ptu_report::trace_view::{Cursor, TracePlot, TraceView};
+
+/// Characters of a note in the list; its tooltip has all of it.
+const MOST: usize = 60;
+/// Notes listed at most.
+const LINKS: usize = 40;
+/// Size of a flag, points.
+const FLAG: f32 = 14.0;
+/// Room for the operator's name, points.
+const NAME: f32 = 140.0;
+
+/// The notes on the trace that is open.
+#[derive(Default)]
+pub struct TraceNotes {
+    notes: CachedResponse<Vec<TraceNote>>,
+    /// The trace they are on, and the state of the database they were read in.
+    read: Option<(Id, (usize, u64))>,
+    form: RunNoteForm,
+}
+
+impl TraceNotes {
+    /// Reads them for another trace, after one was added, and when the database has changed.
+    pub fn poll(&mut self, trace: Id, context: &mut PageContext<'_>) {
+        let added = self.form.poll(context.words, context.messages).is_some();
+        let wanted = (trace, context.data_version());
+        if added || self.read != Some(wanted) {
+            let pending = context
+                .queries
+                .run(move |paths| Ok(TraceNote::all(&paths.read()?, trace)?));
+            match self.read {
+                Some((before, _)) if before == trace => self.notes.request(pending),
+                _ => self.notes.request_other(pending),
+            }
+            self.read = Some(wanted);
+        }
+        self.notes.poll();
+    }
+
+    /// The list, each a way to its place, and the field for another one where cursor A is.
+    pub fn bar(&mut self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let quiet = Palette::of(ui).quiet;
+        let notes = self.notes.items();
+        if !notes.is_empty() {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(words.report.notes).color(quiet));
+                for (number, note) in (1..).zip(notes).take(LINKS) {
+                    let text = format!("{number}  {} {}", note.time(), cut(&note.text, MOST));
+                    if link(ui, text).on_hover_text(whole(note)).clicked()
+                        && let Some(row) = row_of(note, scene.view())
+                    {
+                        let place = scene.axis().at(row);
+                        scene.camera().centre(place);
+                    }
+                }
+                if notes.len() > LINKS {
+                    ui.label("…");
+                }
+            });
+        }
+        let Some(row) = scene.cursor(Cursor::A) else {
+            return;
+        };
+        let view = scene.view();
+        let rows = row as i64 - view.trigger_row() as i64;
+        let place = TracePlace {
+            trace: scene.opened().id,
+            at_us: rows.saturating_mul(view.data().period_us),
+        };
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(words.common.operator);
+            ui.add(name_edit(&mut context.settings.operator, NAME))
+                .labelled_by(label.id);
+            let who = &context.settings.operator;
+            self.form
+                .show(ui, words, context.queries, who, NoteOn::Place(place));
+        });
+    }
+
+    /// A flag with the note's number at each place in view; its tooltip says the note.
+    pub fn flags(&self, ui: &Ui, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
+        let ink = sheet.palette.ink();
+        let ground = ui.visuals().window_fill;
+        for (number, note) in (1..).zip(self.notes.items()) {
+            let Some(row) = row_of(note, sheet.scene.view()) else {
+                continue;
+            };
+            let x = lane::x_at(lanes, sheet.scene.window(), sheet.scene.axis().at(row));
+            if !lanes.x_range().contains(x) {
+                continue;
+            }
+            let line = Stroke::new(1.0, ink);
+            ui.painter().vline(x, strip.bottom()..=lanes.bottom(), line);
+            // Beside the flag of a cursor at the same place.
+            let corner = pos2(x + FLAG / 2.0 + 1.0, strip.bottom() - FLAG);
+            let flag = Rect::from_min_size(corner, vec2(FLAG, FLAG));
+            ui.painter().rect_filled(flag, 2.0, ink);
+            let font = FontId::proportional(lane::TEXT);
+            let (middle, centre) = (flag.center(), Align2::CENTER_CENTER);
+            ui.painter()
+                .text(middle, centre, number.to_string(), font, ground);
+            let id = ui.scope_id().with(("note on the trace", number));
+            ui.interact(flag, id, Sense::hover())
+                .on_hover_text(whole(note));
+        }
+    }
+}
+
+/// The row at its time, if the trace has it.
+fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
+    let data = view.data();
+    let rows = note.time_us.div_euclid(data.period_us);
+    let row = rows.saturating_add(view.trigger_row() as i64);
+    usize::try_from(row).ok().filter(|row| *row < data.rows())
+}
+
+/// All of a note, with who wrote it.
+fn whole(note: &TraceNote) -> String {
+    format!("{} · {}: {}", note.time(), note.who, note.text)
+}

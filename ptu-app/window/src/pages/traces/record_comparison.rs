@@ -1,0 +1,64 @@
+//! A run of a unit's own record beside what it should have been: the button, and what it found.
+
+use eframe::egui::{ScrollArea, Ui, Window};
+use fault_db::Id;
+
+use crate::PageContext;
+use crate::request::Request;
+use ptu_bench::record::CompareRequest;
+use ptu_report::record;
+use ptu_report::trace_view::TracePlot;
+
+#[derive(Default)]
+pub struct RecordComparison {
+    of: Option<Id>,
+    found: Request<String>,
+}
+
+impl RecordComparison {
+    /// A button for a trace that is of a unit's run record, and what was found.
+    pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, context: &mut PageContext<'_>) {
+        let opened = scene.opened();
+        if self.of != Some(opened.id) {
+            *self = Self {
+                of: Some(opened.id),
+                found: Request::Idle,
+            };
+        }
+        let has = |name: &str| opened.view.data().column(name).is_some();
+        // A bench records every signal, a unit its own target and no limit.
+        if !has("target") || has("limit") {
+            return;
+        }
+        let words = context.words;
+        if self.found.poll()
+            && let Request::Failed(why) = &self.found
+        {
+            context
+                .messages
+                .trouble(words.memory.not_compared, why.clone());
+        }
+        if matches!(self.found, Request::Pending(_)) {
+            ui.label(words.memory.comparing);
+        } else if ui.button(words.memory.compare).clicked() {
+            let id = opened.id;
+            self.found = Request::Pending(context.queries.run(move |paths| {
+                let store = paths.read()?;
+                let compared = CompareRequest::default().compare(&store, &paths.scripts, id)?;
+                Ok(record::text(&compared))
+            }));
+        }
+        if let Some(text) = self.found.value() {
+            let mut open = true;
+            let window = Window::new(words.memory.compare).open(&mut open);
+            // Beside the connection bar, not over it.
+            let window = window.default_pos([320.0, 240.0]).default_width(560.0);
+            window.show(ui.ctx(), |ui| {
+                ScrollArea::vertical().show(ui, |ui| ui.label(text));
+            });
+            if !open {
+                self.found = Request::Idle;
+            }
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! Draws one lane with its name, its values at the cursors, and the trace behind.
+
+use std::ops::Range;
+
+use eframe::egui::{
+    Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
+};
+
+use super::lanes::{LaneColumns, TICKS};
+use super::table;
+use crate::Palette;
+use crate::parts::lane;
+use ptu_report::trace_view::value::named;
+use ptu_report::trace_view::{
+    Axis, Column, Edges, Lane, OverlayTrace, Span, Summary, TracePlot, TraceView,
+};
+use ptu_report::words::Words;
+
+/// Heights of lanes as usual.
+const QUANTITY: f32 = 74.0;
+const CHOICE: f32 = 26.0;
+const BIT: f32 = 24.0;
+/// How much taller a lane is that holds two signals one above the other.
+const TWO: f32 = 1.7;
+/// How much taller than usual a quantity gets where there is room.
+const TALLEST: f32 = 2.0;
+/// Height of a name among several in a lane.
+const LINE: f32 = 24.0;
+/// Between lanes.
+pub const GAP: f32 = 4.0;
+
+/// What lanes are painted from.
+pub struct Sheet<'a> {
+    /// The trace as it is looked at.
+    pub scene: &'a TracePlot,
+    /// Where the parts of the picture are.
+    pub places: LaneColumns,
+    /// Rows whose values are told.
+    pub rows: [Option<usize>; 2],
+    pub words: &'a Words,
+    pub palette: &'a Palette,
+}
+
+/// Room that every lane uses again.
+#[derive(Default)]
+pub struct Scratch {
+    own: Edges,
+    behind: Edges,
+    columns: Vec<Column>,
+    spans: Vec<Span>,
+}
+
+/// A signal with where its rows lie.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    view: &'a TraceView,
+    place: usize,
+    axis: &'a Axis,
+}
+
+impl Scratch {
+    /// Finds the first rows of the columns of pixels, which all lanes share.
+    pub fn edges(&mut self, scene: &TracePlot, width: f32) {
+        let columns = width.round().max(1.0) as usize;
+        scene.axis().edges(scene.window(), columns, &mut self.own);
+        if let Some(behind) = scene.behind() {
+            behind.axis.edges(scene.window(), columns, &mut self.behind);
+        }
+    }
+}
+
+impl Sheet<'_> {
+    /// Heights of all lanes; where there is room, quantities take it.
+    pub fn heights(&self, room: f32) -> Vec<f32> {
+        let groups = self.scene.groups();
+        let lanes = self.scene.lanes();
+        let first = |group: &Range<usize>| &lanes[group.start];
+        let height = |group: &Range<usize>| {
+            // Each name in it has a line.
+            self.height(first(group)).max(group.len() as f32 * LINE)
+        };
+        let mut heights: Vec<f32> = groups.iter().map(height).collect();
+        let gaps = GAP * groups.len() as f32;
+        let used = |of: &dyn Fn(&Lane) -> bool| -> f32 {
+            let those = groups.iter().zip(&heights);
+            let those = those.filter(|(group, _)| of(first(group)));
+            those.map(|(_, height)| height).sum()
+        };
+        let elastic = |lane: &Lane| {
+            let summary = lane.place.map(|place| self.scene.view().summary(place));
+            matches!(summary, Some(Summary::Quantity(_)))
+        };
+        let free = room - gaps - used(&|_| true);
+        let times = (1.0 + free / used(&elastic).max(1.0)).clamp(1.0, TALLEST);
+        for (group, height) in groups.iter().zip(&mut heights) {
+            if elastic(first(group)) {
+                *height *= times;
+            }
+        }
+        heights
+    }
+
+    fn height(&self, lane: &Lane) -> f32 {
+        let two = if self.other(&lane.signal).is_some() {
+            TWO
+        } else {
+            1.0
+        };
+        let usual = match lane.place.map(|place| self.scene.view().summary(place)) {
+            Some(Summary::Quantity(_)) => QUANTITY,
+            Some(Summary::Choice(_)) => CHOICE * two,
+            Some(Summary::Bit(_)) => BIT * two,
+            Some(Summary::Unknown) | None => BIT,
+        };
+        usual * lane.stretch
+    }
+
+    /// Draws the signals of one lane.
+    pub fn group(&self, ui: &mut Ui, group: Range<usize>, row: Rect, scratch: &mut Scratch) {
+        let places = &self.places;
+        let rect =
+            Rect::from_x_y_ranges(places.left..=places.right, row.top()..=row.bottom() - GAP);
+        let between = Stroke::new(1.0, self.palette.grid);
+        ui.painter()
+            .hline(places.names..=places.end, row.bottom() - GAP / 2.0, between);
+        let lanes = &self.scene.lanes()[group.clone()];
+        let colours = &self.palette.curves;
+        let colour = |number: usize| colours[(group.start + number) % colours.len()];
+        let high = rect.height() / lanes.len() as f32;
+        for (number, lane) in lanes.iter().enumerate() {
+            let top = rect.top() + number as f32 * high;
+            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
+            self.name(ui, lane, line, colour(number));
+            if let Some(behind) = self.scene.behind().filter(|_| lane.place.is_some()) {
+                self.shade(ui, behind, &lane.signal, rect);
+            }
+        }
+        let Some((first, place)) = lanes.first().and_then(|lane| Some((lane, lane.place?))) else {
+            note(ui, rect, self.words.traces.not_in_trace, self.palette.warn);
+            return;
+        };
+        let own = Source {
+            view: self.scene.view(),
+            place,
+            axis: self.scene.axis(),
+        };
+        match own.view.summary(place) {
+            Summary::Unknown => note(ui, rect, self.words.traces.not_known, self.palette.quiet),
+            Summary::Quantity(_) => self.quantities(ui, lanes, rect, &colour, scratch),
+            Summary::Choice(_) | Summary::Bit(_) => {
+                self.two_states(ui, first, own, rect, colour(0), scratch);
+            }
+        }
+        for (number, lane) in lanes.iter().enumerate() {
+            let top = rect.top() + number as f32 * high;
+            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
+            if let Some(place) = lane.place {
+                self.values(ui, place, line);
+            }
+        }
+    }
+
+    /// The same signal of the trace behind.
+    fn other(&self, signal: &str) -> Option<Source<'_>> {
+        let behind = self.scene.behind()?;
+        let view = &behind.overlay.view;
+        Some(Source {
+            view,
+            place: view.place(signal)?,
+            axis: &behind.axis,
+        })
+    }
+
+    /// Curves on one axis, as long as all of them need.
+    fn quantities(
+        &self,
+        ui: &Ui,
+        lanes: &[Lane],
+        rect: Rect,
+        colour: &dyn Fn(usize) -> Color32,
+        scratch: &mut Scratch,
+    ) {
+        let of = |lane: &Lane| Some(self.scene.range(lane.place?));
+        let ranges = lanes.iter().filter_map(of);
+        let both = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        let Some(range) = ranges.reduce(both) else {
+            return;
+        };
+        let ticks = self.places.left - TICKS..=self.places.left;
+        let gutter = Rect::from_x_y_ranges(ticks, rect.y_range());
+        lane::y_axis(ui.painter(), gutter, rect, range, self.palette);
+        let Scratch {
+            own: edges,
+            behind,
+            columns,
+            ..
+        } = scratch;
+        let mut curve = |source: Source<'_>, edges: &Edges, colour| {
+            if let Summary::Quantity(pyramid) = source.view.summary(source.place) {
+                pyramid.columns(source.view.samples(source.place), edges, columns);
+                lane::quantity(ui.painter(), rect, columns, range, colour);
+            }
+        };
+        for other in lanes.iter().filter_map(|lane| self.other(&lane.signal)) {
+            curve(other, behind, self.palette.quiet);
+        }
+        for (number, place) in lanes.iter().map(|lane| lane.place).enumerate() {
+            let Some(place) = place else { continue };
+            let own = Source {
+                view: self.scene.view(),
+                place,
+                axis: self.scene.axis(),
+            };
+            curve(own, edges, colour(number));
+        }
+    }
+
+    /// The trace behind a state would hide its text, so it is drawn below.
+    fn two_states(
+        &self,
+        ui: &Ui,
+        lane: &Lane,
+        own: Source<'_>,
+        rect: Rect,
+        colour: Color32,
+        scratch: &mut Scratch,
+    ) {
+        let (mut above, mut below) = (rect, rect);
+        let Scratch {
+            own: edges,
+            behind,
+            spans,
+            ..
+        } = scratch;
+        if let Some(other) = self.other(&lane.signal) {
+            above.max.y = rect.center().y;
+            below.min.y = rect.center().y;
+            self.states(ui, other, below, self.palette.quiet, behind, spans);
+        }
+        self.states(ui, own, above, colour, edges, spans);
+    }
+
+    fn states(
+        &self,
+        ui: &Ui,
+        source: Source<'_>,
+        rect: Rect,
+        colour: Color32,
+        edges: &Edges,
+        spans: &mut Vec<Span>,
+    ) {
+        let channel = source.view.channel(source.place);
+        let window = self.scene.window();
+        match source.view.summary(source.place) {
+            Summary::Choice(runs) => {
+                runs.spans(source.axis, window, edges, spans);
+                let label = |value| named(channel, value, &self.words.traces);
+                lane::choice(ui.painter(), rect, spans, colour, self.palette, label);
+            }
+            Summary::Bit(runs) => {
+                runs.spans(source.axis, window, edges, spans);
+                lane::bit(ui.painter(), rect, spans, colour);
+            }
+            Summary::Quantity(_) | Summary::Unknown => {}
+        }
+    }
+
+    /// Name, unit, and a word where it deviates.
+    fn name(&self, ui: &mut Ui, lane: &Lane, rect: Rect, colour: Color32) {
+        let view = self.scene.view();
+        let unit = lane.place.map_or("", |place| &view.channel(place).unit);
+        let from = pos2(self.places.names + 2.0, rect.top());
+        let area = Rect::from_min_max(from, pos2(self.places.left - TICKS, rect.bottom()));
+        let layout = Layout::top_down(Align::Min);
+        let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
+        ui.set_clip_rect(ui.clip_rect().intersect(area));
+        let text = RichText::new(&*self.words.signal(&lane.signal))
+            .color(colour)
+            .strong();
+        ui.add(Label::new(text).truncate().selectable(false));
+        if rect.height() >= QUANTITY / 2.0 && !unit.is_empty() {
+            let text = RichText::new(unit)
+                .size(lane::TEXT)
+                .color(self.palette.quiet);
+            ui.add(Label::new(text).selectable(false));
+        }
+        let parting = self.scene.behind().and_then(|b| b.parting.as_ref());
+        if parting.is_some_and(|parting| parting.stretches.contains_key(&lane.signal)) {
+            let text = format!("≠ {}", self.words.traces.deviates);
+            let text = RichText::new(text).size(lane::TEXT).color(self.palette.bad);
+            ui.add(Label::new(text).selectable(false));
+        }
+    }
+
+    /// Values under the cursors, or under the pointer.
+    fn values(&self, ui: &mut Ui, place: usize, rect: Rect) {
+        let view = self.scene.view();
+        let rows = self.rows.into_iter().flatten();
+        let known = rows.filter_map(|row| view.samples(place).get(row));
+        let said = known.map(|value| named(view.channel(place), *value, &self.words.traces));
+        let mut shown: Vec<String> = said.collect();
+        if shown.len() == 2 {
+            shown.push(table::difference(self.scene, place));
+        }
+        for (i, text) in shown.iter().enumerate().filter(|(_, t)| !t.is_empty()) {
+            let colour = ui.visuals().text_color();
+            put_right(ui, self.places.value(i, rect), text, colour);
+        }
+    }
+
+    /// Rows in which the signal deviates from the trace behind: a tint, and a bar along the lower edge.
+    fn shade(&self, ui: &Ui, behind: &OverlayTrace, signal: &str, rect: Rect) {
+        let parting = behind.parting.as_ref();
+        let Some(stretches) = parting.and_then(|parting| parting.stretches.get(signal)) else {
+            return;
+        };
+        let painter = ui.painter_at(rect);
+        let (window, axis, bad) = (self.scene.window(), self.scene.axis(), self.palette.bad);
+        let mut painted = rect.left();
+        for rows in stretches {
+            let from = lane::x_at(rect, window, axis.at(rows.start));
+            let to = lane::x_at(rect, window, axis.at(rows.end)).max(from + 1.0);
+            // What lies within a pixel that is painted already is painted.
+            if to <= painted || from > rect.right() {
+                continue;
+            }
+            let area = Rect::from_x_y_ranges(from.max(painted)..=to, rect.y_range());
+            painter.rect_filled(area, 0.0, bad.gamma_multiply(0.2));
+            painter.hline(area.x_range(), rect.bottom() - 1.0, Stroke::new(2.0, bad));
+            painted = to;
+        }
+    }
+}
+
+/// A text at the right edge of an area.
+pub fn put_right(ui: &mut Ui, area: Rect, text: &str, colour: Color32) {
+    let layout = Layout::right_to_left(Align::Center);
+    let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
+    let text = RichText::new(text).size(lane::TEXT + 1.0).color(colour);
+    ui.add(Label::new(text).truncate().selectable(false));
+}
+
+/// A word instead of a curve.
+fn note(ui: &mut Ui, rect: Rect, text: &str, colour: Color32) {
+    let area = Rect::from_min_size(rect.min + vec2(6.0, 0.0), rect.size());
+    let layout = Layout::left_to_right(Align::Center);
+    let ui = &mut ui.new_child(UiBuilder::new().max_rect(area).layout(layout));
+    ui.add(Label::new(RichText::new(text).color(colour)).selectable(false));
+}

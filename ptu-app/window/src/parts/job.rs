@@ -1,0 +1,126 @@
+//! Work that takes minutes, on a thread of its own: how far it is, a button that stops it, and what it came to.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui::{RichText, Ui};
+
+use crate::query_worker::QueryWorker;
+use crate::request::Request;
+use crate::{DataPaths, PageContext, Palette};
+use ptu_bench::bench_worker::Wake;
+use ptu_bench::failure::Failure;
+use ptu_bench::stop::Stop;
+use ptu_report::words::Words;
+
+/// What work came to, in words.
+pub struct Done {
+    pub text: String,
+    pub notes: Vec<String>,
+    /// It was not done to its end: why.
+    pub broken_off: Option<String>,
+}
+
+/// The work, while it goes on and after it.
+#[derive(Default)]
+pub struct Job {
+    thread: Option<QueryWorker>,
+    under_way: Request<Done>,
+    told: Told,
+    done: Option<Done>,
+}
+
+/// What the work hears, and how far it says it is.
+#[derive(Clone, Default)]
+pub struct Told {
+    pub stop: Stop,
+    said: Arc<Mutex<String>>,
+    wake: Option<Wake>,
+}
+
+impl Told {
+    /// Says how far the work is.
+    pub fn say(&self, how_far: String) {
+        *self.said.lock().unwrap_or_else(PoisonError::into_inner) = how_far;
+        if let Some(wake) = &self.wake {
+            wake();
+        }
+    }
+}
+
+impl Job {
+    pub fn is_under_way(&self) -> bool {
+        matches!(self.under_way, Request::Pending(_))
+    }
+
+    /// Begins it; `said` stands beside it until the work says how far it is. Trouble is told under `failed`.
+    pub fn begin(
+        &mut self,
+        context: &mut PageContext<'_>,
+        (said, failed): (String, &str),
+        work: impl FnOnce(&DataPaths, &Told) -> Result<Done, Failure> + Send + 'static,
+    ) {
+        let queries = context.queries;
+        if self.thread.is_none() {
+            match QueryWorker::new(queries.paths().clone(), queries.wake().clone()) {
+                Ok(thread) => self.thread = Some(thread),
+                Err(failure) => return context.messages.trouble(failed, failure.message),
+            }
+        }
+        self.told = Told {
+            stop: Stop::default(),
+            said: Arc::new(Mutex::new(said)),
+            wake: Some(queries.wake().clone()),
+        };
+        self.done = None;
+        let told = self.told.clone();
+        if let Some(thread) = &self.thread {
+            self.under_way = Request::Pending(thread.run(move |paths| work(paths, &told)));
+        }
+    }
+
+    /// Takes what it came to; true when it has been done, to its end or not.
+    pub fn poll(&mut self, context: &mut PageContext<'_>, failed: &str) -> bool {
+        if !self.under_way.poll() {
+            return false;
+        }
+        match std::mem::take(&mut self.under_way) {
+            Request::Ready(done) => {
+                if let Some(why) = &done.broken_off {
+                    context.messages.trouble(failed, why.clone());
+                }
+                self.done = Some(done);
+                true
+            }
+            Request::Failed(why) => {
+                context.messages.trouble(failed, why);
+                false
+            }
+            Request::Idle | Request::Pending(_) => false,
+        }
+    }
+
+    /// How far it is, with the button that stops it, if it can be.
+    pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
+        ui.horizontal_wrapped(|ui| {
+            ui.spinner();
+            // Before the text, which changes: the button stays where it is.
+            if stops && ui.button(words.memory.stop).clicked() {
+                self.told.stop.press_once();
+            }
+            let said = self.told.said.lock();
+            ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
+        });
+    }
+
+    /// What it came to last.
+    pub fn result(&self, ui: &mut Ui) {
+        if let Some(done) = &self.done {
+            if !done.text.is_empty() {
+                ui.label(&done.text);
+            }
+            for note in &done.notes {
+                ui.label(RichText::new(note).color(Palette::of(ui).warn));
+            }
+        }
+    }
+}

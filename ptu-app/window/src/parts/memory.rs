@@ -1,0 +1,149 @@
+//! A button that reads what the chosen unit has stored: its log into the fault history, or its run record into traces.
+
+use eframe::egui::{Button, Ui};
+
+use super::{Done, Job};
+use crate::{DataPaths, PageContext};
+use ptu_bench::bench_worker::Phase;
+use ptu_bench::failure::Failure;
+use ptu_bench::field::AskedUnit;
+use ptu_bench::link::Endpoint;
+use ptu_bench::record::pull_reading;
+use ptu_bench::stop::Stop;
+use ptu_report::words::{Words, fill};
+
+/// What is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stored {
+    /// The event log.
+    #[default]
+    Log,
+    /// The record of automatic runs.
+    Runs,
+}
+
+/// The button, and what becomes of it. Reading takes minutes: it has a thread of its own.
+#[derive(Default)]
+pub struct MemoryReader {
+    stored: Stored,
+    job: Job,
+}
+
+impl MemoryReader {
+    /// A button for one of the two.
+    pub fn of(stored: Stored) -> Self {
+        Self {
+            stored,
+            ..Self::default()
+        }
+    }
+
+    /// Shows it; true when something was stored.
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
+        let stored = self.job.poll(context, context.words.memory.failed);
+        let words = context.words;
+        if self.job.is_under_way() {
+            self.job.progress(ui, words, true);
+            return stored;
+        }
+        let asked = asked(context);
+        let text = match self.stored {
+            Stored::Log => words.memory.import,
+            Stored::Runs => words.memory.pull,
+        };
+        let button = ui.add_enabled(asked.is_ok(), Button::new(text));
+        match asked {
+            Ok(asked) if button.clicked() => self.begin(asked, context),
+            Ok(_) => {}
+            Err(why) => {
+                button.on_disabled_hover_text(why);
+            }
+        }
+        self.job.result(ui);
+        stored
+    }
+
+    fn begin(&mut self, asked: AskedUnit, context: &mut PageContext<'_>) {
+        let (stored, words) = (self.stored, context.words);
+        let unit = context.units.chosen().choice.endpoint.clone();
+        let said = fill(words.memory.reading, &[("unit", &unit)]);
+        self.job
+            .begin(context, (said, words.memory.failed), move |paths, told| {
+                read(&asked, stored, paths, &told.stop, words)
+            });
+    }
+}
+
+/// The chosen unit, if it can be read now; why it cannot otherwise.
+fn asked(context: &PageContext<'_>) -> Result<AskedUnit, &'static str> {
+    if let Some(why) = context.only_reads() {
+        return Err(why);
+    }
+    let unit = context.units.chosen();
+    let on_port = unit.choice.endpoint.parse::<Endpoint>();
+    let endpoint = on_port
+        .ok()
+        .filter(|endpoint| matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_)));
+    let endpoint = endpoint.ok_or(context.words.memory.on_port_only)?;
+    if unit.phase() != Phase::Offline {
+        return Err(context.words.memory.disconnect_first);
+    }
+    let choice = &unit.choice;
+    Ok(AskedUnit {
+        endpoint,
+        serial: (!choice.serial.is_empty()).then(|| choice.serial.clone()),
+        unit_config: choice.unit_config.clone(),
+        line: choice.line.clone(),
+        train: choice.train_no.clone(),
+        operator: context.settings.operator.clone(),
+    })
+}
+
+fn read(
+    asked: &AskedUnit,
+    stored: Stored,
+    paths: &DataPaths,
+    stop: &Stop,
+    words: &Words,
+) -> Result<Done, Failure> {
+    let mut reading = asked.read(&paths.scripts, stored == Stored::Runs, stop)?;
+    let store = paths.open()?;
+    let unit = reading.source.serial.clone();
+    let text = match stored {
+        Stored::Log => {
+            let log = reading.import(&store, None)?;
+            fill(
+                words.memory.imported,
+                &[
+                    ("unit", &unit),
+                    ("entries", &reading.read.entries.len()),
+                    ("new", &log.imported.new.len()),
+                    ("known", &log.imported.known),
+                ],
+            )
+        }
+        Stored::Runs => {
+            let pulled = pull_reading(&store, &reading)?;
+            let rows = reading
+                .read
+                .stored
+                .as_ref()
+                .map_or(0, |stored| stored.rows.len());
+            fill(
+                words.memory.pulled,
+                &[
+                    ("unit", &unit),
+                    ("rows", &rows),
+                    ("new", &pulled.new.len()),
+                    ("known", &pulled.known),
+                ],
+            )
+        }
+    };
+    store.close()?;
+    Ok(Done {
+        text,
+        notes: reading.warnings,
+        broken_off: reading.read.broken_off,
+    })
+}

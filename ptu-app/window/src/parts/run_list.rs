@@ -1,0 +1,223 @@
+//! A list of runs to choose from, the latest first.
+
+use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use fault_db::{Id, RunFilter, RunState, RunSummary};
+
+use super::chip;
+use crate::request::CachedResponse;
+use crate::request::Request;
+use crate::{PageContext, Palette};
+use ptu_bench::clock;
+use ptu_bench::process_id;
+use ptu_report::naming::DOT;
+use ptu_report::words::{Words, fill};
+
+/// As many runs as are listed.
+const MOST: u32 = 2_000;
+
+/// The list's own state.
+#[derive(Default)]
+pub struct RunList {
+    runs: CachedResponse<Vec<RunSummary>>,
+    /// Version of the data it was asked for; none = not asked yet.
+    version: Option<(usize, u64)>,
+    find: String,
+    /// What a person chose, until a run ends or another unit is connected.
+    chosen: Option<Id>,
+    followed: Followed,
+    shown: Option<Id>,
+}
+
+/// What decides which run is shown unless one is chosen.
+#[derive(Clone, Default, PartialEq)]
+struct Followed {
+    /// The unit connected last.
+    unit: Option<String>,
+    runs_ended: usize,
+}
+
+impl RunList {
+    /// Shows it; the run to show: the one chosen, or the latest of the connected unit that ended.
+    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
+        self.keep_up(context);
+        if let Some(clicked) = self.list(ui, context) {
+            self.choose(clicked, context);
+        }
+        self.shown
+    }
+
+    /// Shows this run, whichever unit it is of.
+    pub fn choose(&mut self, run: Id, context: &PageContext<'_>) {
+        self.follow(context);
+        self.chosen = Some(run);
+        self.shown = Some(run);
+    }
+
+    /// The other runs of the unit that this one is of, the latest first.
+    pub fn of_same_unit(&self, run: Id) -> impl Iterator<Item = &RunSummary> {
+        let all = self.runs.items().iter();
+        let unit = all.clone().find(|other| other.id == run);
+        let unit = unit.map(|run| run.unit_serial.as_str());
+        all.filter(move |other| Some(other.unit_serial.as_str()) == unit && other.id != run)
+    }
+
+    /// Two runs of the list in the order in which they were made.
+    pub fn in_time(&self, runs: [Id; 2]) -> [Id; 2] {
+        let place = |run: Id| self.runs.items().iter().position(|other| other.id == run);
+        match place(runs[0]) < place(runs[1]) {
+            true => [runs[1], runs[0]],
+            false => runs,
+        }
+    }
+
+    /// Says whose run is shown, if it is not the connected unit's.
+    pub fn tell_other_unit(&self, ui: &mut Ui, words: &Words) {
+        let Some(connected) = &self.followed.unit else {
+            return;
+        };
+        let mut shown = (self.runs.items().iter()).filter(|run| Some(run.id) == self.shown);
+        if let Some(run) = shown.find(|run| run.unit_serial != *connected) {
+            let named: [(&str, &dyn std::fmt::Display); 2] =
+                [("unit", &run.unit_serial), ("connected", connected)];
+            let said = format!("⚠ {}", fill(words.common.other_unit, &named));
+            ui.label(RichText::new(said).color(Palette::of(ui).warn).strong());
+        }
+    }
+
+    /// The run that was clicked.
+    fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
+        let chosen = self.shown;
+        let words = context.words;
+        ui.horizontal(|ui| {
+            let label = ui.label(words.procedures.find);
+            ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
+                .labelled_by(label.id);
+            if ui.button(words.common.refresh).clicked() {
+                self.version = None;
+            }
+        });
+        let runs = match self.runs.get() {
+            Request::Ready(runs) => runs,
+            Request::Failed(why) => {
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
+                return None;
+            }
+            Request::Idle | Request::Pending(_) => {
+                ui.label(words.common.loading);
+                return None;
+            }
+        };
+        let find = self.find.trim().to_lowercase();
+        let shown: Vec<_> = runs.iter().filter(|run| matches(run, &find)).collect();
+        if shown.is_empty() {
+            ui.label(words.common.nothing);
+        }
+        let height = 2.0 * ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        let mut clicked = None;
+        ScrollArea::vertical().auto_shrink(false).show_rows(
+            ui,
+            height,
+            shown.len(),
+            |ui, range| {
+                for run in shown.get(range).into_iter().flatten() {
+                    if row(ui, words, run, chosen == Some(run.id)) {
+                        clicked = Some(run.id);
+                    }
+                }
+            },
+        );
+        clicked
+    }
+
+    /// The latest run of the connected unit that ended, or of any while none was connected.
+    fn foremost(&self) -> Option<Id> {
+        let unit = self.followed.unit.as_ref();
+        let mut runs = self.runs.items().iter();
+        let is_it = |run: &&RunSummary| {
+            run.verdict.is_some() && unit.is_none_or(|unit| run.unit_serial == *unit)
+        };
+        Some(runs.find(is_it)?.id)
+    }
+
+    /// What a person chose no longer holds when a run has ended or another unit is connected.
+    fn follow(&mut self, context: &PageContext<'_>) {
+        let connected = context.units.chosen().serial();
+        let followed = Followed {
+            unit: connected.or_else(|| self.followed.unit.clone()),
+            runs_ended: context.units.runs_ended(),
+        };
+        if followed != self.followed {
+            self.followed = followed;
+            self.chosen = None;
+        }
+    }
+
+    /// Asks when it was not asked yet, and when the data have changed since.
+    fn keep_up(&mut self, context: &PageContext<'_>) {
+        let version = context.data_version();
+        if self.version != Some(version) {
+            self.version = Some(version);
+            self.runs.request(context.queries.run(|paths| {
+                let filter = RunFilter {
+                    limit: Some(MOST),
+                    ..RunFilter::default()
+                };
+                Ok(paths.read()?.runs(&filter, &process_id::is_alive)?)
+            }));
+        }
+        self.runs.poll();
+        self.follow(context);
+        // Until the newer list is there, what was shown stays.
+        if !self.runs.is_stale() {
+            self.shown = self.chosen.or_else(|| self.foremost());
+        }
+    }
+}
+
+fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
+    let mut clicked = false;
+    ui.horizontal(|ui| {
+        let name = [&*clock::local(run.started_at_us), &*run.unit_serial].join(DOT);
+        let row = ui.selectable_label(chosen, name);
+        clicked = row.on_hover_text(run.id.to_string()).clicked();
+    });
+    ui.horizontal(|ui| {
+        ui.set_min_height(ui.spacing().interact_size.y);
+        ui.add_space(14.0);
+        let palette = Palette::of(ui);
+        let common = &words.common;
+        let (said, colour) = match (run.verdict, run.state) {
+            (Some(verdict), _) => (
+                common.stored_verdict(verdict),
+                palette.stored_verdict(verdict),
+            ),
+            (None, RunState::Running) => (common.running, palette.accent),
+            (None, _) => (common.interrupted, palette.warn),
+        };
+        chip(ui, said, colour);
+        let counts: [(&str, &dyn std::fmt::Display); 2] =
+            [("n", &run.steps_not_passed), ("of", &run.steps)];
+        let counts = match run.steps_not_passed {
+            0 => fill(words.report.all_passed, &counts),
+            _ => fill(words.report.not_passed, &counts),
+        };
+        ui.label(RichText::new(counts).color(palette.quiet));
+    });
+    clicked
+}
+
+fn matches(run: &RunSummary, find: &str) -> bool {
+    [
+        run.id.to_string(),
+        run.unit_serial.clone(),
+        run.operator.clone(),
+        run.line.clone(),
+        clock::local(run.started_at_us),
+        run.verdict
+            .map(|verdict| verdict.to_string())
+            .unwrap_or_default(),
+    ]
+    .iter()
+    .any(|text| text.to_lowercase().contains(find))
+}

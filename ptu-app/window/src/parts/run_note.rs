@@ -1,0 +1,107 @@
+//! A form for a note on a run, or at a place in a trace of it.
+
+use eframe::egui::{Button, Ui};
+use fault_db::{Id, TracePlace};
+
+use crate::messages::Messages;
+use crate::parts::note_edit;
+use crate::query_worker::QueryWorker;
+use crate::request::Request;
+use ptu_bench::clock::now_us;
+use ptu_report::words::Words;
+
+/// Room for the button, points.
+const BUTTON: f32 = 130.0;
+
+/// What a note is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoteOn {
+    Run(Id),
+    /// A place in a trace.
+    Place(TracePlace),
+}
+
+impl NoteOn {
+    /// The run or the trace, wherever in it.
+    fn id(self) -> Id {
+        match self {
+            Self::Run(run) => run,
+            Self::Place(place) => place.trace,
+        }
+    }
+}
+
+/// The field and what becomes of it.
+#[derive(Default)]
+pub struct RunNoteForm {
+    text: String,
+    /// The run or the trace it is meant for.
+    on: Option<Id>,
+    /// Answers with what was noted on.
+    under_way: Request<NoteOn>,
+}
+
+impl RunNoteForm {
+    /// What a note has just been stored on.
+    pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<NoteOn> {
+        if !self.under_way.poll() {
+            return None;
+        }
+        match std::mem::take(&mut self.under_way) {
+            Request::Failed(why) => {
+                messages.trouble(words.report.note_not_saved, why);
+                None
+            }
+            Request::Ready(noted) => {
+                messages.note(words.report.note_saved);
+                if self.on == Some(noted.id()) {
+                    self.text.clear();
+                }
+                Some(noted)
+            }
+            Request::Idle | Request::Pending(_) => None,
+        }
+    }
+
+    /// The field with its button, for a note on this.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        words: &Words,
+        queries: &QueryWorker,
+        who: &str,
+        on: NoteOn,
+    ) {
+        if self.on != Some(on.id()) {
+            // What was begun on another run or trace is not meant for this one.
+            self.on = Some(on.id());
+            self.text.clear();
+        }
+        let label = ui.label(match on {
+            NoteOn::Run(_) => words.report.note_field,
+            NoteOn::Place(_) => words.traces.note_field,
+        });
+        let left = ui.available_size_before_wrap().x;
+        let wide = (left - BUTTON).max(BUTTON);
+        ui.add(note_edit(&mut self.text, wide))
+            .labelled_by(label.id);
+        let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
+        let writes = !queries.paths().is_server();
+        let may = writes && !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
+        let why = match writes {
+            true => words.report.note_hint,
+            false => words.care.is_server,
+        };
+        let save = ui.add_enabled(may, Button::new(words.report.note_save));
+        if save.on_disabled_hover_text(why).clicked() {
+            self.under_way = Request::Pending(queries.run(move |paths| {
+                let store = paths.open()?;
+                match on {
+                    NoteOn::Run(run) => store.add_run_note(run, &who, &text, now_us())?,
+                    NoteOn::Place(place) => store.add_trace_note(place, &who, &text, now_us())?,
+                }
+                Ok(on)
+            }));
+        }
+    }
+}

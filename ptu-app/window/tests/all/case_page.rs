@@ -1,0 +1,302 @@
+//! The way of one case: from the symptom to the signed sheet in ten clicks, in both languages.
+
+use crate::common::Place;
+use crate::common::window::{Window, latest, settings};
+use crate::common::{list, record_bad_unit, scripts, text};
+use crate::layout::{complaints, complaints_of};
+use eframe::egui::{Event, Key};
+use ptu_options::Page;
+use ptu_report::words::{Language, Words, fill};
+use ptu_window::{Density, Settings};
+
+/// Where the unit of these cases is brought to.
+const DEPOT: &str = "Sinnae 2";
+
+/// What is said of it.
+const SYMPTOM: &str = "brakes late or not at all";
+
+/// Clicks that a case may take.
+const CLICKS: usize = 10;
+
+/// A window whose clicks are counted.
+struct Counted {
+    window: Window,
+    clicks: usize,
+    /// What can be clicked is to be so high, points.
+    lowest: f32,
+    /// What could not be read or clicked on the way.
+    wrong: Vec<String>,
+}
+
+impl Counted {
+    fn click(&mut self, label: &str) {
+        self.window.click_last(label);
+        self.clicks += 1;
+    }
+
+    /// Looks at the page as a person would who reads it.
+    fn look(&mut self, stage: &str) {
+        let found = complaints_of(&mut self.window, self.lowest).into_iter();
+        self.wrong
+            .extend(found.map(|said| format!("{stage}: {said}")));
+    }
+}
+
+/// A window on the case page, small or as a laptop has it, and a simulated unit with these faults.
+fn window(language: Language, size: [f32; 2], density: Density, faults: &str) -> Counted {
+    let mut settings = Settings {
+        language,
+        density,
+        operator: "Kim".into(),
+        depot: DEPOT.into(),
+        ..settings(Page::Case)
+    };
+    settings.unit.faults = faults.split(',').map(str::to_owned).collect();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.harness().set_size(size.into());
+    // Bars that have more lines in another size have their height in the picture after.
+    window.step();
+    window.step();
+    Counted {
+        window,
+        clicks: 0,
+        lowest: match density {
+            // An operator's sizes are those of a window of this width.
+            Density::Operator if size[0] >= 1280.0 => 48.0,
+            Density::Operator => 38.0,
+            Density::Engineer => 24.0,
+        },
+        wrong: Vec::new(),
+    }
+}
+
+/// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was
+/// done. Method: a slow EB relay, in both languages, on both sizes of a depot's laptop.
+fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Density) {
+    let words: &Words = language.words();
+    let case = &words.case;
+    let relay = match language {
+        Language::English => "EB relay",
+        Language::Korean => "비상제동 계전기",
+    };
+    let mut counted = window(language, size, density, "eb_relay.slow");
+    counted.look("start");
+    counted.click(words.frame.connect);
+    counted.window.wait_for("SIM-0001");
+    counted.window.wait_for(case.unknown);
+    counted.look("symptom");
+    counted.click(&words.content(SYMPTOM));
+    counted.click(case.find_part);
+    counted.window.wait_for(case.record_repair);
+    counted.window.wait_for_part("eb_relay");
+    // Where the part is on the way of the signal, and what a good unit did.
+    let suspected = format!("{relay} · ");
+    counted.window.until("the marked part", |window| {
+        let shown = window.shown().into_iter();
+        shown
+            .filter(|said| said.starts_with(&suspected))
+            .any(|said| said.ends_with(case.suspected))
+    });
+    counted.window.wait_for(case.beside_twin);
+    counted.look("result");
+    let path = counted.window.shows_part("atp/power_up: ");
+    assert_eq!(
+        path,
+        density == Density::Engineer,
+        "an operator reads no paths"
+    );
+    let found = latest(&counted.window);
+    assert_eq!(found["run"]["symptom"], "brakes_late");
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.look("repair");
+    counted.window.write(case.serial_old, "R-0815");
+    counted.window.write(case.serial_new, "R-4711");
+    counted.click(case.save);
+    counted.window.wait_for(case.fitted);
+    let repaired = fill(case.recorded, &[("part", &relay)]);
+    counted.window.wait_for(&repaired);
+    counted.look("proof");
+    counted.click(case.fitted);
+    counted.click(case.prove);
+    counted.window.wait_for(case.sign);
+    counted.window.wait_for(words.report.write_pdf);
+    counted.look("sheet");
+    // What was said when the unit was brought, beside the check that found the part; a small screen shows less at once.
+    if language == Language::English && size[0] >= 1280.0 {
+        for said in [DEPOT, "Brakes late or not at all", "Found by"] {
+            counted.window.scroll_to(said);
+        }
+    }
+    counted.click(case.sign);
+    let signed = fill(case.signed_by, &[("who", &"Kim")]);
+    counted.window.wait_for(&signed);
+    let file = counted.window.place.text_path("sheet.pdf");
+    counted.window.write_over(words.report.file, &file);
+    counted.click(words.report.write_pdf);
+    counted.window.wait_for(words.report.open_file);
+    assert!(counted.clicks <= CLICKS, "{} clicks", counted.clicks);
+    let wrong = &counted.wrong;
+    assert!(wrong.is_empty(), "{size:?} {language:?} {wrong:#?}");
+
+    let window = counted.window;
+    let proof = latest(&window);
+    assert_eq!(proof["run"]["verdict"], "passed");
+    assert_eq!(list(&proof["notes"])[0]["who"], "Kim", "{}", proof["notes"]);
+    let faults = window.place.json(&["faults", "list", "--json"]);
+    assert!(!list(&faults).is_empty());
+    for fault in list(&faults) {
+        assert_eq!(fault["state"], "verified", "{fault}");
+        let shown = window
+            .place
+            .json(&["faults", "show", text(&fault["id"]), "--json"]);
+        let mut events = list(&shown["events"]).iter();
+        let repair = events.find(|event| event["kind"] == "repair");
+        let repair = &repair.expect("a repair")["repair"];
+        assert_eq!(repair["part"], "eb_relay");
+        assert_eq!(repair["serial_old"], "R-0815");
+        assert_eq!(repair["serial_new"], "R-4711");
+    }
+}
+
+/// Goal: who starts the program for the first time is led to a part by a demonstration; who has a history, to its units.
+#[test]
+fn a_first_start_offers_a_demonstration_that_finds_a_part() {
+    for language in [Language::English, Language::Korean] {
+        let words = language.words();
+        let mut counted = window(language, [1280.0, 800.0], Density::Operator, "");
+        counted.window.wait_for(words.case.first_start);
+        counted.look("first start");
+        counted.click(words.case.demonstrate);
+        counted.window.wait_for("SIM-0001");
+        counted.window.wait_for(words.case.unknown);
+        counted.click(&words.content(SYMPTOM));
+        counted.click(words.case.find_part);
+        counted.window.wait_for(words.case.record_repair);
+        counted.window.wait_for_part("eb_relay");
+        let wrong = &counted.wrong;
+        assert!(wrong.is_empty(), "{language:?} {wrong:#?}");
+        let found = latest(&counted.window);
+        assert_eq!(found["run"]["symptom"], "brakes_late");
+    }
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_english() {
+    from_symptom_to_signed_sheet(Language::English, [1280.0, 800.0], Density::Operator);
+}
+
+#[test]
+fn a_case_takes_an_engineer_ten_clicks_too() {
+    from_symptom_to_signed_sheet(Language::English, [900.0, 600.0], Density::Engineer);
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_korean() {
+    from_symptom_to_signed_sheet(Language::Korean, [1280.0, 800.0], Density::Operator);
+}
+
+#[test]
+fn a_case_takes_ten_clicks_in_korean_on_a_small_screen() {
+    from_symptom_to_signed_sheet(Language::Korean, [900.0, 600.0], Density::Operator);
+}
+
+/// Goal: a repair that did not help is found out. Method: the part that was found is changed, and a second fault is still
+/// there; the run that is to prove the repair fails, and the case is back at a result.
+#[test]
+fn a_repair_that_did_not_help_leads_back_to_the_result() {
+    let case = &Language::English.words().case;
+    let mut counted = window(
+        Language::English,
+        [1280.0, 800.0],
+        Density::Operator,
+        "eb_relay.slow,fsb_output.dead",
+    );
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    // As a scanner types: each number ends with Enter, and the next one goes into the next field.
+    counted.window.write(case.serial_old, "R-0815");
+    for typed in ["R-4711", "cleaned its contacts"] {
+        counted.window.key(Key::Enter);
+        counted.window.step();
+        let typed = Event::Text(typed.into());
+        counted.window.harness().event(typed);
+        counted.window.step();
+    }
+    counted.click(case.save);
+    // Undone, the form is there again as it was written, and nothing is repaired.
+    let undo = Language::English.words().frame.undo;
+    counted.window.click(undo);
+    counted.window.wait_for(case.save);
+    let repaired = ["faults", "list", "--state", "repaired", "--json"];
+    assert_eq!(list(&counted.window.place.json(&repaired)).len(), 0);
+    counted.click(case.save);
+    counted.window.wait_for(case.fitted);
+    let shown = ["faults", "show", "latest", "--json"];
+    let shown = counted.window.place.json(&shown);
+    let mut events = list(&shown["events"]).iter();
+    let repair = events.find(|event| event["kind"] == "repair");
+    let repair = &repair.expect("a repair")["repair"];
+    assert_eq!(repair["serial_old"], "R-0815");
+    assert_eq!(repair["serial_new"], "R-4711");
+    assert_eq!(repair["note"], "cleaned its contacts");
+    counted.click(case.fitted);
+    counted.click(case.prove);
+    counted.window.wait_for(case.record_repair);
+    assert_eq!(latest(&counted.window)["run"]["verdict"], "failed");
+    let faults = counted.window.place.json(&["faults", "list", "--json"]);
+    assert!(
+        list(&faults)
+            .iter()
+            .all(|fault| fault["state"] != "verified")
+    );
+    // The next repair is to be fitted before it can be proved.
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.window.write(case.note, "fitted another");
+    counted.click(case.save);
+    counted.window.wait_for(case.prove);
+    assert!(!counted.window.enabled(case.prove));
+}
+
+/// Goal: a unit that was here before needs no typing. Method: one click on it, and its case has its history.
+#[test]
+fn a_unit_seen_before_is_chosen_by_one_click() {
+    for language in Language::ALL {
+        let case = &language.words().case;
+        let place = Place::new();
+        record_bad_unit(&place);
+        let settings = Settings {
+            language,
+            ..settings(Page::Case)
+        };
+        let mut window = Window::with(place, scripts(), settings);
+        window.harness().set_size([900.0, 600.0].into());
+        window.wait_for(case.seen_last);
+        window.click_part("BAD-1 · ");
+        assert!(complaints(&mut window).is_empty());
+        window.click_last(language.words().frame.connect);
+        window.wait_for("BAD-1");
+        window.wait_for(case.open_faults);
+    }
+}
+
+/// Goal: a unit that comes for the first time waits for nothing. Method: the history knows another unit; this one is connected.
+#[test]
+fn a_unit_never_seen_has_no_history_and_says_so() {
+    let case = &Language::Korean.words().case;
+    let place = Place::new();
+    record_bad_unit(&place);
+    let settings = Settings {
+        language: Language::Korean,
+        ..settings(Page::Case)
+    };
+    let mut window = Window::with(place, scripts(), settings);
+    window.click_last(Language::Korean.words().frame.connect);
+    window.wait_for("SIM-0001");
+    window.wait_for(case.nothing_known);
+}

@@ -1,0 +1,352 @@
+//! Where the window's widgets are: none out of reach, none over another, none too low to be hit, no text cut.
+
+use std::collections::BTreeMap;
+
+use crate::common::window::{Window, settings};
+use crate::common::{Place, record_bad_unit, scripts};
+use eframe::egui::accessibility::is_input;
+use eframe::egui::epaint::ClippedShape;
+use eframe::egui::{Rect, Role, Shape, WidgetRect};
+use egui_kittest::kittest::{NodeT, Queryable};
+use ptu_options::Page;
+use ptu_report::words::{Language, Words};
+use ptu_window::Density;
+
+/// The usual window, the smallest, and the usual one at 150 %, points.
+const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [900.0, 600.0], [853.0, 533.0]];
+/// What can be clicked is so high at least, points.
+const LOWEST: f32 = 24.0;
+/// Lines and roundings, points.
+const SLACK: f32 = 1.5;
+/// A part of a page that scrolls is higher than this; what is lower was made for one text.
+const SCROLLS: f32 = 60.0;
+
+/// Goal: everything on every page can be read and clicked in every window. Method: a unit with a slow relay is tested; each
+/// page, the setup and the form of a repair are laid out at three sizes in both languages, and what lies wrong is listed.
+#[test]
+fn every_page_can_be_read_and_clicked_at_every_size() {
+    let mut wrong = Vec::new();
+    for size in SIZES {
+        for language in Language::ALL {
+            laid_out(size, language, &mut |window, what| {
+                let found = complaints(window).into_iter();
+                wrong.extend(found.map(|said| format!("{size:?} {language:?} {what}: {said}")));
+            });
+        }
+    }
+    assert!(wrong.is_empty(), "{}: {wrong:#?}", wrong.len());
+}
+
+/// Goal: the pages are in one line in the window as it first opens. Method: the places of their names in the operator's view, in
+/// both languages.
+#[test]
+fn an_operator_has_the_pages_in_one_line_in_the_usual_window() {
+    for language in Language::ALL {
+        let mut settings = settings(Page::Bench);
+        settings.language = language;
+        settings.density = Density::Operator;
+        let mut window = Window::sized(SIZES[0], Place::new(), scripts(), settings);
+        let words = language.words();
+        window.wait_for(Page::Drive.name(words));
+        let harness = window.harness();
+        let lines: Vec<_> = Page::ALL
+            .iter()
+            .map(|page| harness.get_all_by_label(page.name(words)).next())
+            .map(|name| name.expect("its name").rect().center().y)
+            .collect();
+        let same = |line: &f32| (line - lines[0]).abs() < SLACK;
+        assert!(lines.iter().all(same), "{language:?}: {lines:?}");
+    }
+}
+
+fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
+    let place = Place::new();
+    // In a train whose distance is known.
+    let in_train = [
+        "run",
+        "tcms/link",
+        "--serial-no",
+        "OLD-1",
+        "--train-no",
+        "612",
+    ];
+    place.ptu(&in_train).exits(0);
+    record_bad_unit(&place);
+    let words = language.words();
+    let mut settings = settings(Page::Faults);
+    settings.language = language;
+    settings.unit.faults = vec!["eb_relay.slow".into()];
+    let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
+    settings.distances = place.write("odometers.csv", readings);
+    let mut window = Window::sized(size, place, scripts(), settings);
+    let relay = match language {
+        Language::English => "EB relay · ",
+        Language::Korean => "비상제동 계전기 · ",
+    };
+    window.wait_for_part(relay);
+    look(&mut window, "faults");
+    window.click_part(relay);
+    window.wait_for(words.faults.serial_new);
+    look(&mut window, "repair");
+    for (page, said) in [
+        (Page::Traces, words.traces.events),
+        (Page::Diagnosis, words.diagnosis.reasons),
+        (Page::Report, words.report.write_pdf),
+        (Page::Statistics, words.statistics.mtbf_is),
+    ] {
+        window.page(page);
+        window.wait_for(said);
+        look(&mut window, page.name(words));
+        if page == Page::Traces {
+            window.click_last(words.traces.signals);
+            window.wait_for(words.traces.save_layout);
+            look(&mut window, "signals of a trace");
+            window.click_last(words.traces.signals);
+            window.click(words.traces.cursor_a);
+            window.write(words.common.operator, "kim");
+            window.write(words.traces.note_field, &"a note of many words ".repeat(12));
+            window.click(words.report.note_save);
+            window.wait_for_part(" s a note of many words");
+            // The bar of messages, which says that it is stored, takes some frames to open.
+            window.harness().run_steps(30);
+            look(&mut window, "note on a trace");
+            let hovered = eframe::egui::HoveredFile::default();
+            window.harness().input_mut().hovered_files.push(hovered);
+            look(&mut window, "file over the traces");
+            window.harness().input_mut().hovered_files.clear();
+        }
+    }
+    window.page(Page::Drive);
+    window.click(words.drive.drive);
+    window.wait_for(words.drive.report);
+    look(&mut window, "drive");
+    window.page(Page::Signals);
+    window.wait_for(words.signals.generator);
+    look(&mut window, "signals");
+    for make in [
+        ["code", "55", "signal.wav"],
+        ["twc", "01 fe 3c 01 fe 3c 01 fe 3c", "twc.wav"],
+    ] {
+        let made = window.place.ptu(&[&["signal", "make"][..], &make].concat());
+        made.exits(0);
+        let file = window.place.text_path(make[2]);
+        window.write_over(words.common.file, &file);
+        window.click(words.signals.open);
+        window.wait_for(make[1]);
+        look(&mut window, make[2]);
+    }
+    window.page(Page::Statistics);
+    window.write(words.life.search, "BAD-1");
+    window.click(words.life.show);
+    window.wait_for(words.life.stored);
+    look(&mut window, "life");
+    window.click(words.care.title);
+    window.wait_for(words.care.never_synced);
+    look(&mut window, "care");
+    window.click(words.care.title);
+    window.click(words.frame.setup);
+    window.wait_for("eb_relay.slow");
+    look(&mut window, "setup");
+    window.click(words.frame.setup);
+    window.click(words.frame.connect);
+    window.wait_for("SIM-0001");
+    window.page(Page::Bench);
+    window.wait_for(words.bench.group_atp);
+    look(&mut window, "bench");
+    armed(&mut window, words);
+    look(&mut window, "armed");
+    window.page(Page::Procedures);
+    window.wait_for("atp/overspeed");
+    look(&mut window, "procedures");
+    window.click(words.procedures.live_signals);
+    window.step();
+    look(&mut window, "live signals");
+    window.click(words.procedures.run);
+    window.wait_for(words.procedures.to_report);
+    window.step();
+    look(&mut window, "results");
+}
+
+fn armed(window: &mut Window, words: &Words) {
+    window.hold(words.frame.arm, 1.3);
+    window.wait_for(words.frame.armed);
+    // How a window says it is, is part of the bar's layout.
+    window.step();
+}
+
+/// What of the last frame cannot be read or clicked.
+pub fn complaints(window: &mut Window) -> Vec<String> {
+    complaints_of(window, LOWEST)
+}
+
+/// The same where all that can be clicked is to be so high, points.
+pub fn complaints_of(window: &mut Window, lowest: f32) -> Vec<String> {
+    window.step();
+    let harness = window.harness();
+    let known: BTreeMap<u64, (Role, String)> = harness
+        .query_all_by(|_| true)
+        .map(|node| {
+            let node = node.accesskit_node();
+            let name = node.label().or_else(|| node.value()).unwrap_or_default();
+            // The number of the tree stands behind that of the widget.
+            ((u128::from(node.id()) >> 64) as u64, (node.role(), name))
+        })
+        .collect();
+    let widgets: Vec<WidgetRect> = harness.ctx.viewport(|viewport| {
+        let all = viewport.prev_pass.widgets.layers();
+        all.flat_map(|(_, widgets)| widgets).copied().collect()
+    });
+    let screen = harness.ctx.content_rect();
+    let bars: Vec<Rect> = widgets
+        .iter()
+        .filter(|widget| {
+            let role = known.get(&widget.id.value()).map(|(role, _)| *role);
+            role.map_or(widget.sense.senses_drag(), |role| role == Role::ScrollBar)
+        })
+        .map(|widget| widget.rect)
+        .collect();
+    let mut wrong = Vec::new();
+    let inputs: Vec<Input<'_>> = widgets
+        .iter()
+        .filter_map(|widget| {
+            let (role, name) = known.get(&widget.id.value())?;
+            // A divider is a line; the dialog's cross does what the button does that opened it.
+            let is_meant = is_input(*role)
+                && !matches!(role, Role::Splitter | Role::ScrollBar)
+                && name != "Close window";
+            is_meant.then_some(Input {
+                widget,
+                role: *role,
+                name,
+            })
+        })
+        .collect();
+    for (place, input) in inputs.iter().enumerate() {
+        wrong.extend(input.misplaced(screen, &bars, lowest));
+        for other in inputs.iter().skip(place + 1) {
+            let both = input
+                .widget
+                .interact_rect
+                .intersect(other.widget.interact_rect);
+            let seen = both.is_positive() && both.size().min_elem() > SLACK;
+            if input.widget.layer_id == other.widget.layer_id && seen {
+                wrong.push(format!("{} and {} overlap", input.name, other.name));
+            }
+        }
+    }
+    let fields: Vec<Rect> = inputs
+        .iter()
+        .filter(|input| matches!(input.role, Role::TextInput | Role::MultilineTextInput))
+        .map(|input| input.widget.rect)
+        .collect();
+    for ClippedShape {
+        clip_rect, shape, ..
+    } in &harness.output().shapes
+    {
+        texts(shape, *clip_rect, &bars, &fields, &mut wrong);
+    }
+    wrong
+}
+
+/// Something to click or to write in.
+struct Input<'a> {
+    widget: &'a WidgetRect,
+    role: Role,
+    name: &'a str,
+}
+
+impl Input<'_> {
+    fn misplaced(&self, screen: Rect, bars: &[Rect], lowest: f32) -> Option<String> {
+        let rect = self.widget.rect;
+        let seen = self.widget.interact_rect.intersect(screen);
+        let what = if rect.height() < lowest - 0.1 {
+            format!("is {} high", rect.height())
+        } else if seen.width() < rect.width() - SLACK && !scrolls_sideways(seen, bars) {
+            format!("is cut at its side: {rect} seen {seen}")
+        } else if seen.height() < rect.height() - SLACK && !scrolls(rect, bars) {
+            format!("is out of reach: {rect} seen {seen}")
+        } else {
+            return None;
+        };
+        Some(format!("{:?} {:?} {what}", self.role, self.name))
+    }
+}
+
+/// It ends where something that is scrolled up and down does.
+fn ends_with_scrolling(clip: Rect, bars: &[Rect]) -> bool {
+    bars.iter().any(|bar| {
+        let ends = (bar.top() - clip.top(), bar.bottom() - clip.bottom());
+        bar.width() <= 20.0 && ends.0.abs().min(ends.1.abs()) < 12.0
+    })
+}
+
+/// There is a bar by which this is scrolled up and down.
+fn scrolls(rect: Rect, bars: &[Rect]) -> bool {
+    bars.iter()
+        .any(|bar| bar.width() <= 20.0 && bar.height() >= 40.0 && bar.center().x >= rect.left())
+}
+
+/// There is a bar by which what is seen here is scrolled to the side.
+fn scrolls_sideways(seen: Rect, bars: &[Rect]) -> bool {
+    bars.iter()
+        .any(|bar| bar.height() <= 20.0 && bar.width() >= 40.0 && bar.center().y >= seen.top())
+}
+
+fn texts(shape: &Shape, clip: Rect, bars: &[Rect], fields: &[Rect], wrong: &mut Vec<String>) {
+    let text = match shape {
+        Shape::Vec(shapes) => {
+            for shape in shapes {
+                texts(shape, clip, bars, fields, wrong);
+            }
+            return;
+        }
+        Shape::Text(text) if text.angle == 0.0 => text,
+        _ => return,
+    };
+    let rect = text.visual_bounding_rect();
+    let in_field = fields
+        .iter()
+        .any(|field| field.expand(SLACK).contains_rect(clip));
+    if !rect.is_positive() || !rect.intersects(clip) || in_field {
+        return;
+    }
+    let beside = (clip.left() - rect.left()).max(rect.right() - clip.right());
+    let beyond = (clip.top() - rect.top()).max(rect.bottom() - clip.bottom());
+    let sideways = beside > SLACK && !scrolls_sideways(clip, bars);
+    if sideways || (beyond > SLACK && clip.height() < SCROLLS && !ends_with_scrolling(clip, bars)) {
+        wrong.push(format!(
+            "text {:?} is cut: {rect} in {clip}",
+            text.galley.text()
+        ));
+    }
+}
+
+/// Goal: the smallest display at 150 % still shows a page. Method: a window of 900 by 600 pixels at that scale, a unit connected;
+/// the bars above take a third of its height at most, and all pages are reached.
+#[test]
+fn bars_leave_room_for_the_page_in_the_smallest_window() {
+    for language in Language::ALL {
+        let words = language.words();
+        let mut settings = settings(Page::Case);
+        settings.language = language;
+        let mut window = Window::sized([600.0, 400.0], Place::new(), scripts(), settings);
+        window.click_last(words.frame.connect);
+        window.wait_for("SIM-0001");
+        window.wait_for(words.case.unknown);
+        let bottom = |window: &mut Window, label: &str| {
+            let harness = window.harness();
+            let mut named = harness.query_all_by_label(label);
+            named.next().expect("it is shown").rect().bottom()
+        };
+        for label in [words.frame.page, words.care.title] {
+            let bottom = bottom(&mut window, label);
+            assert!(bottom < 134.0, "{label} ends at {bottom}");
+        }
+        window.click(words.frame.page);
+        window.click(&format!("F8  {}", words.statistics.title));
+        // The unit was never here.
+        window.wait_for(words.statistics.nothing);
+        let wrong = complaints(&mut window);
+        assert!(wrong.is_empty(), "{language:?}: {wrong:#?}");
+    }
+}

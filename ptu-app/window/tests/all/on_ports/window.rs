@@ -1,0 +1,180 @@
+//! The window on a unit on a port: one that dies, and that of a train, without the bench harness, the whole way from the
+//! connection to the part that failed, the unit's log and its run record, in both languages.
+
+use crate::common::served::Unit;
+use crate::common::window::{Window, latest, settings};
+use crate::common::{Place, scripts};
+use eframe::egui::Key;
+use ptu_bench::bench_worker::Phase;
+use ptu_options::Page;
+use ptu_report::words::{Language, Words};
+use ptu_window::Settings;
+
+/// Something that begins with `first` and ends with the last words of `pattern` is shown.
+fn told(window: &Window, first: &str, pattern: &str) -> bool {
+    let last = pattern.rsplit('}').next().expect("words");
+    let shown = window.shown();
+    let mut shown = shown.iter();
+    shown.any(|text| text.starts_with(first) && text.ends_with(last))
+}
+
+/// Goal: everything a laptop can do is done by clicks. Method: a train whose EB relay is slow, after a service of one section:
+/// the Bench page and a self-test by hand, identity and self-test as procedures, the part, log, run record, comparison.
+fn the_whole_way(language: Language) {
+    let words: &Words = language.words();
+    let place = Place::with_database();
+    // What is known of this fault, whatever the age of the shipped dictionary.
+    let campaign = ["campaign", "--harness", "none", "--faults", "eb_relay.slow"];
+    place.ptu(&campaign).exits(0);
+    let train = Unit::aboard(&["--service", "61", "--inject", "eb_relay.slow"]);
+    let mut settings = Settings {
+        page: Page::Bench,
+        language,
+        ..Settings::default()
+    };
+    settings.unit.endpoint = train.address.clone();
+    settings.unit.train_no = "301".into();
+    let mut window = Window::with(place, scripts(), settings);
+    window.click(words.frame.connect);
+    window.wait_for(words.frame.disarmed);
+
+    let test_code = format!("{}: 55", words.bench.test_code);
+    window.wait_for(&test_code);
+    assert!(!window.enabled(&test_code));
+    window.wait_for(words.bench.run_self_test);
+    assert!(!window.enabled(words.bench.run_self_test));
+    window.hold(words.frame.arm, 1.3);
+    window.wait_for(words.frame.armed);
+    window.click(words.bench.run_self_test);
+    let failed = format!(", {}", words.common.failed);
+    let of_item = |text: &str, item: &str| text.starts_with(&format!("{item}: "));
+    window.until("what the self-test found", |window| {
+        let shown = window.shown();
+        let mut items = shown.iter();
+        let relay = items.find(|text| of_item(text, words.bench.item_eb_relay));
+        relay.is_some_and(|text| text.ends_with(&failed))
+            && shown
+                .iter()
+                .any(|text| of_item(text, words.bench.item_test_board))
+    });
+    window.click(words.frame.disarm);
+    window.wait_for(words.frame.disarmed);
+
+    window.page(Page::Procedures);
+    // The list of procedures is longer than the window is high.
+    window
+        .harness()
+        .set_size(eframe::egui::vec2(1280.0, 1100.0));
+    window.click(words.procedures.none);
+    window.click("ptu/identity");
+    window.click("ptu/self_test");
+    window.click(words.procedures.run);
+    window.wait_for_part(match language {
+        Language::English => "replace the EB relay (eb_relay, ",
+        Language::Korean => "교체 대상: 비상제동 계전기 (eb_relay, ",
+    });
+    let run = window.place.json(&["runs", "show", "latest", "--json"]);
+    for step in run["steps"].as_array().expect("steps") {
+        if step["procedure"] == "ptu/identity" {
+            assert_eq!(step["verdict"], "passed", "{step}");
+        }
+    }
+
+    window.click(words.frame.disconnect);
+    window.wait_for(words.frame.not_connected);
+    window.page(Page::Faults);
+    window.click(words.memory.import);
+    window.until("the log", |window| {
+        told(window, "SIM-0001: ", words.memory.imported)
+    });
+    window.page(Page::Traces);
+    window.click(words.memory.pull);
+    window.until("the run record", |window| {
+        told(window, "SIM-0001: ", words.memory.pulled)
+    });
+    let pulled = |window: &Window| {
+        let shown = window.shown();
+        let mut shown = shown.into_iter();
+        shown.find(|text| text.ends_with(words.traces.no_fault))
+    };
+    window.until("the pulled run", |window| pulled(window).is_some());
+    let trace = pulled(&window).expect("just seen");
+    window.click(&trace);
+    window.click(words.memory.compare);
+    window.wait_for_part("line line8 section 61");
+}
+
+#[test]
+fn the_whole_way_on_a_train_is_clicked_through() {
+    the_whole_way(Language::English);
+}
+
+#[test]
+fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
+    the_whole_way(Language::Korean);
+}
+
+/// Goal: another unit than the one asked for is told as that, in words of the window. Method: a unit of one serial number,
+/// a window set to another, then to the right one.
+#[test]
+fn another_unit_than_asked_for_is_said_and_forgotten_once_connected() {
+    let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
+    let mut settings = settings(Page::Bench);
+    settings.unit.endpoint = unit.address.clone();
+    settings.unit.serial = "TCP-8".into();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("is TCP-7, not TCP-8");
+    for text in window.shown() {
+        assert!(!text.contains("--") && !text.contains("reached"), "{text}");
+    }
+    window.click("Setup");
+    window.write_over("serial number", "TCP-7");
+    window.key(Key::Escape);
+    window.click("Connect");
+    window.wait_for("TCP-7");
+    assert!(!window.shows_part("not TCP-8"));
+}
+
+#[test]
+fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
+    let mut unit = Unit::on_pty(&[]);
+    let mut settings = settings(Page::Procedures);
+    settings.language = Language::Korean;
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("연결");
+    window.until("the unit", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
+    });
+    window.click("시험 시작");
+    window.until("a step", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.done > 0)
+    });
+    unit.kill();
+    window.wait_for_part("장치와의 링크가 끊어졌습니다");
+    window.wait_for_part("시험 종료: 판정 불가");
+    window.until("disconnected", |window| {
+        window.app().units().chosen().phase() == Phase::Offline
+    });
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "error");
+    assert_eq!(run["run"]["state"], "finished");
+}
+
+#[test]
+fn the_windows_buttons_read_the_unit_that_is_not_connected() {
+    let unit = Unit::on_tcp(&["--serial-no", "MEM-3"]);
+    let mut settings = Settings {
+        page: Page::Faults,
+        ..Settings::default()
+    };
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Import the unit's log");
+    window.wait_for_part("MEM-3:");
+    window.click("Traces");
+    window.click("Pull the run record");
+    window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
+}

@@ -1,0 +1,49 @@
+//! The page of waveforms.
+
+use crate::common::window::{Window, settings};
+use crate::common::{Place, scripts};
+use ptu_options::Page;
+use ptu_report::words::Language;
+use ptu_window::Settings;
+
+/// Goal: who has no terminal sees what is in a recording, and makes one. Method: the generator saves bytes with noise, and the
+/// page, in both languages, opens that file and shows the bytes and the drawings; a text is no recording, and that is said.
+#[test]
+fn what_the_generator_saves_is_opened_and_heard() {
+    for language in Language::ALL {
+        let words = language.words();
+        let said = &words.signals;
+        let settings = Settings {
+            language,
+            ..settings(Page::Signals)
+        };
+        let place = Place::new();
+        let file = place.text_path("made.wav");
+        place.write("text.wav", "a text");
+        let mut window = Window::with(place, scripts(), settings);
+        window.wait_for(said.generator);
+        window.write_over(words.common.file, &file);
+        window.click(said.twc);
+        window.write_over(said.bytes, "01 fe 3x");
+        window.wait_for(said.bytes_hint);
+        assert!(!window.enabled(said.play), "there is nothing to play");
+        window.write_over(said.bytes, "5a c3");
+        window.click(said.noise);
+        window.click(said.save);
+        window.wait_for_part("made.wav");
+        window.until("the file", |window| window.place.path("made.wav").is_file());
+        window.click(said.open);
+        window.wait_for("5a c3");
+        window.wait_for(said.waterfall);
+        // Never over one that is there.
+        window.click(said.save);
+        window.until("another file", |window| {
+            window.place.path("made-2.wav").is_file()
+        });
+        let text = window.place.text_path("text.wav");
+        window.write_over(words.common.file, &text);
+        window.click(said.open);
+        window.wait_for_part("text.wav is no WAV file");
+        assert!(window.shows("5a c3"), "what was shown stays");
+    }
+}

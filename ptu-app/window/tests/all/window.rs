@@ -1,0 +1,484 @@
+//! The technician's window, driven by the names of what is shown: the whole way from connecting to
+//! the part that failed, and what goes wrong on it.
+
+use crate::common::window::{Window, latest, own_scripts, settings};
+use crate::common::{Place, scripts};
+use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
+use ptu_bench::bench_worker::Phase;
+use ptu_options::Page;
+use ptu_report::words::Language;
+use ptu_window::Settings;
+
+/// Runs on the simulated unit take as long as on a real one.
+fn realtime(page: Page) -> Settings {
+    let mut settings = settings(page);
+    settings.unit.realtime = true;
+    settings
+}
+
+fn running(window: &Window) -> bool {
+    window.app().units().chosen().phase() == Phase::Running
+}
+
+#[test]
+fn connects_arms_and_stops_everything_with_one_key() {
+    let mut window = Window::open(Page::Bench);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.wait_for("disarmed");
+    window.hold("Arm", 1.3);
+    window.wait_for("ARMED: test signals act");
+    window.key(Key::F12);
+    window.wait_for("disarmed");
+    window.click("Disconnect");
+    window.wait_for("not connected");
+}
+
+/// Goal: who follows a run sees its signals as they come. Method: on the page of procedures with the live signals on, a run moves
+/// the train: the plot's speed is that of the unit, and it is gone with the switch.
+#[test]
+fn a_run_is_followed_by_its_signals() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    let plot = "Plot: speed ";
+    assert!(!window.shows_part(plot));
+    window.click("Live signals");
+    window.wait_for_part("Plot: speed 0.0 km/h");
+    window.click("None");
+    window.click("atp/overspeed");
+    window.click("Run");
+    window.until("speed in the plot", |window| {
+        let shown = window.shown();
+        let named = shown.iter().find_map(|text| text.split(plot).nth(1));
+        let speed = named.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+        running(window) && speed.is_some_and(|speed| speed > 5.0)
+    });
+    window.click("Live signals");
+    assert!(!window.shows_part(plot));
+    window.key(Key::F12);
+    window.until("the end of the run", |window| !running(window));
+}
+
+#[test]
+fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
+    let mut window = Window::open(Page::Procedures);
+    window.click("Setup");
+    window.write("find a fault", "eb_relay.slow");
+    window.click("eb_relay.slow");
+    window.key(Key::Escape);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for_part("Run over: failed");
+    window.wait_for_part("replace the EB relay (eb_relay, ");
+    // A step that failed is a click from the trace that shows it.
+    window.click("Trace");
+    window.until("the traces page", |window| {
+        window.app().page() == Page::Traces
+    });
+    window.wait_for("0.00 s trigger");
+    window.page(Page::Procedures);
+    window.click("Diagnosis");
+    window.until("the diagnosis page", |window| {
+        window.app().page() == Page::Diagnosis
+    });
+    window.wait_for_part("eb_relay");
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "failed");
+    assert_eq!(run["run"]["injected"], "eb_relay.slow");
+}
+
+/// Goal: a note that is being written when the diagnosis comes is not lost to it. Method: whoever answers is
+/// held up by a question of our own, asked before; the diagnosis comes when half of the note is written, and the
+/// other half is typed without another look at where the field is.
+#[test]
+fn a_note_is_written_on_while_the_conclusion_comes() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Alarm\", suspect = \"tra\")\n\
+         step(\"sounds\", do = [prompt(\"Quiet here?\", within = s(600))],\n\
+         expect = [becomes(alarm, True, within = ms(200))])\n",
+    );
+    let mut settings = settings(Page::Procedures);
+    settings.operator = "Lee".into();
+    let mut window = Window::with(Place::new(), &scripts, settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for("Quiet here?");
+    window.click("Yes");
+    window.wait_for_part("Run over: failed");
+    window.click("Run");
+    window.wait_for("Quiet here?");
+    let (release, held) = std::sync::mpsc::channel();
+    let question = move |_: &_| {
+        held.recv().expect("let go");
+        Ok(())
+    };
+    let held_up = window.app().queries().run(question);
+    window.click("Yes");
+    window.wait_for_part("Run over: failed");
+    window.write("note on this run", "relay K3 ");
+    assert!(!window.shows_part("cannot tell: "));
+    release.send(()).expect("held up");
+    window.wait_for_part("cannot tell: ");
+    assert!(held_up.take().is_some());
+    window.harness().event(Event::Text("clicks late".into()));
+    window.step();
+    window.click("Save note");
+    window.wait_for("Note saved");
+    assert_eq!(latest(&window)["notes"][0]["text"], "relay K3 clicks late");
+}
+
+#[test]
+fn the_least_of_steps_finds_the_part_too() {
+    let mut settings = settings(Page::Procedures);
+    settings.unit.faults = vec!["tra.dead".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Find the part");
+    window.wait_for_part("replace the TRA (tra, ");
+    assert!(latest(&window)["run"]["step_count"].as_u64() < Some(200));
+}
+
+#[test]
+fn speaks_korean_from_one_frame_to_the_next() {
+    let mut window = Window::open(Page::Procedures);
+    window.wait_for("Connect");
+    window.click("language");
+    window.click("한국어");
+    for name in [
+        "시험대",
+        "시험 절차",
+        "고장 이력",
+        "진단",
+        "시험 성적서",
+        "연결",
+    ] {
+        window.wait_for(name);
+    }
+    assert!(!window.shows("Connect"), "no English is left over");
+    window.click("연결");
+    window.wait_for("SIM-0001");
+}
+
+#[test]
+fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("the run", running);
+    window.click("Pause");
+    window.wait_for_part("Paused before: ");
+    let steps = |window: &Window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.map_or(0, |run| run.done)
+    };
+    let before = steps(&window);
+    window.click("One step");
+    window.until("one more step", |window| steps(window) > before);
+    window.wait_for_part("Paused before: ");
+    assert_eq!(steps(&window), before + 1);
+    window.click("Go on");
+    window.click("Stop");
+    window.wait_for_part("Run over: aborted");
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "aborted");
+    assert_eq!(run["run"]["state"], "finished");
+    window.until("the unit live again", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
+    });
+}
+
+#[test]
+fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("a step", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.done > 0)
+    });
+    for _ in 0..5 {
+        window.key(Key::F12);
+    }
+    window.wait_for_part("Run over: aborted");
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "aborted");
+    let run = window.app().units().chosen().run.as_ref().expect("a run");
+    let messages = run
+        .procedures
+        .iter()
+        .map(|procedure| procedure.message.as_str());
+    let messages: String = messages.collect();
+    assert!(messages.contains("stopped by the operator"), "{messages}");
+    assert!(!messages.contains("cut short"), "{messages}");
+}
+
+/// Goal: a message holds while it is shown. Method: a run that is stopped, and another that is begun; a port that is not
+/// there, and a unit that is.
+#[test]
+fn what_is_over_is_no_longer_said() {
+    let mut settings = realtime(Page::Procedures);
+    settings.unit.endpoint = "serial:/dev/no-such-port".into();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("Not connected");
+    window.click("unit");
+    window.click("simulated unit");
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    assert!(!window.shows_part("Not connected"));
+    window.click("Run");
+    window.until("the run", running);
+    window.key(Key::F12);
+    // That it stops is over sooner than the next picture, where the machine is slow.
+    window.wait_for_part("Run over: aborted");
+    window.click("Run");
+    window.until("the next run", running);
+    assert!(!window.shows_part("Run over"));
+}
+
+#[test]
+fn letting_go_in_a_run_closes_its_record_first() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("the run", running);
+    window.click("Disconnect");
+    window.wait_for_part("outputs safe");
+    window.wait_for("not connected");
+    assert_eq!(latest(&window)["run"]["verdict"], "aborted");
+}
+
+#[test]
+fn reaching_a_unit_can_be_given_up() {
+    // It never answers, so that it is still being reached however slowly the window is drawn.
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let mut settings = settings(Page::Bench);
+    settings.unit.endpoint = format!("tcp:{}", silent.local_addr().expect("its address"));
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.click("cancel");
+    // Whether its files were still being read or its port already open: it is let go and stays so.
+    window.wait_for("not connected");
+    for _ in 0..60 {
+        window.step();
+    }
+    assert!(window.shows("not connected"));
+}
+
+#[test]
+fn a_script_asks_and_the_answer_decides() {
+    let place = Place::new();
+    let scripts = own_scripts(
+        &place,
+        "procedure(title = \"Lamp\", suspect = \"-\")\n\
+         step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
+    );
+    for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
+        let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));
+        window.click("Connect");
+        window.wait_for("SIM-0001");
+        window.click("Run");
+        window.wait_for("Does the lamp light?");
+        window.click(answer);
+        window.wait_for_part(&format!("Run over: {verdict}"));
+    }
+}
+
+#[test]
+fn a_script_that_no_longer_compiles_is_said_and_not_run() {
+    let place = Place::new();
+    let good = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(s(1))])\n";
+    let folder = own_scripts(&place, good);
+    let mut window = Window::with(Place::new(), &folder, settings(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.wait_for("own/own");
+    std::fs::write(folder.join("own/own.star"), "procedure(title = \n").expect("written");
+    window.click("Run");
+    window.wait_for_part("The scripts have errors");
+    window.wait_for_part("own/own.star:");
+    assert!(!window.enabled("Run"));
+    // What would take the whole memory takes a process of its own with it, and the window stays.
+    ptu_bench::run::loading::load_apart(crate::common::program("ptu"));
+    std::fs::write(
+        folder.join("own/own.star"),
+        format!("{good}x = [0] * 1000000000\n"),
+    )
+    .expect("written");
+    window.click("Reload scripts");
+    window.wait_for_part("needs more than 512 MB of memory");
+    assert!(!window.enabled("Run"));
+    std::fs::write(folder.join("own/own.star"), good).expect("written");
+    window.click("Reload scripts");
+    window.click("Run");
+    window.wait_for_part("Run over: passed");
+}
+
+#[test]
+fn a_unit_that_starts_again_by_itself_is_said() {
+    let mut settings = settings(Page::Bench);
+    settings.unit.faults = vec!["power_supply.dips".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("The unit was started again");
+    assert!(window.app().units().chosen().is_connected());
+}
+
+#[test]
+fn a_port_that_is_not_there_is_said() {
+    let mut settings = settings(Page::Bench);
+    settings.unit.endpoint = "serial:/dev/no-such-port".into();
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for_part("Not connected");
+    window.wait_for_part("/dev/no-such-port");
+    window.wait_for("not connected");
+}
+
+#[test]
+fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
+    let place = Place::new();
+    place.write("history.db", "this is no database");
+    let mut window = Window::with(place, scripts(), settings(Page::Procedures));
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.wait_for_part("The run was not begun");
+    assert!(window.app().units().chosen().is_connected());
+    window.click("Noted");
+    assert!(!window.shows_part("The run was not begun"));
+
+    std::fs::remove_file(window.place.path("history.db")).expect("removed");
+    window.click("Run");
+    window.wait_for_part("Run over: passed");
+    let lock = rusqlite::Connection::open(window.place.path("history.db")).expect("database");
+    lock.execute_batch("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE")
+        .expect("locked");
+    window.click("Run");
+    window.until("the trouble", |window| {
+        window.shows_part("The run was not begun") || window.shows_part("could not be recorded")
+    });
+    drop(lock);
+    let before = window.place.json(&["runs", "list", "--json"]);
+    window.click("Run");
+    window.until("one more run", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| {
+            run.id()
+                .is_some_and(|id| !before.to_string().contains(&id.to_string()))
+        })
+    });
+}
+
+#[test]
+fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
+    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
+    window.write("operator", "Kim");
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("Run");
+    window.until("the run", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.present.is_some())
+    });
+    let root = ViewportId::ROOT;
+    let viewports = &mut window.harness().input_mut().viewports;
+    viewports
+        .entry(root)
+        .or_default()
+        .events
+        .push(ViewportEvent::Close);
+    window.step();
+    window.until("the end", |window| window.app().is_closed());
+    let run = latest(&window);
+    assert_eq!(run["run"]["verdict"], "aborted");
+    assert_eq!(run["run"]["state"], "finished");
+    let kept = Settings::load(&window.place.path("config/window.json"));
+    assert_eq!(
+        (kept.operator.as_str(), kept.page),
+        ("Kim", Page::Procedures)
+    );
+}
+
+#[test]
+fn two_units_are_tested_side_by_side() {
+    let mut settings = settings(Page::Procedures);
+    settings.unit.faults = vec!["tra.dead".into()];
+    let mut window = Window::with(Place::new(), scripts(), settings);
+    window.click("Connect");
+    window.wait_for("SIM-0001");
+    window.click("+");
+    window.click("Connect");
+    window.until("both", |window| {
+        window
+            .app()
+            .units()
+            .iter()
+            .all(|unit| unit.phase() == Phase::Idle)
+    });
+    window.click("Run on all units");
+    window.until("both runs", |window| {
+        let mut units = window.app().units().iter();
+        units.all(|unit| unit.run.as_ref().is_some_and(|run| run.id().is_some()))
+    });
+    let runs = window.place.json(&["runs", "list", "--json"]);
+    assert_eq!(runs.as_array().map(Vec::len), Some(2));
+    // Which unit is said of each.
+    window.wait_for_part("SIM-0001: Run over: ");
+}
+
+#[test]
+fn every_page_is_reached_by_its_key_and_shows_something_in_both_languages() {
+    let mut window = Window::open(Page::Bench);
+    for language in Language::ALL {
+        for page in Page::ALL {
+            window.page(page);
+            window.step();
+            assert_eq!(window.app().page(), page);
+            assert!(window.shows(page.name(language.words())));
+        }
+        if language == Language::English {
+            window.click("language");
+            window.click("한국어");
+        }
+    }
+}
+
+#[test]
+fn tab_and_space_are_enough_to_connect() {
+    let mut window = Window::open(Page::Bench);
+    window.wait_for("Connect");
+    let focused = |window: &mut Window| {
+        let harness = window.harness();
+        let name = harness.ctx.memory(|memory| memory.focused());
+        name.is_some() && {
+            use egui_kittest::kittest::Queryable;
+            harness.get_by_label("Connect").is_focused()
+        }
+    };
+    for _ in 0..40 {
+        if focused(&mut window) {
+            break;
+        }
+        window.key(Key::Tab);
+        window.step();
+    }
+    assert!(focused(&mut window), "Tab reaches Connect");
+    window.harness().event(Event::Key {
+        key: Key::Space,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Default::default(),
+    });
+    window.wait_for("SIM-0001");
+}

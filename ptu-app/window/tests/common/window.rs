@@ -1,0 +1,333 @@
+//! The window without a screen: driven and read by what a screen reader would find.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use ptu_bench::data::ScriptsDirectory;
+use ptu_options::Page;
+use ptu_window::DataPaths;
+use ptu_window::{App, Options, Settings};
+
+use super::{Place, scripts};
+
+/// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
+const PATIENCE: Duration = Duration::from_secs(300);
+/// A person takes longer between two things that are meant, s.
+const MOMENT_S: f64 = 0.7;
+/// Height of the messages below every page, points.
+const MESSAGES: f32 = 45.0;
+const STEP: Duration = Duration::from_millis(15);
+
+/// A window in a place of its own.
+pub struct Window {
+    harness: Harness<'static, Option<App>>,
+    pub place: Place,
+}
+
+impl Window {
+    /// A window on the shipped scripts, with this page in front.
+    pub fn open(page: Page) -> Self {
+        let settings = Settings {
+            page,
+            ..Settings::default()
+        };
+        Self::with(Place::new(), scripts(), settings)
+    }
+
+    /// A window with these settings on these scripts.
+    pub fn with(place: Place, scripts: impl AsRef<std::path::Path>, settings: Settings) -> Self {
+        Self::sized([1280.0, 800.0], place, scripts, settings)
+    }
+
+    /// A window of this size, points. A display of 1280 by 800 pixels at 150 % has 853 by 533.
+    pub fn sized(
+        size: [f32; 2],
+        place: Place,
+        scripts: impl AsRef<std::path::Path>,
+        settings: Settings,
+    ) -> Self {
+        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
+        let paths = DataPaths::new(place.path("history.db"), scripts);
+        Self::on(size, place, paths, settings)
+    }
+
+    /// A window on the history of a server.
+    pub fn on_server(server: &str, place: Place, settings: Settings) -> Self {
+        let scripts = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
+        let server = server.parse().expect("an address");
+        let paths = DataPaths::of_server(server, scripts);
+        Self::on([1280.0, 800.0], place, paths, settings)
+    }
+
+    fn on(size: [f32; 2], place: Place, paths: DataPaths, settings: Settings) -> Self {
+        let settings_file = Some(place.path("config/window.json"));
+        let mut options = Some(Options {
+            paths,
+            settings,
+            settings_file,
+            connect: false,
+            interrupted: ptu_bench::stop::Stop::default(),
+        });
+        let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
+            Some(app) => app.show(ui),
+            // Fonts are there from the next frame on.
+            None => {
+                let options = options.take().expect("made once");
+                *app = Some(App::new(ui.ctx(), options, Arc::new(|| {})).expect("a window"));
+            }
+        };
+        let harness = Harness::builder()
+            .with_size(size)
+            .with_max_steps(8)
+            .build_ui_state(show, None);
+        Self { harness, place }
+    }
+
+    /// One frame, and a moment for the other threads.
+    pub fn step(&mut self) {
+        std::thread::sleep(STEP);
+        self.harness.step();
+    }
+
+    /// Frames until this holds.
+    pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
+        let began = Instant::now();
+        while !holds(self) {
+            assert!(
+                began.elapsed() < PATIENCE,
+                "waited in vain for {what}; shown: {:#?}",
+                self.shown()
+            );
+            self.step();
+        }
+    }
+
+    /// Frames until something of this name is shown.
+    pub fn wait_for(&mut self, label: &str) {
+        self.until(label, |window| window.shows(label));
+    }
+
+    /// Frames until something whose name contains this is shown.
+    pub fn wait_for_part(&mut self, part: &str) {
+        self.until(part, |window| window.shows_part(part));
+    }
+
+    /// Turns the pages of a sheet until something of this name is in view.
+    pub fn scroll_to(&mut self, label: &str) {
+        for _ in 0..20 {
+            if self.shows(label) {
+                return;
+            }
+            self.key(eframe::egui::Key::PageDown);
+            for _ in 0..10 {
+                self.step();
+            }
+        }
+        panic!("no {label}: {:#?}", self.shown());
+    }
+
+    /// Something of this name is shown.
+    pub fn shows(&self, label: &str) -> bool {
+        self.harness.query_all_by_label(label).next().is_some()
+    }
+
+    /// Something whose name contains this is shown.
+    pub fn shows_part(&self, part: &str) -> bool {
+        self.harness
+            .query_all_by_label_contains(part)
+            .next()
+            .is_some()
+    }
+
+    /// Clicks what has this name, once it is there and enabled.
+    pub fn click(&mut self, label: &str) {
+        self.click_once_still(label, |places| places.first().copied(), 1);
+    }
+
+    /// Clicks the first whose name contains this.
+    pub fn click_part(&mut self, part: &str) {
+        self.wait_for_part(part);
+        let shown = self.shown().into_iter().find(|name| name.contains(part));
+        self.click(&shown.expect("just seen"));
+    }
+
+    /// Clicks it twice within 180 ms, as many do.
+    pub fn double_click(&mut self, label: &str) {
+        self.click_once_still(label, |places| places.first().copied(), 2);
+    }
+
+    /// Clicks the last of several of this name that is in view.
+    pub fn click_last(&mut self, label: &str) {
+        let mut seen = self.harness.ctx.content_rect();
+        seen.max.y -= MESSAGES;
+        let last = |places: &[Rect]| {
+            let mut places = places.iter().rev();
+            places.find(|place| seen.contains_rect(**place)).copied()
+        };
+        self.click_once_still(label, last, 1);
+    }
+
+    /// Clicks what has been in the same place for two frames. The whole click is of the next frame, which
+    /// finds what is clicked by the frame that was looked at: what another thread answers in between would
+    /// move it away from under the pointer.
+    fn click_once_still(
+        &mut self,
+        label: &str,
+        choose: impl Fn(&[Rect]) -> Option<Rect>,
+        clicks: usize,
+    ) {
+        let pos = self.still(label, choose).center();
+        self.pass(MOMENT_S);
+        for _ in 0..clicks {
+            let click = [
+                Event::PointerMoved(pos),
+                button(pos, true),
+                button(pos, false),
+            ];
+            self.harness.input_mut().events.extend(click);
+            self.pass(0.18);
+        }
+        self.harness.step();
+    }
+
+    /// A frame in which the window's clock moves by so much, s.
+    pub fn pass(&mut self, by_s: f64) {
+        let now_s = self.harness.ctx.input(|input| input.time);
+        self.harness.input_mut().time = Some(now_s + by_s);
+        self.harness.step();
+        self.harness.input_mut().time = None;
+    }
+
+    /// Presses the key that shows this page.
+    pub fn page(&mut self, page: Page) {
+        self.key(Key::from_name(page.key()).expect("a key"));
+    }
+
+    /// Holds what has this name down for so long, s.
+    pub fn hold(&mut self, label: &str, for_s: f64) {
+        let pos = self.still(label, |places| places.first().copied()).center();
+        self.pass(MOMENT_S);
+        let press = [Event::PointerMoved(pos), button(pos, true)];
+        self.harness.input_mut().events.extend(press);
+        for _ in 0..10 {
+            self.pass(for_s / 10.0);
+        }
+        self.harness.input_mut().events.push(button(pos, false));
+        self.pass(0.02);
+    }
+
+    /// Where something of this name has been for two frames.
+    fn still(&mut self, label: &str, choose: impl Fn(&[Rect]) -> Option<Rect>) -> Rect {
+        let mut before = None;
+        self.until(&format!("{label} (enabled and still)"), |window| {
+            let now = choose(&window.places(label));
+            now.is_some() && now == std::mem::replace(&mut before, now)
+        });
+        before.expect("just seen")
+    }
+
+    /// Where what has this name and can be clicked is.
+    fn places(&self, label: &str) -> Vec<Rect> {
+        let nodes = self.harness.query_all_by_label(label);
+        nodes
+            .filter(|node| !node.accesskit_node().is_disabled())
+            .map(|node| node.rect())
+            .collect()
+    }
+
+    /// What has this name can be clicked.
+    pub fn enabled(&self, label: &str) -> bool {
+        let mut nodes = self.harness.query_all_by_label(label);
+        nodes.any(|node| !node.accesskit_node().is_disabled())
+    }
+
+    /// Writes into the field of this name.
+    pub fn write(&mut self, label: &str, text: &str) {
+        let field = |window: &Self| window.harness.query_all_by_label(label).count() > 0;
+        self.until(label, field);
+        let node = self.harness.query_all_by_label(label).last().expect("seen");
+        node.focus();
+        node.type_text(text);
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Writes into a field in place of what is in it.
+    pub fn write_over(&mut self, label: &str, text: &str) {
+        self.wait_for(label);
+        let node = self.harness.query_all_by_label(label).last().expect("seen");
+        node.focus();
+        self.harness.step();
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.step();
+        self.write(label, text);
+    }
+
+    /// Presses a key.
+    pub fn key(&mut self, key: eframe::egui::Key) {
+        self.harness.key_press(key);
+        self.harness.step();
+    }
+
+    /// The window itself.
+    pub fn app(&self) -> &App {
+        self.harness.state().as_ref().expect("made")
+    }
+
+    /// The harness, for what only some tests do.
+    pub fn harness(&mut self) -> &mut Harness<'static, Option<App>> {
+        &mut self.harness
+    }
+
+    /// Everything that has a name.
+    pub fn shown(&self) -> Vec<String> {
+        self.harness
+            .query_all_by_label_contains("")
+            .filter_map(|node| node.accesskit_node().label().or_else(|| node.value()))
+            .collect()
+    }
+}
+
+/// The primary button of the pointer goes down or up.
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::default(),
+    }
+}
+
+pub fn settings(page: Page) -> Settings {
+    Settings {
+        page,
+        ..Settings::default()
+    }
+}
+
+/// What the database holds of the latest run.
+pub fn latest(window: &Window) -> serde_json::Value {
+    window.place.json(&["runs", "show", "latest", "--json"])
+}
+
+/// A scripts directory with the shipped units, lines and trains and one procedure of its own.
+pub fn own_scripts(place: &Place, script: &str) -> std::path::PathBuf {
+    let folder = place.path("scripts");
+    std::fs::create_dir_all(folder.join("own")).expect("folder");
+    for shared in [
+        "units",
+        "lines",
+        "trains",
+        "bench_scatter.toml",
+        "diagnosis.toml",
+        "dictionary.zst",
+    ] {
+        let shipped = scripts().canonicalize().expect("scripts").join(shared);
+        std::os::unix::fs::symlink(shipped, folder.join(shared)).expect("link");
+    }
+    std::fs::write(folder.join("own/own.star"), script).expect("script");
+    folder
+}
