@@ -1,4 +1,4 @@
-//! `ptu help-files`: what a package installs of the command line's own description.
+//! `ptu help-files`: what a package installs that the program knows best.
 
 use std::fs;
 use std::io;
@@ -7,10 +7,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Command, CommandFactory as _};
 use clap_complete::Shell;
 
-use super::{Cli, help, print_out};
+use super::{Cli, WindowOptions, help, print_out};
 use ptu_bench::failure::{Exit, Failure};
 
-/// Write manual pages (man1/) and shell completions (bash/, zsh/, fish/) into a folder
+/// The type of a history among files, with a gap for the number that marks one.
+const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
+
+/// Write manual pages (man1/), shell completions (bash/, zsh/, fish/) and file types (ptu.xml) into a folder
 #[derive(Debug, Args)]
 pub struct HelpFilesArguments {
     /// Folder to write into
@@ -23,6 +26,7 @@ impl HelpFilesArguments {
         let folder = &self.folder;
         manuals(&folder.join("man1"))
             .and_then(|()| completions(folder))
+            .and_then(|()| fs::write(folder.join("ptu.xml"), file_types()))
             .map_err(|error| {
                 Failure::bench(format!("cannot write to {}: {error}", folder.display()))
             })?;
@@ -34,7 +38,9 @@ fn manuals(folder: &Path) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     let mut command = help::flowing(Cli::command()).disable_help_subcommand(true);
     command.build();
-    pages(folder, &command)
+    pages(folder, &command)?;
+    let window = Command::new("ptu-window").version(env!("CARGO_PKG_VERSION"));
+    pages(folder, &WindowOptions::augment_args(window))
 }
 
 /// The page of a command, and those of its verbs.
@@ -62,4 +68,9 @@ fn completions(folder: &Path) -> io::Result<()> {
         clap_complete::generate_to(shell, &mut Cli::command(), "ptu", &folder)?;
     }
     Ok(())
+}
+
+/// File types for the desktop: SQLite files with the number of a history are histories.
+fn file_types() -> String {
+    FILE_TYPES.replace("@ID@", &format!("0x{:08x}", fault_db::APPLICATION_ID))
 }

@@ -1,0 +1,86 @@
+//! What `scripts/package` and `scripts/windows` put together is there, so that a moved file is found before a package is
+//! built.
+
+use crate::common::{Place, workspace};
+
+/// Made by `ptu help-files` for the package.
+const MADE_BY_PROGRAM: &str = "../target/package/help/";
+/// Made by `scripts/package` itself, or built.
+const MADE: [&str; 2] = ["../target/", "target/"];
+
+#[test]
+fn every_file_of_the_package_is_there() {
+    let place = Place::new();
+    place.ptu(&["help-files", "help"]).exits(0);
+    let manifest = workspace().join("ptu-app/Cargo.toml");
+    let manifest = std::fs::read_to_string(manifest).expect("a manifest");
+    let manifest: toml::Value = toml::from_str(&manifest).expect("TOML");
+    let deb = &manifest["package"]["metadata"]["deb"];
+    let assets = deb["assets"].as_array().expect("assets");
+    let mut missing = Vec::new();
+    for asset in assets {
+        let from = asset[0].as_str().expect("a path");
+        let looked_for = match from.strip_prefix(MADE_BY_PROGRAM) {
+            Some(made) => place.path("help").join(made),
+            None if MADE.iter().any(|made| from.starts_with(made)) => continue,
+            None => workspace().join("ptu-app").join(from),
+        };
+        let pattern = looked_for.to_str().expect("UTF-8");
+        let mut found = glob::glob(pattern).expect("a pattern");
+        if found.next().is_none() {
+            missing.push(from);
+        }
+    }
+    assert!(missing.is_empty(), "not there: {missing:?}");
+    let types = place.read("help/ptu.xml");
+    let id = format!("value=\"0x{:08x}\"", fault_db::APPLICATION_ID);
+    assert!(types.contains(&id), "{types}");
+}
+
+/// A path in a shell script of the repository that is gone stops the script after a long build.
+#[test]
+fn every_file_that_packaging_names_is_there() {
+    let mut gone = Vec::new();
+    for script in ["scripts/package", "scripts/windows", "packaging/debian/try"] {
+        let text = std::fs::read_to_string(workspace().join(script)).expect("a script");
+        let words = text.split(|c: char| c.is_whitespace() || "\"'()=;".contains(c));
+        let folders = [
+            "packaging/",
+            "ptu-app/",
+            "fault-db/",
+            "scripts/",
+            "protocol/",
+            "ato-under-test/",
+            "docs/",
+        ];
+        for word in words.filter(|word| folders.iter().any(|folder| word.starts_with(folder))) {
+            // Messages name the script itself with a colon behind it.
+            let word = word.trim_end_matches(':');
+            let made = word.contains("sbom") || word.contains('$');
+            let mut found =
+                glob::glob(workspace().join(word).to_str().expect("UTF-8")).expect("a pattern");
+            if !made && found.next().is_none() {
+                gone.push(format!("{script}: {word}"));
+            }
+        }
+    }
+    assert!(gone.is_empty(), "{gone:?}");
+}
+
+/// A desktop starts a program that the package has.
+#[test]
+fn desktop_entries_start_a_program_of_the_package() {
+    let manifest =
+        std::fs::read_to_string(workspace().join("ptu-app/Cargo.toml")).expect("a manifest");
+    for entry in ["ptu.desktop", "ptu-history.desktop"] {
+        let text =
+            std::fs::read_to_string(workspace().join("packaging").join(entry)).expect("an entry");
+        let command = text
+            .lines()
+            .find_map(|line| line.strip_prefix("Exec="))
+            .expect("a command");
+        let program = command.split(' ').next().expect("a program");
+        let asset = format!("[\"target/release/{program}\", \"usr/bin/\"");
+        assert!(manifest.contains(&asset), "{entry}: {program}");
+    }
+}
