@@ -255,6 +255,7 @@ impl Depot {
 /// middle, and the server twice. A laptop that is told to try again does; at the end each syncs twice more. Then the
 /// rows and states of all files are compared with the server's.
 #[test]
+#[ignore = "long suite: a campaign of laptops"]
 fn many_laptops_sync_while_some_of_them_and_the_server_are_killed() {
     // Times are told of a server as it is delivered.
     let is_timed = fuzzing::amount(1) > 1;

@@ -169,15 +169,15 @@ fn stubs_for_editors_are_python() {
     let read = std::process::Command::new("python3")
         .args(["-m", "py_compile"])
         .args(&files)
-        .status();
-    if let Ok(status) = read {
-        assert!(status.success());
-    }
+        .status()
+        .expect("python3, which scripts/test installs");
+    assert!(read.success());
 }
 
 /// Goal: an editor tells a wrong key while it is written, and nothing that is right: by a foreign reader, on every data file
 /// that is shipped or begun.
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn every_data_file_fits_its_schema_and_a_wrong_key_does_not() {
     let place = Place::new();
     let folder = place.path("scripts");

@@ -88,6 +88,7 @@ fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 /// Goal: DuckDB answers the documented questions from the partitions as SQLite does from the file; what has not changed is
 /// not written again, and an export that goes on is the export of all.
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn partitions_answer_as_the_file_does_and_grow_with_it() {
     let place = Place::with_database();
     let old = store(&place);
@@ -167,6 +168,7 @@ fn partitions_answer_as_the_file_does_and_grow_with_it() {
 }
 
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn partitions_of_a_history_without_runs_have_all_columns() {
     let place = Place::with_database();
     place.ptu(&["db", "export", "--parquet", "files"]).exits(0);

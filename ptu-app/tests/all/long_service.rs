@@ -86,6 +86,7 @@ impl Followed {
 /// Goal: a train may be in service for a day. Method: one process drives line 8 from end to end, again and again, with
 /// the doors at each station.
 #[test]
+#[ignore = "long suite: runs for long"]
 fn eight_hours_of_service_take_no_more_memory() {
     let rounds = fuzzing::amount(1).min(ROUNDS);
     let sections = rounds * SECTIONS;
@@ -117,6 +118,7 @@ fn eight_hours_of_service_take_no_more_memory() {
 
 /// Goal: a bench may test for days. Method: one process repeats six procedures in one run, and records each step.
 #[test]
+#[ignore = "long suite: runs for long"]
 fn a_million_steps_take_no_more_memory() {
     let repeat = fuzzing::amount(20);
     let steps = repeat * STEPS;

@@ -5,7 +5,7 @@
 pub(crate) mod owner_only;
 
 use self::owner_only::{free_port, shared};
-use crate::common::{Place, list, record_bad_unit, relay_fault, text};
+use crate::common::{Place, list, record_bad_unit, record_bad_unit_anew, relay_fault, text};
 use serde_json::Value;
 
 /// An answer without what grows while one asks: the days that units have been watched for.
@@ -43,7 +43,7 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
     }
 
     // The other laptop saw the same fault; what is done about it at the desk reaches both.
-    record_bad_unit(&two);
+    record_bad_unit_anew(&two);
     two.ptu(&["db", "sync", &server]).exits(0);
     let faults = two.json(&[
         "faults", "list", "--part", "eb_relay", "--json", "--db", &server,

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 /// What the signals of [`trace`] are called in every format.
 const HEADINGS: [&str; 6] = ["speed_kmh", "jerk_m_s3", "effort", "mode", "eb", "empty_v"];
-/// Where `scripts/test` puts the readers, under the target directory.
+/// Where `scripts/test full` puts the readers, under the target directory.
 const READERS: &str = "readers";
 /// 2026-03-01 00:00:00 UTC.
 const T0_US: i64 = 1_772_323_200_000_000;
@@ -31,7 +31,7 @@ pub fn python() -> PathBuf {
     let python = target.join(READERS).join("bin/python");
     assert!(
         python.exists(),
-        "{} is missing: run scripts/test once, it installs the readers, or name a Python that has pyarrow, \
+        "{} is missing: run scripts/test full once, it installs the readers, or name a Python that has pyarrow, \
          mcap, duckdb, polars and jsonschema in PTU_TEST_PYTHON",
         python.display()
     );
@@ -157,6 +157,7 @@ fn kept(place: &Place, trace: &TraceData) -> Id {
 /// Goal: what a reader of each format's makers finds is what was recorded: samples, gaps, units, times and
 /// whose it is.
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn each_formats_own_reader_finds_what_was_recorded() {
     let place = Place::new();
     let trace = trace(9_000);
@@ -212,6 +213,7 @@ fn each_formats_own_reader_finds_what_was_recorded() {
 }
 
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn a_part_has_its_signals_and_its_span() {
     let place = Place::new();
     let trace = trace(600);
@@ -351,6 +353,7 @@ fn a_foreign_table_is_laid_at_the_traces_rows() {
 }
 
 #[test]
+#[ignore = "long suite: readers of other makers"]
 fn messages_of_another_program_are_laid_at_their_time_of_day() {
     let place = Place::new();
     let mut data = trace(600);

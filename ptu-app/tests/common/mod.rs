@@ -8,6 +8,7 @@ pub mod terminal;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 use ptu_bench::data::ScriptsDirectory;
 use serde_json::Value;
@@ -17,6 +18,9 @@ use tempfile::TempDir;
 const IDENTITIES: [&str; 3] = ["id", "trace_id", "seal"];
 const TIMES_OF_DAY: [&str; 4] = ["started_at", "finished_at", "first_at", "last_at"];
 const WALL_TIME: [&str; 1] = ["wall_time_s"];
+
+/// The history of [`record_bad_unit`].
+static BAD_UNIT: OnceLock<Vec<u8>> = OnceLock::new();
 
 /// A folder of its own with a database of its own; the user's data are never touched.
 pub struct Place {
@@ -180,8 +184,31 @@ impl Said {
     }
 }
 
-/// A unit with a slow relay, tested by someone.
+/// A unit with a slow relay, tested by someone. The first history of a place is a copy of one that is recorded once
+/// per test program, so that its identities are the same in all places.
 pub fn record_bad_unit(place: &Place) {
+    let path = place.path("history.db");
+    if path.exists() {
+        return record_bad_unit_anew(place);
+    }
+    let history = BAD_UNIT.get_or_init(|| {
+        let place = Place::new();
+        record_bad_unit_anew(&place);
+        let whole = place.path("history.db-wal").metadata();
+        assert!(whole.map_or(true, |wal| wal.len() == 0), "it is closed");
+        std::fs::read(place.path("history.db")).expect("a history")
+    });
+    std::fs::write(&path, history).expect("copied");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let of_owner = std::fs::Permissions::from_mode(0o600);
+        std::fs::set_permissions(&path, of_owner).expect("its owner's alone");
+    }
+}
+
+/// The same in a run of its own, for whoever compares or joins the histories of two places.
+pub fn record_bad_unit_anew(place: &Place) {
     let who = ["--serial-no", "BAD-1", "--who", "Kim"];
     let arguments = [
         &["run", "atp/overspeed", "--inject", "eb_relay.slow"],

@@ -11,7 +11,7 @@ const BENCHES: usize = 6;
 /// The suite is shared out among units on ports of their own, each of which is tested in real time beside
 /// the others.
 #[test]
-#[ignore = "takes four minutes of real time on a quiet machine: scripts/test full"]
+#[ignore = "long suite: takes four minutes of real time on a quiet machine"]
 fn a_whole_acceptance_suite_over_pseudo_terminals_passes_in_real_time() {
     let place = Place::new();
     let planned = list(&place.json(&["run", "--list", "--json"])).to_vec();

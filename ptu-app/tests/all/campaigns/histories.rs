@@ -7,7 +7,7 @@ use fault_db::Store;
 use ptu_bench::clock;
 use rusqlite::{Connection, OpenFlags};
 
-use crate::common::{Place, record_bad_unit};
+use crate::common::{Place, record_bad_unit_anew};
 
 /// Steps of the run, each of which fails and is told.
 const STEPS: usize = 20;
@@ -36,7 +36,7 @@ impl Base {
     pub fn new() -> Self {
         let place = Place::new();
         let record = || {
-            record_bad_unit(&place);
+            record_bad_unit_anew(&place);
             place
                 .ptu(&[
                     "faults", "repair", "latest", "--part", "eb_relay", "--who", "Kim",
@@ -45,7 +45,7 @@ impl Base {
             place
                 .ptu(&["run", "atp/overspeed", "--serial-no", "BAD-1"])
                 .exits(0);
-            record_bad_unit(&place);
+            record_bad_unit_anew(&place);
         };
         record();
         std::fs::rename(place.path("history.db"), place.path("other.db")).expect("renamed");

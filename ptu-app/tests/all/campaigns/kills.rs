@@ -29,6 +29,7 @@ struct Kills {
 /// Goal: whenever a program is killed, the history opens, passes its checks, and holds all that the program told. Method:
 /// killed at one write after the other, and as often at random times.
 #[test]
+#[ignore = "long suite: a campaign of kills"]
 fn a_program_that_is_killed_loses_nothing_that_it_told() {
     let base = Base::new();
     let mut random = Random::new(seed());
@@ -113,6 +114,7 @@ fn killed_after(time: Duration, mut program: Command) -> Output {
 /// Goal: a sync that is killed at any time is taken up by the next: all rows are on the server once. Method: killed at random
 /// times, then synced.
 #[test]
+#[ignore = "long suite: a campaign of kills"]
 fn a_sync_that_is_killed_is_taken_up() {
     let server = shared().database();
     let place = Place::new();

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::common::{Place, list, number, scripts, text};
-use btu_rig::procedure::RunOptions;
+use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_bench::clock;
@@ -71,13 +71,22 @@ impl TestBench {
         procedure.is_some_and(|p| p.steps.iter().any(|step| step.name.contains(words)))
     }
 
-    /// Runs and records the suite on a unit with this fault.
+    /// Runs and records the whole suite on a unit with this fault.
     pub fn run(&self, mode: &FaultMode) -> FaultRun {
+        self.run_of(mode, |procedure| !procedure.on_request)
+    }
+
+    /// The same with these procedures alone.
+    pub fn run_procedures(&self, mode: &FaultMode, ids: &BTreeSet<&str>) -> FaultRun {
+        self.run_of(mode, |procedure| ids.contains(procedure.id.as_str()))
+    }
+
+    fn run_of(&self, mode: &FaultMode, is_run: impl Fn(&Procedure) -> bool) -> FaultRun {
         let setup = BenchSetup {
             faults: vec![mode.clone()],
             ..self.setup.clone()
         };
-        let asked_for = self.suite.procedures.iter().filter(|p| !p.on_request);
+        let asked_for = self.suite.procedures.iter().filter(|p| is_run(p));
         let mut plan = RunPlan {
             tasks: asked_for
                 .map(|procedure| Task {

@@ -31,7 +31,7 @@ fn good_units_pass_procedures_repeated_and_in_random_order() {
 }
 
 #[test]
-#[ignore = "takes minutes: the default procedures a hundred times on one unit; run in release mode"]
+#[ignore = "long suite: the default procedures a hundred times on one unit"]
 fn a_good_unit_passes_procedures_a_hundred_times_in_random_order() {
     random_order(&[3], 100);
 }
