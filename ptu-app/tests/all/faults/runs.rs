@@ -73,15 +73,20 @@ impl TestBench {
 
     /// Runs and records the whole suite on a unit with this fault.
     pub fn run(&self, mode: &FaultMode) -> FaultRun {
-        self.run_of(mode, |procedure| !procedure.on_request)
+        self.run_of(mode, |procedure| !procedure.on_request, true)
     }
 
-    /// The same with these procedures alone.
+    /// The same with these procedures alone, and without a diagnosis.
     pub fn run_procedures(&self, mode: &FaultMode, ids: &BTreeSet<&str>) -> FaultRun {
-        self.run_of(mode, |procedure| ids.contains(procedure.id.as_str()))
+        self.run_of(mode, |procedure| ids.contains(procedure.id.as_str()), false)
     }
 
-    fn run_of(&self, mode: &FaultMode, is_run: impl Fn(&Procedure) -> bool) -> FaultRun {
+    fn run_of(
+        &self,
+        mode: &FaultMode,
+        is_run: impl Fn(&Procedure) -> bool,
+        is_diagnosed: bool,
+    ) -> FaultRun {
         let setup = BenchSetup {
             faults: vec![mode.clone()],
             ..self.setup.clone()
@@ -109,12 +114,16 @@ impl TestBench {
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&mut plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
-        let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
-        answer.attribute(&store).expect("attributed");
+        let mut first_candidate = String::new();
+        if is_diagnosed {
+            let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
+            answer.attribute(&store).expect("attributed");
+            let first = answer.diagnosis.candidates.first();
+            first_candidate = first.map_or(String::new(), |first| first.lru.to_string());
+        }
         let detail = store
             .run(outcome.id, &process_id::is_alive)
             .expect("the run");
-        let first = answer.diagnosis.candidates.first();
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         let junit = place.text_path("r.junit.xml");
         let target = junit.parse().expect("a report");
@@ -130,7 +139,7 @@ impl TestBench {
             exit: outcome.exit.code(),
             junit: place.read("r.junit.xml"),
             report: run_json(&detail),
-            first_candidate: first.map_or(String::new(), |first| first.lru.to_string()),
+            first_candidate,
             traces: ids
                 .map(|id| Window::of(id.to_string(), &store.trace(id).expect("a trace")))
                 .collect(),
