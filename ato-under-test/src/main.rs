@@ -1,5 +1,7 @@
 //! Serves an on-board ATC unit on a pseudo-terminal, a serial port or a TCP socket, in real time.
 
+#[path = "../../scripts/embedded.rs"]
+mod embedded;
 mod program;
 
 use std::process::ExitCode;
@@ -7,6 +9,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
+    script_files::embed(embedded::FILES);
     let arguments = program::Arguments::parse();
     match program::serve(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
