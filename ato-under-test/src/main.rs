@@ -14,7 +14,7 @@ fn main() -> ExitCode {
     match program::serve(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            program::note(&format!("ato-under-test: {error:#}"));
+            program::note(&format!("ato-under-test: {error}"));
             ExitCode::from(if error.is::<program::UsageError>() {
                 2
             } else {
