@@ -3,7 +3,6 @@
 use std::fmt;
 use std::path::Path;
 
-use anyhow::Result;
 use ato_under_test::Setup;
 use ato_under_test::flash::{BlockDevice, FileFlash};
 use protocol::config::UnitConfig;
@@ -11,7 +10,7 @@ use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::Line;
 use script_files::{Found, ScriptFiles};
 
-use super::Arguments;
+use super::{Arguments, Failure};
 
 /// Longest file that is read, bytes.
 const LONGEST_FILE: u64 = 4 << 20;
@@ -29,7 +28,7 @@ impl fmt::Display for UsageError {
 impl std::error::Error for UsageError {}
 
 /// The unit the arguments describe.
-pub fn setup(arguments: &Arguments) -> Result<Setup> {
+pub fn setup(arguments: &Arguments) -> Result<Setup, Failure> {
     let scripts = ScriptFiles::find(arguments.scripts.as_deref())
         .map_err(|error| UsageError(error.to_string()))?;
     let unit_file = format!("units/{}.toml", arguments.unit_config);
@@ -48,14 +47,14 @@ pub fn setup(arguments: &Arguments) -> Result<Setup> {
 }
 
 /// The memory that the unit had before.
-pub fn flash(file: &Path) -> Result<Box<dyn BlockDevice>> {
+pub fn flash(file: &Path) -> Result<Box<dyn BlockDevice>, Failure> {
     match FileFlash::open(file) {
         Ok(flash) => Ok(Box::new(flash)),
         Err(why) => Err(UsageError(why).into()),
     }
 }
 
-fn faults(scripts: &ScriptFiles, names: &[String]) -> Result<Vec<FaultMode>> {
+fn faults(scripts: &ScriptFiles, names: &[String]) -> Result<Vec<FaultMode>, Failure> {
     if names.is_empty() {
         return Ok(Vec::new());
     }

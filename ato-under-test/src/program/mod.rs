@@ -3,10 +3,10 @@
 mod data;
 mod stdio;
 
+use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use anyhow::Result;
 use ato_under_test::serve::{Place, Served, Wire, in_real_time};
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
@@ -66,8 +66,11 @@ pub struct Arguments {
     scripts: Option<PathBuf>,
 }
 
+/// What went wrong: a [`UsageError`], or what a port, file or pipe says.
+type Failure = Box<dyn Error>;
+
 /// Serves until the process is ended.
-pub fn serve(arguments: &Arguments) -> Result<()> {
+pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let setup = data::setup(arguments)?;
     let flash = arguments.flash.as_deref().map(data::flash).transpose()?;
     let mut wire = match (&arguments.serial, &arguments.tcp) {
@@ -119,7 +122,7 @@ impl Served for OnHarness {
 }
 
 /// One scan for each that the tester has sent, and the answer to it at once.
-fn run_in_lock_step(mut unit: OnHarness, wire: &mut Wire) -> Result<()> {
+fn run_in_lock_step(mut unit: OnHarness, wire: &mut Wire) -> Result<(), Failure> {
     let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);
     loop {

@@ -3,7 +3,6 @@
 
 use std::io::{self, ErrorKind, Write};
 
-use anyhow::{Context, Result};
 use protocol::display_text;
 
 /// Prints where the unit can be reached; a reader that has gone is no error.
@@ -11,11 +10,12 @@ use protocol::display_text;
 /// # Errors
 /// Standard output does not take it.
 #[expect(clippy::disallowed_methods, reason = "the one place that writes to it")]
-pub fn place(place: &str) -> Result<()> {
+pub fn place(place: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{}", display_text::line(place)).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(error).context("telling where the unit is")
+            let why = format!("telling where the unit is: {error}");
+            Err(io::Error::new(error.kind(), why))
         }
         _ => Ok(()),
     }

@@ -27,3 +27,23 @@ fn faults_that_are_not_the_units_are_refused_with_who_injects_them() {
         assert!(said.contains(words), "{said}");
     }
 }
+
+/// Goal: who has the program alone has units, lines and faults, too. Method: a copy away from the repository is asked for
+/// a fault that none of its files has.
+#[test]
+fn the_program_alone_has_its_data_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = folder.path().join("ato-under-test");
+    std::fs::copy(env!("CARGO_BIN_EXE_ato-under-test"), &program).expect("copied");
+    let output = Command::new(&program)
+        .args(["--pty", "--inject", "tra.daed"])
+        .current_dir(folder.path())
+        .env_remove("PTU_SCRIPTS")
+        .env("HOME", folder.path())
+        .env("XDG_DATA_HOME", folder.path())
+        .output()
+        .expect("ato-under-test starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no fault tra.daed"), "{said}");
+}

@@ -151,13 +151,14 @@ fn faults_that_fail(dictionary: &Dictionary, place: usize) -> BTreeSet<&str> {
 mod tests {
     use super::*;
     use crate::run_diagnosis::choose;
+    use crate::test_support::scripts;
     use btu_rig::procedure::plan::Connection;
 
     /// Goal: every default step cites a clause, every clause has steps that an injected fault makes fail, and what is not
     /// cited or not proved is named. Method: the shipped clauses and dictionary, whole and with a clause left out.
     #[test]
     fn each_default_step_cites_a_clause_and_what_is_open_is_named() {
-        let scripts = ScriptsDirectory::find(None).expect("scripts");
+        let scripts = scripts();
         let dictionary = choose(None, &scripts, Connection::Btu)
             .expect("a dictionary")
             .dictionary;

@@ -1,5 +1,8 @@
 //! `ptu-window`: the technician's window. `ptu gui` starts it with the same options.
 
+#[path = "../../../scripts/embedded.rs"]
+mod embedded;
+
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -19,6 +22,7 @@ struct CommandLine {
 }
 
 fn main() -> ExitCode {
+    script_files::embed(embedded::FILES);
     survive_file_limit();
     ready_output();
     match run() {

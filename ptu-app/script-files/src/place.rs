@@ -2,11 +2,26 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use crate::{DEEPEST_FOLDER, MOST_ENTRIES, ScriptsError};
 
-/// Names with `/` between folders, and contents; sorted by name.
-const EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
+/// Names with `/` between folders, and contents.
+type Embedded = &'static [(&'static str, &'static [u8])];
+
+static EMBEDDED: OnceLock<Embedded> = OnceLock::new();
+
+/// Takes what the program carries with it, `FILES` of `scripts/embedded.rs`: every `main` begins with this. That the
+/// files are in no library keeps these from being compiled again after an edit of a script.
+pub fn embed(files: Embedded) {
+    EMBEDDED.get_or_init(|| files);
+}
+
+/// Nothing in its place: a program without procedures and data would say that each is missing, and not why.
+fn embedded() -> Embedded {
+    let files = EMBEDDED.get();
+    files.expect("main calls script_files::embed before files are looked for")
+}
 
 /// A place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,9 +69,9 @@ impl Place {
                 path.exists().then_some(Found::File(path))
             }
             Self::Embedded => {
-                let at = EMBEDDED.binary_search_by_key(&name, |(name, _)| name);
-                at.ok()
-                    .map(|at| Found::Embedded(EMBEDDED[at].0, EMBEDDED[at].1))
+                let mut files = embedded().iter();
+                let file = files.find(|(known, _)| *known == name);
+                file.map(|&(name, bytes)| Found::Embedded(name, bytes))
             }
         }
     }
@@ -80,7 +95,7 @@ impl Place {
                     .collect()
             }
             Self::Embedded => {
-                let names = EMBEDDED.iter().filter_map(|(name, _)| {
+                let names = embedded().iter().filter_map(|(name, _)| {
                     let name = name.strip_prefix(folder)?.strip_prefix('/')?;
                     (!name.contains('/')).then(|| name.to_owned())
                 });
@@ -102,7 +117,7 @@ impl Place {
                 Ok(collecting.found)
             }
             Self::Embedded => {
-                let all = EMBEDDED.iter();
+                let all = embedded().iter();
                 let all = all.map(|&(name, bytes)| (name.to_owned(), Found::Embedded(name, bytes)));
                 Ok(all.collect())
             }

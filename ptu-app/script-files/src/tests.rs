@@ -2,6 +2,9 @@ use std::fs;
 
 use super::*;
 
+#[path = "../../../scripts/embedded.rs"]
+mod embedded;
+
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in files {
@@ -19,26 +22,29 @@ fn text(found: Option<Found>) -> String {
     }
 }
 
+/// Goal: who adds a file under `scripts/` learns that the programs have to carry it.
 #[test]
 fn the_program_carries_all_that_the_repository_ships() {
+    embed(embedded::FILES);
+    let carried = ScriptFiles::layered([]);
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
     let shipped = ScriptFiles::find(Some(&shipped)).expect("there");
-    let embedded = ScriptFiles::layered([]);
-    let names = |files: &ScriptFiles| files.all().expect("listed").into_keys().collect::<Vec<_>>();
-    assert_eq!(names(&embedded), names(&shipped));
-    for name in names(&embedded)
-        .iter()
-        .filter(|name| !name.ends_with(".zst"))
-    {
-        assert_eq!(
-            text(embedded.file(name)),
-            text(shipped.file(name)),
-            "{name}"
-        );
-    }
-    let lines = embedded.names("lines", "toml");
+    let names = shipped.all().expect("listed").into_keys();
+    let names: Vec<String> = names.collect();
+    let missing = names.iter().filter(|name| carried.file(name).is_none());
+    let missing: Vec<&String> = missing.collect();
+    assert!(
+        missing.is_empty(),
+        "not in scripts/embedded.rs: {missing:?}"
+    );
+    assert_eq!(embedded::FILES.len(), names.len(), "each once, data alone");
+    let carried_names: Vec<String> = carried.all().expect("listed").into_keys().collect();
+    assert_eq!(carried_names, names);
+    let lines = carried.names("lines", "toml");
     assert_eq!(lines, shipped.names("lines", "toml"));
     assert!(lines.contains("line8"));
+    let line8 = [&carried, &shipped].map(|files| text(files.file("lines/line8.toml")));
+    assert_eq!(line8[0], line8[1]);
 }
 
 #[test]
@@ -49,6 +55,7 @@ fn an_own_file_counts_before_the_systems_and_that_before_the_embedded_one() {
         ("lines/depot.toml", "more"),
     ]);
     let missing = own.path().join("missing");
+    embed(embedded::FILES);
     let places = [own.path(), &missing, depot.path()].map(Path::to_owned);
     let files = ScriptFiles::layered(places);
     assert_eq!(files.places().len(), 3);

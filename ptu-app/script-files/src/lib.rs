@@ -9,7 +9,7 @@ mod place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-pub use place::{Found, Place, own_folder};
+pub use place::{Found, Place, embed, own_folder};
 
 /// Most files and folders in the places together.
 const MOST_ENTRIES: usize = 100_000;
