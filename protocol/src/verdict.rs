@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Outcome of a step, a measurement, a procedure or a run.
 ///
 /// The database has a column type of the same five words: `fault-db` names no other crate, and
-/// `ptu_bench::stored` converts.
+/// `ptu_runs::stored` converts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {

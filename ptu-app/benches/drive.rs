@@ -6,8 +6,8 @@ use btu_rig::drive::DrivePlan;
 use btu_rig::train::TrainData;
 use divan::Bencher;
 use protocol::config::ControllerKind;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::drive::{DriveBench, Setting, drive, unit_config};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::drive::{DriveBench, Setting, drive, unit_config};
 
 fn main() {
     divan::main();

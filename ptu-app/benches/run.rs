@@ -13,10 +13,10 @@ use btu_rig::procedure::{Procedure, RunOptions};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fault_db::Store;
-use ptu_bench::clock;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::run::{self, BenchChoice, BenchSetup, Outcome, RunPlan, Task};
-use ptu_bench::stop::Stop;
+use ptu_runs::clock;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::run::{self, BenchChoice, BenchSetup, Outcome, RunPlan, Task};
+use ptu_runs::stop::Stop;
 
 const STEPS: usize = 5000;
 

@@ -13,15 +13,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
 use crate::operator::HOW_TO_ANSWER;
-use ptu_bench::coverage::Coverage;
-use ptu_bench::failure::Failure;
-use ptu_bench::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
-use ptu_bench::stdio;
-use ptu_bench::stored::{of_procedure, outside_of, standing, was_repeated};
-use ptu_bench::table::{Table, cell};
 use ptu_report::coverage_text;
 use ptu_report::limits::short;
 use ptu_report::words::Language;
+use ptu_runs::coverage::Coverage;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
+use ptu_runs::stdio;
+use ptu_runs::stored::{of_procedure, outside_of, standing, was_repeated};
+use ptu_runs::table::{Table, cell};
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);

@@ -9,10 +9,10 @@ use std::thread::JoinHandle;
 
 use btu_rig::procedure::Procedure;
 
-use ptu_bench::failure::Failure;
-use ptu_bench::run::{LinePrinter, Listener, Outcome, SessionEvent};
-use ptu_bench::stdio;
 use ptu_report::event_lines::EventLines;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
+use ptu_runs::stdio;
 
 /// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
 const WAITING: usize = 65_536;

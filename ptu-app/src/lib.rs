@@ -2,7 +2,7 @@
 //!
 //! * [`cli`]: one file per verb. `ptu gui` starts the program `ptu-window`.
 //!
-//! Of the workspace only `ptu-app`, its crates `ptu-bench` and `ptu-report` and the served unit's program read clocks;
+//! Of the workspace only `ptu-app`, its crates `ptu-runs` and `ptu-report` and the served unit's program read clocks;
 //! the database crate opens its own files and connections.
 
 pub mod cli;

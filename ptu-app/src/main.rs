@@ -6,7 +6,7 @@ mod embedded;
 use std::process::ExitCode;
 
 use ptu_app::cli::Cli;
-use ptu_bench::platform::{ready_output, survive_file_limit};
+use ptu_runs::platform::{ready_output, survive_file_limit};
 
 fn main() -> ExitCode {
     script_files::embed(embedded::FILES);

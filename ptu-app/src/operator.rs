@@ -6,9 +6,9 @@ use btu_rig::procedure::Runner;
 use btu_rig::rig::Rig;
 use protocol::Instant;
 
-use ptu_bench::run::RunControl;
-use ptu_bench::stdio;
-use ptu_bench::typed::{Typed, somebody_is_there};
+use ptu_runs::run::RunControl;
+use ptu_runs::stdio;
+use ptu_runs::typed::{Typed, somebody_is_there};
 
 /// Takes lines of the terminal while a script asks.
 pub struct Operator {

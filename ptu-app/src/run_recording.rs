@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use btu_rig::procedure::Procedure;
 
-use ptu_bench::clock::now_us;
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::{NewFile, cannot_write};
-use ptu_bench::run::{LinePrinter, Listener, Outcome, SessionEvent};
 use ptu_report::trace_io::RunMcap;
+use ptu_runs::clock::now_us;
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::{NewFile, cannot_write};
+use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 
 /// A listener that records and passes every event on. The file is there once the run has ended, whole.
 pub struct RunRecording<L> {

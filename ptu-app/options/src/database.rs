@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
-use ptu_bench::{owner_only, stdio};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
+use ptu_runs::{owner_only, stdio};
 
 /// Names a history for all commands that are given none.
 const VARIABLE: &str = "PTU_DB";

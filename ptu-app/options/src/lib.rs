@@ -13,7 +13,7 @@ mod window;
 pub use database::{Database, only_file};
 use fault_db::Address;
 pub use page::Page;
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 pub use scripts::ScriptsOption;
 pub use window::WindowOptions;
 

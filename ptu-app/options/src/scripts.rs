@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
 
 /// Where procedures and data files are.
 #[derive(Debug, Args)]

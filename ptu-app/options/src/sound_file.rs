@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// The file, in the user's configuration.
 ///

@@ -4,8 +4,8 @@ use btu_rig::rig::Harness;
 use clap::Args;
 
 use super::{Database, Page, ScriptsOption};
-use ptu_bench::link::Endpoint;
 use ptu_report::words::Language;
+use ptu_runs::link::Endpoint;
 
 /// Open the technician's window
 ///

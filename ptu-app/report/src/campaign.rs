@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use crate::left_out::{
     left_out_json, left_out_text, other_faults_json, other_faults_text, pairs_json, pairs_text,
 };
-use ptu_bench::campaign::{
-    AdaptiveFigures, Effort, Figures, Outcome, Redundancy, Share, Shortfall,
-};
+use ptu_runs::campaign::{AdaptiveFigures, Effort, Figures, Outcome, Redundancy, Share, Shortfall};
 
 /// The connection of a laptop alone, as a dictionary names it.
 const ALONE: &str = "ptu";

@@ -5,7 +5,7 @@ use fault_db::{RunDetail, Signed, Signer};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use ptu_bench::data::sha256;
+use ptu_runs::data::sha256;
 
 /// What stands before the certificate in a page, and after it.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";

@@ -1,6 +1,6 @@
 //! How much of what was chosen was run, in words: a verdict of a part of the suite says so in its first line.
 
-use ptu_bench::coverage::Coverage;
+use ptu_runs::coverage::Coverage;
 
 use crate::words::{Words, fill};
 

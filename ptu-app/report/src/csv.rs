@@ -7,8 +7,8 @@ use btu_rig::procedure::Outside;
 use fault_db::{MeasurementRecord, RunDetail, StepRecord};
 use protocol::display_text;
 
-use ptu_bench::clock::rfc3339;
-use ptu_bench::stored::{STEP, outside_of};
+use ptu_runs::clock::rfc3339;
+use ptu_runs::stored::{STEP, outside_of};
 
 /// Names of the columns.
 const COLUMNS: [&str; 17] = [

@@ -9,7 +9,7 @@ use protocol::display_text;
 use serde_json::{Value, json};
 
 use crate::words::Language;
-use ptu_bench::run_diagnosis::Answer;
+use ptu_runs::run_diagnosis::Answer;
 
 /// Parts that are shown at once.
 pub const MOST_PARTS: usize = 3;

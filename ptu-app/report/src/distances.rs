@@ -7,9 +7,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use fault_db::read_regular_file;
-use ptu_bench::clock::Span;
-use ptu_bench::data::LONGEST_FILE;
-use ptu_bench::failure::Failure;
+use ptu_runs::clock::Span;
+use ptu_runs::data::LONGEST_FILE;
+use ptu_runs::failure::Failure;
 
 /// The columns, in their order.
 const COLUMNS: [&str; 3] = ["train", "date", "km"];

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use fault_db::{CauseRecord, Correction, FaultDetail, FaultEvent, RepairRecord};
-use ptu_bench::clock;
+use ptu_runs::clock;
 
 use crate::words::{Words, fill};
 

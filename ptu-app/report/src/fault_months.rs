@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fault_db::{FaultStat, StatQuery, Store};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 use crate::distances::Distances;
 

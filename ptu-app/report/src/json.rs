@@ -12,11 +12,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::trace_notes::note_json;
-use ptu_bench::clock::rfc3339;
-use ptu_bench::coverage::Coverage;
-use ptu_bench::failure::Failure;
-use ptu_bench::run::Evidence;
-use ptu_bench::stored::{STEP, outside_of};
+use ptu_runs::clock::rfc3339;
+use ptu_runs::coverage::Coverage;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::Evidence;
+use ptu_runs::stored::{STEP, outside_of};
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {

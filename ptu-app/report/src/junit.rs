@@ -10,9 +10,9 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, T
 
 use crate::coverage_text;
 use crate::words::Language;
-use ptu_bench::coverage::Coverage;
-use ptu_bench::failure::Failure;
-use ptu_bench::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
+use ptu_runs::coverage::Coverage;
+use ptu_runs::failure::Failure;
+use ptu_runs::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
 ///

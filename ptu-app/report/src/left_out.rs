@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use ptu_bench::campaign::{LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
+use ptu_runs::campaign::{LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
 
 use crate::campaign::{percent, share_json};
 

@@ -1,7 +1,7 @@
 //! What the life of a unit, a train or a part says, on the command line and in the window.
 
 use fault_db::{LOG_SOURCE, Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, Stay};
-use ptu_bench::clock::{local, rfc3339};
+use ptu_runs::clock::{local, rfc3339};
 use serde_json::{Value, json};
 
 use crate::event_text::{cause_text, repair_text};

@@ -5,7 +5,7 @@ use protocol::injection::Lru;
 use protocol::lru::from_stored;
 
 use crate::words::{Language, Words, fill};
-use ptu_bench::data::ScriptsDirectory;
+use ptu_runs::data::ScriptsDirectory;
 
 /// Between the parts of a name.
 pub const DOT: &str = " · ";

@@ -1,6 +1,6 @@
 //! What a passing run says of the repairs made before it, in words.
 
-use ptu_bench::run_diagnosis::RepairProof;
+use ptu_runs::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use ptu_bench::record::{Compared, Parting};
+use ptu_runs::record::{Compared, Parting};
 
 /// The comparison as JSON.
 pub fn json(compared: &Compared) -> Value {

@@ -1,7 +1,7 @@
 //! What was heard in a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside it.
 
-use ptu_bench::signal::{NotUnderstood, Picture, Reading, Receivers, Source, Span, Why};
-use ptu_bench::table::Table as TextTable;
+use ptu_runs::signal::{NotUnderstood, Picture, Reading, Receivers, Source, Span, Why};
+use ptu_runs::table::Table as TextTable;
 
 use crate::plot::{Plot, Raster, Series, Style};
 use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};

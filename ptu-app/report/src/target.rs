@@ -13,10 +13,10 @@ use crate::json::{json_text, run_json};
 use crate::run::{self, CaseSheet, RunComparison, Sheet};
 use crate::words::Language;
 use crate::{csv, junit};
-use ptu_bench::clock::now_us;
-use ptu_bench::data::{self, ScriptsDirectory};
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::{NewFile, cannot_write};
+use ptu_runs::clock::now_us;
+use ptu_runs::data::{self, ScriptsDirectory};
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::{NewFile, cannot_write};
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]

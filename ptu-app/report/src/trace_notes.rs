@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::words::{Words, fill};
-use ptu_bench::clock::rfc3339;
+use ptu_runs::clock::rfc3339;
 
 /// A note at a place in a trace.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

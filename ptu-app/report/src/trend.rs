@@ -5,7 +5,7 @@ use fault_db::{
     Store, StoreError, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit,
 };
 
-use ptu_bench::clock::{local_day, utc_day};
+use ptu_runs::clock::{local_day, utc_day};
 
 /// What is known of a measurement over time.
 pub struct Trend {

@@ -13,15 +13,15 @@ use glob::Pattern;
 
 use super::keep::KeepOptions;
 use super::{Database, Json, ScriptsOption};
-use ptu_bench::campaign::{self, Ran, Request, Suite, figures, redundancy};
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::pool::cores;
-use ptu_bench::progress::Progress;
-use ptu_bench::run_diagnosis::settings;
-use ptu_bench::stdio;
-use ptu_bench::stop::Stop;
 use ptu_report::campaign::{campaign_json, campaign_text};
+use ptu_runs::campaign::{self, Ran, Request, Suite, figures, redundancy};
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::pool::cores;
+use ptu_runs::progress::Progress;
+use ptu_runs::run_diagnosis::settings;
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
 
 /// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
 ///
@@ -133,7 +133,7 @@ impl CampaignArguments {
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         let count = asked.keep.ours(count).count();
         if let Some(file) = &self.out {
-            ptu_bench::data::check_writable(file)?;
+            ptu_runs::data::check_writable(file)?;
         }
         // A shard makes no dictionary: nodes of a cluster need no database.
         let store = match self.keep.is_part() {
@@ -162,7 +162,7 @@ impl CampaignArguments {
         let dictionary = &outcome.dictionary;
         let data = dictionary.to_bytes().map_err(Failure::bench)?;
         if let Some(file) = &self.out {
-            ptu_bench::data::write(file, &data)?;
+            ptu_runs::data::write(file, &data)?;
         }
         store.put_dictionary(&DictionaryRecord {
             made_at_us: clock::now_us(),

@@ -10,13 +10,13 @@ use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
 use super::{Json, ScriptsOption, answered};
-use ptu_bench::clauses;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run_diagnosis::choose;
-use ptu_bench::stdio;
-use ptu_bench::structure::Structure;
-use ptu_bench::symptoms;
-use ptu_bench::table::Table;
+use ptu_runs::clauses;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::run_diagnosis::choose;
+use ptu_runs::stdio;
+use ptu_runs::structure::Structure;
+use ptu_runs::symptoms;
+use ptu_runs::table::Table;
 
 /// Show faults, signals, speed codes, lines, parts, the structure, symptoms, clauses or a train's cars
 #[derive(Debug, Args)]
@@ -156,7 +156,7 @@ impl CatalogArguments {
     /// S3's table, derived from the train's file.
     fn train(&self) -> Result<Vec<Value>, Failure> {
         let TrainData::Cars(data) =
-            ptu_bench::drive::train::train(&self.scripts.find()?, &self.train)?
+            ptu_runs::drive::train::train(&self.scripts.find()?, &self.train)?
         else {
             return Err(Failure::usage(format!(
                 "--train {}: a point mass has no cars",

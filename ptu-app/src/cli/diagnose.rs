@@ -4,10 +4,10 @@ use clap::Args;
 use protocol::LruId;
 
 use super::{Database, Json, ScriptsOption};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run_diagnosis::{Question, diagnose};
-use ptu_bench::stdio;
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::run_diagnosis::{Question, diagnose};
+use ptu_runs::stdio;
 
 /// Find the part that failed, why it is that one, and the next best check
 ///

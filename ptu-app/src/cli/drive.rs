@@ -9,16 +9,16 @@ use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
 use super::{Json, ScriptsOption, answered, made_by};
-use ptu_bench::data::{ScriptsDirectory, check_writable, read, write};
-use ptu_bench::drive::manual::{KEYS, ManualRun, drive_by_hand};
-use ptu_bench::drive::{
+use ptu_report::drive::{self as report, Outcomes, Results, Target};
+use ptu_runs::data::{ScriptsDirectory, check_writable, read, write};
+use ptu_runs::drive::manual::{KEYS, ManualRun, drive_by_hand};
+use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::pool::cores;
-use ptu_bench::stdio;
-use ptu_bench::stop::Stop;
-use ptu_report::drive::{self as report, Outcomes, Results, Target};
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::pool::cores;
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
 
 /// Drive from station to station and measure the stop, or drive by hand
 ///

@@ -16,9 +16,9 @@ use clap::{Args, Subcommand};
 
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption};
-use ptu_bench::failure::{Exit, Failure};
 use ptu_report::naming::PartNames;
 use ptu_report::words::Language;
+use ptu_runs::failure::{Exit, Failure};
 
 /// Query and keep the fault history
 #[derive(Debug, Args)]

@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-use ptu_bench::failure::Failure;
-use ptu_bench::platform::become_program;
+use ptu_runs::failure::Failure;
+use ptu_runs::platform::become_program;
 
 /// Turns this process into the window's, with the arguments after `gui`. Returns only if the window is not installed or
 /// cannot be started.

@@ -8,7 +8,7 @@ use clap::{Args, Command, CommandFactory as _};
 use clap_complete::Shell;
 
 use super::{Cli, WindowOptions, help, print_out};
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure};
 
 /// The type of a history among files, with a gap for the number that marks one.
 const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");

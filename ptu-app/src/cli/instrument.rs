@@ -8,10 +8,10 @@ use serde_json::json;
 
 use super::signing::SigningOption;
 use super::{Database, Json, print_out};
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
-use ptu_bench::keys::{day_argument, day_of};
-use ptu_bench::table::Table;
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::keys::{day_argument, day_of};
+use ptu_runs::table::Table;
 
 /// Register what measures and generates on this bench, with its calibration
 ///

@@ -6,9 +6,9 @@ use clap::Args;
 use fault_db::Address;
 
 use super::print_out;
-use ptu_bench::data::check_writable;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::kept::{Keep, QueueAt, Shard};
+use ptu_runs::data::check_writable;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::kept::{Keep, QueueAt, Shard};
 
 /// Where runs are kept, and which are made here.
 #[derive(Debug, Args)]

@@ -8,15 +8,15 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::keys::{
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::keys::{
     KeyEntry, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, own_folder,
     public_name,
 };
-use ptu_bench::new_file::{NewFile, cannot_write};
-use ptu_bench::owner_only;
-use ptu_bench::table::Table;
+use ptu_runs::new_file::{NewFile, cannot_write};
+use ptu_runs::owner_only;
+use ptu_runs::table::Table;
 
 /// Years for which a new key holds.
 const YEARS: u32 = 2;

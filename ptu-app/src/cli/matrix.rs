@@ -10,11 +10,11 @@ use diagnosis::matrix::{
 };
 
 use super::{Json, print_out};
-use ptu_bench::data::read_within;
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::stdio;
-use ptu_bench::table::Table;
 use ptu_report::json_safe;
+use ptu_runs::data::read_within;
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::stdio;
+use ptu_runs::table::Table;
 
 /// States a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;

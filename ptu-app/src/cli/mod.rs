@@ -39,13 +39,13 @@ use fault_db::Store;
 use output::Json;
 use serde::Serialize;
 
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
-use ptu_bench::platform::running_program;
-use ptu_bench::run::loading;
-use ptu_bench::stdio;
 use ptu_options::{Database, ScriptsOption, WindowOptions, refuse_password};
 use ptu_report::json_text;
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::platform::running_program;
+use ptu_runs::run::loading;
+use ptu_runs::stdio;
 
 /// Tests an on-board ATC unit (ATP + ATO + TWC) and finds the part that failed.
 ///

@@ -5,9 +5,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{print_json, print_out};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::stdio;
 use ptu_report::csv::Cell;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::stdio;
 
 /// `--json`, and the answer in the form asked for.
 #[derive(Clone, Copy, Debug, Args)]

@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::Json;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::link::ports::found;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::link::ports::found;
 
 /// List serial ports; a pseudo-terminal is not listed but can be named
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ mod pull;
 use clap::{Args, Subcommand};
 
 use super::Database;
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure};
 
 /// Read a unit's own record of automatic runs, and compare a run with a sound unit's
 #[derive(Debug, Args)]

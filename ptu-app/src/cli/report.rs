@@ -5,11 +5,11 @@ use fault_db::{Id, Store, StoreError};
 
 use super::signing::SigningOption;
 use super::{Database, ScriptsOption, print_out};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::process_id;
 use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
 use ptu_report::{Target, write_case};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::process_id;
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///

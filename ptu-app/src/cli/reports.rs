@@ -3,10 +3,10 @@
 use clap::Args;
 use fault_db::{RunDetail, Store};
 
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
 use ptu_report::words::Language;
 use ptu_report::{self, Target};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
 
 /// Which reports to write.
 #[derive(Debug, Args)]

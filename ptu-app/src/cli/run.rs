@@ -20,18 +20,18 @@ use crate::console::Console;
 use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::drive::Setting;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::link::Endpoint;
-use ptu_bench::run::{
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::drive::Setting;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::link::Endpoint;
+use ptu_runs::run::{
     self, BenchChoice, BenchSetup, MeasuringRules, RunControl, RunPlan, Signals, Suite,
     check_serial, software_version,
 };
-use ptu_bench::run_diagnosis::{Bench, adaptive, prove_repairs};
-use ptu_bench::stdio;
-use ptu_bench::stop::Stop;
-use ptu_bench::symptoms;
+use ptu_runs::run_diagnosis::{Bench, adaptive, prove_repairs};
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
+use ptu_runs::symptoms;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";
@@ -334,7 +334,7 @@ impl RunArguments {
         {
             failure.tell();
         }
-        let detail = store.run(outcome.id, &ptu_bench::process_id::is_alive)?;
+        let detail = store.run(outcome.id, &ptu_runs::process_id::is_alive)?;
         // Database and reports have the result: a terminal that takes no output changes no verdict.
         let said = match self.show.json {
             true => Ok(()),

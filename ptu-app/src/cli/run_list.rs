@@ -6,8 +6,8 @@ use btu_rig::rig::Harness;
 use serde_json::json;
 
 use super::{print_json, print_out};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run::Task;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::run::Task;
 
 /// Prints what would be run.
 pub fn show(tasks: &[Task], harness: Harness, json: bool) -> Result<Exit, Failure> {

@@ -9,15 +9,15 @@ use super::reports::ReportOption;
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
-use ptu_bench::clock::{self, Span};
-use ptu_bench::data;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::process_id;
-use ptu_bench::table::Table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
 use ptu_report::trace_notes::note_text;
 use ptu_report::words::Language;
 use ptu_report::{Target, run_json, run_summary_json, write_comparison};
+use ptu_runs::clock::{self, Span};
+use ptu_runs::data;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::process_id;
+use ptu_runs::table::Table;
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]

@@ -8,9 +8,9 @@ use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
-use ptu_bench::data::{self, LONGEST_FILE};
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::table::Table;
+use ptu_runs::data::{self, LONGEST_FILE};
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::table::Table;
 
 /// Ask a saved question again, or list them all
 ///

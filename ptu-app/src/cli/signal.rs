@@ -10,12 +10,12 @@ use clap::{Args, Subcommand};
 use super::output::print_csv;
 use super::{Json, ScriptsOption, made_by, print_out};
 use protocol::config::UnitConfig;
-use ptu_bench::data::{check_writable, write};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::signal::{self, FULL_SCALE_MV, Strength, Wave};
 use ptu_report::run::html;
 use ptu_report::signal::{self as report, Recording};
 use ptu_report::words::Language;
+use ptu_runs::data::{check_writable, write};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::signal::{self, FULL_SCALE_MV, Strength, Wave};
 use serde_json::Value;
 
 /// Make the waveform of a speed code or of TWC, read what is in a recording, play and record

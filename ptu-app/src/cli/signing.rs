@@ -7,9 +7,9 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
-use ptu_bench::keys::{KeyFile, KeyList, Standing, own_folder};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
+use ptu_runs::keys::{KeyFile, KeyList, Standing, own_folder};
 
 /// Longest file with a PIN, bytes.
 const LONGEST_PIN: u64 = 4096;

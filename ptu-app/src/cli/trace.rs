@@ -13,8 +13,8 @@ use clap::{Args, Subcommand};
 use fault_db::{Id, Store, TraceData};
 
 use super::Database;
-use ptu_bench::failure::{Exit, Failure};
 use ptu_report::trace_io::Seconds;
+use ptu_runs::failure::{Exit, Failure};
 
 /// Show, explain, compare, replay and export recorded traces
 #[derive(Debug, Args)]

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
-use ptu_bench::drive::SectionChoice;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run::BenchChoice;
-use ptu_bench::stop::Stop;
-use ptu_bench::train_server::{self, Place, TrainRequest};
+use ptu_runs::drive::SectionChoice;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::run::BenchChoice;
+use ptu_runs::stop::Stop;
+use ptu_runs::train_server::{self, Place, TrainRequest};
 
 use super::ScriptsOption;
 

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use ptu_bench::field::AskedUnit;
-use ptu_bench::link::Endpoint;
+use ptu_runs::field::AskedUnit;
+use ptu_runs::link::Endpoint;
 
 /// The unit on a port.
 #[derive(Debug, Args)]

@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 use super::key::KeysOption;
 use super::{Database, Json, answered};
-use ptu_bench::clock::{self, rfc3339};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::keys::KeyList;
 use ptu_report::{has_certificate, read_certificate};
+use ptu_runs::clock::{self, rfc3339};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::keys::KeyList;
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;

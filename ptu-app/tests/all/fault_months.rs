@@ -100,7 +100,7 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
 
 /// The history of a place, to write to.
 pub fn store(place: &Place) -> Store {
-    let options = ptu_bench::clock::open_options();
+    let options = ptu_runs::clock::open_options();
     Store::open(&place.path("history.db"), options).expect("a history")
 }
 

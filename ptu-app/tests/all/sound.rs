@@ -11,7 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
-use ptu_bench::signal::{FULL_SCALE_MV, Wav};
+use ptu_runs::signal::{FULL_SCALE_MV, Wav};
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::common::{Place, list, number, text};

@@ -2,8 +2,8 @@
 
 use crate::common::{Place, copy_folder, has_shape, list, number, text};
 use fault_db::Store;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::replay::{Original, explain, good_twin};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::replay::{Original, explain, good_twin};
 use rusqlite::Connection;
 use serde_json::Value;
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use ptu_bench::data::ScriptsDirectory;
+use ptu_runs::data::ScriptsDirectory;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -45,7 +45,7 @@ impl Place {
     pub fn with_database() -> Self {
         let place = Self::new();
         let made =
-            fault_db::Store::open(&place.path("history.db"), ptu_bench::clock::open_options());
+            fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options());
         made.and_then(fault_db::Store::close).expect("a database");
         place
     }

@@ -31,12 +31,12 @@ use protocol::line::{self, Line};
 use protocol::link::{End, Link};
 use protocol::message::{Address as Party, CATALOGUE, Channel as WireChannel, Message};
 use protocol::{Backlog, Duration, Instant};
-use ptu_bench::clock::{self, Span};
-use ptu_bench::drive::{SectionChoice, Setting};
-use ptu_bench::link::Endpoint;
-use ptu_bench::run::{BenchContents, Stimuli, loading};
 use ptu_report::Target;
 use ptu_report::trace_io::{Seconds, import};
+use ptu_runs::clock::{self, Span};
+use ptu_runs::drive::{SectionChoice, Setting};
+use ptu_runs::link::Endpoint;
+use ptu_runs::run::{BenchContents, Stimuli, loading};
 
 fn fuzz(name: &str, examples: impl IntoIterator<Item = impl Into<Vec<u8>>>) -> Fuzz {
     Fuzz::new(name, env!("CARGO_MANIFEST_DIR"), examples)

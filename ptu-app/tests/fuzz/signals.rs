@@ -2,8 +2,8 @@
 
 use btu_rig::waveform::ChannelConfig;
 use protocol::config::UnitConfig;
-use ptu_bench::signal;
-use ptu_bench::sound::Calibrations;
+use ptu_runs::signal;
+use ptu_runs::sound::Calibrations;
 
 use crate::common::Place;
 use crate::{fuzz, fuzz_text, memory, shipped};

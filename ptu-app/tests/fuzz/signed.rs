@@ -1,8 +1,8 @@
 //! What is signed, and by whom: certificates, sheets, lists of keys and key files.
 
 use fault_db::{Signed, Signer, Statement};
-use ptu_bench::keys::{KeyFile, KeyList};
 use ptu_report::{has_certificate, read_certificate};
+use ptu_runs::keys::{KeyFile, KeyList};
 
 use crate::common::Place;
 use crate::{fuzz, fuzz_text, memory};

@@ -19,10 +19,10 @@ use std::time::{Duration, Instant};
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Context, RawInput, Rect, pos2, vec2};
 use protocol::{CYCLE, Speed};
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::link::{Pace, keep_time};
 use ptu_options::Page;
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::link::{Pace, keep_time};
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
@@ -113,7 +113,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
         },
         settings_file: None,
         connect: true,
-        interrupted: ptu_bench::stop::Stop::default(),
+        interrupted: ptu_runs::stop::Stop::default(),
     };
     let context = Context::default();
     let wake = Arc::new(move || noted.lock().expect("times").push(Instant::now()));

@@ -17,11 +17,11 @@ use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::{Unit, Units};
 use super::{fonts, theme};
-use ptu_bench::bench_worker::{Wake, Watched};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
-use ptu_bench::stop::Stop;
 use ptu_report::words::Words;
+use ptu_runs::bench_worker::{Wake, Watched};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
+use ptu_runs::stop::Stop;
 
 /// How often a window that is being closed looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use fault_db::{Address, Store, StoreError};
 
-use ptu_bench::clock;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
-use ptu_bench::owner_only;
+use ptu_runs::clock;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
+use ptu_runs::owner_only;
 
 /// The files that pages read and runs are recorded in.
 #[derive(Clone, Debug)]

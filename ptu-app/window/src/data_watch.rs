@@ -10,9 +10,9 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::time::{Duration, SystemTime};
 
 use super::data_paths::{DataPaths, beside};
-use ptu_bench::bench_worker::Wake;
-use ptu_bench::failure::Failure;
-use ptu_bench::platform::identity;
+use ptu_runs::bench_worker::Wake;
+use ptu_runs::failure::Failure;
+use ptu_runs::platform::identity;
 
 /// Time between two looks.
 const LOOK: Duration = Duration::from_secs(1);
@@ -103,7 +103,7 @@ mod tests {
     fn a_reader_leaves_the_stamp_and_a_writer_does_not() {
         let folder = tempfile::tempdir().expect("a folder");
         let database = folder.path().join("history.db");
-        let options = ptu_bench::clock::open_options;
+        let options = ptu_runs::clock::open_options;
         fault_db::Store::open(&database, options())
             .expect("made")
             .close()

@@ -5,8 +5,8 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use super::app::{App, Options};
-use ptu_bench::bench_worker::Wake;
-use ptu_bench::failure::Failure;
+use ptu_runs::bench_worker::Wake;
+use ptu_runs::failure::Failure;
 
 /// Smallest window in which every page can be used, and the first one's size.
 const SMALLEST: [f32; 2] = [900.0, 600.0];

@@ -1,6 +1,6 @@
 //! The technician's window: one frame with a connection bar, and pages below it.
 //!
-//! Drawing never waits: each unit is driven by its own bench thread ([`ptu_bench::bench_worker`]), and queries to the
+//! Drawing never waits: each unit is driven by its own bench thread ([`ptu_runs::bench_worker`]), and queries to the
 //! database and to files run on the thread of a `QueryWorker`.
 
 mod app;

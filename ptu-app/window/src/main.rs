@@ -7,11 +7,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use fault_db::Store;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
-use ptu_bench::run::loading;
-use ptu_bench::stop::Stop;
 use ptu_options::{WindowOptions, refuse_password};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
+use ptu_runs::run::loading;
+use ptu_runs::stop::Stop;
 use ptu_window::{DataPaths, Options, Settings, open};
 
 #[derive(Debug, Parser)]

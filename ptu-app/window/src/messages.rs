@@ -1,7 +1,7 @@
 //! Messages to the user of the window: trouble and information, with the time of each.
 
 use fault_db::Id;
-use ptu_bench::clock;
+use ptu_runs::clock;
 
 /// The latest messages, oldest first.
 #[derive(Debug, Default)]

@@ -11,8 +11,8 @@ use super::parts::UnitFilter;
 use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::Units;
-use ptu_bench::symptoms::Symptom;
 use ptu_report::words::Words;
+use ptu_runs::symptoms::Symptom;
 
 /// What a page reads and changes while it is drawn.
 pub struct PageContext<'a> {

@@ -3,8 +3,8 @@
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use super::data_paths::DataPaths;
-use ptu_bench::bench_worker::Wake;
-use ptu_bench::failure::Failure;
+use ptu_runs::bench_worker::Wake;
+use ptu_runs::failure::Failure;
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 

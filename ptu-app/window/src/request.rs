@@ -109,7 +109,7 @@ mod tests {
     use std::sync::mpsc::{self, Sender};
 
     use super::*;
-    use ptu_bench::failure::Failure;
+    use ptu_runs::failure::Failure;
 
     fn pending() -> (Sender<Result<u32, Failure>>, Pending<u32>) {
         let (sender, receiver) = mpsc::channel();

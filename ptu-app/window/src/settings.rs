@@ -6,11 +6,11 @@ use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::{Density, Page, SavedQuestion};
-use ptu_bench::clock;
-use ptu_bench::data::LONGEST_FILE;
-use ptu_bench::failure::Failure;
-use ptu_bench::run::BenchChoice;
 use ptu_report::words::Language;
+use ptu_runs::clock;
+use ptu_runs::data::LONGEST_FILE;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::BenchChoice;
 
 /// Everything is at least and at most so large.
 pub const SMALLEST_ZOOM: f32 = 0.7;
@@ -162,7 +162,7 @@ impl Settings {
     /// # Errors
     /// The file or its folder cannot be written.
     pub fn save(&self, file: &Path) -> Result<(), Failure> {
-        ptu_bench::data::keep(file, self)
+        ptu_runs::data::keep(file, self)
     }
 }
 

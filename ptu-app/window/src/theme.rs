@@ -4,7 +4,7 @@
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, TextStyle, Theme, Ui, Visuals};
 
-use ptu_bench::stored::from_stored;
+use ptu_runs::stored::from_stored;
 
 /// Colours of meaning.
 #[derive(Clone, Copy, Debug)]

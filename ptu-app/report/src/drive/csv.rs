@@ -8,7 +8,7 @@ use protocol::signal::Signal;
 
 use super::{Outcomes, Results};
 use crate::csv::Cell;
-use ptu_bench::drive::monte_carlo::MonteCarlo;
+use ptu_runs::drive::monte_carlo::MonteCarlo;
 
 /// A column of a cycle: its name and its value.
 type Column = (&'static str, fn(&Row) -> f64);

@@ -3,9 +3,9 @@
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::Outcome;
 
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::Trial;
-use ptu_bench::drive::{Case, Driven};
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::Trial;
+use ptu_runs::drive::{Case, Driven};
 
 /// A name and its value.
 pub type Fact = (&'static str, String);

@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 use super::tables::{StepResult, step_results};
 use super::{Outcomes, Results};
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::{MonteCarlo, Trial, percentile};
-use ptu_bench::drive::{Case, DriveBench, Driven};
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::{MonteCarlo, Trial, percentile};
+use ptu_runs::drive::{Case, DriveBench, Driven};
 
 /// Percentiles and their keys.
 const PERCENTILES: [(&str, f64); 7] = [

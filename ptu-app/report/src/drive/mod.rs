@@ -18,11 +18,11 @@ pub use text::text;
 
 use crate::words::Language;
 use crate::{json_text, run};
-use ptu_bench::data;
-use ptu_bench::drive::Driven;
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::MonteCarlo;
-use ptu_bench::failure::Failure;
+use ptu_runs::data;
+use ptu_runs::drive::Driven;
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::MonteCarlo;
+use ptu_runs::failure::Failure;
 
 /// What was driven, and how JSON tells it.
 pub struct Results {

@@ -1,8 +1,8 @@
 //! Runs as printed blocks, which page and window show: verdict, train and day, figures, plots, and what happened.
 
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::MonteCarlo;
-use ptu_bench::drive::{Case, DriveBench, Driven};
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::MonteCarlo;
+use ptu_runs::drive::{Case, DriveBench, Driven};
 
 use super::facts::{Fact, by_hand, conditions, off, title};
 use super::plots::{plots, plots_by_hand, plots_of_many};
@@ -234,9 +234,9 @@ mod tests {
 
     use btu_rig::drive::Load;
     use protocol::config::ControllerKind;
-    use ptu_bench::data::ScriptsDirectory;
-    use ptu_bench::drive::{Fixed, Request, SectionChoice, drive_all};
-    use ptu_bench::stop::Stop;
+    use ptu_runs::data::ScriptsDirectory;
+    use ptu_runs::drive::{Fixed, Request, SectionChoice, drive_all};
+    use ptu_runs::stop::Stop;
 
     use super::*;
     use crate::run::block::Cell;

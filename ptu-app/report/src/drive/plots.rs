@@ -6,9 +6,9 @@ use protocol::signal::Signal;
 
 use super::facts::off;
 use crate::plot::{Place, Plot, Series, Style};
-use ptu_bench::drive::Driven;
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::MonteCarlo;
+use ptu_runs::drive::Driven;
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::MonteCarlo;
 
 /// Way before the stop point that is shown larger, m.
 const LAST_M: f64 = 12.0;

@@ -7,10 +7,10 @@ use btu_rig::rig::PairEfforts;
 use super::facts::{conditions, off, stop};
 use crate::run::block::{self, Align, Column, RowKind};
 use crate::words::Words;
-use ptu_bench::drive::Driven;
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::{MonteCarlo, percentile};
-use ptu_bench::table;
+use ptu_runs::drive::Driven;
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::{MonteCarlo, percentile};
+use ptu_runs::table;
 
 /// Time after which the efforts after a step are reported, s: jerk limit and lags are over.
 const LATER_S: f64 = 3.0;

@@ -4,10 +4,10 @@ use btu_rig::drive::Metrics;
 
 use super::facts::{Fact, by_hand, conditions, ending, off, title};
 use super::{Outcomes, Results, tables};
-use ptu_bench::drive::Driven;
-use ptu_bench::drive::manual::ManualRun;
-use ptu_bench::drive::monte_carlo::MonteCarlo;
-use ptu_bench::table::Table;
+use ptu_runs::drive::Driven;
+use ptu_runs::drive::manual::ManualRun;
+use ptu_runs::drive::monte_carlo::MonteCarlo;
+use ptu_runs::table::Table;
 
 /// All of it.
 pub fn text(results: &Results) -> String {

@@ -10,7 +10,7 @@ use btu_rig::procedure::{EventSource, Measurement, Procedure, RunEvent, StepResu
 use protocol::lru;
 use serde_json::{Map, Value, json};
 
-use ptu_bench::run::{Outcome, SessionEvent};
+use ptu_runs::run::{Outcome, SessionEvent};
 pub use table::{COMMON, EVENTS, EventKeys, Kind, VERSION, schema};
 
 /// Turns events into lines.

@@ -18,8 +18,8 @@ use fault_db::{QueryBounds, QueryResult, SqlValue, Store};
 use serde::{Deserialize, Serialize};
 
 use partition::Partition;
-use ptu_bench::data;
-use ptu_bench::failure::Failure;
+use ptu_runs::data;
+use ptu_runs::failure::Failure;
 use views::{VIEWS, View};
 
 /// What is in a folder's partitions, so that the next export need not read them.

@@ -11,7 +11,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::views::{Kind, View};
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// A file in memory.
 pub(super) struct Partition<'a> {

@@ -15,10 +15,10 @@ use crate::coverage_text;
 use crate::naming;
 use crate::trace_notes::note_text;
 use crate::words::{Words, fill};
-use ptu_bench::clock::{local, local_zoned};
-use ptu_bench::coverage::Coverage;
-use ptu_bench::run::{Evidence, InstrumentEvidence};
-use ptu_bench::stored::{outside_of, standing};
+use ptu_runs::clock::{local, local_zoned};
+use ptu_runs::coverage::Coverage;
+use ptu_runs::run::{Evidence, InstrumentEvidence};
+use ptu_runs::stored::{outside_of, standing};
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);

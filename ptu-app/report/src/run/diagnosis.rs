@@ -4,7 +4,7 @@ use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::diagnosis::{first_of_parts, shown_reasons};
 use crate::words::{Language, Words, fill};
-use ptu_bench::run_diagnosis::Answer;
+use ptu_runs::run_diagnosis::Answer;
 
 /// Fault modes less likely than this are not named.
 const LEAST_NAMED: f64 = 0.01;

@@ -6,10 +6,10 @@ use fault_db::{Id, RunDetail, RunOccurrence, StepRecord, Store, StoreError, Verd
 
 use super::plots::drawn_channels;
 use super::{Sheet, SheetTrace};
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
-use ptu_bench::process_id;
-use ptu_bench::run_diagnosis::diagnose_run;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
+use ptu_runs::process_id;
+use ptu_runs::run_diagnosis::diagnose_run;
 
 impl Sheet {
     /// Reads all a run's sheet says. Without a fault dictionary there is no diagnosis, and the sheet

@@ -34,7 +34,7 @@ pub use paper::{Paper, Printed};
 pub use pdf::pdf;
 pub use sources::in_words as source_in_words;
 
-use ptu_bench::run_diagnosis::Answer;
+use ptu_runs::run_diagnosis::Answer;
 
 /// All a test sheet says, in no language yet.
 pub struct Sheet {

@@ -15,8 +15,8 @@ use super::page::{self, DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use super::{Paper, Printed};
 use crate::fonts::PRETENDARD;
 use crate::words::Words;
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 /// Weight is a thin line around letters, in sizes of the letters: only one weight is shipped.
 const WEIGHT: f32 = 0.035;

@@ -2,8 +2,8 @@
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
-use ptu_bench::run::uncertainty_of;
-use ptu_bench::stored::outside_of;
+use ptu_runs::run::uncertainty_of;
+use ptu_runs::stored::outside_of;
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use super::sources::Sources;

@@ -6,7 +6,7 @@ use fault_db::{
 };
 
 use protocol::display_text;
-use ptu_bench::data::ScriptsDirectory;
+use ptu_runs::data::ScriptsDirectory;
 
 use super::page::font::FontMetrics;
 use super::page::{self, HEIGHT, Item, WIDTH};

@@ -4,7 +4,7 @@ use fault_db::{Channel, TraceHead};
 use serde::{Deserialize, Serialize};
 
 use crate::trace_notes::TraceNote;
-use ptu_bench::clock::rfc3339;
+use ptu_runs::clock::rfc3339;
 
 /// The name it is kept under in files that have named metadata.
 pub const NAME: &str = "ptu.trace";

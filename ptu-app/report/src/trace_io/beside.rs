@@ -6,8 +6,8 @@ use fault_db::{Id, Store, TraceData};
 
 use super::align::{Aligned, align};
 use super::series::import;
-use ptu_bench::failure::Failure;
-use ptu_bench::replay::{Rule, rule_between};
+use ptu_runs::failure::Failure;
+use ptu_runs::replay::{Rule, rule_between};
 
 /// Names that are told of a file that has none of the trace's signals.
 const SHOWN_NAMES: usize = 10;

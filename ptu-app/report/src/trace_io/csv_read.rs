@@ -11,8 +11,8 @@ use super::about::TraceInfo;
 use super::column::is_called;
 use super::csv::beside;
 use super::series::{Import, Table, check_size, plain, wrong};
-use ptu_bench::data::LONGEST_FILE;
-use ptu_bench::failure::Failure;
+use ptu_runs::data::LONGEST_FILE;
+use ptu_runs::failure::Failure;
 
 /// A longer line is none of a table of signals.
 const MAX_LINE: u64 = 1 << 20;

@@ -6,8 +6,8 @@ use std::path::Path;
 use super::csv::{self, beside};
 use super::part::TracePart;
 use super::{mcap_write, parquet};
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::{NewFile, cannot_write};
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::{NewFile, cannot_write};
 
 /// What a trace is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::about::{NAME, TraceInfo};
 use super::column::is_called;
 use super::series::{Import, Table, check_size, plain, wrong};
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// A longer record, or piece of compressed messages, is refused instead of being held in memory.
 const MAX_RECORD: usize = 32 << 20;

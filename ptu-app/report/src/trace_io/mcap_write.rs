@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 use super::about::NAME;
 use super::column::{column_name, word};
 use super::part::TracePart;
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::cannot_write;
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::cannot_write;
 
 /// The topic of all messages.
 const TOPIC: &str = "trace";

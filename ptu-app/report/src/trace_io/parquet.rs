@@ -20,8 +20,8 @@ use parquet::schema::types::Type;
 use super::about::NAME;
 use super::column::{column_name, word};
 use super::part::TracePart;
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::cannot_write;
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::cannot_write;
 
 /// Rows of a row group; one column of a group is in memory at once.
 const GROUP_ROWS: usize = 1 << 16;

@@ -15,7 +15,7 @@ use super::about::{NAME, TraceInfo};
 use super::csv_read::{channel, sample, whole_us};
 use super::parquet::UTC;
 use super::series::{Import, Table, check_size, wrong};
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// Reads a file: one row after the other, each column but the first and that of UTC a signal.
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {

@@ -7,7 +7,7 @@ use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;

@@ -16,7 +16,7 @@ use protocol::{Duration, Instant};
 
 use super::mcap_write::{keys, options, put_row, schema};
 use crate::event_lines::{EventLines, schema as events_schema};
-use ptu_bench::run::{Outcome, SessionEvent, channel, in_steps};
+use ptu_runs::run::{Outcome, SessionEvent, channel, in_steps};
 
 /// The recording of one run.
 pub struct RunMcap<W: Write + Seek> {

@@ -7,7 +7,7 @@ use fault_db::{Channel, ChannelKind};
 
 use super::about::TraceInfo;
 use super::{csv_read, mcap_read, parquet_read};
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// A file has at most this many signals; a trace of ours has a few hundred.
 const MOST_SIGNALS: usize = 4096;

@@ -5,9 +5,9 @@ use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 use super::TraceView;
 use crate::naming::PartNames;
 use crate::words::Language;
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
-use ptu_bench::process_id;
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
+use ptu_runs::process_id;
 
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;

@@ -9,9 +9,9 @@ use fault_db::{Id, Store, TraceData};
 
 use super::TraceView;
 use crate::trace_io::beside;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
-use ptu_bench::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
+use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
 /// What a trace is compared with.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 mod states;
 
 use super::wordings;
-use ptu_bench::bench_worker::Refused;
+use ptu_runs::bench_worker::Refused;
 
 wordings! {
     /// Live view and stimuli.

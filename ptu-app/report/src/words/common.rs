@@ -4,7 +4,7 @@ use btu_rig::procedure::{Outside, Verdict};
 use fault_db::FaultState;
 
 use super::wordings;
-use ptu_bench::stored::from_stored;
+use ptu_runs::stored::from_stored;
 
 wordings! {
     /// Verdicts, states and what every page says.

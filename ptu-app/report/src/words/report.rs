@@ -3,7 +3,7 @@
 use protocol::event::Severity;
 
 use super::wordings;
-use ptu_bench::run_diagnosis::Origin;
+use ptu_runs::run_diagnosis::Origin;
 
 wordings! {
     /// Test sheet.

@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn an_error_keeps_its_file_and_loses_its_option() {
         let path = Path::new("/data/history.db").to_path_buf();
-        let failure = ptu_bench::failure::Failure::from(StoreError::Corrupt {
+        let failure = ptu_runs::failure::Failure::from(StoreError::Corrupt {
             path: path.clone(),
             detail: "database disk image is malformed".into(),
         });
@@ -196,7 +196,7 @@ mod tests {
             said,
             "파일이 손상되었습니다: /data/history.db (데이터베이스 내용이 손상됨). 이력을 검사한 후 백업으로 계속하십시오"
         );
-        let failure = ptu_bench::failure::Failure::from(StoreError::Missing { path });
+        let failure = ptu_runs::failure::Failure::from(StoreError::Missing { path });
         let said = Language::English.words().trouble(&failure.message);
         assert_eq!(
             said,

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::super::print_out;
-use ptu_bench::data::write;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::kept::merge;
-use ptu_bench::stdio;
+use ptu_runs::data::write;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::kept::merge;
+use ptu_runs::stdio;
 
 /// Put the runs of shards together, of a campaign or of `ptu drive --monte-carlo`
 ///

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use fault_db::{CheckReport, SealHead, Store, StoreError};
 
 use crate::cli::{Database, Json, answered};
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::table::Table;
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::table::Table;
 
 pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
     let report = match database.open_read_only() {

@@ -10,11 +10,11 @@ use serde_json::{json, to_value};
 
 use super::check::sealed;
 use crate::cli::{Database, Json, answered, print_json, print_out, since_argument};
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::stdio;
 use ptu_options::only_file;
 use ptu_report::history_files::{Exported, export_history};
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::stdio;
 
 /// Which traces may be deleted; those of faults that are not closed never are.
 #[derive(Debug, Args)]

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use super::{Database, Json, print_out};
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure};
 
 /// Check, back up, prune, merge, sync or query the database
 #[derive(Debug, Args)]

@@ -9,9 +9,9 @@ use serde_json::{Map, Value, json};
 use super::watch::{Watch, too_long};
 use crate::cli::output::Output;
 use crate::cli::{Database, print_json};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::stdio;
-use ptu_bench::table::Table;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::stdio;
+use ptu_runs::table::Table;
 
 /// Rows a query prints at most.
 const MAX_ROWS: usize = 10_000;

@@ -4,8 +4,8 @@ use clap::{Args, Subcommand};
 use fault_db::{Address, ServerSetup, Store};
 
 use crate::cli::Json;
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure};
 
 /// The account of the laptops, if none is named.
 const LAPTOPS: &str = "ptu";

@@ -9,10 +9,10 @@ use serde_json::json;
 
 use super::maintenance::{rivals, told_refused};
 use crate::cli::{Database, Json, answered};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::platform::computer_name;
-use ptu_bench::stop::Stop;
-use ptu_bench::{clock, process_id, stdio};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::platform::computer_name;
+use ptu_runs::stop::Stop;
+use ptu_runs::{clock, process_id, stdio};
 
 /// Send this laptop's history to a server, and receive what others recorded about its faults
 ///

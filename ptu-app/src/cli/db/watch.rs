@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure};
 
 /// From one look at the temporary files to the next.
 const LOOK: Duration = Duration::from_millis(50);

@@ -6,13 +6,13 @@ use fault_db::{Address, Store, StoreError};
 
 use super::Finding;
 use crate::cli::gui;
-use ptu_bench::clock::{ClockState, local_minute as day, now_us};
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
-use ptu_bench::link::ports;
-use ptu_bench::owner_only;
-use ptu_bench::process_id;
-use ptu_bench::run::{BenchChoice, Suite};
+use ptu_runs::clock::{ClockState, local_minute as day, now_us};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
+use ptu_runs::link::ports;
+use ptu_runs::owner_only;
+use ptu_runs::process_id;
+use ptu_runs::run::{BenchChoice, Suite};
 
 /// Below this, runs may soon find no room, bytes, a value of this program: some thousand runs with their traces.
 const LITTLE_ROOM: u64 = 1 << 30;

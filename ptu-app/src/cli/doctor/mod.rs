@@ -7,7 +7,7 @@ use fault_db::Address;
 use serde::Serialize;
 
 use super::{Database, Json, ScriptsOption, answered};
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure};
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
 ///

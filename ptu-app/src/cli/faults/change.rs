@@ -4,9 +4,9 @@ use clap::Args;
 use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
 use crate::cli::print_out;
-use ptu_bench::clock::now_us;
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
-use ptu_bench::stdio;
+use ptu_runs::clock::now_us;
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::stdio;
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
 ///

@@ -5,9 +5,9 @@ use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::{Event, Severity};
 
 use crate::cli::check_unit;
-use ptu_bench::clock::Span;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::{Failure, did_you_mean, did_you_mean_number};
+use ptu_runs::clock::Span;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::{Failure, did_you_mean, did_you_mean_number};
 
 /// Which faults.
 #[derive(Debug, Args)]

@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
 use crate::cli::{Json, ScriptsOption, since_argument};
-use ptu_bench::clock::{local, rfc3339};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::field::{ImportedLog, UnitReading};
-use ptu_bench::stop::Stop;
-use ptu_bench::table::Table;
+use ptu_runs::clock::{local, rfc3339};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::field::{ImportedLog, UnitReading};
+use ptu_runs::stop::Stop;
+use ptu_runs::table::Table;
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///

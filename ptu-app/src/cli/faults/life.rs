@@ -5,12 +5,12 @@ use fault_db::{Life, Store};
 use protocol::display_text::line;
 
 use crate::cli::{Json, ScriptsOption, at_least_one, print_json, print_out};
-use ptu_bench::clock::local;
-use ptu_bench::failure::{Exit, Failure, did_you_mean_number};
-use ptu_bench::table::Table;
 use ptu_report::life;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Language, Words, fill};
+use ptu_runs::clock::local;
+use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::table::Table;
 
 /// Tell everything stored about a unit, a train or a part, by its serial number
 ///

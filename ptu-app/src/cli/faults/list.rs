@@ -6,11 +6,11 @@ use fault_db::{FaultFilter, FaultSummary, Store};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
-use ptu_bench::clock::local;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::stdio;
-use ptu_bench::table::Table;
 use ptu_report::{FAULT_KEYS, fault_json};
+use ptu_runs::clock::local;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::stdio;
+use ptu_runs::table::Table;
 
 /// List faults, last seen first
 ///

@@ -5,13 +5,13 @@ use protocol::display_text::line;
 use serde_json::{Value, json};
 
 use crate::cli::Json;
-use ptu_bench::clock::{local, rfc3339};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::table::Table;
 use ptu_report::event_text::{cause_text, correction_text, note_text, repair_text};
 use ptu_report::fault_json;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Language, Words, fill};
+use ptu_runs::clock::{local, rfc3339};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::table::Table;
 
 /// Shows the fault an id stands for. Parts and signals go by their names where another language than English is wanted,
 /// and else by what they are called in commands and scripts.

@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, check_unit};
-use ptu_bench::clock::{Span, rfc3339, utc_day};
-use ptu_bench::data;
-use ptu_bench::failure::{Exit, Failure, did_you_mean};
 use ptu_report::trend::{TimeSeries, Trend};
+use ptu_runs::clock::{Span, rfc3339, utc_day};
+use ptu_runs::data;
+use ptu_runs::failure::{Exit, Failure, did_you_mean};
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///

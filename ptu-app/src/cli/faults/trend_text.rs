@@ -4,10 +4,10 @@ use diagnosis::process::{Process, Sign};
 use fault_db::{TrendDay, TrendPoint, TrendStep, TrendUnit};
 
 use crate::sparkline::sparkline_of;
-use ptu_bench::clock::{local, utc_month};
-use ptu_bench::table::Table;
 use ptu_report::limits::short;
 use ptu_report::trend::{TimeSeries, Trend};
+use ptu_runs::clock::{local, utc_month};
+use ptu_runs::table::Table;
 
 /// Days of a month, for slopes.
 const MONTH_DAYS: f64 = 30.0;

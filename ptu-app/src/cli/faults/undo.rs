@@ -6,8 +6,8 @@ use fault_db::{Store, ToWithdraw};
 use super::change::changed;
 use crate::cli::print_out;
 use protocol::display_text::line;
-use ptu_bench::clock::{local, now_us};
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::clock::{local, now_us};
+use ptu_runs::failure::{Exit, Failure};
 
 /// Take back what a person wrote last about a fault, and the same at the others of its case
 ///

@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use script_files::own_folder;
 
 use super::{ScriptsOption, print_out};
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::{Exit, Failure};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::{Exit, Failure};
 
 /// Begin a procedure, unit configuration, line or fault mode of your own
 ///
@@ -128,7 +128,7 @@ impl NewArguments {
                     let parts = parts.iter().map(|lru| lru.id.as_str());
                     return Err(Failure::usage(format!(
                         "no part \"{part}\"{}; `ptu catalog parts` lists them",
-                        ptu_bench::failure::did_you_mean(part, parts)
+                        ptu_runs::failure::did_you_mean(part, parts)
                     )));
                 }
                 let text = include_str!("fault.toml")
@@ -216,7 +216,7 @@ fn schemas(folder: &Path) -> Result<Exit, Failure> {
             .and_then(|()| std::fs::write(file, text))
             .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
     };
-    for one in ptu_bench::schemas::all() {
+    for one in ptu_runs::schemas::all() {
         let name = format!("{}.schema.json", one.name);
         let text = format!("{:#}\n", one.schema.as_value());
         write(&into.join(&name), &text)?;

@@ -7,10 +7,10 @@ use clap::Args;
 use fault_db::Store;
 
 use crate::cli::{Json, ScriptsOption};
-use ptu_bench::data::{check_writable, write};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::record::CompareRequest;
 use ptu_report::{json_text, record};
+use ptu_runs::data::{check_writable, write};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::record::CompareRequest;
 
 /// Compare a run of a unit's own record with its target, and with a sound unit's run through the same section
 ///

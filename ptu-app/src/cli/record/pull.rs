@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
 use crate::cli::{Json, ScriptsOption};
-use ptu_bench::clock::rfc3339;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::field::UnitReading;
-use ptu_bench::record::{Pulled, RecordedRun, pull_reading};
-use ptu_bench::stop::Stop;
+use ptu_runs::clock::rfc3339;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::field::UnitReading;
+use ptu_runs::record::{Pulled, RecordedRun, pull_reading};
+use ptu_runs::stop::Stop;
 
 /// Read a unit's stored record of automatic runs: each run that is new becomes a trace
 ///

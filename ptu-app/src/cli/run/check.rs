@@ -6,9 +6,9 @@ use std::sync::Arc;
 use btu_rig::procedure::Procedure;
 
 use crate::cli::print_out;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::stdio;
 use ptu_report::without_korean;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::stdio;
 
 /// Limits without a source and texts without Korean as notes, and how many there are.
 pub(super) fn show(procedures: &[Arc<Procedure>], data_files: usize) -> Result<Exit, Failure> {

@@ -4,14 +4,14 @@ use fault_db::Store;
 
 use super::RunArguments;
 use crate::cli::print_out;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::run::Outcome;
-use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run};
-use ptu_bench::stdio;
 use ptu_report::diagnosis::diagnosis_text;
 use ptu_report::proof_text;
 use ptu_report::words::Language;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::run::Outcome;
+use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run};
+use ptu_runs::stdio;
 
 impl RunArguments {
     /// The diagnosis of an adaptive run, and of any other that failed.

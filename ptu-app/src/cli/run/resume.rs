@@ -7,11 +7,11 @@ use clap::Args;
 use fault_db::{RunDetail, RunState};
 
 use super::RunArguments;
-use ptu_bench::failure::Failure;
-use ptu_bench::link::Endpoint;
-use ptu_bench::process_id::is_alive;
-use ptu_bench::run::{BenchSetup, Unfinished, unfinished};
-use ptu_bench::stdio;
+use ptu_runs::failure::Failure;
+use ptu_runs::link::Endpoint;
+use ptu_runs::process_id::is_alive;
+use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
+use ptu_runs::stdio;
 
 /// Of units that were not reached.
 const UNKNOWN_SERIAL: &str = "unknown";

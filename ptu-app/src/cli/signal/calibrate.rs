@@ -6,16 +6,16 @@ use protocol::config::UnitConfig;
 use super::positive;
 use super::sound::{Channel, Device};
 use crate::cli::print_out;
-use ptu_bench::clock;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::signal;
-use ptu_bench::sound::{
+use ptu_options::sound_file;
+use ptu_runs::clock;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::signal;
+use ptu_runs::sound::{
     self, CHANNELS, Calibration, Calibrations, Direction, Lead, SAMPLE_HZ, Side,
 };
-use ptu_bench::stdio;
-use ptu_bench::stop::Stop;
-use ptu_bench::typed::{Typed, somebody_is_there};
-use ptu_options::sound_file;
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
+use ptu_runs::typed::{Typed, somebody_is_there};
 
 /// How long the reference is heard where nobody is asked, s.
 const REFERENCE_S: f64 = 5.0;

@@ -6,17 +6,17 @@ use clap::{Args, ValueEnum};
 
 use super::{Noisy, Scale, hex, positive};
 use crate::cli::print_out;
-use ptu_bench::clock;
-use ptu_bench::data::check_writable;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::signal::{self, End, Samples, Wav, Wave};
-use ptu_bench::sound::{
+use ptu_options::sound_file;
+use ptu_runs::clock;
+use ptu_runs::data::check_writable;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::signal::{self, End, Samples, Wav, Wave};
+use ptu_runs::sound::{
     self, CHANNELS, Calibration, Calibrations, Direction, Lead, SAMPLE_HZ, Side,
 };
-use ptu_bench::stdio;
-use ptu_bench::stop::Stop;
-use ptu_bench::table::Table;
-use ptu_options::sound_file;
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
+use ptu_runs::table::Table;
 
 /// Play a WAV file, a speed code or TWC on a sound card
 ///

@@ -10,9 +10,9 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_report::trace_io::{beside, is_importable};
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///

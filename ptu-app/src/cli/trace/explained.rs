@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::signal_text::said;
-use ptu_bench::replay::{Comparison, Deviation, Difference, Explanation, Link};
-use ptu_bench::table::Table;
+use ptu_runs::replay::{Comparison, Deviation, Difference, Explanation, Link};
+use ptu_runs::table::Table;
 
 /// Deviations shown; the rest follows from them.
 const SHOWN: usize = 15;

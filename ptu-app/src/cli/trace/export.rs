@@ -7,8 +7,8 @@ use fault_db::Store;
 
 use super::PartArguments;
 use crate::cli::print_out;
-use ptu_bench::failure::{Exit, Failure};
 use ptu_report::trace_io::{Format, TracePart, export};
+use ptu_runs::failure::{Exit, Failure};
 
 /// Write a trace to a .csv, .parquet or .mcap file
 ///

@@ -6,8 +6,8 @@ use fault_db::{Id, TraceData};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::signal_text::named;
-use ptu_bench::clock::local;
-use ptu_bench::table::{cell, padded};
+use ptu_runs::clock::local;
+use ptu_runs::table::{cell, padded};
 
 /// Characters of a plotted line.
 const PLOT_WIDTH: usize = 60;

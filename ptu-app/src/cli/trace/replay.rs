@@ -10,10 +10,10 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
 use crate::cli::{Database, Json, ScriptsOption, answered};
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::link::Endpoint;
-use ptu_bench::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
-use ptu_bench::stop::Stop;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::link::Endpoint;
+use ptu_runs::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
+use ptu_runs::stop::Stop;
 
 /// Repeat the stimuli of a trace on the simulated unit or one on a port, and compare the responses
 ///
@@ -74,7 +74,7 @@ impl ReplayArguments {
             operator: self.who.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
-        let detail = store.run(rerun.run_id, &ptu_bench::process_id::is_alive)?;
+        let detail = store.run(rerun.run_id, &ptu_runs::process_id::is_alive)?;
         let document = || rerun_json(&original, &rerun);
         let told = self.json.answer(document, || text(&original, &rerun));
         self.reports.write(&store, &directory, &detail)?;

@@ -8,11 +8,11 @@ use super::explained::{explanation_json, explanation_text};
 use super::plot::{lanes, plot};
 use super::{PartArguments, read};
 use crate::cli::{Json, ScriptsOption, print_json, print_out};
-use ptu_bench::clock::rfc3339;
-use ptu_bench::failure::{Exit, Failure};
-use ptu_bench::replay::{Explanation, explain};
-use ptu_bench::table::Table;
 use ptu_report::trace_notes::TraceNote;
+use ptu_runs::clock::rfc3339;
+use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::replay::{Explanation, explain};
+use ptu_runs::table::Table;
 
 #[derive(Debug, Args)]
 pub struct ShowArguments {

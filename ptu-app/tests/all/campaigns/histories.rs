@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use fault_db::Store;
-use ptu_bench::clock;
+use ptu_runs::clock;
 use rusqlite::{Connection, OpenFlags};
 
 use crate::common::{Place, record_bad_unit_anew};

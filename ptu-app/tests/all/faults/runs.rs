@@ -6,14 +6,14 @@ use crate::common::{Place, list, number, scripts, text};
 use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
-use ptu_bench::clock;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::process_id;
-use ptu_bench::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
-use ptu_bench::run_diagnosis::diagnose_run;
-use ptu_bench::stop::Stop;
 use ptu_report::run_json;
 use ptu_report::words::Language;
+use ptu_runs::clock;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::process_id;
+use ptu_runs::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
+use ptu_runs::run_diagnosis::diagnose_run;
+use ptu_runs::stop::Stop;
 use serde_json::Value;
 
 /// What a run on a faulty unit came to.

@@ -9,7 +9,7 @@ use fault_db::{
     Verdict,
 };
 use protocol::signal::{Kind, Signal};
-use ptu_bench::clock;
+use ptu_runs::clock;
 
 const SIGNALS: usize = 40;
 const ROWS: usize = 72_000;

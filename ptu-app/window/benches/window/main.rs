@@ -20,10 +20,10 @@ use btu_rig::stimulus::Stimulus;
 use divan::Bencher;
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Rect, pos2, vec2};
 use protocol::Speed;
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::data::ScriptsDirectory;
 use ptu_options::Page;
 use ptu_report::trace_view::TraceView;
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 use tempfile::TempDir;
@@ -137,7 +137,7 @@ impl Window {
             settings,
             settings_file: None,
             connect: false,
-            interrupted: ptu_bench::stop::Stop::default(),
+            interrupted: ptu_runs::stop::Stop::default(),
         };
         let app = App::new(&context, options, Arc::new(|| {})).expect("a window");
         Self {

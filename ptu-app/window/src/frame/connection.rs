@@ -10,9 +10,9 @@ use super::lock::only_look;
 use super::setup::Setup;
 use crate::parts::{ActionPlace, chip};
 use crate::{Page, PageContext, Palette, Sizes};
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::table::cut;
 use ptu_report::words::{self, Words, fill};
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::table::cut;
 
 /// Letters of a chip that names faults, at most.
 const LINE: usize = 36;
@@ -152,7 +152,7 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
         chip(ui, &cut(&said, LINE), palette.warn).on_hover_text(said);
     }
     if let Some(identity) = identity {
-        let serial = ptu_bench::run::unit_text::serial(&identity);
+        let serial = ptu_runs::run::unit_text::serial(&identity);
         let label = ui.label(RichText::new(serial).strong());
         label.on_hover_text(versions(&identity, words));
         if let Some(differs) = differs {
@@ -197,7 +197,7 @@ fn versions(identity: &Identity, words: &Words) -> String {
                 "config",
                 &format!(
                     "{} {:08x}",
-                    ptu_bench::run::unit_text::config_name(identity),
+                    ptu_runs::run::unit_text::config_name(identity),
                     identity.config_crc
                 ),
             ),

@@ -3,7 +3,7 @@
 use eframe::egui::{Context, Key, Modifiers};
 
 use crate::{Page, PageContext};
-use ptu_bench::bench_worker::Phase;
+use ptu_runs::bench_worker::Phase;
 
 /// Stops everything, whatever has the keyboard.
 pub const STOP_ALL: Key = Key::F12;

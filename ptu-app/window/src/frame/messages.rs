@@ -10,8 +10,8 @@ use crate::messages::{Message, Written};
 use crate::parts::ActionPlace;
 use crate::request::Request;
 use crate::{PageContext, Palette};
-use ptu_bench::clock;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 
 /// A step that is being taken back.
 #[derive(Default)]

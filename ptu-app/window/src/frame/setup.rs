@@ -9,10 +9,10 @@ use eframe::egui::{
 use crate::parts::{field, go_on, name_edit, named_combo};
 use crate::request::Request;
 use crate::{PageContext, Palette};
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::link::ports;
-use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::link::ports;
+use ptu_runs::run::BenchChoice;
 
 /// A window so wide has the faults beside what else is set up, points.
 const BESIDE: f32 = 1000.0;

@@ -7,10 +7,10 @@ use eframe::egui::{RichText, Ui};
 use crate::query_worker::QueryWorker;
 use crate::request::Request;
 use crate::{DataPaths, PageContext, Palette};
-use ptu_bench::bench_worker::Wake;
-use ptu_bench::failure::Failure;
-use ptu_bench::stop::Stop;
 use ptu_report::words::Words;
+use ptu_runs::bench_worker::Wake;
+use ptu_runs::failure::Failure;
+use ptu_runs::stop::Stop;
 
 /// What work came to, in words.
 pub struct Done {

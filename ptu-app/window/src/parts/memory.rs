@@ -4,13 +4,13 @@ use eframe::egui::{Button, Ui};
 
 use super::{Done, Job};
 use crate::{DataPaths, PageContext};
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::failure::Failure;
-use ptu_bench::field::AskedUnit;
-use ptu_bench::link::Endpoint;
-use ptu_bench::record::pull_reading;
-use ptu_bench::stop::Stop;
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::failure::Failure;
+use ptu_runs::field::AskedUnit;
+use ptu_runs::link::Endpoint;
+use ptu_runs::record::pull_reading;
+use ptu_runs::stop::Stop;
 
 /// What is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// What opens files here, and what stands before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {

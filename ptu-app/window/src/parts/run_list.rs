@@ -7,10 +7,10 @@ use super::chip;
 use crate::request::CachedResponse;
 use crate::request::Request;
 use crate::{PageContext, Palette};
-use ptu_bench::clock;
-use ptu_bench::process_id;
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
+use ptu_runs::process_id;
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;

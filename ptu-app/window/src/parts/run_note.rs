@@ -7,8 +7,8 @@ use crate::messages::Messages;
 use crate::parts::note_edit;
 use crate::query_worker::QueryWorker;
 use crate::request::Request;
-use ptu_bench::clock::now_us;
 use ptu_report::words::Words;
+use ptu_runs::clock::now_us;
 
 /// Room for the button, points.
 const BUTTON: f32 = 130.0;

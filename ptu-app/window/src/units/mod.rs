@@ -5,10 +5,10 @@ mod unit;
 pub use unit::Unit;
 
 use super::messages::Messages;
-use ptu_bench::bench_worker::{Phase, Wake, Watched};
-use ptu_bench::failure::Failure;
-use ptu_bench::run::BenchChoice;
 use ptu_report::words::Words;
+use ptu_runs::bench_worker::{Phase, Wake, Watched};
+use ptu_runs::failure::Failure;
+use ptu_runs::run::BenchChoice;
 use unit::UnitMessages;
 
 /// All units of the window; there is always one.

@@ -11,11 +11,11 @@ use protocol::signal::Signal;
 use crate::messages::{About, Messages};
 use crate::query_worker::QueryWorker;
 use crate::request::Request;
-use ptu_bench::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
-use ptu_bench::failure::Failure;
-use ptu_bench::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 use ptu_report::coverage_text;
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
+use ptu_runs::failure::Failure;
+use ptu_runs::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 
 /// Entries of a unit's log that are shown.
 const LOG: usize = 500;
@@ -307,10 +307,10 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use super::*;
-    use ptu_bench::bench_worker::LiveState;
-    use ptu_bench::data::ScriptsDirectory;
-    use ptu_bench::run::{RunPlan, Suite, Task};
     use ptu_report::words::Language;
+    use ptu_runs::bench_worker::LiveState;
+    use ptu_runs::data::ScriptsDirectory;
+    use ptu_runs::run::{RunPlan, Suite, Task};
 
     /// Longest time anything here takes to come about.
     const PATIENCE: Duration = Duration::from_secs(300);
@@ -363,7 +363,7 @@ mod tests {
                 continues: None,
                 measuring: Default::default(),
             },
-            store: fault_db::Store::open(database, ptu_bench::clock::open_options())
+            store: fault_db::Store::open(database, ptu_runs::clock::open_options())
                 .expect("a database"),
             realtime: false,
         }

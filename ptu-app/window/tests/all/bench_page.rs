@@ -5,9 +5,9 @@ use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
 use crate::common::{Place, scripts, window::Window};
-use ptu_bench::run::BenchChoice;
 use ptu_options::Page;
 use ptu_report::words::Language;
+use ptu_runs::run::BenchChoice;
 use ptu_window::Settings;
 
 /// A bench with a simulated unit connected to it.

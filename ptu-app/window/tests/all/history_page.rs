@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 use crate::common::window::Window;
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
-use ptu_bench::bench_worker::Phase;
 use ptu_options::Page;
 use ptu_report::words::Language;
+use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 use serde_json::Value;
 

@@ -4,9 +4,9 @@ use crate::common::window::{Window, latest, settings};
 use crate::common::{Place, scripts};
 use crate::layout::complaints;
 use eframe::egui::Key;
-use ptu_bench::bench_worker::Phase;
 use ptu_options::Page;
 use ptu_report::words::Language;
+use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
 fn phase(window: &Window) -> Phase {

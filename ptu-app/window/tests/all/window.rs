@@ -4,9 +4,9 @@
 use crate::common::window::{Window, latest, own_scripts, settings};
 use crate::common::{Place, scripts};
 use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
-use ptu_bench::bench_worker::Phase;
 use ptu_options::Page;
 use ptu_report::words::Language;
+use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
 /// Runs on the simulated unit take as long as on a real one.
@@ -308,7 +308,7 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     window.wait_for_part("own/own.star:");
     assert!(!window.enabled("Run"));
     // What would take the whole memory takes a process of its own with it, and the window stays.
-    ptu_bench::run::loading::load_apart(crate::common::program("ptu"));
+    ptu_runs::run::loading::load_apart(crate::common::program("ptu"));
     std::fs::write(
         folder.join("own/own.star"),
         format!("{good}x = [0] * 1000000000\n"),

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use ptu_bench::data::ScriptsDirectory;
 use ptu_options::Page;
+use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
@@ -69,7 +69,7 @@ impl Window {
             settings,
             settings_file,
             connect: false,
-            interrupted: ptu_bench::stop::Stop::default(),
+            interrupted: ptu_runs::stop::Stop::default(),
         });
         let show = move |ui: &mut eframe::egui::Ui, app: &mut Option<App>| match app {
             Some(app) => app.show(ui),

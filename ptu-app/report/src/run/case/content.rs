@@ -13,7 +13,7 @@ use crate::run::plots::plots;
 use crate::run::sources::Sources;
 use crate::run::{Sheet, page, steps};
 use crate::words::{Language, Words, fill};
-use ptu_bench::clock::local;
+use ptu_runs::clock::local;
 
 /// Pages of what failed, at most.
 const PAGES: usize = 2;

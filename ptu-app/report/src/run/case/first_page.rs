@@ -10,7 +10,7 @@ use crate::run::content::signatures;
 use crate::run::plots::close_up;
 use crate::run::{Sheet, SheetTrace, page};
 use crate::words::{Words, fill};
-use ptu_bench::clock::local;
+use ptu_runs::clock::local;
 
 /// Rows of the comparison at most.
 const MOST_ROWS: usize = 8;

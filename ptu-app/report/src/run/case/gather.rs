@@ -7,10 +7,10 @@ use fault_db::{FaultDetail, FaultEvent, FaultState, FaultSummary, Id, Store, Sto
 use super::{CaseSheet, Repair, Standing};
 use crate::naming::spoken;
 use crate::run::Sheet;
-use ptu_bench::data::ScriptsDirectory;
-use ptu_bench::failure::Failure;
-use ptu_bench::process_id;
-use ptu_bench::symptoms::{self, Symptom};
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Failure;
+use ptu_runs::process_id;
+use ptu_runs::symptoms::{self, Symptom};
 
 impl CaseSheet {
     /// Reads all the sheet of a fault's case says.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{CaseSheet, Standing};
 use crate::json::{fault_json, run_summary_json};
 use crate::words::Language;
-use ptu_bench::clock::rfc3339;
+use ptu_runs::clock::rfc3339;
 
 /// A case: its number, what is said of its repair, the repair, both runs, and each failure before and after.
 pub fn case_json(case: &CaseSheet) -> Value {

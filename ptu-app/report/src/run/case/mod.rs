@@ -20,7 +20,7 @@ use super::content::verdict;
 use super::paper::across;
 use super::{Paper, Printed, Sheet};
 use crate::words::Words;
-use ptu_bench::symptoms::Symptom;
+use ptu_runs::symptoms::Symptom;
 
 /// All a repair sheet says, in no language yet.
 pub struct CaseSheet {

@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict};
 
 use super::steps::passed;
-use ptu_bench::failure::Failure;
-use ptu_bench::process_id;
+use ptu_runs::failure::Failure;
+use ptu_runs::process_id;
 
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};

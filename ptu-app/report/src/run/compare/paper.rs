@@ -7,7 +7,7 @@ use crate::run::content::verdict;
 use crate::run::paper::across;
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
-use ptu_bench::clock::local;
+use ptu_runs::clock::local;
 
 impl RunComparison {
     /// How many steps changed and how, as a sentence.

@@ -1,7 +1,7 @@
 //! What was tested twice as a table: before and after with limits, and of two runs the change.
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
-use ptu_bench::stored::outside_of;
+use ptu_runs::stored::outside_of;
 
 use super::{Compared, StepPair};
 use crate::limits::short;

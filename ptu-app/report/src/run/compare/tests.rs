@@ -6,7 +6,7 @@ use super::super::tests::{stored, words_of};
 use super::{Differs, RunComparison, Tally, comparison_json, comparison_text};
 use crate::run::page::pages;
 use crate::words::Language;
-use ptu_bench::process_id;
+use ptu_runs::process_id;
 
 /// A run of a few steps twice; `change` makes the second one another.
 fn twice(change: impl FnOnce(&mut Vec<StepRecord>)) -> RunComparison {

@@ -7,7 +7,7 @@ use super::table::{allowed, change, name_of, value};
 use super::{Compared, Differs, RunComparison};
 use crate::json::run_summary_json;
 use crate::words::{Language, Words};
-use ptu_bench::table::Table;
+use ptu_runs::table::Table;
 
 /// For people.
 pub fn comparison_text(of: &RunComparison, words: &Words) -> String {

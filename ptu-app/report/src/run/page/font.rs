@@ -5,7 +5,7 @@ use protocol::display_text;
 use ttf_parser::Face;
 
 use crate::fonts::PRETENDARD;
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// The shipped font, measured.
 pub struct FontMetrics {

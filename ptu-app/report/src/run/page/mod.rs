@@ -15,7 +15,7 @@ use item::{INSIDE, MARGIN};
 use super::block::Block;
 use super::{Paper, Printed};
 use crate::words::{Words, fill};
-use ptu_bench::failure::Failure;
+use ptu_runs::failure::Failure;
 
 /// Base lines of header and footer, and the size of their words.
 const HEADER: f32 = 32.0;

@@ -7,9 +7,9 @@ use fault_db::FaultStat;
 use super::rate_ratio::RateRatio;
 use super::{GroupBy, StatsArguments};
 use crate::sparkline::sparkline;
-use ptu_bench::clock::local_minute;
-use ptu_bench::table::Table;
 use ptu_report::fault_months::OnTheWay;
+use ptu_runs::clock::local_minute;
+use ptu_runs::table::Table;
 
 /// A course over time is shown in this many bars at most: the last ones.
 const BARS: usize = 24;

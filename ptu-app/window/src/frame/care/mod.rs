@@ -10,8 +10,8 @@ use fault_db::{Address, LastSync};
 use crate::parts::{Job, typed};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
-use ptu_bench::clock;
 use ptu_report::words::fill;
+use ptu_runs::clock;
 
 /// Width of the dialog and of its fields, points.
 const WIDE: f32 = 560.0;

@@ -6,11 +6,11 @@ use fault_db::{Address, Store, StoreError, SyncOptions};
 
 use crate::PageContext;
 use crate::parts::{Done, Job, Told};
-use ptu_bench::failure::Failure;
-use ptu_bench::platform::computer_name;
-use ptu_bench::{clock, process_id};
 use ptu_report::care::{self, Said};
 use ptu_report::words::{Words, fill};
+use ptu_runs::failure::Failure;
+use ptu_runs::platform::computer_name;
+use ptu_runs::{clock, process_id};
 
 /// Exchanges the history with a server.
 pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, traces: bool) {

@@ -3,7 +3,7 @@
 use protocol::message::SelfTestItem;
 use protocol::signal::{Sample, Signal};
 
-use ptu_bench::bench_worker::{BenchWorker, Phase};
+use ptu_runs::bench_worker::{BenchWorker, Phase};
 
 /// The bench as it was at the beginning of the frame.
 #[derive(Debug, Default)]

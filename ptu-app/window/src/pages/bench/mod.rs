@@ -22,8 +22,8 @@ use forms::Forms;
 use live::{View, view};
 pub use live_copy::BenchSnapshot;
 pub use plot::Plot;
-use ptu_bench::bench_worker::Phase;
-use ptu_bench::run::BenchSetup;
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::run::BenchSetup;
 pub use rolling::chosen;
 use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 

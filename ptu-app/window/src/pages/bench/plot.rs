@@ -13,10 +13,10 @@ use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
 use crate::Palette;
 use crate::parts::lane;
-use ptu_bench::bench_worker::BenchWorker;
 use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Span, Window, columns, spans};
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::BenchWorker;
 
 /// Left of the curves: names with values, and the scale's numbers.
 const NAMES: f32 = 168.0;

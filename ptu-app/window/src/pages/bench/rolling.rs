@@ -2,8 +2,8 @@
 
 use protocol::signal::{Kind, Signal};
 
-use ptu_bench::bench_worker::LiveData;
 use ptu_report::trace_view::Window;
+use ptu_runs::bench_worker::LiveData;
 
 /// Times that can be chosen, s.
 pub const SPANS_S: [u32; 4] = [10, 30, 60, 120];

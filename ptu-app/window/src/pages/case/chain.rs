@@ -6,9 +6,9 @@ use eframe::egui::{
 
 use crate::Palette;
 use crate::parts::lane::cut_text;
-use ptu_bench::structure::{Chain, Made};
 use ptu_report::naming::{self, PartNames};
 use ptu_report::words::Words;
+use ptu_runs::structure::{Chain, Made};
 
 /// Size of a box, and of the arrow before it, points.
 const BOX: [f32; 2] = [172.0, 62.0];
@@ -154,8 +154,8 @@ fn draw(ui: &mut Ui, shown: &Shown, has_arrow: bool, words: &Words) {
 mod tests {
     use super::*;
     use protocol::signal::Signal;
-    use ptu_bench::structure::Link;
     use ptu_report::words::Language;
+    use ptu_runs::structure::Link;
 
     /// Goal: a technician does not take out the part next to the suspected one. Method: it and what comes after it are marked by words, what
     /// comes before is not.

@@ -12,12 +12,12 @@ use super::chain::chain;
 use crate::pages::traces::SmallTrace;
 use crate::request::Request;
 use crate::{DataPaths, PageContext, Palette};
-use ptu_bench::bench_worker::Progress;
-use ptu_bench::failure::Failure;
-use ptu_bench::structure::{Chain, Structure};
 use ptu_report::naming::{PartNames, place};
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::Words;
+use ptu_runs::bench_worker::Progress;
+use ptu_runs::failure::Failure;
+use ptu_runs::structure::{Chain, Structure};
 
 /// Signals of the check that are drawn, at most.
 const SIGNALS: usize = 4;
@@ -109,7 +109,7 @@ impl Evidence {
 }
 
 fn failed_checks(run: &Progress) -> Vec<FailedCheck> {
-    let of = |progress: &ptu_bench::bench_worker::ProcedureProgress| {
+    let of = |progress: &ptu_runs::bench_worker::ProcedureProgress| {
         let failed = progress.results.iter();
         let failed = failed.filter(|result| result.verdict == Verdict::Failed);
         let checks = failed.map(|result| FailedCheck {

@@ -6,10 +6,10 @@ use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
 use crate::parts::{link, repair_line};
 use crate::request::{CachedResponse, Request};
 use crate::{DataPaths, Destination, PageContext, Palette, Sizes};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 /// As many faults are read for their repairs, the latest first.
 const MOST: u32 = 50;

@@ -9,9 +9,9 @@ use crate::pages::procedures::Concluded;
 use crate::parts::ActionPlace;
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette, Sizes};
-use ptu_bench::bench_worker::{Phase, Progress};
-use ptu_bench::clock::now_us;
 use ptu_report::words::fill;
+use ptu_runs::bench_worker::{Phase, Progress};
+use ptu_runs::clock::now_us;
 
 /// How far the proof is.
 #[derive(Default)]

@@ -12,9 +12,9 @@ use crate::messages::Written;
 use crate::parts::{ActionPlace, field, go_on, name_edit, named_combo, note_edit, typed};
 use crate::request::Request;
 use crate::{DataPaths, PageContext, Sizes};
-use ptu_bench::clock::now_us;
-use ptu_bench::failure::Failure;
 use ptu_report::words::fill;
+use ptu_runs::clock::now_us;
+use ptu_runs::failure::Failure;
 
 /// Width of a field, points.
 const FIELD: f32 = 300.0;

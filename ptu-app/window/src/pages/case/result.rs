@@ -12,11 +12,11 @@ use super::{CasePage, Stage, large};
 use crate::pages::procedures::{Concluded, measurements};
 use crate::parts::ActionPlace;
 use crate::{Density, Destination, PageContext, Palette, Sizes};
-use ptu_bench::bench_worker::Progress;
-use ptu_bench::failure::Exit;
-use ptu_bench::run::Outcome;
 use ptu_report::diagnosis::shown_reasons;
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::Progress;
+use ptu_runs::failure::Exit;
+use ptu_runs::run::Outcome;
 
 /// What was found in a run.
 pub struct Found {

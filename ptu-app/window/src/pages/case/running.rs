@@ -9,8 +9,8 @@ use crate::pages::bench::text::known;
 use crate::pages::procedures::{measurements, present};
 use crate::parts::{ActionPlace, verdict_chip};
 use crate::{Density, PageContext, Sizes};
-use ptu_bench::bench_worker::{Phase, Progress};
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::{Phase, Progress};
 
 /// As many failures are shown, the latest first.
 const FAILURES: usize = 4;

@@ -6,10 +6,10 @@ use fault_db::{RunFilter, RunSummary};
 use crate::parts::ActionPlace;
 use crate::request::CachedResponse;
 use crate::{PageContext, Sizes};
-use ptu_bench::clock;
-use ptu_bench::process_id;
-use ptu_bench::run::BenchChoice;
 use ptu_report::naming::DOT;
+use ptu_runs::clock;
+use ptu_runs::process_id;
+use ptu_runs::run::BenchChoice;
 
 /// As many runs are looked at, the latest first.
 const MOST: u32 = 200;

@@ -1,7 +1,7 @@
 //! Where a case is on its way, and where it goes from there.
 
-use ptu_bench::failure::Exit;
 use ptu_report::words::Words;
+use ptu_runs::failure::Exit;
 
 /// A place on the way of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

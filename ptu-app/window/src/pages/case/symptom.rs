@@ -6,7 +6,7 @@ use super::{CasePage, Stage, large};
 use crate::parts::ActionPlace;
 use crate::request::Request;
 use crate::{Destination, PageContext, Sizes};
-use ptu_bench::symptoms::{self, Symptom};
+use ptu_runs::symptoms::{self, Symptom};
 
 /// Width of a tile, points.
 const WIDE: f32 = 260.0;

@@ -9,11 +9,11 @@ use fault_db::Id;
 use crate::parts::{FirstHalf, RunList};
 use crate::request::Request;
 use crate::{DataPaths, Destination, PageContext, Palette};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
-use ptu_bench::run_diagnosis::{Answer, diagnose_run};
 use ptu_report::naming::{PartNames, place};
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
+use ptu_runs::run_diagnosis::{Answer, diagnose_run};
 
 /// Size of the conclusion, points: it is read first, and may fill two lines.
 const HEADLINE: f32 = 20.0;

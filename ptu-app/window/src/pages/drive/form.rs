@@ -9,9 +9,9 @@ use protocol::config::ControllerKind;
 
 use crate::DataPaths;
 use crate::parts::named_combo;
-use ptu_bench::drive::{Fixed, Request, SectionChoice, disturbance};
-use ptu_bench::failure::Failure;
 use ptu_report::words::Words;
+use ptu_runs::drive::{Fixed, Request, SectionChoice, disturbance};
+use ptu_runs::failure::Failure;
 
 /// Width of a list, points.
 const WIDE: f32 = 110.0;

@@ -11,11 +11,11 @@ use crate::parts::{Done, Job, show_sheet};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use form::{Form, Offered};
-use ptu_bench::drive::{Driven, drive_all};
-use ptu_bench::pool::cores;
 use ptu_report::drive::Results;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
+use ptu_runs::drive::{Driven, drive_all};
+use ptu_runs::pool::cores;
 
 /// Where the thread that drives puts what was driven.
 type Slot = Arc<Mutex<Option<Vec<Driven>>>>;

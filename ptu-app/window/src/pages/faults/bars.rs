@@ -6,9 +6,9 @@ use fault_db::DailyCount;
 use super::charts::{by_name, over_time};
 use crate::parts::bars::{Bar, Chart};
 use crate::parts::look_back::DAY_US;
-use ptu_bench::clock;
 use ptu_report::naming;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 
 /// The three charts side by side.
 pub fn charts(ui: &mut Ui, words: &Words, counts: &[&DailyCount]) {

@@ -7,8 +7,8 @@ use crate::messages::Written;
 use crate::parts::{ActionPlace, field, name_edit, note_edit, typed};
 use crate::request::Request;
 use crate::{PageContext, Palette};
-use ptu_bench::clock::now_us;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock::now_us;
 
 /// States a person can bring a fault to.
 const TOWARDS: [FaultState; 5] = [

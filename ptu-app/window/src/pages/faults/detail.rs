@@ -6,11 +6,11 @@ use fault_db::{FaultDetail, FaultEvent, FreezeSample};
 use super::list::state_chip;
 use crate::parts::{link, repair_line, serial_link};
 use crate::{Destination, Palette};
-use ptu_bench::clock;
 use ptu_report::event_text::{cause_text, correction_text, note_text};
 use ptu_report::limits::short;
 use ptu_report::naming::{self, PartNames};
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 
 /// Occurrences shown at most; the command line shows all.
 const MOST: usize = 50;

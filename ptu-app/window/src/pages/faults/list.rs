@@ -8,9 +8,9 @@ use super::filter::{Filter, names};
 use crate::Palette;
 use crate::page_context::FaultsOf;
 use crate::parts::{UnitFilter, chip, look_back, named_combo};
-use ptu_bench::clock;
 use ptu_report::naming::{DOT, PartNames};
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &History) {
     let faults_of = || history.faults.iter();

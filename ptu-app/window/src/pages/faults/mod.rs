@@ -19,8 +19,8 @@ use crate::request::Request;
 use crate::{PageContext, Palette};
 use change::Change;
 use filter::Filter;
-use ptu_bench::clock;
 use ptu_report::naming::PartNames;
+use ptu_runs::clock;
 
 /// As many faults as are listed.
 const MOST: u32 = 20_000;

@@ -3,9 +3,9 @@
 use super::ProceduresPage;
 use crate::PageContext;
 use crate::request::Request;
-use ptu_bench::failure::Exit;
-use ptu_bench::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_report::proof_text;
+use ptu_runs::failure::Exit;
+use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 
 /// What is said of a run that has ended.
 pub struct Concluded {

@@ -7,8 +7,8 @@ use crate::parts::{ActionPlace, name_edit};
 use crate::request::Request;
 use crate::units::Unit;
 use crate::{PageContext, Palette};
-use ptu_bench::bench_worker::Phase;
 use ptu_report::words::Procedures;
+use ptu_runs::bench_worker::Phase;
 
 /// Most repetitions of a run.
 const MOST: u32 = 10_000;

@@ -4,8 +4,8 @@ use eframe::egui::{Grid, ProgressBar, Ui};
 
 use crate::parts::verdict_chip;
 use crate::{PageContext, Palette};
-use ptu_bench::bench_worker::Phase;
 use ptu_report::words::fill;
+use ptu_runs::bench_worker::Phase;
 
 /// A line for each unit when there are several.
 pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {

@@ -6,11 +6,11 @@ use btu_rig::procedure::plan::Connection;
 
 use super::selection::Selection;
 use crate::DataPaths;
-use ptu_bench::bench_worker::RunOrder;
-use ptu_bench::failure::Failure;
-use ptu_bench::run::{BenchChoice, RunPlan, Suite};
-use ptu_bench::run_diagnosis;
-use ptu_bench::symptoms::Symptom;
+use ptu_runs::bench_worker::RunOrder;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::{BenchChoice, RunPlan, Suite};
+use ptu_runs::run_diagnosis;
+use ptu_runs::symptoms::Symptom;
 
 /// How the chosen procedures are run.
 #[derive(Clone, Debug)]
@@ -124,7 +124,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use ptu_bench::data::ScriptsDirectory;
+    use ptu_runs::data::ScriptsDirectory;
 
     /// A scripts directory of one procedure, with the shipped units, lines and trains.
     fn scripts_in(folder: &Path) -> ScriptsDirectory {

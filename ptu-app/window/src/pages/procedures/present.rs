@@ -9,8 +9,8 @@ use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::Palette;
 use crate::parts::{ActionPlace, verdict_chip};
-use ptu_bench::bench_worker::{Progress, RunPosition};
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::{Progress, RunPosition};
 
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;

@@ -11,11 +11,11 @@ use protocol::lru;
 use crate::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::query_worker::QueryWorker;
 use crate::{Destination, Palette};
-use ptu_bench::bench_worker::{Progress, outside_place};
-use ptu_bench::run::CHECK_FAILED;
 use ptu_report::naming::{self, PartNames, code, place};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::{Progress, outside_place};
+use ptu_runs::run::CHECK_FAILED;
 
 /// Lines shown before and after a step's.
 const AROUND: Range<u32> = 1..4;

@@ -7,7 +7,7 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use protocol::{Duration, LruId};
 
-use ptu_bench::run::Task;
+use ptu_runs::run::Task;
 
 /// How much of something is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,8 +166,8 @@ impl Selection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ptu_bench::data::ScriptsDirectory;
-    use ptu_bench::run::{BenchChoice, Suite};
+    use ptu_runs::data::ScriptsDirectory;
+    use ptu_runs::run::{BenchChoice, Suite};
 
     fn procedures() -> Vec<Arc<Procedure>> {
         let scripts = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");

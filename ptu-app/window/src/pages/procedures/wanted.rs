@@ -8,8 +8,8 @@ use super::prepare::RunSettings;
 use super::selection::Selection;
 use super::{ProceduresPage, controls};
 use crate::PageContext;
-use ptu_bench::symptoms::Symptom;
 use ptu_report::words::fill;
+use ptu_runs::symptoms::Symptom;
 
 /// What another page asks to be run.
 pub(super) enum Wanted {

@@ -5,9 +5,9 @@ use fault_db::{Id, RunSummary};
 
 use super::SheetOf;
 use crate::parts::{RunList, named_combo};
-use ptu_bench::clock;
 use ptu_report::naming::DOT;
 use ptu_report::words::Words;
+use ptu_runs::clock;
 
 /// As many runs are offered, the latest first.
 const MOST: usize = 50;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use super::{Asked, SheetOf};
 use crate::data_paths::DataPaths;
 use crate::parts::usual_folder;
-use ptu_bench::failure::Failure;
-use ptu_bench::new_file::NewFile;
-use ptu_bench::process_id;
 use ptu_report::run::{CaseSheet, RunComparison};
 use ptu_report::{self, Target};
+use ptu_runs::failure::Failure;
+use ptu_runs::new_file::NewFile;
+use ptu_runs::process_id;
 
 /// Endings a typed name may have; the one of the format asked for takes its place.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];

@@ -9,8 +9,8 @@ use super::seen::sketch;
 use crate::PageContext;
 use crate::parts::named_combo;
 use crate::request::CachedResponse;
-use ptu_bench::signal::{self, SAMPLE_HZ, Strength, Wave};
 use ptu_report::words::Words;
+use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
 /// Width of a slider, points.
 const WIDE: f32 = 150.0;

@@ -15,7 +15,7 @@ use crate::parts::{FirstHalf, Job};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use protocol::config::UnitConfig;
-use ptu_bench::sound::{self, DeviceFound};
+use ptu_runs::sound::{self, DeviceFound};
 
 /// Where a thread that reads or records puts how it looks now.
 type Slot = Arc<Mutex<Option<Seen>>>;

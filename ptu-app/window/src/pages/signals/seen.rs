@@ -7,12 +7,12 @@ use eframe::egui::{
 
 use crate::Palette;
 use crate::parts::lane;
-use ptu_bench::signal::{Picture, Reading, Span};
 use ptu_report::plot::colour;
 use ptu_report::signal as report;
 use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Window};
 use ptu_report::words::{Words, fill};
+use ptu_runs::signal::{Picture, Reading, Span};
 
 /// Left of the curves: the scale's numbers.
 const SCALE: f32 = 52.0;

@@ -11,13 +11,13 @@ use super::generator::{Made, Order};
 use super::seen::Seen;
 use crate::parts::{Done, Job, Told, named_combo, usual_folder};
 use crate::{PageContext, Palette};
-use ptu_bench::new_file::free_beside;
-use ptu_bench::signal::{self, FULL_SCALE_MV, Receivers};
-use ptu_bench::sound::{
-    self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
-};
 use ptu_options::sound_file;
 use ptu_report::words::{Words, fill};
+use ptu_runs::new_file::free_beside;
+use ptu_runs::signal::{self, FULL_SCALE_MV, Receivers};
+use ptu_runs::sound::{
+    self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
+};
 
 /// Width of a list, points.
 const WIDE: f32 = 200.0;

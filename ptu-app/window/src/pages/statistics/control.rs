@@ -11,12 +11,12 @@ use crate::parts::look_back::since_us;
 use crate::parts::named_combo;
 use crate::request::{CachedResponse, Request};
 use crate::{DataPaths, PageContext, Palette};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
 use ptu_report::limits::short;
 use ptu_report::naming::{DOT, measurement};
 use ptu_report::trend::Trend;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 /// Height of the chart, and room for the values beside it, points.
 const HIGH: f32 = 170.0;

@@ -7,11 +7,11 @@ use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
 
 use crate::DataPaths;
 use crate::parts::look_back::since_us;
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
 use ptu_report::distances::Distances;
 use ptu_report::fault_months::{Month, OnTheWay, by_month, on_the_way};
 use ptu_report::naming::PartNames;
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 /// A repair after which the fault is seen again within this many days did not hold.
 pub const BACK_WITHIN_DAYS: u32 = 30;

@@ -7,11 +7,11 @@ use crate::page_context::Destination;
 use crate::parts::{link, name_edit, rows, typed};
 use crate::request::{CachedResponse, Request};
 use crate::{DataPaths, PageContext, Palette};
-use ptu_bench::clock;
-use ptu_bench::failure::Failure;
 use ptu_report::life;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
+use ptu_runs::failure::Failure;
 
 /// Width of the field, points.
 const FIELD: f32 = 120.0;

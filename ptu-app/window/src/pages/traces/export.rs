@@ -12,10 +12,10 @@ use super::signals::name_input;
 use crate::PageContext;
 use crate::parts::usual_folder;
 use crate::query_worker::Pending;
-use ptu_bench::new_file::{NewFile, cannot_write};
 use ptu_report::trace_view::csv::csv;
 use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
+use ptu_runs::new_file::{NewFile, cannot_write};
 
 /// What is to be written, and what is under way.
 #[derive(Default)]

@@ -13,9 +13,9 @@ use super::notes::TraceNotes;
 use super::row::{self, GAP, Scratch, Sheet};
 use crate::Palette;
 use crate::parts::lane::{self, AXIS_HEIGHT};
-use ptu_bench::clock;
 use ptu_report::trace_view::{Cursor, Kind, OverlaySource, TracePlot};
 use ptu_report::words::Words;
+use ptu_runs::clock;
 
 /// Room for names left of the lanes, and for the values beside their axes.
 const NAMES: f32 = 150.0;

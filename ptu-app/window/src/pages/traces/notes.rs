@@ -7,9 +7,9 @@ use super::row::Sheet;
 use crate::parts::{NoteOn, RunNoteForm, lane, link, name_edit};
 use crate::request::CachedResponse;
 use crate::{PageContext, Palette};
-use ptu_bench::table::cut;
 use ptu_report::trace_notes::TraceNote;
 use ptu_report::trace_view::{Cursor, TracePlot, TraceView};
+use ptu_runs::table::cut;
 
 /// Characters of a note in the list; its tooltip has all of it.
 const MOST: usize = 60;

@@ -5,9 +5,9 @@ use fault_db::Id;
 
 use crate::PageContext;
 use crate::request::Request;
-use ptu_bench::record::CompareRequest;
 use ptu_report::record;
 use ptu_report::trace_view::TracePlot;
+use ptu_runs::record::CompareRequest;
 
 #[derive(Default)]
 pub struct RecordComparison {

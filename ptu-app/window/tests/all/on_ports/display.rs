@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use crate::common::display::{Display, Picture, Shown};
 use crate::common::{Place, list};
-use ptu_bench::run::BenchChoice;
 use ptu_options::Page;
+use ptu_runs::run::BenchChoice;
 use ptu_window::Settings;
 
 /// Pages, in the order of their keys F1 to F6.

@@ -5,9 +5,9 @@ use crate::common::served::Unit;
 use crate::common::window::{Window, latest, settings};
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
-use ptu_bench::bench_worker::Phase;
 use ptu_options::Page;
 use ptu_report::words::{Language, Words};
+use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
 /// Something that begins with `first` and ends with the last words of `pattern` is shown.

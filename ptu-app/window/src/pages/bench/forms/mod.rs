@@ -13,7 +13,7 @@ pub use motion::{MotionForm, TachoKind};
 pub use station::StationForm;
 pub use train::TrainForm;
 
-use ptu_bench::run::BenchSetup;
+use ptu_runs::run::BenchSetup;
 
 /// The path of a stimulus to the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -23,8 +23,8 @@ use super::scale::Dial;
 use super::track::{Strip, WaysideFrame};
 use crate::Palette;
 use card::card;
-use ptu_bench::run::BenchSetup;
 use ptu_report::words::Words;
+use ptu_runs::run::BenchSetup;
 
 pub struct View<'a> {
     pub words: &'static Words,

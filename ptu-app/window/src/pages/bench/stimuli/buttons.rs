@@ -12,8 +12,8 @@ use eframe::egui::{
 
 use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::{Messages, Palette};
-use ptu_bench::bench_worker::BenchWorker;
 use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::BenchWorker;
 
 /// Width of a row's name.
 const NAME: f32 = 138.0;

@@ -17,8 +17,8 @@ use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 pub use buttons::{StimuliGiven, StimulusPanel};
 
 use super::forms::Forms;
-use ptu_bench::run::BenchSetup;
 use ptu_report::words::Bench;
+use ptu_runs::run::BenchSetup;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Group {

@@ -144,7 +144,7 @@ fn a_protection_that_is_taken_away_shows() {
 
 /// The hundred thousand minutes of the promise, or those of `HAZARD_SEEDS`; of a single one all that was done.
 #[test]
-#[ignore = "long suite: a part of them; all take 7 min: cargo test --release -p ptu-bench many_random_minutes -- --ignored"]
+#[ignore = "long suite: a part of them; all take 7 min: cargo test --release -p ptu-runs many_random_minutes -- --ignored"]
 fn many_random_minutes_show_no_hazard() {
     let asked = std::env::var("HAZARD_SEEDS").ok();
     let (from, to) = match asked.as_deref().map(|asked| asked.split_once("..")) {

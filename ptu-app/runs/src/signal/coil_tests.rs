@@ -205,7 +205,7 @@ fn no_more_permissive_code_is_decided_in_hard_cases() {
 
 /// The figures of `docs/figures.md` on codes as a unit decides on them, with seeds that nothing was chosen by.
 #[test]
-#[ignore = "measures for minutes: cargo test --release -p ptu-bench figures_of_decisions -- --ignored --nocapture"]
+#[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_decisions -- --ignored --nocapture"]
 fn figures_of_decisions() {
     let config = unit();
     let mut random = Random::new(26_112_026);
