@@ -1,5 +1,7 @@
 //! Flash in a file, for units that programs serve: it lasts from one start of the program to the next.
 
+extern crate std;
+
 use std::format;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};

@@ -3,6 +3,8 @@
 //!
 //! What is served is anything [`Served`]: the unit at its harness, or one at the maintenance port of a train.
 
+extern crate std;
+
 mod platform;
 mod serial_end;
 mod tcp;

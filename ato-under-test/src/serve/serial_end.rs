@@ -1,5 +1,7 @@
 //! A serial port that is read by the clock.
 
+extern crate std;
+
 use std::boxed::Box;
 use std::io::{Read, Result, Write};
 

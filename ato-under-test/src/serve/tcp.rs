@@ -1,6 +1,8 @@
 //! Serves one TCP client at a time. A second one gets a message that says who has the unit and is disconnected: nothing that
 //! it sent while it waited may act later as if it were fresh.
 
+extern crate std;
+
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::vec;

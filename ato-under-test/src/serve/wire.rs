@@ -1,6 +1,8 @@
 //! The far end of the wire: pseudo-terminal, serial port or TCP socket. Only a pseudo-terminal in lock step
 //! waits for its tester.
 
+extern crate std;
+
 use std::format;
 use std::io::{self, ErrorKind, Read, Write};
 use std::string::{String, ToString};

@@ -1,5 +1,7 @@
 //! Linux, and macOS by reading only.
 
+extern crate std;
+
 use std::fs::File;
 use std::io::{Read, Result, Write};
 use std::string::String;

@@ -1,5 +1,7 @@
 //! Windows.
 
+extern crate std;
+
 use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::string::String;
 use std::time::Duration;
