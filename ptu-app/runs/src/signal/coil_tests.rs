@@ -6,13 +6,13 @@ use protocol::config::UnitConfig;
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples, IoInput};
 use protocol::{Duration, Random, SCAN};
 
-use crate::data::ScriptsDirectory;
+use crate::test_support::scripts;
 
 const RATE: f64 = 48_000.0;
 pub(super) const SCAN_SAMPLES: usize = COIL_SAMPLES;
 
 fn unit() -> UnitConfig {
-    let scripts = ScriptsDirectory::find(None).expect("scripts");
+    let scripts = scripts();
     scripts.unit_config("sg100").expect("read").content
 }
 

@@ -10,12 +10,12 @@ use protocol::config::UnitConfig;
 
 use super::coil_tests::{SCAN_SAMPLES, decided};
 use super::*;
-use crate::data::ScriptsDirectory;
+use crate::test_support::scripts;
 
 const RATE: f64 = 48_000.0;
 
 fn unit() -> UnitConfig {
-    let scripts = ScriptsDirectory::find(None).expect("scripts");
+    let scripts = scripts();
     scripts.unit_config("sg100").expect("read").content
 }
 
