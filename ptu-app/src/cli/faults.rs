@@ -5,6 +5,7 @@ mod filter;
 mod import;
 mod life;
 mod list;
+mod part;
 mod show;
 mod stats;
 mod trend;

@@ -1,5 +1,6 @@
 //! `ptu key`: keys that runs are signed with, and the list of those that are trusted.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -11,8 +12,8 @@ use super::{Json, print_out};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
 use ptu_runs::keys::{
-    KeyEntry, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, own_folder,
-    public_name,
+    KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
+    own_folder, public_name, sought,
 };
 use ptu_runs::new_file::{NewFile, cannot_write};
 use ptu_runs::owner_only;
@@ -28,7 +29,10 @@ const YEARS: u32 = 2;
 ///   ptu key new --who "bench 3" --bench --pin-file pin.txt
 ///   ptu key trust kim.pub                       puts a public key into this computer's list
 ///   ptu key revoke Kim --note "laptop lost"     from today on it signs nothing more
-///   ptu key list
+///   ptu key list                                their files, too
+///
+/// A file that is named without a folder is looked up in the current folder, then in the folder `keys` of the user's data
+/// directory, where `ptu key new` writes.
 ///
 /// Exit codes: 0 done, 2 no such key, or a key that is there already, 3 a file that cannot be read.
 #[derive(Debug, Args)]
@@ -57,7 +61,7 @@ enum Verb {
         #[command(flatten)]
         pin: PinOption,
     },
-    /// List the keys that are trusted, and how each stands today
+    /// List the keys that are trusted, how each stands today, and in which files it is
     List {
         #[command(flatten)]
         keys: KeysOption,
@@ -96,7 +100,9 @@ pub struct KeysOption {
 
 impl KeysOption {
     fn place(&self) -> Result<PathBuf, Failure> {
-        self.keys.clone().map_or_else(own_folder, Ok)
+        self.keys
+            .as_deref()
+            .map_or_else(own_folder, |named| Ok(located(named)))
     }
 
     /// The list; empty where nobody has made one.
@@ -109,7 +115,7 @@ impl KeysOption {
             (false, false) => Ok(KeyList::default()),
             (false, true) => Err(Failure::usage(format!(
                 "there is no list of keys {}; `ptu key trust FILE.pub --keys FILE` begins one",
-                place.display()
+                sought(&place)
             ))),
             (true, _) => KeyList::read(&place),
         }
@@ -217,20 +223,48 @@ fn span(entry: &KeyEntry) -> String {
 
 fn list(keys: &KeysOption, json: Json) -> Result<Exit, Failure> {
     let list = keys.read()?;
+    let files = FilesOfKeys::of(&keys.place()?)?;
     let now = clock::now_us();
     let document = || {
         let entry = |entry: &KeyEntry| {
             json!({
                 "who": entry.who, "kind": entry.kind, "key": entry.key, "from": entry.from, "until": entry.until,
                 "revoked": entry.revoked, "reason": entry.reason, "valid": entry.standing(now).is_good(),
+                "files": files.paths(entry),
             })
         };
         list.keys.iter().map(entry).collect::<Vec<_>>()
     };
-    json.answer(document, || table(&list, now))
+    json.answer(document, || table(&list, &files, now))
 }
 
-fn table(list: &KeyList, now: i64) -> String {
+/// In which files a key is, its private key's file first.
+struct FilesOfKeys(BTreeMap<String, Vec<String>>);
+
+impl FilesOfKeys {
+    fn of(place: &Path) -> Result<Self, Failure> {
+        let mut files: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let there = place.exists().then(|| KeyList::files(place)).transpose()?;
+        for file in there.unwrap_or_default() {
+            let private = file.with_extension("key");
+            let own = (private.is_file().then(|| KeyFile::read(&private).ok())).flatten();
+            for entry in KeyList::read(&file)?.keys {
+                let of_key = files.entry(entry.key.clone()).or_default();
+                if (own.as_ref()).is_some_and(|own| own.entry().key == entry.key) {
+                    of_key.insert(0, private.display().to_string());
+                }
+                of_key.push(file.display().to_string());
+            }
+        }
+        Ok(Self(files))
+    }
+
+    fn paths(&self, entry: &KeyEntry) -> &[String] {
+        self.0.get(&entry.key).map_or(&[], Vec::as_slice)
+    }
+}
+
+fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
     if list.keys.is_empty() {
         return "no keys; `ptu key new` makes one, `ptu key trust FILE.pub` adds another's".into();
     }
@@ -252,17 +286,25 @@ fn table(list: &KeyList, now: i64) -> String {
             },
         ]);
     }
-    table.render()
+    let mut text = table.render();
+    for entry in &list.keys {
+        text += &format!("\n\n{} of {}:", entry.short(), entry.who);
+        for path in files.paths(entry) {
+            text += &format!("\n  {path}");
+        }
+    }
+    text
 }
 
 fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
-    if !file.exists() {
+    let found = located(file);
+    if !found.exists() {
         return Err(Failure::usage(format!(
             "there is no file {}; it is the `.pub` file that `ptu key new` made",
-            file.display()
+            sought(file)
         )));
     }
-    let new = KeyList::read(file)?;
+    let new = KeyList::read(&found)?;
     if new.keys.is_empty() {
         return Err(Failure::usage(format!("{} names no key", file.display())));
     }

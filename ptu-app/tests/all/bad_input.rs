@@ -87,7 +87,15 @@ fn what_others_wrote_acts_on_no_terminal() {
         (&["runs", "note", "latest", &two_lines, "--who", ACTS], 0),
         (
             &[
-                "faults", "repair", &fault, "--part", ACTS, "--old", ACTS, "--who", ACTS,
+                "faults",
+                "repair",
+                &fault,
+                "--other-part",
+                ACTS,
+                "--old",
+                ACTS,
+                "--who",
+                ACTS,
             ],
             0,
         ),

@@ -45,27 +45,50 @@ fn a_fault_is_acknowledged_repaired_verified_closed_and_comes_back_as_a_new_one(
     assert_ne!(faults[0]["id"], *id);
 }
 
-/// Goal: a slip in a part's name is told, and a part that no fault ever named is not.
+/// Goal: a slip in a part's name is not recorded as a part: the one that is near is named, and one that the catalogue lacks
+/// is said to be that.
 #[test]
-fn a_repair_of_a_part_nothing_knows_is_told_of_the_one_that_is_near() {
+fn a_part_that_the_catalogue_lacks_is_named_as_another() {
     let place = Place::new();
     record_bad_unit(&place);
     let fault = relay_fault(&place);
-    let repaired = |part: &str| {
-        let said = place.ptu(&["faults", "repair", text(&fault["id"]), "--part", part]);
-        said.exits(0).err
-    };
+    let id = text(&fault["id"]);
     let near = "did you mean \"eb_relay\"?";
-    let said = repaired("eb_rely");
-    assert!(
-        said.contains(near) && said.contains("recorded as it is"),
-        "{said}"
-    );
-    assert_eq!(repaired("eb_rely"), "", "known by the repair before");
-    assert_eq!(repaired("EB_Relay"), "");
-    assert_eq!(repaired("zinc block"), "", "nothing is near");
-    let shown = place.ptu(&["faults", "show", text(&fault["id"])]).exits(0);
-    assert!(shown.out.contains("eb_rely ?"), "{}", shown.out);
+    let repair = |name: &[&str]| place.ptu(&[&["faults", "repair", id][..], name].concat());
+    let cause = |name: &[&str]| place.ptu(&[&["faults", "cause", id][..], name].concat());
+    let refused = [near, "ptu catalog parts", "--other-part"];
+    repair(&["--part", "eb_rely"]).exits(2).explains(&refused);
+    cause(&["eb_rely"]).exits(2).explains(&refused);
+    let repairs = || {
+        let shown = place.json(&["faults", "show", id, "--json"]);
+        let repairs = list(&shown["events"])
+            .iter()
+            .map(|event| &event["repair"]["part"]);
+        let repairs = repairs.filter(|part| part.is_string());
+        repairs
+            .map(|part| text(part).to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert!(repairs().is_empty(), "nothing is recorded");
+    (repair(&["--part", "zinc block"]).exits(2)).explains(&["no part \"zinc block\";"]);
+    assert_eq!(repair(&["--part", "EB_Relay"]).exits(0).err, "");
+    assert_eq!(repairs(), ["eb_relay"]);
+    assert_eq!(repair(&["--other-part", "zinc block"]).exits(0).err, "");
+    // Never named by a fault, and in the catalogue.
+    repair(&["--part", "tra"]).exits(0);
+    let said = repair(&["--other-part", "eb_rely"]).exits(0).err;
+    assert!(said.contains(near) && said.contains("recorded as it is"));
+    repair(&["--part", "tra", "--other-part", "zinc"]).exits(2);
+    repair(&[]).exits(2).explains(&["--part"]);
+    cause(&["--other-part", "wiring of K3"]).exits(0);
+    let unit = ["trend", "eb_reaction", "--serial-no", "BAD-1"];
+    let since = ["faults"]
+        .iter()
+        .chain(&unit)
+        .chain(&["--since-repair", "eb_relai"]);
+    (place.ptu(&since.copied().collect::<Vec<_>>()))
+        .exits(2)
+        .explains(&[near]);
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn what_a_person_says_stands_before_the_next_diagnosis() {
     place.ptu(&run).exits(1);
     assert_eq!(faults(&place, &["--part", "atp_cpu"])[0][1], "atp_cpu");
     place
-        .ptu(&["faults", "cause", &cpu, "eb_relais"])
+        .ptu(&["faults", "cause", &cpu, "--other-part", "eb_relais"])
         .exits(0)
         .explains(&["eb_relay"]);
     let said = place

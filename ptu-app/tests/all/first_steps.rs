@@ -35,7 +35,7 @@ fn a_good_computer_has_nothing_wrong() {
     }
 }
 
-/// Goal: each thing that keeps a technician from testing is named with what to do about it, and ends with 1.
+/// Goal: what is wrong is named with what to do about it. It ends with 1 only where not even the simulated unit can be tested.
 #[test]
 fn what_is_wrong_is_named_with_its_remedy() {
     let place = Place::new();
@@ -48,41 +48,46 @@ fn what_is_wrong_is_named_with_its_remedy() {
     for (name, content) in [("a.db", "no database"), ("own/x.star", "procedure(")] {
         place.write(name, content);
     }
-    let asks: [(&[&str], &str, &str, &str); 4] = [
+    let asks: [(&[&str], i32, &str, &str, &str); 4] = [
         (
             &[],
+            0,
             "clock",
             "later than this computer's clock",
             "set the clock",
         ),
         (
             &["--db", "a.db"],
+            1,
             "database",
             "is not a database",
             "`ptu db check`",
         ),
         (
             &["--scripts", "own"],
+            1,
             "scripts",
             "no unit configuration",
             "move it away",
         ),
         (
             &["--server", "postgres://kim@127.0.0.1:9/history"],
+            0,
             "server",
             "127.0.0.1",
             "sync them when it answers",
         ),
     ];
-    for (arguments, subject, says, remedy) in asks {
+    for (arguments, exit, subject, says, remedy) in asks {
+        let state = if exit == 0 { "warning" } else { "wrong" };
         let told = place
             .ptu(&[&["doctor", "--json"], arguments].concat())
-            .exits(1);
+            .exits(exit);
         let found: Value = serde_json::from_str(&told.out).expect("JSON");
         let wrong = list(&found)
             .iter()
             .find(|finding| {
-                text(&finding["state"]) == "wrong" && text(&finding["subject"]) == subject
+                text(&finding["state"]) == state && text(&finding["subject"]) == subject
             })
             .unwrap_or_else(|| panic!("{subject}: {found}"));
         assert!(text(&wrong["found"]).contains(says), "{wrong}");

@@ -235,6 +235,65 @@ fn a_key_holds_as_long_as_the_list_says() {
         .prints(&["was revoked from", "lost"]);
 }
 
+/// Goal: keys are used as `docs/signing.md` writes it: by name alone, from where `ptu key new` puts them. A file of that name
+/// in the current folder comes first, and a key that is in neither is not found in both.
+#[test]
+fn a_key_is_used_by_its_name_from_where_it_is_kept() {
+    let place = Place::new();
+    place.write("pin.txt", PIN);
+    let new = |who: &str, more: &[&str]| {
+        let all = ["key", "new", "--who", who, "--pin-file", "pin.txt"];
+        place.ptu(&[&all[..], more].concat()).exits(0);
+    };
+    new("Kim", &[]);
+    let kept = |name: &str| place.text_path(&format!("ptu/keys/{name}"));
+    place.ptu(&["key", "trust", "kim.pub"]).exits(0);
+    let sign = |by: &'static str| ["--key", by, "--pin-file", "pin.txt"];
+    let run = |by| place.ptu(&[&["run", "tcms/link"][..], &sign(by)].concat());
+    run("kim.key").exits(0);
+    place
+        .ptu(&["verify", "latest"])
+        .exits(0)
+        .prints(&["signed by Kim"]);
+    let (private, public, trusted) = (kept("kim.key"), kept("kim.pub"), kept("trusted.keys"));
+    place
+        .ptu(&["key", "list"])
+        .exits(0)
+        .prints(&[&private, &public, &trusted]);
+    let listed = place.json(&["key", "list", "--json"]);
+    assert_eq!(
+        listed[0]["files"],
+        serde_json::json!([private, public, trusted])
+    );
+
+    new("Lee", &["--out", "kim.key"]);
+    run("kim.key").exits(0);
+    (place.ptu(&["runs", "show", "latest"]))
+        .exits(0)
+        .prints(&["Lee"]);
+    place
+        .ptu(&["key", "trust", "kim.pub"])
+        .exits(0)
+        .prints(&["Lee"]);
+
+    let both = ["current folder", &kept("")];
+    let both = both.map(|place| place.trim_end_matches('/'));
+    run("nobody.key").exits(2).explains(&both);
+    (place.ptu(&["key", "trust", "nobody.pub"]))
+        .exits(2)
+        .explains(&both);
+    (place.ptu(&["key", "list", "--keys", "nobody.keys"]))
+        .exits(2)
+        .explains(&both);
+    // A path is that file and no other.
+    let elsewhere = run("./nobody.key").exits(2);
+    assert!(
+        !elsewhere.err.contains("current folder"),
+        "{}",
+        elsewhere.err
+    );
+}
+
 /// Goal: what is wrong with a key is said plainly, with the next step, before a unit is touched.
 #[test]
 fn a_key_that_does_not_serve_is_explained() {

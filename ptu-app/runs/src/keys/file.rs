@@ -11,6 +11,7 @@ use pkcs8::{EncryptedPrivateKeyInfoRef, LineEnding, PrivateKeyInfoRef};
 use serde::Deserialize;
 
 use super::list::{KeyEntry, KeyList};
+use super::{located, sought};
 use crate::failure::Failure;
 use crate::new_file::{NewFile, cannot_write};
 
@@ -117,15 +118,17 @@ impl NewKey<'_> {
 }
 
 impl KeyFile {
-    /// Reads a key file; its PIN is not needed for that.
+    /// Reads a key file, in the current folder or among one's own keys; its PIN is not needed for that.
     ///
     /// # Errors
     /// There is none, or it is no key file.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
+    pub fn read(named: &Path) -> Result<Self, Failure> {
+        let path = &located(named);
         let shown = path.display();
         if !path.exists() {
             return Err(Failure::usage(format!(
-                "there is no key file {shown}; `ptu key new` makes one, `ptu key list` shows yours"
+                "there is no key file {}; `ptu key new` makes one, `ptu key list` shows yours",
+                sought(named)
             )));
         }
         let bytes = read_regular_file(path, LONGEST).map_err(|error| {

@@ -89,8 +89,22 @@ impl KeyList {
     /// # Errors
     /// There is none, or one of them is wrong.
     pub fn read(path: &Path) -> Result<Self, Failure> {
+        let mut list = Self::default();
+        for file in Self::files(path)? {
+            for entry in Self::of_file(&file)?.keys {
+                list.add(entry);
+            }
+        }
+        Ok(list)
+    }
+
+    /// The file itself, or all `.pub` and `.keys` files of a folder, by name.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         if !path.is_dir() {
-            return Self::of_file(path);
+            return Ok(vec![path.to_path_buf()]);
         }
         let cannot = |error| Failure::bench(format!("cannot read {}: {error}", path.display()));
         let mut files: Vec<PathBuf> = Vec::new();
@@ -102,13 +116,7 @@ impl KeyList {
             }
         }
         files.sort();
-        let mut list = Self::default();
-        for file in files {
-            for entry in Self::of_file(&file)?.keys {
-                list.add(entry);
-            }
-        }
-        Ok(list)
+        Ok(files)
     }
 
     fn of_file(path: &Path) -> Result<Self, Failure> {

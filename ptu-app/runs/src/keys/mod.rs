@@ -4,7 +4,7 @@
 mod file;
 mod list;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use file::{KeyFile, NewKey, public_name};
 pub use list::{KeyEntry, KeyList, Standing, day_argument, day_of, day_text};
@@ -19,6 +19,31 @@ pub fn own_folder() -> Result<PathBuf, Failure> {
     script_files::own_folder()
         .and_then(|scripts| scripts.parent().map(|data| data.join("keys")))
         .ok_or_else(|| Failure::usage("no user data directory; name a file or folder with --keys"))
+}
+
+/// Where a file of keys is that a person names: a name without a folder is that of one in the current folder or, if there is
+/// none, of one in the folder of one's own keys.
+pub fn located(named: &Path) -> PathBuf {
+    let kept = own_of(named).filter(|kept| kept.exists() && !named.exists());
+    kept.unwrap_or_else(|| named.to_path_buf())
+}
+
+/// Where [`located`] looks, in words: "kim.key, neither in the current folder nor in …".
+pub fn sought(named: &Path) -> String {
+    let shown = named.display();
+    match own_of(named).as_deref().and_then(Path::parent) {
+        Some(folder) => format!(
+            "{shown}, neither in the current folder nor in {}",
+            folder.display()
+        ),
+        None => shown.to_string(),
+    }
+}
+
+/// The file of this name in the folder of one's own keys, if it is a name without a folder.
+fn own_of(named: &Path) -> Option<PathBuf> {
+    let is_bare = named.file_name() == Some(named.as_os_str());
+    (is_bare.then(own_folder)?.ok()).map(|folder| folder.join(named))
 }
 
 /// The list in the folder of one's own keys.

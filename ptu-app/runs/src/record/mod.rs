@@ -14,7 +14,7 @@ mod store;
 pub(crate) use compare::compare;
 pub use compare::{Parting, RecordComparison, StopComparison};
 pub use recorded::RecordedRun;
-pub(crate) use recorded::recorded_runs;
+pub(crate) use recorded::{Rest, recorded_runs};
 pub use request::{CompareRequest, Compared};
 pub(crate) use section::find_section;
 pub use store::{Pulled, pull_reading};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fault_db::{Channel, Id, TraceData};
-use protocol::message::StoredRow;
+use protocol::message::{Message, StoredRow};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Speed};
 
@@ -27,7 +27,7 @@ const SIGNALS: [Signal; 7] = [
 /// One run of one power-up.
 #[derive(Clone, Debug)]
 pub struct RecordedRun {
-    /// The same on every laptop: it follows from unit, power-up, run and its first row.
+    /// The same on every laptop: it follows from the unit and all that the run's rows say.
     pub id: Id,
     /// Power-up that it was made in.
     pub power_up: u32,
@@ -43,9 +43,19 @@ pub struct RecordedRun {
     pub is_cut: bool,
 }
 
-/// The runs of a unit, in order. The last one of the present power-up is left out while the unit may still add to it:
-/// `under_way`.
-pub fn recorded_runs(serial: &str, read: &StoredRead, under_way: bool) -> Vec<RecordedRun> {
+/// What may still come of the last run of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// Nothing: it was read to its end, and is over.
+    Nothing,
+    /// The unit may still add to a run of its present power-up.
+    OfUnit,
+    /// The record was not read to its end.
+    Unread,
+}
+
+/// The runs of a unit, in order, without the last one if more of it may come.
+pub fn recorded_runs(serial: &str, read: &StoredRead, rest: Rest) -> Vec<RecordedRun> {
     let mut runs: BTreeMap<(usize, u32, u16), Vec<StoredRow>> = BTreeMap::new();
     // A run number that comes again in a power-up has wrapped, or another flash counts from the start.
     let mut turn = 0;
@@ -59,8 +69,14 @@ pub fn recorded_runs(serial: &str, read: &StoredRead, under_way: bool) -> Vec<Re
         rows.push(*row);
     }
     let newest = runs.keys().next_back().copied();
-    let is_open =
-        |key: &(usize, u32, u16)| under_way && Some(*key) == newest && key.1 == read.power_up;
+    let is_open = |key: &(usize, u32, u16)| {
+        let may = match rest {
+            Rest::Nothing => false,
+            Rest::OfUnit => key.1 == read.power_up,
+            Rest::Unread => true,
+        };
+        may && Some(*key) == newest
+    };
     let complete = runs.iter().filter(|(key, _)| !is_open(key));
     complete
         .map(|(_, rows)| run_of(serial, read, rows))
@@ -71,17 +87,6 @@ fn run_of(serial: &str, read: &StoredRead, rows: &[StoredRow]) -> RecordedRun {
     let first = rows[0];
     let (grid, partial) = on_grid(rows);
     let date = read.clocks.date(first.power_up, first.at_ms);
-    let id = Id::of_content(
-        "unit run record",
-        &[
-            serial.as_bytes(),
-            &first.power_up.to_be_bytes(),
-            &first.run.to_be_bytes(),
-            &first.sequence.to_be_bytes(),
-            &first.at_ms.to_be_bytes(),
-            &first.position_cm.to_be_bytes(),
-        ],
-    );
     let column = |signal: &Signal| {
         let values = grid
             .iter()
@@ -103,7 +108,7 @@ fn run_of(serial: &str, read: &StoredRead, rows: &[StoredRow]) -> RecordedRun {
         columns: SIGNALS.iter().map(column).collect(),
     };
     RecordedRun {
-        id,
+        id: id_of(serial, rows),
         power_up: first.power_up,
         run: first.run,
         at_ms: first.at_ms,
@@ -111,6 +116,15 @@ fn run_of(serial: &str, read: &StoredRead, rows: &[StoredRow]) -> RecordedRun {
         trace,
         is_cut: first.speed_cms > 0,
     }
+}
+
+/// From the unit and all of each row: every run of a unit whose memory is new begins with the same first row.
+fn id_of(serial: &str, rows: &[StoredRow]) -> Id {
+    let mut all = Vec::new();
+    for row in rows {
+        Message::from(*row).encode(&mut all);
+    }
+    Id::of_content("unit run record", &[serial.as_bytes(), &all])
 }
 
 /// A row with what was counted until then.
@@ -221,7 +235,7 @@ pub(super) mod tests {
             row(6, 2, 1, 1_000, 0),
         ];
         let all = read(rows.clone(), 2);
-        let runs = recorded_runs("SG-1", &all, false);
+        let runs = recorded_runs("SG-1", &all, Rest::Nothing);
         let names: Vec<_> = runs.iter().map(|run| (run.power_up, run.run)).collect();
         assert_eq!(names, [(1, 1), (1, 2), (2, 1)]);
         let speed = runs[0].trace.column("speed").expect("recorded");
@@ -230,13 +244,40 @@ pub(super) mod tests {
         assert_eq!((speed.len(), runs[0].trace.gaps), (8, true));
         assert_eq!(runs[0].trace.trigger_row, Some(4));
         assert!(runs[1].id != runs[0].id && runs[2].id != runs[0].id);
-        assert_eq!(recorded_runs("SG-1", &all, false)[0].id, runs[0].id);
-        assert_ne!(recorded_runs("SG-2", &all, false)[0].id, runs[0].id);
+        assert_eq!(recorded_runs("SG-1", &all, Rest::Nothing)[0].id, runs[0].id);
+        assert_ne!(recorded_runs("SG-2", &all, Rest::Nothing)[0].id, runs[0].id);
         assert_eq!(
-            recorded_runs("SG-1", &all, true).len(),
+            recorded_runs("SG-1", &all, Rest::OfUnit).len(),
             2,
             "one is under way"
         );
-        assert_eq!(recorded_runs("SG-1", &read(rows, 3), true).len(), 3);
+        let earlier = read(rows.clone(), 3);
+        assert_eq!(recorded_runs("SG-1", &earlier, Rest::OfUnit).len(), 3);
+        assert_eq!(recorded_runs("SG-1", &earlier, Rest::Unread).len(), 2);
+    }
+
+    /// Goal: any field of any row makes another run of it, as of another unit with the same name.
+    #[test]
+    fn each_row_counts_for_the_id() {
+        let rows = vec![row(0, 1, 1, 1_000, 0), row(1, 1, 1, 1_050, 10)];
+        let id = |rows: Vec<StoredRow>| recorded_runs("SG-1", &read(rows, 1), Rest::Nothing)[0].id;
+        let last = |change: fn(&mut StoredRow)| {
+            let mut rows = rows.clone();
+            change(&mut rows[1]);
+            id(rows)
+        };
+        let ids = [
+            id(rows.clone()),
+            last(|row| row.at_ms += 1),
+            last(|row| row.position_cm += 1),
+            last(|row| row.speed_cms += 1),
+            last(|row| row.target_cms += 1),
+            last(|row| row.effort += 1),
+            last(|row| row.marker += 1),
+            last(|row| row.ato_state = AtoState::Stop),
+            id(rows[..1].to_vec()),
+        ];
+        let different: std::collections::BTreeSet<_> = ids.iter().collect();
+        assert_eq!(different.len(), ids.len());
     }
 }

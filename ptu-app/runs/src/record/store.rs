@@ -4,7 +4,7 @@ use fault_db::{RunEnd, RunWriter, StepRecord, Store, StoreError, Verdict};
 use protocol::message::Mode;
 use protocol::signal::Signal;
 
-use super::{RecordedRun, recorded_runs};
+use super::{RecordedRun, Rest, recorded_runs};
 use crate::failure::Failure;
 use crate::field::{Source, UnitReading, run_record};
 
@@ -66,9 +66,12 @@ pub fn pull_reading(store: &Store, reading: &UnitReading) -> Result<Pulled, Fail
             "this unit has no stored memory: its run record is lost at power off, and cannot be pulled",
         ));
     };
-    // What is not read to its end may go on; so may a run that is under way.
-    let under_way = reading.source.broken_off || reading.read.mode == Some(Mode::AutomaticRun);
-    let runs = recorded_runs(&reading.source.serial, stored, under_way);
+    let rest = match (reading.source.broken_off, reading.read.mode) {
+        (true, _) => Rest::Unread,
+        (false, Some(Mode::AutomaticRun)) => Rest::OfUnit,
+        (false, _) => Rest::Nothing,
+    };
+    let runs = recorded_runs(&reading.source.serial, stored, rest);
     Ok(pull(store, &reading.source, runs)?)
 }
 

@@ -68,7 +68,7 @@ fn driven(case: &Case) -> LogRead {
 
 fn only_run(read: &LogRead) -> RecordedRun {
     let stored = read.stored.as_ref().expect("stored memory");
-    let runs = recorded_runs("SG-1", stored, false);
+    let runs = recorded_runs("SG-1", stored, Rest::Nothing);
     let [run] = &runs[..] else {
         panic!("{} runs", runs.len());
     };

@@ -87,17 +87,7 @@ pub(super) fn ports() -> Vec<Finding> {
     for port in &found {
         findings.push(match ports::closed_to_user(&port.path) {
             None => Finding::ok(SUBJECT, format!("{} ({})", port.path, port.kind)),
-            Some(group) => Finding::wrong(
-                SUBJECT,
-                format!(
-                    "{} ({}) may not be opened by this user",
-                    port.path, port.kind
-                ),
-                match group {
-                    Some(group) => format!("sudo usermod -aG {group} $USER, then log out and in"),
-                    None => "ask the administrator for the right to use serial ports".into(),
-                },
-            ),
+            Some(group) => closed_port(&port.path, port.kind, group.as_deref()),
         });
     }
     if found.iter().any(|port| port.kind == "usb") && ports::is_probed_by_others() {
@@ -108,6 +98,24 @@ pub(super) fn ports() -> Vec<Finding> {
         ));
     }
     findings
+}
+
+/// A port that this user may not open, and the group whose members may, if there is one.
+fn closed_port(path: &str, kind: &str, group: Option<&str>) -> Finding {
+    // Who joins the group "root" may do more than open ports.
+    let remedy = match group.filter(|group| *group != "root") {
+        Some(group) => format!("sudo usermod -aG {group} $USER, then log out and in again"),
+        None => {
+            "install the rule of the package, 60-ptu.rules; then: sudo usermod -aG dialout $USER, and log out and in \
+             again"
+                .into()
+        }
+    };
+    Finding::warning(
+        "ports",
+        format!("{path} ({kind}) may not be opened by this user"),
+        remedy,
+    )
 }
 
 /// The window can open.
@@ -174,7 +182,7 @@ pub(super) fn database(file: &Path) -> Vec<Finding> {
         .resolve_run("latest")
         .and_then(|id| store.run(id, &process_id::is_alive));
     match newest {
-        Ok(run) if run.run.started_at_us > now_us() + AHEAD_US => findings.push(Finding::wrong(
+        Ok(run) if run.run.started_at_us > now_us() + AHEAD_US => findings.push(Finding::warning(
             "clock",
             format!(
                 "the newest run is of {}, later than this computer's clock, {}",
@@ -245,7 +253,7 @@ pub(super) fn server(server: Option<&Address>) -> Finding {
     };
     match Store::connect_read_only(server) {
         Ok(_) => Finding::ok(SUBJECT, format!("{server} answers")),
-        Err(error) => Finding::wrong(
+        Err(error) => Finding::warning(
             SUBJECT,
             error.to_string(),
             "runs are recorded here all the same; sync them when it answers",
@@ -266,4 +274,33 @@ fn nearest_folder(file: &Path) -> Option<&Path> {
 
 fn in_writable_folder(file: &Path) -> bool {
     nearest_folder(file).is_some_and(|folder| tempfile::tempfile_in(folder).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::doctor::State;
+
+    #[test]
+    fn a_closed_port_is_a_warning_that_says_how_to_open_it() {
+        for (group, remedy) in [
+            (
+                Some("uucp"),
+                "sudo usermod -aG uucp $USER, then log out and in again",
+            ),
+            (
+                Some("root"),
+                "sudo usermod -aG dialout $USER, and log out and in again",
+            ),
+            (
+                None,
+                "sudo usermod -aG dialout $USER, and log out and in again",
+            ),
+        ] {
+            let finding = closed_port("/dev/ttyUSB0", "usb", group);
+            assert_eq!(finding.state, State::Warning);
+            let said = finding.remedy.unwrap_or_default();
+            assert!(said.ends_with(remedy), "{group:?}: {said}");
+        }
+    }
 }

@@ -17,7 +17,9 @@ use ptu_runs::failure::{Exit, Failure};
 ///   ptu doctor
 ///   ptu doctor --server postgres://kim@depot/history
 ///
-/// Exit codes: 0 units can be tested; 1 they cannot.
+/// A port, display or server that is missing is a warning: the simulated unit needs none.
+///
+/// Exit codes: 0 the simulated unit can be tested; 1 it cannot.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DoctorArguments {
@@ -40,7 +42,7 @@ enum State {
     Ok,
     /// Some uses are not possible, or soon will not be.
     Warning,
-    /// Units cannot be tested, or what is recorded is lost.
+    /// Not even the simulated unit can be tested, or what is recorded is lost.
     Wrong,
 }
 

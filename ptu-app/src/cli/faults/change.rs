@@ -3,10 +3,10 @@
 use clap::Args;
 use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
-use crate::cli::print_out;
+use super::part;
+use crate::cli::{ScriptsOption, print_out};
 use ptu_runs::clock::now_us;
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
-use ptu_runs::stdio;
+use ptu_runs::failure::{Exit, Failure};
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
 ///
@@ -33,9 +33,12 @@ pub struct StateArguments {
 pub struct RepairArguments {
     /// The fault
     id: String,
-    /// Part changed or worked on
-    #[arg(long, value_name = "PART")]
-    part: String,
+    /// Part changed or worked on, see `ptu catalog parts`
+    #[arg(long, value_name = "PART", required_unless_present = "other_part")]
+    part: Option<String>,
+    /// Instead of --part: a part that the catalogue lacks
+    #[arg(long, value_name = "NAME", conflicts_with = "part")]
+    other_part: Option<String>,
     /// Serial number of the part taken out
     #[arg(long, value_name = "TEXT")]
     old: Option<String>,
@@ -51,6 +54,8 @@ pub struct RepairArguments {
     /// This fault alone, not the others of its case
     #[arg(long)]
     only: bool,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 /// Say which part a fault comes from; no diagnosis changes it afterwards
@@ -58,14 +63,20 @@ pub struct RepairArguments {
 pub struct CauseArguments {
     /// The fault
     id: String,
-    /// The part that explains it; `none`: the fault stands alone
-    part: String,
+    /// The part that explains it, see `ptu catalog parts`; `none`: the fault stands alone
+    #[arg(required_unless_present = "other_part")]
+    part: Option<String>,
+    /// Instead of PART: a part that the catalogue lacks
+    #[arg(long, value_name = "NAME", conflicts_with = "part")]
+    other_part: Option<String>,
     /// Who says it
     #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
     /// Why
     #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 /// Add a note to a fault; its state stays
@@ -96,50 +107,45 @@ impl StateArguments {
 
 impl RepairArguments {
     pub fn record(&self, store: &Store) -> Result<Exit, Failure> {
-        if self.part.trim().is_empty() {
+        let asked = self.part.as_deref().unwrap_or_default();
+        if asked.trim().is_empty() && self.other_part.is_none() {
             return Err(Failure::usage("a repair is of a part; name it with --part"));
         }
         let id = store.resolve_fault(&self.id)?;
-        let note = of_unknown_part(store, &self.part)?;
+        let part = match &self.other_part {
+            Some(other) => part::other(store, &self.scripts, other)?,
+            None => part::named(store, &self.scripts, asked)?,
+        };
         let repair = RepairRecord {
-            part: self.part.clone(),
+            part,
             serial_old: self.old.clone(),
             serial_new: self.new.clone(),
             note: self.note.clone(),
         };
         let (who, at_us) = (&self.who, now_us());
-        let said = match self.only {
+        print_out(&match self.only {
             true => is_now(&id.short(), store.record_repair(id, &repair, who, at_us)?),
             false => changed(&store.repair_case(id, &repair, who, at_us)?),
-        };
-        if let Some(note) = note {
-            stdio::note(&note);
-        }
-        print_out(&said)
+        })
     }
 }
 
 impl CauseArguments {
     pub fn attribute(&self, store: &Store) -> Result<Exit, Failure> {
         let id = store.resolve_fault(&self.id)?;
-        let part = match self.part.trim() {
-            "none" | "-" => "",
-            part => part,
-        };
-        let note = match part {
-            "" => None,
-            part => of_unknown_part(store, part)?,
+        let asked = self.part.as_deref().unwrap_or_default().trim();
+        let part = match (&self.other_part, asked) {
+            (Some(other), _) => part::other(store, &self.scripts, other)?,
+            (None, "none" | "-") => String::new(),
+            (None, asked) => part::named(store, &self.scripts, asked)?,
         };
         let cause = CauseRecord {
-            part: part.to_owned(),
+            part: part.clone(),
             note: self.note.trim().to_owned(),
             ..CauseRecord::default()
         };
         store.set_cause(id, &cause, self.who.trim(), now_us())?;
-        if let Some(note) = note {
-            stdio::note(&note);
-        }
-        print_out(&match part {
+        print_out(&match part.as_str() {
             "" => format!("fault {} stands alone", id.short()),
             part => format!("fault {} comes from {part}", id.short()),
         })
@@ -156,24 +162,6 @@ impl NoteArguments {
         store.add_note(id, self.who.trim(), text, now_us())?;
         print_out(&format!("noted on fault {}", id.short()))
     }
-}
-
-/// What to say of a part that nothing knows by this name, while another has nearly the same: a unit has
-/// more parts than faults ever named, so it is recorded all the same.
-fn of_unknown_part(store: &Store, asked: &str) -> Result<Option<String>, Failure> {
-    let known = store.known_parts()?;
-    let part = asked.trim().to_lowercase();
-    if known
-        .iter()
-        .any(|known| known.trim().to_lowercase() == part)
-    {
-        return Ok(None);
-    }
-    let hint = did_you_mean(&part, known.iter().map(String::as_str));
-    let note = format!(
-        "note: no fault and no earlier repair names a part \"{asked}\"{hint}; recorded as it is"
-    );
-    Ok((!hint.is_empty()).then_some(note))
 }
 
 fn is_now(fault: &str, state: FaultState) -> String {

@@ -195,7 +195,7 @@ impl FilterArguments {
 }
 
 /// Whether the scripts know a part of this name, without any fault of it here.
-fn is_part(name: &str) -> bool {
+pub(super) fn is_part(name: &str) -> bool {
     let catalogue = ScriptsDirectory::find(None).and_then(|directory| directory.faults());
     catalogue.is_ok_and(|catalogue| {
         let mut parts = catalogue.lrus.iter();

@@ -6,6 +6,7 @@ use clap::Args;
 use fault_db::{Store, TrendQuery};
 use serde_json::{Value, json};
 
+use super::filter::is_part;
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, check_unit};
@@ -107,9 +108,10 @@ impl TrendArguments {
         };
         if let (Some(unit), Some(part)) = (&self.serial_no, &self.since_repair) {
             let repaired = store.last_repair(unit, part)?;
-            query.since_us = Some(repaired.ok_or_else(|| {
-                Failure::usage(format!("no repair of {part} on unit {unit} recorded"))
-            })?);
+            query.since_us = Some(match repaired {
+                Some(at_us) => at_us,
+                None => return Err(never_repaired(store, unit, part)?),
+            });
         }
         match Trend::read(store, query.clone())? {
             Some(trend) => Ok(trend),
@@ -261,4 +263,17 @@ fn json(trend: &Trend) -> Value {
         value
     });
     value
+}
+
+/// That a unit has no repair of a part, and the part that is meant where none has this name.
+fn never_repaired(store: &Store, unit: &str, part: &str) -> Result<Failure, Failure> {
+    let known = store.known_parts()?;
+    let is_known = known.iter().any(|known| known.eq_ignore_ascii_case(part));
+    let hint = match is_known || is_part(part) {
+        true => String::new(),
+        false => did_you_mean(part, known.iter().map(String::as_str)),
+    };
+    Ok(Failure::usage(format!(
+        "no repair of {part} on unit {unit} recorded{hint}"
+    )))
 }

@@ -137,6 +137,31 @@ fn a_damaged_memory_aboard_a_train_is_read_as_far_as_it_is_whole() {
     }
 }
 
+/// Goal: no unit's run is taken for another's: two trains with new memories and the same serial number make runs that begin
+/// with the same row. The same record pulled again is nothing new. Method: services through two sections, both
+/// pulled, and one again.
+#[test]
+fn records_of_two_sections_are_two_runs_and_each_is_pulled_once() {
+    let depot = Place::with_database();
+    let pull = |train: &Unit| {
+        let pulled = depot.json(&["record", "pull", "--unit", &train.address, "--json"]);
+        (number(&pulled["pulled"]), number(&pulled["known"]))
+    };
+    let trains = ["61", "64"].map(|section| Unit::aboard(&["--service", section]));
+    // At one time: a record takes its port half a minute.
+    std::thread::scope(|scope| {
+        let pull = &pull;
+        let pulls = trains
+            .each_ref()
+            .map(|train| scope.spawn(move || pull(train)));
+        for pulled in pulls {
+            assert_eq!(pulled.join().expect("pulled"), (1.0, 0.0));
+        }
+    });
+    assert_eq!(pull(&trains[0]), (0.0, 1.0));
+    assert_eq!(depot.run_ids().len(), 2);
+}
+
 /// Goal: damage in the memory is told, and costs the damaged entry alone; a file that is something else is refused.
 /// Method: bytes of the first entry are changed while the unit is off.
 #[test]

@@ -1,0 +1,68 @@
+//! Names of parts that a person writes down: a slip in one would be another part in every count.
+
+use fault_db::Store;
+
+use crate::cli::ScriptsOption;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::{Failure, did_you_mean};
+use ptu_runs::stdio;
+
+/// The part that is meant, in the spelling of the catalogue.
+///
+/// # Errors
+/// Neither the catalogue of the scripts nor a fault here has it.
+pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
+    let known = known(store, scripts)?;
+    spelling(&known, asked).ok_or_else(|| {
+        let hint = did_you_mean(asked, known.iter().map(String::as_str));
+        Failure::usage(format!(
+            "no part \"{asked}\"{hint}; `ptu catalog parts` lists them, and --other-part names one that the catalogue lacks"
+        ))
+    })
+}
+
+/// A part that the catalogue lacks, as it is written; one that it has is that one. A name that is nearly one of its parts is
+/// taken and told.
+///
+/// # Errors
+/// It has no letter, or the database fails.
+pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
+    if asked.trim().is_empty() {
+        return Err(Failure::usage("--other-part names a part"));
+    }
+    let known = known(store, scripts)?;
+    if let Some(part) = spelling(&known, asked) {
+        return Ok(part);
+    }
+    let hint = did_you_mean(asked, known.iter().map(String::as_str));
+    if !hint.is_empty() {
+        stdio::note(&format!(
+            "no part \"{asked}\" is known{hint}; recorded as it is"
+        ));
+    }
+    Ok(asked.trim().to_owned())
+}
+
+/// The parts of the catalogue, and those that faults here named.
+fn known(store: &Store, scripts: &ScriptsOption) -> Result<Vec<String>, Failure> {
+    // Without scripts that can be read, faults still name parts.
+    let catalogue = scripts.find().and_then(|directory| parts_of(&directory));
+    let mut known = catalogue.unwrap_or_default();
+    for part in store.known_lrus()? {
+        if spelling(&known, &part).is_none() {
+            known.push(part);
+        }
+    }
+    Ok(known)
+}
+
+fn parts_of(directory: &ScriptsDirectory) -> Result<Vec<String>, Failure> {
+    let parts = directory.faults()?.lrus;
+    Ok(parts.iter().map(|lru| lru.id.to_string()).collect())
+}
+
+fn spelling(known: &[String], asked: &str) -> Option<String> {
+    let asked = asked.trim().to_lowercase();
+    let found = known.iter().find(|part| part.to_lowercase() == asked);
+    found.cloned()
+}
