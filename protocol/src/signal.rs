@@ -63,7 +63,8 @@ macro_rules! signals {
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
             /// How many there are.
             pub const COUNT: usize = Self::ALL.len();
-            const DEFINITIONS: [Definition; Self::COUNT] = [$( Definition {
+            /// Behind a reference: a table that is a value is copied to the stack at each use in a test's program.
+            const DEFINITIONS: &'static [Definition; Self::COUNT] = &[$( Definition {
                 name: $name, unit: $unit, kind: $kind, low: $low as f64, high: $high as f64,
                 origin: Origin::$origin, doc: $doc,
             } ),*];

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Place, list, number, scripts, text};
+use crate::common::{Place, list, scripts};
 use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
@@ -43,7 +43,7 @@ pub struct Window {
     pub complete: BTreeSet<String>,
 }
 
-/// The default suite, evaluated once.
+/// A bench and its procedures.
 pub struct TestBench {
     directory: ScriptsDirectory,
     setup: BenchSetup,
@@ -53,9 +53,15 @@ pub struct TestBench {
 
 impl TestBench {
     pub fn new() -> Self {
+        Self::of(&BTreeSet::new())
+    }
+
+    /// These procedures, or the default suite if there is none, evaluated once.
+    pub fn of(procedures: &BTreeSet<&str>) -> Self {
+        let asked: Vec<_> = procedures.iter().map(|id| (*id).to_owned()).collect();
         let directory = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
         let setup = BenchChoice::default().setup(&directory).expect("a bench");
-        let suite = Suite::load(&directory, &[], &setup).expect("procedures");
+        let suite = Suite::load(&directory, &asked, &setup).expect("procedures");
         assert_eq!(suite.errors, [""; 0]);
         Self {
             catalogue: directory.faults().expect("fault modes"),
@@ -147,17 +153,24 @@ impl TestBench {
     }
 }
 
-/// The same through the program.
-pub fn run_program(id: &str) -> FaultRun {
+/// The same through the program: these procedures, or the whole suite if none is named.
+pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     let place = Place::new();
-    let (said, report) = place.run(&["--inject", id, "--report", "r.junit.xml"]);
+    let faulty = ["--inject", id, "--report", "r.junit.xml"].into_iter();
+    let arguments: Vec<_> = faulty.chain(procedures.iter().copied()).collect();
+    let (said, report) = place.run(&arguments);
     assert!(!said.err.contains("panicked"), "{}", said.all());
     let diagnosis = place.json(&["diagnose", "latest", "--json"]);
     let first = &diagnosis["candidates"][0]["part"];
+    let path = place.path("history.db");
+    let store = Store::open(&path, clock::open_options()).expect("the program's database");
     let ids = list(&report["faults"])
         .iter()
         .filter_map(|fault| fault["trace_id"].as_str());
-    let traces = ids.map(|id| Window::of_json(id, &place.json(&["trace", "show", id, "--json"])));
+    let traces = ids.map(|id| {
+        let trace = store.trace(id.parse().expect("an id")).expect("a trace");
+        Window::of(id.to_owned(), &trace)
+    });
     FaultRun {
         exit: said.code.expect("an exit code") as u8,
         first_candidate: first.as_str().unwrap_or_default().to_owned(),
@@ -185,27 +198,6 @@ impl Window {
             complete: channels
                 .filter(|(_, column)| column.len() == rows)
                 .map(|(channel, _)| channel.name.clone())
-                .collect(),
-        }
-    }
-
-    fn of_json(id: &str, trace: &Value) -> Self {
-        let rows = number(&trace["rows"]);
-        let trigger = number(&trace["trigger_row"]);
-        let period_ms = number(&trace["period_ms"]);
-        let channels = list(&trace["signals"]).iter();
-        Self {
-            id: id.to_owned(),
-            before_s: trigger * period_ms / 1e3,
-            from_power_up: channels
-                .clone()
-                .any(|channel| channel["name"] == "speed" && channel["samples"][0].is_null()),
-            after_s: (rows - 1.0 - trigger) * period_ms / 1e3,
-            partial: trace["partial"] == true,
-            period_ms,
-            complete: channels
-                .filter(|channel| list(&channel["samples"]).len() == rows as usize)
-                .map(|channel| text(&channel["name"]).to_owned())
                 .collect(),
         }
     }
