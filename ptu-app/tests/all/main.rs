@@ -45,6 +45,7 @@ mod server;
 mod shards;
 mod signal;
 mod signing;
+mod small_files;
 mod sound;
 mod suite;
 mod symptoms;
