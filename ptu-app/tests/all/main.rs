@@ -31,6 +31,7 @@ mod long_service;
 mod matrix;
 mod no_unit;
 mod on_ports;
+mod outputs;
 mod own_scripts;
 mod package;
 mod questions;
