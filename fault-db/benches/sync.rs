@@ -111,7 +111,6 @@ fn sync(path: &Path, address: &str) -> Result<SyncOutcome, StoreError> {
         laptop: "bench",
         traces: true,
         as_copy: false,
-        is_alive: &|_| false,
         now_us: &|| common::T0_US,
         go_on: &mut |_| true,
     };

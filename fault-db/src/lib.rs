@@ -41,6 +41,7 @@ pub use exchange::domain::{Refusals, Refused};
 pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
 };
+pub use files::databases::is_of_database;
 pub use files::regular_file::{open_regular_file, read_regular_file};
 pub use history::cases::ChangedFault;
 pub use history::conflicts::{ConflictingEvent, StateConflict};

@@ -1,7 +1,7 @@
 //! `ptu run --json` and `--events FILE`: each event of a run as a JSON line, on standard output or in a file.
 
 use std::fmt;
-use std::fs::File;
+use std::fs::OpenOptions;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
@@ -11,6 +11,7 @@ use btu_rig::procedure::Procedure;
 
 use ptu_report::event_lines::EventLines;
 use ptu_runs::failure::Failure;
+use ptu_runs::new_file::{NewFile, kind};
 use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 use ptu_runs::stdio;
 
@@ -74,10 +75,25 @@ impl Stream {
         let cannot = |error: &dyn fmt::Display| {
             Failure::usage(format!("{place} cannot be written: {error}"))
         };
+        let mut event_lines = EventLines::default();
+        let first = event_lines.started();
+        let mut is_begun = false;
         let out: Box<dyn Write + Send> = match &place {
             Place::Stdout => Box::new(stdio::stdout()),
-            // Written in its place from the first line on: other programs read while it grows.
-            Place::File(file) => Box::new(File::create(file).map_err(|error| cannot(&error))?),
+            // A pipe or device is written to as it is.
+            Place::File(file) if std::fs::metadata(file).is_ok_and(|of| !of.is_file()) => {
+                let opened = OpenOptions::new().write(true).open(file);
+                Box::new(opened.map_err(|error| cannot(&error))?)
+            }
+            // In its place from the first line on: other programs read while it grows.
+            Place::File(file) => {
+                let begun = NewFile::begin(file, kind::EVENTS);
+                let mut file = begun.map_err(|why| Failure::usage(format!("--events: {why}")))?;
+                writeln!(file, "{first}").map_err(|error| cannot(&error))?;
+                file.appear()?;
+                is_begun = true;
+                Box::new(file)
+            }
         };
         let (to, lines) = mpsc::sync_channel(WAITING);
         let thread = std::thread::Builder::new()
@@ -89,14 +105,15 @@ impl Stream {
             });
         let thread = thread.map_err(|error| cannot(&error))?;
         let mut stream = Self {
-            lines: EventLines::default(),
+            lines: event_lines,
             to: Some(to),
             thread,
             place,
             is_cut: false,
         };
-        let first = stream.lines.started();
-        stream.put(first);
+        if !is_begun {
+            stream.put(first);
+        }
         Ok(stream)
     }
 

@@ -7,7 +7,7 @@ use btu_rig::procedure::Procedure;
 use ptu_report::trace_io::RunMcap;
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::Failure;
-use ptu_runs::new_file::{NewFile, cannot_write};
+use ptu_runs::new_file::{NewFile, cannot_write, kind};
 use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 
 /// A listener that records and passes every event on. The file is there once the run has ended, whole.
@@ -29,7 +29,7 @@ impl<L: Listener> RunRecording<L> {
     /// The file cannot be written.
     pub fn begin(listener: L, place: Option<&Path>) -> Result<Self, Failure> {
         let begin = |place: &Path| {
-            let file = RunMcap::begin(NewFile::begin(place)?, now_us());
+            let file = RunMcap::begin(NewFile::begin(place, kind::MCAP)?, now_us());
             let file = file.map_err(|error| cannot_write(place, &error))?;
             Ok::<_, Failure>(Recording {
                 place: place.to_owned(),

@@ -81,6 +81,11 @@ impl Maintenance {
         }
     }
 
+    /// Draws challenges from another seed.
+    pub fn draw_challenges(&mut self, seed: u64) {
+        self.random = Random::new(seed);
+    }
+
     pub fn armed(&self) -> bool {
         self.armed.is_some()
     }

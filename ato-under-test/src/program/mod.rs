@@ -4,10 +4,11 @@ mod data;
 mod stdio;
 
 use std::error::Error;
+use std::hash::{BuildHasher as _, RandomState};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use ato_under_test::serve::{Place, Served, Wire, in_real_time};
+use ato_under_test::serve::{NO_AUTHENTICATION, Place, Served, Wire, in_real_time};
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
 use protocol::frame::SCAN_END;
@@ -35,6 +36,9 @@ pub struct Arguments {
     /// Serve one TCP client at a time; others are told that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
+    /// Serve at an address that other computers reach, too: there is no authentication
+    #[arg(long, requires = "tcp")]
+    expose: bool,
     /// Faults to inject, from `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
@@ -47,7 +51,7 @@ pub struct Arguments {
     /// Serial number the unit reports
     #[arg(long, value_name = "TEXT", default_value = "SIM-0001")]
     serial_no: String,
-    /// Seed of arm challenges and injected noise
+    /// Seed of injected noise, and in lock step of arm challenges, which otherwise differ from start to start
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Go so many times slower than the clock, for a computer too busy for real time; the tester must do
@@ -71,6 +75,10 @@ type Failure = Box<dyn Error>;
 
 /// Serves until the process is ended.
 pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(address) = &arguments.tcp {
+        data::check_exposed(address, arguments.expose)?;
+        stdio::note(NO_AUTHENTICATION);
+    }
     let setup = data::setup(arguments)?;
     let flash = arguments.flash.as_deref().map(data::flash).transpose()?;
     let mut wire = match (&arguments.serial, &arguments.tcp) {
@@ -92,8 +100,11 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
         now: Instant::ZERO,
     };
     if arguments.lock_step {
+        // Each run of a seed is the same there.
         return run_in_lock_step(unit, &mut wire);
     }
+    let started = RandomState::new().hash_one(arguments.seed);
+    unit.unit.draw_challenges(started);
     Ok(in_real_time(&mut unit, &mut wire, arguments.slower)?)
 }
 

@@ -21,6 +21,7 @@ use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
 pub use platform::keep_time;
 pub use serial_end::{PORT_WAITS, SerialEnd};
+pub use tcp::{NO_AUTHENTICATION, check_exposed};
 pub use wire::{Place, Wire};
 
 /// What is at the far end of a wire.

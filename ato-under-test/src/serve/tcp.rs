@@ -4,7 +4,8 @@
 extern crate std;
 
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
+use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
@@ -23,6 +24,26 @@ const HANDS_OVER: Duration = Duration::from_ms(100);
 const LEAVES_WITHIN: Duration = Duration::from_ms(1000);
 /// Newcomers attended to at once; others wait for them in the system's queue.
 const MOST_COMING: usize = 16;
+
+/// What is to be known of every unit at a TCP address.
+pub const NO_AUTHENTICATION: &str =
+    "there is no authentication: whoever reaches this address has the unit";
+
+/// Refuses an address that other computers can reach, unless that is asked for. What cannot be resolved is left to whoever
+/// listens there.
+///
+/// # Errors
+/// What to do instead, for a person.
+pub fn check_exposed(address: &str, expose: bool) -> Result<(), String> {
+    let mut found = address.to_socket_addrs().into_iter().flatten();
+    match !expose && found.any(|at| !at.ip().is_loopback()) {
+        true => Err(std::format!(
+            "other computers reach {address}, and {NO_AUTHENTICATION}; serve at 127.0.0.1, or say --expose on a network \
+             of your own"
+        )),
+        false => Ok(()),
+    }
+}
 
 /// The listener and those who came.
 pub struct Server {

@@ -168,6 +168,11 @@ impl Unit {
         self.ports.take_maintenance(out);
     }
 
+    /// Draws arm challenges from another seed, which nobody outside knows.
+    pub fn draw_challenges(&mut self, seed: u64) {
+        self.maintenance.draw_challenges(seed);
+    }
+
     /// Another tester is connected to a port from now on: nothing the last one sent there is continued.
     pub fn reset_connection(&mut self, port: Port) {
         self.ports.link_mut(port).reset_connection();

@@ -1,7 +1,8 @@
 //! What the served unit takes from its command line.
 
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 /// Goal: a fault the unit cannot carry out is refused, not passed over. Method: each is asked for; the
 /// program ends at once with the reason.
@@ -46,4 +47,38 @@ fn the_program_alone_has_its_data_files() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("no fault tra.daed"), "{said}");
+}
+
+/// Goal: nobody serves a unit to a whole network unawares: there is no authentication. Method: addresses that others reach are
+/// refused, and with `--expose`, as at this computer's own, the first line says what it means.
+#[test]
+fn a_unit_is_served_to_other_computers_only_if_that_is_said() {
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
+    let serve = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ato-under-test"));
+        command.arg("--tcp").args(arguments).arg("--scripts");
+        command
+            .arg(&scripts)
+            .stderr(Stdio::piped())
+            .stdout(Stdio::null());
+        let mut child = command.spawn().expect("ato-under-test starts");
+        let mut said = String::new();
+        let first = BufReader::new(child.stderr.take().expect("stderr")).read_line(&mut said);
+        first.expect("UTF-8");
+        let is_over = said.contains("--expose");
+        if !is_over {
+            child.kill().expect("it serves");
+        }
+        (said, child.wait().expect("it ends").code())
+    };
+    for address in ["0.0.0.0:0", "[::]:0"] {
+        let (said, code) = serve(&[address]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains("no authentication"), "{said}");
+    }
+    for arguments in [&["127.0.0.1:0"][..], &["0.0.0.0:0", "--expose"]] {
+        let (said, code) = serve(arguments);
+        assert_eq!(code, None, "{said}");
+        assert!(said.contains("no authentication"), "{said}");
+    }
 }

@@ -72,6 +72,14 @@ pub enum StoreError {
         /// The first finding.
         what: String,
     },
+    /// The file is no longer the one that was opened, or another name leads to it, too.
+    #[error("the database {} {what}", .path.display())]
+    Misplaced {
+        /// The database file.
+        path: PathBuf,
+        /// What has happened to it.
+        what: &'static str,
+    },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
     EarlierCopy {

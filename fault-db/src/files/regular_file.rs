@@ -48,18 +48,6 @@ fn kind(about: &Metadata) -> &'static str {
     if about.is_dir() { "a folder" } else { other() }
 }
 
-/// Creates an empty file that only its owner can read. SQLite would use the umask; the files that it creates
-/// beside a database get that database's rights.
-///
-/// # Errors
-/// The file exists, or cannot be created.
-pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
-    let mut options = std::fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    platform::for_owner(&mut options);
-    options.open(path).map(drop)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,6 +11,7 @@ use rusqlite::params;
 
 use crate::backend::SqlError;
 use crate::error::StoreError;
+use crate::files::held_file::HeldFile;
 use crate::history::insert::FaultStored;
 use crate::history::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
 use crate::history::limits;
@@ -51,6 +52,8 @@ pub struct RunWriter<'a> {
     /// where both are merged.
     is_rest: bool,
     finished: bool,
+    /// Tells other programs that the run is under way.
+    lock: Option<HeldFile>,
 }
 
 impl<'a> RunWriter<'a> {
@@ -65,6 +68,7 @@ impl<'a> RunWriter<'a> {
         let sw_versions = json(&record.unit.sw_versions);
         let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
         let seal = RunDigest::begin(id, record, &sw_versions);
+        let lock = store.hold_run(id)?;
         let (run, unit) = store.write(DOING, |conn| {
             insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
         })?;
@@ -82,6 +86,7 @@ impl<'a> RunWriter<'a> {
             last_index: None,
             is_rest: false,
             finished: false,
+            lock: Some(lock),
         })
     }
 
@@ -281,6 +286,7 @@ impl<'a> RunWriter<'a> {
         })?;
         self.waiting.clear();
         self.finished = true;
+        self.lock = None;
         Ok(())
     }
 

@@ -1,13 +1,16 @@
 //! Runs: the list, and one with its steps, measurements and faults.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde::Serialize;
 
 use super::faults::json;
 use super::filter::{Conditions, limit};
-use crate::backend::{Row, SqlResult, values};
+use crate::backend::{Backend, Row, SqlResult, values};
 use crate::error::StoreError;
+use crate::files::databases::with_end;
+use crate::files::held_file::{HeldFile, is_held, remove_abandoned};
 use crate::history::run_notes::RunNote;
 use crate::history::verify::{SETTLED, SettledFault, made_by};
 use crate::id::Id;
@@ -167,13 +170,8 @@ const SELECT_RUN: &str = "
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
-    /// Lists runs, newest first. `is_alive` says whether the owner of an unfinished run is alive; if not, the
-    /// run counts as interrupted.
-    pub fn runs(
-        &self,
-        filter: &RunFilter,
-        is_alive: &dyn Fn(&str) -> bool,
-    ) -> Result<Vec<RunSummary>, StoreError> {
+    /// Lists runs, newest first.
+    pub fn runs(&self, filter: &RunFilter) -> Result<Vec<RunSummary>, StoreError> {
         let mut conditions = Conditions::default();
         conditions.add("u.serial = ?", filter.unit.clone());
         conditions.add("r.line = ?", filter.line.clone());
@@ -188,15 +186,15 @@ impl Store {
         let limit = limit(filter.limit);
         let sql = format!("{SELECT_RUN} {} {order} {limit}", conditions.sql());
         self.select("listing runs", &sql, conditions.values(), |row| {
-            summary(row, is_alive)
+            self.summary(row)
         })
     }
 
     /// One run with its steps, measurements, faults and notes.
-    pub fn run(&self, id: Id, is_alive: &dyn Fn(&str) -> bool) -> Result<RunDetail, StoreError> {
+    pub fn run(&self, id: Id) -> Result<RunDetail, StoreError> {
         const DOING: &str = "reading a run";
         let select = format!("{SELECT_RUN} WHERE r.id = ?1");
-        let row = |row: Row<'_>| Ok((summary(row, is_alive)?, row.get::<i64>(21)?));
+        let row = |row: Row<'_>| Ok((self.summary(row)?, row.get::<i64>(21)?));
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
         let rest = || -> SqlResult<_> {
@@ -318,41 +316,71 @@ impl Store {
             },
         )
     }
-}
 
-fn summary(row: Row<'_>, is_alive: &dyn Fn(&str) -> bool) -> SqlResult<RunSummary> {
-    let verdict: Option<Verdict> = row.get(10)?;
-    let state = match verdict {
-        Some(_) => RunState::Finished,
-        None if is_alive(row.get(11)?) => RunState::Running,
-        None => RunState::Interrupted,
-    };
-    Ok(RunSummary {
-        id: row.get(0)?,
-        unit_serial: row.get(1)?,
-        unit_kind: row.get(2)?,
-        unit_config_name: row.get(3)?,
-        line: row.get(4)?,
-        train: row.get(22)?,
-        seed: row.get::<i64>(5)?.cast_unsigned(),
-        operator: row.get(6)?,
-        source: row.get(7)?,
-        started_at_us: row.get(8)?,
-        finished_at_us: row.get(9)?,
-        verdict,
-        state,
-        bench_time_us: row.get(12)?,
-        wall_time_us: row.get(13)?,
-        app_version: row.get(14)?,
-        scripts_sha256: row.get(15)?,
-        unit_config_sha256: row.get(16)?,
-        injected: row.get(17)?,
-        continues: row.get(23)?,
-        connection: row.get(24)?,
-        symptom: row.get(25)?,
-        evidence: row.get(26)?,
-        steps: row.get(18)?,
-        steps_not_passed: row.get(19)?,
-        faults: row.get(20)?,
-    })
+    /// Whether a run that has no end is under way: a server has only such as are over.
+    pub(crate) fn is_under_way(&self, run: Id) -> bool {
+        matches!(self.backend(), Backend::File(_)) && is_held(&self.lock_of(run))
+    }
+
+    /// Tells other programs that a run is under way, until what this gives is dropped.
+    pub(crate) fn hold_run(&self, run: Id) -> Result<HeldFile, StoreError> {
+        let lock = self.lock_of(run);
+        if let (Some(folder), Some(name)) = (lock.parent(), lock.file_name()) {
+            let name = name.to_string_lossy();
+            let of = name.rsplit_once(".run-").map_or("", |(of, _)| of);
+            let is_lock = |name: &str| {
+                let rest = name.strip_prefix(of);
+                rest.is_some_and(|rest| rest.starts_with(".run-") && rest.ends_with(".lock"))
+            };
+            remove_abandoned(folder, is_lock);
+        }
+        HeldFile::make(&lock, true).map_err(|error| StoreError::CannotWrite {
+            path: lock.clone(),
+            reason: error.to_string(),
+        })
+    }
+
+    /// The file of [`Self::hold_run`], beside the database.
+    fn lock_of(&self, run: Id) -> PathBuf {
+        let real = std::fs::canonicalize(self.path());
+        let real = real.as_deref().unwrap_or(self.path());
+        with_end(real, &format!(".run-{}.lock", run.short()))
+    }
+
+    fn summary(&self, row: Row<'_>) -> SqlResult<RunSummary> {
+        let verdict: Option<Verdict> = row.get(10)?;
+        let state = match verdict {
+            Some(_) => RunState::Finished,
+            None if self.is_under_way(row.get(0)?) => RunState::Running,
+            None => RunState::Interrupted,
+        };
+        Ok(RunSummary {
+            id: row.get(0)?,
+            unit_serial: row.get(1)?,
+            unit_kind: row.get(2)?,
+            unit_config_name: row.get(3)?,
+            line: row.get(4)?,
+            train: row.get(22)?,
+            seed: row.get::<i64>(5)?.cast_unsigned(),
+            operator: row.get(6)?,
+            source: row.get(7)?,
+            started_at_us: row.get(8)?,
+            finished_at_us: row.get(9)?,
+            verdict,
+            state,
+            bench_time_us: row.get(12)?,
+            wall_time_us: row.get(13)?,
+            app_version: row.get(14)?,
+            scripts_sha256: row.get(15)?,
+            unit_config_sha256: row.get(16)?,
+            injected: row.get(17)?,
+            continues: row.get(23)?,
+            connection: row.get(24)?,
+            symptom: row.get(25)?,
+            evidence: row.get(26)?,
+            steps: row.get(18)?,
+            steps_not_passed: row.get(19)?,
+            faults: row.get(20)?,
+        })
+    }
 }

@@ -1,45 +1,40 @@
 //! A file that appears under its name only when it is complete: it is written beside its target under a
 //! temporary name and then renamed, so a crash leaves either the old file or the new one.
 
-use std::hash::{BuildHasher as _, DefaultHasher, Hash as _, Hasher as _, RandomState};
+use std::fs::File;
+use std::hash::{BuildHasher as _, RandomState};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use rusqlite::{Connection, OpenFlags};
 
 use crate::error::StoreError;
-use crate::files::regular_file::make_private;
+use crate::files::databases::{is_of_database, with_end};
+use crate::files::held_file::{HeldFile, remove_abandoned};
+use crate::files::platform;
 use crate::schema;
-
-/// An unfinished file that has not been written to for this long is abandoned.
-const GIVEN_UP: Duration = Duration::from_secs(3_600);
-
-/// Ends of the names of unfinished files, and of what SQLite keeps beside one while it fills it.
-const ENDINGS: [&[u8]; 4] = [b".part", b".part-journal", b".part-wal", b".part-shm"];
 
 /// An unfinished file. Dropped before [`replace`](Self::replace) or [`publish_as`](Self::publish_as), it is
 /// removed.
 #[derive(Debug)]
 pub struct AtomicFile {
-    beside: PathBuf,
+    beside: HeldFile,
     to: PathBuf,
 }
 
 impl AtomicFile {
-    /// Begins a file that is to be called `to`. Only a unique name in the same folder is chosen yet.
-    /// Unfinished files that killed programs left in the folder are removed.
-    pub fn begin(to: &Path) -> Self {
-        for left in left_in(folder_of(to)) {
-            // Without the right to remove it there may still be the right to write beside it.
-            let _ = std::fs::remove_file(left);
-        }
-        Self::of(to)
+    /// Begins a file that is to be called `to`, in the same folder. Unfinished files that killed programs left in the folder
+    /// are removed.
+    ///
+    /// # Errors
+    /// Of the file system: none can be made in that folder.
+    pub fn begin(to: &Path) -> std::io::Result<Self> {
+        Self::make(to, false)
     }
 
-    /// The temporary name to write to.
-    pub fn path(&self) -> &Path {
-        &self.beside
+    /// The file to write to.
+    pub fn file(&self) -> &File {
+        &self.beside.file
     }
 
     /// Renames it to its name, replacing an existing file; readers see either the old or the new one,
@@ -48,7 +43,7 @@ impl AtomicFile {
     /// # Errors
     /// Of the file system; the old file is still there then.
     pub fn replace(self) -> std::io::Result<()> {
-        std::fs::rename(&self.beside, &self.to)?;
+        std::fs::rename(&self.beside.path, &self.to)?;
         sync_names(&self.to);
         Ok(())
     }
@@ -58,7 +53,7 @@ impl AtomicFile {
     /// # Errors
     /// [`ErrorKind::AlreadyExists`], or of the file system; another name can be tried then.
     pub fn publish_as(&self, name: &Path) -> std::io::Result<()> {
-        match std::fs::hard_link(&self.beside, name) {
+        match std::fs::hard_link(&self.beside.path, name) {
             // No hard links on this file system.
             Err(error)
                 if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
@@ -77,13 +72,15 @@ impl AtomicFile {
         to: &Path,
         doing: &'static str,
     ) -> Result<Self, StoreError> {
-        let part = Self::begin(to);
-        let name = part.beside.to_str().ok_or_else(|| StoreError::CannotOpen {
+        let part = Self::make(to, true).map_err(|error| cannot_write(to, error.to_string()))?;
+        let name = part.beside.path.to_str();
+        let name = name.ok_or_else(|| StoreError::CannotOpen {
             path: to.to_path_buf(),
             reason: "the name is not UTF-8".to_owned(),
         })?;
-        // SQLite fills an empty file; if none can be made, its own error says why.
-        let _ = make_private(&part.beside);
+        if platform::LOCKS_BIND_ALL {
+            let _ = part.file().unlock();
+        }
         // An error here concerns the target: the source was readable a moment ago.
         conn.execute("VACUUM INTO ?1", [name])
             .map_err(|error| StoreError::from_sqlite(to, doing, error))?;
@@ -95,36 +92,39 @@ impl AtomicFile {
     /// # Errors
     /// [`StoreError::CannotWrite`] with the system's reason, which SQLite does not give.
     pub(crate) fn can_be_made(to: &Path) -> Result<(), StoreError> {
-        let cannot = |reason| StoreError::CannotWrite {
-            path: to.to_path_buf(),
-            reason,
-        };
+        if is_of_database(to) {
+            return Err(cannot_write(to, "it belongs to a database".to_owned()));
+        }
         let folder = to
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
         if let Some(folder) = folder {
-            return Err(cannot(format!("there is no folder {}", folder.display())));
+            let reason = format!("there is no folder {}", folder.display());
+            return Err(cannot_write(to, reason));
         }
         // Not under its own name, which another program may take the next moment.
-        let part = Self::of(to);
-        make_private(&part.beside).map_err(|error| cannot(error.to_string()))
+        let made = Self::make(to, true).map(drop);
+        made.map_err(|error| cannot_write(to, error.to_string()))
     }
 
-    fn of(to: &Path) -> Self {
-        let mut name = to.as_os_str().to_owned();
-        let random = RandomState::new().hash_one(to) as u32;
-        let process = std::process::id();
-        name.push(format!(".{process}-{:08x}{random:08x}.part", processes()));
-        Self {
-            beside: name.into(),
+    fn make(to: &Path, is_private: bool) -> std::io::Result<Self> {
+        remove_abandoned(folder_of(to), is_part);
+        // From the root: SQLite takes `file:x` for something else than a file.
+        let from_root = std::path::absolute(to)?;
+        let random = RandomState::new().hash_one(to);
+        Ok(Self {
+            beside: HeldFile::make(
+                &with_end(&from_root, &format!(".{random:016x}.part")),
+                is_private,
+            )?,
             to: to.to_path_buf(),
-        }
+        })
     }
 
     /// The schema version of what was copied.
     pub(crate) fn version(&self) -> Result<i32, StoreError> {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        Connection::open_with_flags(&self.beside, flags)
+        Connection::open_with_flags(&self.beside.path, flags)
             .and_then(|copy| schema::user_version(&copy))
             .map_err(|error| StoreError::from_sqlite(&self.to, "reading a copy", error))
     }
@@ -150,7 +150,7 @@ impl AtomicFile {
     /// empty file reserves the name first.
     fn rename(&self, name: &Path) -> std::io::Result<()> {
         make_private(name)?;
-        let renamed = std::fs::rename(&self.beside, name);
+        let renamed = std::fs::rename(&self.beside.path, name);
         if renamed.is_err() {
             let _ = std::fs::remove_file(name);
         }
@@ -158,15 +158,23 @@ impl AtomicFile {
     }
 }
 
-impl Drop for AtomicFile {
-    fn drop(&mut self) {
-        // After publishing the first is the second link, if it exists; the others are there where SQLite failed.
-        for end in ["", "-journal", "-wal", "-shm"] {
-            let mut name = self.beside.as_os_str().to_owned();
-            name.push(end);
-            let _ = std::fs::remove_file(name);
-        }
+fn cannot_write(path: &Path, reason: String) -> StoreError {
+    StoreError::CannotWrite {
+        path: path.to_path_buf(),
+        reason,
     }
+}
+
+/// Creates an empty file that only its owner can read. SQLite would use the umask; the files that it creates
+/// beside a database get that database's rights.
+///
+/// # Errors
+/// The file exists, or cannot be created.
+pub(crate) fn make_private(path: &Path) -> std::io::Result<()> {
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    platform::for_owner(&mut options);
+    options.open(path).map(drop)
 }
 
 /// Makes a new name of a file survive a power cut, too; not every file system can sync a folder.
@@ -181,91 +189,35 @@ fn folder_of(file: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
-/// Abandoned unfinished files of a folder.
-fn left_in(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let left = entries.filter(|entry| {
-        let maker = maker(entry.file_name().as_encoded_bytes());
-        maker.is_some_and(|maker| is_gone(maker) || is_given_up(entry))
-    });
-    left.map(|entry| entry.path()).collect()
-}
-
-/// The process that writes an unfinished file, from the end of its name: the process namespace, and its
-/// number.
-fn maker(name: &[u8]) -> Option<(u32, u32)> {
-    let name = ENDINGS.iter().find_map(|end| name.strip_suffix(*end))?;
-    let end = name.iter().rposition(|byte| *byte == b'.')?;
-    let (process, name) = std::str::from_utf8(&name[end + 1..])
-        .ok()?
-        .split_once('-')?;
-    let is_ours = name.len() == 16 && name.bytes().all(|digit| digit.is_ascii_hexdigit());
-    let among = is_ours.then(|| u32::from_str_radix(&name[..8], 16).ok())?;
-    Some((among?, process.parse().ok()?))
-}
-
-/// Identifies the set of processes that can be looked up here (this computer, this boot, this container); 0
-/// if none can be.
-fn processes() -> u32 {
-    // Other users' processes are visible, too, unless `/proc` is mounted to hide them.
-    if !Path::new("/proc/1").exists() {
-        return 0;
-    }
-    let boot = std::fs::read("/proc/sys/kernel/random/boot_id");
-    let space = std::fs::read_link("/proc/self/ns/pid");
-    match (boot, space) {
-        (Ok(boot), Ok(space)) => {
-            let mut hasher = DefaultHasher::new();
-            (boot, space).hash(&mut hasher);
-            (hasher.finish() as u32).max(1)
-        }
-        _ => 0,
-    }
-}
-
-/// Whether the process is dead, as far as it can be looked up here.
-fn is_gone((among, process): (u32, u32)) -> bool {
-    among != 0 && among == processes() && !Path::new(&format!("/proc/{process}")).exists()
-}
-
-fn is_given_up(entry: &std::fs::DirEntry) -> bool {
-    let written = entry.metadata().and_then(|file| file.modified());
-    let since = written.ok().and_then(|at| at.elapsed().ok());
-    since.is_some_and(|since| since > GIVEN_UP)
+/// Whether a name is one of [`AtomicFile::make`].
+fn is_part(name: &str) -> bool {
+    let name = name.strip_suffix(".part");
+    let random = name.and_then(|name| name.rsplit(['.', '-']).next());
+    random
+        .is_some_and(|text| text.len() == 16 && text.bytes().all(|digit| digit.is_ascii_hexdigit()))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write as _;
+
     use super::*;
 
-    /// Goal: a copy whose process is dead is removed; one of another computer may still be being written.
+    /// Goal: what a program that is gone left is removed, and no file that is being written.
     #[test]
-    fn a_copy_is_left_by_a_process_of_this_computer_that_is_gone() {
+    fn a_file_that_nobody_writes_any_more_is_removed() {
         let dir = tempfile::tempdir().expect("a directory");
-        let name = |of: &str, process: u32, among: u32| {
-            let name = format!("{of}.{process}-{among:08x}01234567.part");
-            let path = dir.path().join(name);
-            std::fs::write(&path, "half").expect("written");
-            path
-        };
-        let here = processes();
-        let journal = dir
-            .path()
-            .join(format!("c.db.{}-{here:08x}01234567.part-journal", u32::MAX));
-        std::fs::write(&journal, "half").expect("written");
-        let mut dead = [
-            name("b.db", u32::MAX, here),
-            name("a.pdf", u32::MAX, here),
-            journal,
-        ];
-        name("b.db", std::process::id(), here);
-        name("b.db", u32::MAX, here ^ 1);
-        std::fs::write(dir.path().join("mine.part"), "whole").expect("written");
-        let mut left = left_in(dir.path());
-        left.sort();
-        dead.sort();
-        let expected = if here == 0 { vec![] } else { dead.to_vec() };
-        assert_eq!(left, expected);
+        let name = |name: &str| dir.path().join(name);
+        let left = ["a.pdf.0123456789abcdef.part", "b.db.0123456789abcdef.part"].map(name);
+        let journal = name("b.db.0123456789abcdef.part-journal");
+        let mine = name("mine.part");
+        for file in left.iter().chain([&journal, &mine]) {
+            std::fs::write(file, "half").expect("written");
+        }
+        let under_way = AtomicFile::begin(&name("c.pdf")).expect("begun");
+        drop(AtomicFile::begin(&name("d.pdf")).expect("begun"));
+        assert!(under_way.beside.path.exists() && mine.exists());
+        assert!(left.iter().chain([&journal]).all(|file| !file.exists()));
     }
 
     /// Goal: the target is replaced only by a complete file; an abandoned one leaves it unchanged.
@@ -276,12 +228,12 @@ mod tests {
         let names = || std::fs::read_dir(dir.path()).expect("read").count();
         let read = || std::fs::read_to_string(&to).expect("there");
         std::fs::write(&to, "old").expect("written");
-        let given_up = AtomicFile::begin(&to);
-        std::fs::write(given_up.path(), "ne").expect("written");
+        let given_up = AtomicFile::begin(&to).expect("begun");
+        given_up.file().write_all(b"ne").expect("written");
         drop(given_up);
         assert_eq!((read(), names()), ("old".to_owned(), 1));
-        let whole = AtomicFile::begin(&to);
-        std::fs::write(whole.path(), "new").expect("written");
+        let whole = AtomicFile::begin(&to).expect("begun");
+        whole.file().write_all(b"new").expect("written");
         assert_eq!(read(), "old");
         whole.replace().expect("replaced");
         assert_eq!((read(), names()), ("new".to_owned(), 1));
@@ -292,11 +244,8 @@ mod tests {
     fn without_hard_links_an_existing_file_is_not_replaced() {
         let dir = tempfile::tempdir().expect("a directory");
         let part = |to: &str| {
-            let part = AtomicFile {
-                beside: dir.path().join(format!("{to}.part")),
-                to: dir.path().join(to),
-            };
-            std::fs::write(&part.beside, "new").expect("written");
+            let part = AtomicFile::begin(&dir.path().join(to)).expect("begun");
+            part.file().write_all(b"new").expect("written");
             part
         };
         let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).expect("there");

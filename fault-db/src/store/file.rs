@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use crate::error::StoreError;
+use crate::files::databases::note_opened;
 use crate::schema::guard;
 use crate::schema::sql_functions;
 use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
@@ -45,7 +46,17 @@ pub(crate) fn connect(
         });
     }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
-    let conn = Connection::open_with_flags(name, flags).map_err(failed)?;
+    // From the root: SQLite takes `:memory:`, `file:x` and no name for something else than a file.
+    let from_root = match flags.contains(OpenFlags::SQLITE_OPEN_URI) {
+        true => Ok(name.to_path_buf()),
+        false => std::path::absolute(name),
+    };
+    let name = from_root.map_err(|error| StoreError::CannotOpen {
+        path: path.to_path_buf(),
+        reason: error.to_string(),
+    })?;
+    let conn = Connection::open_with_flags(&name, flags).map_err(failed)?;
+    note_opened(path);
     conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))
         .map_err(failed)?;
     sql_functions::register(&conn).map_err(failed)?;

@@ -10,8 +10,6 @@ use fault_db::{
 };
 use tempfile::tempdir;
 
-const NOBODY_LIVES: &dyn Fn(&str) -> bool = &|_| false;
-
 fn opened(path: &Path) -> (Store, Vec<Id>) {
     let store = open(path);
     let runs = (0..3)
@@ -153,10 +151,7 @@ fn filters_stats_and_trends_answer() {
         unit: some("ATC-2"),
         ..Default::default()
     };
-    assert_eq!(
-        store.runs(&filter, NOBODY_LIVES).expect("listed")[0].id,
-        runs[2]
-    );
+    assert_eq!(store.runs(&filter).expect("listed")[0].id, runs[2]);
 
     let of = |measurement: &str, unit: Option<&str>| TrendQuery {
         measurement: measurement.to_owned(),
@@ -257,11 +252,5 @@ fn free_questions_only_read() {
         error.to_string().contains("no such column: verdct"),
         "{error}"
     );
-    assert_eq!(
-        store
-            .runs(&RunFilter::default(), NOBODY_LIVES)
-            .expect("listed")
-            .len(),
-        3
-    );
+    assert_eq!(store.runs(&RunFilter::default()).expect("listed").len(), 3);
 }

@@ -10,8 +10,6 @@ use fault_db::{
 use rusqlite::Connection;
 use tempfile::tempdir;
 
-const NOBODY_LIVES: &dyn Fn(&str) -> bool = &|_| false;
-
 /// A run of one step, one fault and its trace.
 pub fn one_run(store: &Store, serial: &str, code: i64) -> (Id, FaultStored, Id) {
     let mut writer = RunWriter::begin(store, &run_record(serial)).expect("begun");
@@ -105,36 +103,6 @@ fn of_two_backups_to_one_path_one_is_made() {
         copy.trace(trace).expect("there");
     }
     assert_eq!(parts(dir.path()), [""; 0]);
-}
-
-/// Goal: what nobody works at any more goes with the next copy to the same place; what another program is at,
-/// also one of another computer, whose processes are not to be seen here, and what only looks like it, stays.
-#[test]
-fn the_leftover_of_an_interrupted_copy_is_removed_by_the_next() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
-    let random = "0123456789abcdef";
-    let alive = std::process::id();
-    let old = format!("b.db.{alive}-fedcba9876543210.part");
-    let stay = [
-        format!("b.db.{alive}-{random}.part"),
-        // No process here has a number of more than 22 bits.
-        format!("b.db.{}-{random}.part", u32::MAX),
-        format!("bb.db.{}-{random}.part", u32::MAX),
-        "b.db.mine.part".to_owned(),
-    ];
-    for name in stay.iter().chain([&old]) {
-        std::fs::write(dir.path().join(name), "half").expect("written");
-    }
-    let hours_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(7_200);
-    let file = std::fs::File::options()
-        .write(true)
-        .open(dir.path().join(&old));
-    (file.expect("there").set_modified(hours_ago)).expect("its time is set");
-    store.backup(&dir.path().join("b.db")).expect("copied");
-    let mut expected = stay.to_vec();
-    expected.sort();
-    assert_eq!(parts(dir.path()), expected);
 }
 
 /// Names of copies that are not whole.
@@ -267,7 +235,7 @@ fn importing_twice_adds_nothing_twice() {
     );
     let second = ours.import(&path("b.db")).expect("merged");
     assert_eq!(second, fault_db::MergeCounts::default());
-    let detail = |store: &Store| store.run(run, NOBODY_LIVES).expect("there");
+    let detail = |store: &Store| store.run(run).expect("there");
     assert_eq!(detail(&ours), detail(&theirs));
     assert_eq!(
         ours.fault(stored.fault).expect("there"),
@@ -297,7 +265,7 @@ fn later_copies_complete_earlier_ones() {
     let mut writer = RunWriter::begin(&theirs, &run_record("ATC-7")).expect("begun");
     let stored = writer.fault(&fault(1, T0_US)).expect("stored");
     ours.merge_from(&theirs).expect("merged");
-    let run = |store: &Store| store.run(writer.id(), NOBODY_LIVES).expect("there").run;
+    let run = |store: &Store| store.run(writer.id()).expect("there").run;
     assert_eq!(run(&ours).state, RunState::Interrupted);
 
     ours.acknowledge(stored.fault, "lee", "", T0_US + 20)
@@ -314,7 +282,7 @@ fn later_copies_complete_earlier_ones() {
     theirs.merge_from(&ours).expect("and back");
     for store in [&ours, &theirs] {
         assert_eq!(
-            store.run(id, NOBODY_LIVES).expect("there").run.verdict,
+            store.run(id).expect("there").run.verdict,
             Some(Verdict::Failed)
         );
         let detail = store.fault(stored.fault).expect("there");

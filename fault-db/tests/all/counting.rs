@@ -214,9 +214,7 @@ fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
     history(&store, &mut Random::new(1));
     let everything = FaultFilter::default();
     let faults = store.faults(&everything).expect("listed");
-    let runs = store
-        .runs(&RunFilter::default(), &|_| true)
-        .expect("listed");
+    let runs = store.runs(&RunFilter::default()).expect("listed");
     let say = |n: usize, text: &str| {
         let fault = &faults[n * n % faults.len()];
         let at_us = fault.last_at_us + n as i64;

@@ -533,12 +533,12 @@ fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
         by_hand(&copy, sql);
         let b = opened(&copy, 2);
         one_fault(&b, T0_US + 1);
-        let before = a.run(altered, &|_| false).expect("there");
+        let before = a.run(altered).expect("there");
         let added = a.merge_from(&b).expect("merged");
         let named: Vec<_> = (added.different.iter().map(|run| (run.what, run.id))).collect();
         assert_eq!(named, [("run", altered)], "{what}");
         assert_eq!((added.runs, added.steps), (1, 0), "{what}");
-        assert_eq!(a.run(altered, &|_| false).expect("there"), before, "{what}");
+        assert_eq!(a.run(altered).expect("there"), before, "{what}");
         assert_eq!(faults(&a).len(), 1, "{what}");
         whole(&a, what);
         // The other way round nothing is added to theirs either, but for a verdict that is missing there.

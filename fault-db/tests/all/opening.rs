@@ -124,7 +124,7 @@ fn a_file_locked_by_another_is_named_so() {
     );
     assert_eq!(
         store
-            .runs(&RunFilter::default(), &|_| true)
+            .runs(&RunFilter::default())
             .expect("reading goes on")
             .len(),
         1
@@ -167,13 +167,7 @@ fn reading_never_writes() {
     let before = std::fs::read(&path).expect("there");
     let store = Store::open_read_only(&path).expect("opens");
     assert!(store.is_read_only());
-    assert_eq!(
-        store
-            .runs(&RunFilter::default(), &|_| false)
-            .expect("listed")
-            .len(),
-        1
-    );
+    assert_eq!(store.runs(&RunFilter::default()).expect("listed").len(), 1);
     assert_eq!(store.faults(&FaultFilter::default()).expect("listed"), []);
     let Err(error) = RunWriter::begin(&store, &run_record("ATC-7")) else {
         panic!("a reader must not write");
@@ -247,11 +241,7 @@ fn a_half_copied_file_is_named_and_left_as_it_is() {
         }
         assert_eq!(std::fs::read(&path).expect("there"), half, "1/{part}");
     }
-    assert_eq!(
-        ours.runs(&RunFilter::default(), &|_| false)
-            .expect("listed"),
-        []
-    );
+    assert_eq!(ours.runs(&RunFilter::default()).expect("listed"), []);
 }
 
 /// Goal: a file with a stretch of garbage in it never passes for whole, wherever that is, and neither a
@@ -276,7 +266,7 @@ fn garbage_in_the_middle_is_found() {
         if let Err(error) = ours.import(&path) {
             refused += 1;
             assert!(error.to_string().contains("scratched.db"), "{error}");
-            let runs = ours.runs(&RunFilter::default(), &|_| false);
+            let runs = ours.runs(&RunFilter::default());
             assert_eq!(runs.expect("listed"), []);
         }
         assert_eq!(
@@ -305,8 +295,6 @@ fn a_file_without_its_write_ahead_log_is_an_earlier_state_or_unreadable() {
     std::fs::copy(&path, &alone).expect("copied");
     let copy = Store::open_read_only(&alone).expect("opens");
     assert_eq!(copy.check().expect("checked").problems, []);
-    let runs = copy
-        .runs(&RunFilter::default(), &|_| false)
-        .expect("listed");
+    let runs = copy.runs(&RunFilter::default()).expect("listed");
     assert_eq!(runs.len(), 1, "what was in the log is not there");
 }

@@ -19,7 +19,7 @@ fn note(store: &Store, run: Id, text: &str, at_us: i64) {
 }
 
 fn notes(store: &Store, run: Id) -> Vec<RunNote> {
-    store.run(run, &|_| false).expect("there").notes
+    store.run(run).expect("there").notes
 }
 
 #[test]

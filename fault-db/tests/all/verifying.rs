@@ -76,7 +76,7 @@ impl Depot {
     }
 
     fn last_run(&self) -> Id {
-        let runs = self.store.runs(&RunFilter::default(), &|_| true);
+        let runs = self.store.runs(&RunFilter::default());
         runs.expect("runs")[0].id
     }
 

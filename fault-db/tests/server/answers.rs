@@ -154,9 +154,7 @@ fn rounded(text: &str) -> String {
 /// Lists, and everything in them one by one.
 fn lists() -> Vec<Question> {
     vec![
-        question("runs", |store| {
-            store.runs(&RunFilter::default(), &|_| false)
-        }),
+        question("runs", |store| store.runs(&RunFilter::default())),
         question("runs of a unit", |store| {
             let filter = RunFilter {
                 unit: Some("부품-3".to_owned()),
@@ -166,12 +164,12 @@ fn lists() -> Vec<Question> {
                 limit: Some(3),
                 ..RunFilter::default()
             };
-            store.runs(&filter, &|_| false)
+            store.runs(&filter)
         }),
         question("every run", |store| {
-            let runs = store.runs(&RunFilter::default(), &|_| false)?;
+            let runs = store.runs(&RunFilter::default())?;
             let each = |run: &fault_db::RunSummary| {
-                let detail = store.run(run.id, &|_| false)?;
+                let detail = store.run(run.id)?;
                 let mut traces = store.traces(run.id)?;
                 traces.sort_by_key(|trace| trace.id);
                 Ok((detail, store.run_occurrences(run.id)?, traces))

@@ -58,7 +58,6 @@ fn sync(file: &Path, address: &str) -> Result<(), StoreError> {
         laptop: "matrix",
         traces: true,
         as_copy: false,
-        is_alive: &|_| false,
         now_us: &crate::laptop::system_now_us,
         go_on: &mut |_| true,
     };

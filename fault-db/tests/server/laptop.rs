@@ -64,7 +64,6 @@ impl Laptop {
                 laptop: self.name,
                 traces: true,
                 as_copy: self.as_copy.get(),
-                is_alive: &|owner| owner == "alive",
                 now_us: &|| system_now_us() + self.clock_ahead_us.get(),
                 go_on,
             },

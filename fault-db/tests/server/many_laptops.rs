@@ -85,7 +85,6 @@ fn sync(file: &Path, address: &str, laptop: &str) -> Result<(), StoreError> {
         laptop,
         traces: true,
         as_copy: false,
-        is_alive: &|_| false,
         now_us: &system_now_us,
         go_on: &mut |progress| {
             println!("{SYNC}{:?}", progress.phase);

@@ -62,31 +62,26 @@ fn a_cursor_too_far_ahead_on_one_side_loses_nothing() {
 fn an_interrupted_run_is_sent_as_it_is() {
     let address = shared().database();
     let laptop = Laptop::new("dead");
-    for owner in ["dead", "alive"] {
-        let store = laptop.open();
-        let mut record = common::run_record("U-1");
-        record.owner = owner.to_owned();
+    let store = laptop.open();
+    let mut under_way = Vec::new();
+    for is_alive in [false, true] {
+        let record = common::run_record("U-1");
         let mut writer = RunWriter::begin(&store, &record).expect("a run");
         writer.step(common::step(0)).expect("a step");
         let stored = writer.fault(&common::fault(101, day(0))).expect("a fault");
         let trace = common::realistic_trace(40, 1);
         writer.trace(&[stored.occurrence], &trace).expect("a trace");
+        under_way.extend(is_alive.then_some(writer));
     }
     let first = laptop.sync(&address);
     assert_eq!((first.runs, first.traces), (1, 1));
     let server = read_only(&address).expect("a server");
-    let runs = server
-        .runs(&RunFilter::default(), &|_| false)
-        .expect("runs");
+    let runs = server.runs(&RunFilter::default()).expect("runs");
     assert_eq!((runs.len(), runs[0].verdict, runs[0].steps), (1, None, 1));
     assert_eq!(laptop.sync(&address).runs, 0);
 
     // It was not dead after all.
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch("UPDATE run SET owner = 'dead'")
-        .expect("both are dead");
-    drop(file);
-    let store = laptop.open();
+    drop(under_way);
     let run = runs[0].id;
     let file = rusqlite::Connection::open(laptop.path()).expect("its file");
     file.execute(
@@ -98,7 +93,7 @@ fn an_interrupted_run_is_sent_as_it_is() {
     drop(store);
     let second = laptop.sync(&address);
     assert_eq!(second.runs, 1, "the other one");
-    let ended = server.run(run, &|_| false).expect("the run");
+    let ended = server.run(run).expect("the run");
     assert_eq!(ended.run.verdict, Some(fault_db::Verdict::Passed));
 }
 
@@ -124,14 +119,7 @@ fn a_run_that_differs_on_the_server_is_reported_and_not_changed() {
     assert_eq!(told.runs, 1, "the rest goes on");
     assert_ne!(counts::content(&mut client), content);
     let server = read_only(&address).expect("a server");
-    assert_eq!(
-        server
-            .run(altered, &|_| false)
-            .expect("the run")
-            .run
-            .operator,
-        "kim"
-    );
+    assert_eq!(server.run(altered).expect("the run").run.operator, "kim");
 }
 
 /// Goal: of two laptops that record into copies of one file the second is refused, and goes on under a name of
@@ -163,8 +151,8 @@ fn a_forked_copy_gets_an_id_of_its_own() {
     one.is_whole();
     copy.is_whole();
     let server = read_only(&address).expect("a server");
-    let seal = server.run(forked, &|_| false).expect("the run").seal;
-    let copied = copy.open().run(forked, &|_| false).expect("the run").seal;
+    let seal = server.run(forked).expect("the run").seal;
+    let copied = copy.open().run(forked).expect("the run").seal;
     assert_eq!(seal.expect("sealed").digest, copied.expect("sealed").digest);
 }
 
@@ -330,7 +318,7 @@ fn texts_of_any_language_arrive() {
     drop(store);
     assert_eq!(laptop.sync(&address).notes, 1);
     let server = read_only(&address).expect("a server");
-    let notes = server.run(run, &|_| false).expect("the run").notes;
+    let notes = server.run(run).expect("the run").notes;
     assert_eq!(notes[0].text, text.replace('\0', "\u{fffd}"));
     assert_eq!(notes[0].who, "김");
 }

@@ -153,7 +153,7 @@ fn a_read_only_store_answers_queries_and_refuses_writes() {
         .expect("a reader");
     let address = address.replace("laptop@", "reader@");
     let store = read_only(&address).expect("a server");
-    assert_eq!(store.run(run, &|_| false).expect("the run").steps.len(), 3);
+    assert_eq!(store.run(run).expect("the run").steps.len(), 3);
     let refused = store
         .add_run_note(run, "kim", "x", 0)
         .expect_err("read-only");

@@ -16,7 +16,7 @@ use crate::{csv, junit};
 use ptu_runs::clock::now_us;
 use ptu_runs::data::{self, ScriptsDirectory};
 use ptu_runs::failure::Failure;
-use ptu_runs::new_file::{NewFile, cannot_write};
+use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,7 +62,29 @@ impl Target {
     /// # Errors
     /// It cannot.
     pub fn check(&self) -> Result<(), Failure> {
-        data::check_writable(&self.path)
+        data::check_writable(&self.path, self.kind())
+    }
+
+    /// Begins the file.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn begin(&self) -> Result<NewFile, Failure> {
+        NewFile::begin(&self.path, self.kind())
+    }
+
+    fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
+        data::write(&self.path, self.kind(), content?)
+    }
+
+    fn kind(&self) -> Kind<'static> {
+        match self.format {
+            Format::Html => kind::HTML,
+            Format::Pdf => kind::PDF,
+            Format::Csv => kind::CSV,
+            Format::Json => kind::JSON,
+            Format::Junit => kind::JUNIT,
+        }
     }
 
     /// The file.
@@ -79,7 +101,7 @@ impl Target {
 /// Writes reports of a run. What only test sheets say is gathered when one is asked for.
 ///
 /// # Errors
-/// A file cannot be written, or the database not be read.
+/// The database cannot be read, or files cannot be written: all others are.
 pub fn write(
     targets: &[Target],
     store: &Store,
@@ -89,30 +111,36 @@ pub fn write(
 ) -> Result<(), Failure> {
     let gather = || Sheet::gather(store, directory, run.run.id);
     let sheet = targets.iter().any(Target::is_sheet).then(gather);
-    let sheet = sheet.transpose()?;
+    let (sheet, gathered) = match sheet.transpose() {
+        Ok(sheet) => (sheet, Ok(())),
+        Err(failure) => (None, Err(failure)),
+    };
     let signatures = store.signatures(run.run.id)?;
     let signer = store.signer();
-    for target in targets {
+    let content = |target: &Target| {
         let mut content = content(target, run, sheet.as_ref(), language)?;
         if target.format == Format::Html {
             let page = String::from_utf8_lossy(&content).into_owned();
             let page = attach(page, run, &signatures, signer.as_deref(), now_us());
             content = page.into_bytes();
         }
-        data::write(&target.path, &content)?;
-    }
-    Ok(())
+        Ok(content)
+    };
+    let made = targets
+        .iter()
+        .filter(|target| gathered.is_ok() || !target.is_sheet());
+    let written = made.map(|target| target.write(content(target)));
+    let written = written.collect::<Vec<_>>();
+    Failure::of_all(std::iter::once(gathered).chain(written))
 }
 
 /// Writes reports of a case.
 ///
 /// # Errors
-/// A file cannot be written.
+/// Files cannot be written: all others are.
 pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> Result<(), Failure> {
-    for target in targets {
-        data::write(&target.path, &case_content(target, case, language)?)?;
-    }
-    Ok(())
+    let write = |target: &Target| target.write(case_content(target, case, language));
+    Failure::of_all(targets.iter().map(write))
 }
 
 /// A report of a case. Tables are those of the run that tells how the unit is now.
@@ -154,16 +182,14 @@ pub fn comparison_content(
 /// Writes reports of two runs.
 ///
 /// # Errors
-/// A file cannot be written.
+/// Files cannot be written: all others are.
 pub fn write_comparison(
     targets: &[Target],
     of: &RunComparison,
     language: Language,
 ) -> Result<(), Failure> {
-    for target in targets {
-        data::write(&target.path, &comparison_content(target, of, language)?)?;
-    }
-    Ok(())
+    let write = |target: &Target| target.write(comparison_content(target, of, language));
+    Failure::of_all(targets.iter().map(write))
 }
 
 /// A report of a run.

@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 
 use crate::drive::train::train;
 use crate::failure::{Failure, did_you_mean};
-use crate::new_file::{NewFile, cannot_write};
+use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
 
 /// Folder of unit configurations, the fault catalogue and the structure.
@@ -27,6 +27,8 @@ const FAULTS: &str = "faults";
 const STRUCTURE: &str = "structure";
 /// Longest script, data file or other text that is read, bytes.
 pub const LONGEST_FILE: u64 = 4 << 20;
+/// Letters with which texts of one kind begin.
+const TEXT_HEAD: usize = 5;
 /// Longest all scripts together, bytes.
 const LONGEST_SCRIPTS: usize = 64 << 20;
 /// How good units, trains and benches differ, in the scripts directory.
@@ -340,23 +342,35 @@ fn cannot_read(file: &Path, why: &dyn Display) -> Failure {
     Failure::usage(format!("cannot read {}: {why}", file.display()))
 }
 
-/// Finds out whether a file can be written, leaving what is there as it is.
+/// Finds out whether a file of a kind can be written, leaving what is there as it is.
 ///
 /// # Errors
 /// It cannot, and why.
-pub fn check_writable(file: &Path) -> Result<(), Failure> {
-    NewFile::begin(file).map(drop)
+pub fn check_writable(file: &Path, kind: Kind<'_>) -> Result<(), Failure> {
+    NewFile::begin(file, kind).map(drop)
 }
 
-/// Writes a file whole: until it is, what stood there stays. Says which one could not be written.
+/// Writes a file of a kind whole: until it is, what stood there stays. Says which one could not be written.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(file: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let mut new = NewFile::begin(file)?;
+pub fn write(file: &Path, kind: Kind<'_>, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+    let mut new = NewFile::begin(file, kind)?;
     new.write_all(content.as_ref())
         .map_err(|error| cannot_write(file, &error))?;
     new.finish()
+}
+
+/// Writes a text whole, over none that begins otherwise; the folder is made if need be.
+///
+/// # Errors
+/// The file or its folder cannot be written.
+pub fn write_text(file: &Path, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| cannot_write(file, &error))?;
+    }
+    let begins: String = head(text.as_ref()).chars().take(TEXT_HEAD).collect();
+    write(file, &[&begins], text)
 }
 
 /// Keeps a value as JSON in a file whose folder is made if need be: whole, or as it was.
@@ -369,7 +383,7 @@ pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
         owner_only::folder(folder).map_err(|error| failed(&error))?;
     }
     let content = serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?;
-    let mut new = NewFile::begin(file)?;
+    let mut new = NewFile::begin(file, kind::OWN)?;
     new.keep_to_owner()?;
     new.write_all(&content).map_err(|error| failed(&error))?;
     new.finish()

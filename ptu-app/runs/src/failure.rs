@@ -63,6 +63,19 @@ impl Failure {
 }
 
 impl Failure {
+    /// All that failed as one, which says each; what is to be done is done, whichever fails.
+    ///
+    /// # Errors
+    /// At least one failed.
+    pub fn of_all(done: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
+        let failed = done.into_iter().filter_map(Result::err);
+        let all = failed.reduce(|first, next| Self {
+            exit: first.exit,
+            message: format!("{first}\n{next}"),
+        });
+        all.map_or(Ok(()), Err)
+    }
+
     /// Prints the failure on stderr.
     pub fn tell(&self) {
         stdio::note(&format!("ptu: {self}"));

@@ -37,7 +37,6 @@ pub mod new_file;
 pub mod owner_only;
 pub mod platform;
 pub mod pool;
-pub mod process_id;
 pub mod progress;
 pub mod record;
 pub mod replay;

@@ -1,10 +1,11 @@
-//! Writes a file under a temporary name and renames it when it is complete.
+//! Writes all files that commands are told to write: each under a temporary name, renamed when it is complete, and never
+//! over a database or over what this program did not write as that kind.
 
 use std::fs::{File, OpenOptions};
-use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use std::io::{BufWriter, ErrorKind, Read as _, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use fault_db::AtomicFile;
+use fault_db::{AtomicFile, is_of_database, open_regular_file};
 
 use crate::failure::Failure;
 use crate::platform;
@@ -12,21 +13,83 @@ use crate::platform;
 /// Names tried beside one that is taken.
 const BESIDE: u32 = 1000;
 
+/// So many bytes tell what a file is.
+const HEAD: u64 = 64;
+
+/// What a file is written as: what files of this kind begin with, spaces aside. Only such a file is replaced by one of it,
+/// and an empty one.
+pub type Kind<'a> = &'a [&'a str];
+
+/// The kinds of files that are written by their endings.
+pub mod kind {
+    use super::Kind;
+
+    /// Pages.
+    pub const HTML: Kind<'_> = &["<!DOCTYPEhtml"];
+    /// Sheets of paper.
+    pub const PDF: Kind<'_> = &["%PDF-"];
+    /// Tables of runs, drives and traces.
+    pub const CSV: Kind<'_> = &[
+        "run,unit_serial,",
+        "section,controller,",
+        "t_s,x_m,",
+        "time_s",
+    ];
+    /// Documents of runs, cases, comparisons and drives.
+    pub const JSON: Kind<'_> = &[
+        "{\"run\":{",
+        "{\"document\":",
+        "{\"run_a\":{",
+        "{\"runs\":",
+        "{\"line\":",
+        "{\"cases\":",
+        "{\"sequence\":",
+    ];
+    /// Results of tests.
+    pub const JUNIT: Kind<'_> = &["<?xmlversion=\"1.0\"encoding=\"UTF-8\"?><testsuites"];
+    /// Events of a run.
+    pub const EVENTS: Kind<'_> = &["{\"seq\":0,\"event\":"];
+    /// Signals and events of a run.
+    pub const MCAP: Kind<'_> = &["\u{fffd}MCAP0"];
+    /// Tables of columns.
+    pub const PARQUET: Kind<'_> = &["PAR1"];
+    /// Waveforms.
+    pub const WAV: Kind<'_> = &["RIFF"];
+    /// Pictures.
+    pub const PNG: Kind<'_> = &["\u{fffd}PNG"];
+    /// Dictionaries, compressed.
+    pub const DICTIONARY: Kind<'_> = &["(\u{fffd}/\u{fffd}"];
+    /// Runs that are kept.
+    pub const RUNS: Kind<'_> = &["\u{fffd}PTURUN1"];
+    /// Sequences of notches.
+    pub const SEQUENCE: Kind<'_> = &["title="];
+    /// What the program keeps for itself, at a place of its own.
+    pub const OWN: Kind<'_> = &[""];
+}
+
+/// What a text begins with, as far as it tells what it is.
+pub fn head(text: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&text[..text.len().min(HEAD as usize)]);
+    text.split_whitespace().collect()
+}
+
 /// A file being written beside its place: whatever stands there stays until the new one is whole. Dropped
 /// before it is finished it leaves nothing behind.
 #[derive(Debug)]
 pub struct NewFile {
     file: BufWriter<File>,
-    part: AtomicFile,
+    /// None once it has its name.
+    part: Option<AtomicFile>,
     place: PathBuf,
+    heads: Vec<String>,
 }
 
 impl NewFile {
-    /// Begins a file that is to stand at `place`.
+    /// Begins a file of a kind that is to stand at `place`.
     ///
     /// # Errors
     /// What stands there cannot be replaced, or no file can be made in that folder.
-    pub fn begin(place: &Path) -> Result<Self, Failure> {
+    pub fn begin(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         let cannot =
             |why: String| Failure::usage(format!("cannot write {}: {why}", place.display()));
         place
@@ -38,30 +101,33 @@ impl NewFile {
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
             return Err(cannot(format!("there is no folder {}", folder.display())));
         }
-        let before = match std::fs::metadata(place) {
-            Ok(about) if about.is_dir() => return Err(cannot("it is a folder".into())),
-            Ok(about) if !about.is_file() => return Err(cannot("it is no regular file".into())),
-            Ok(about) => {
-                // A file without write permission is not replaced either.
-                let opened = OpenOptions::new().append(true).open(place);
-                opened.map_err(|error| cannot(error.to_string()))?;
-                Some(about.permissions())
-            }
-            Err(_) => None,
-        };
+        let about = std::fs::metadata(place).ok();
+        match &about {
+            Some(about) if about.is_dir() => return Err(cannot("it is a folder".into())),
+            Some(about) if !about.is_file() => return Err(cannot("it is no regular file".into())),
+            _ => {}
+        }
         // What a link leads to is replaced, not the link.
         let place = platform::real_path(place).unwrap_or_else(|_| place.to_path_buf());
-        let part = AtomicFile::begin(&place);
-        let opened = File::create_new(part.path());
-        let file = opened.map_err(|error| cannot(error.to_string()))?;
-        if let Some(permissions) = before {
-            file.set_permissions(permissions)
+        let heads: Vec<_> = kind.iter().map(|head| (*head).to_owned()).collect();
+        may_replace(&place, &heads).map_err(cannot)?;
+        if about.is_some() {
+            // A file without write permission is not replaced either.
+            let opened = OpenOptions::new().append(true).open(&place);
+            opened.map_err(|error| cannot(error.to_string()))?;
+        }
+        let part = AtomicFile::begin(&place).map_err(|error| cannot(error.to_string()))?;
+        let file = part.file().try_clone();
+        let file = file.map_err(|error| cannot(error.to_string()))?;
+        if let Some(about) = about {
+            file.set_permissions(about.permissions())
                 .map_err(|error| cannot(error.to_string()))?;
         }
         Ok(Self {
             file: BufWriter::new(file),
-            part,
+            part: Some(part),
             place,
+            heads,
         })
     }
 
@@ -69,14 +135,14 @@ impl NewFile {
     ///
     /// # Errors
     /// As [`NewFile::begin`]; or something does.
-    pub fn begin_new(place: &Path) -> Result<Self, Failure> {
+    pub fn begin_new(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         if place.exists() {
             return Err(Failure::usage(format!(
                 "{} is there already; name another file, or say --force to replace it",
                 place.display()
             )));
         }
-        Self::begin(place)
+        Self::begin(place, kind)
     }
 
     /// Makes the file readable and writable by its owner only.
@@ -97,14 +163,36 @@ impl NewFile {
         done.map_err(|error| cannot_write(&self.place, &error))
     }
 
+    /// Another writer at the same place in the file.
+    ///
+    /// # Errors
+    /// The system gives none.
+    pub fn writer(&self) -> Result<BufWriter<File>, Failure> {
+        let file = self.file.get_ref().try_clone();
+        file.map(BufWriter::new)
+            .map_err(|error| cannot_write(&self.place, &error))
+    }
+
+    /// Puts the file in its place now, to grow there: for what is read while it is written, and what a kill must not lose.
+    ///
+    /// # Errors
+    /// The disk is full or gone, or what stands there by now cannot be replaced.
+    pub fn appear(&mut self) -> Result<(), Failure> {
+        self.settle()?;
+        let cannot = |why: &dyn std::fmt::Display| cannot_write(&self.place, why);
+        let Some(part) = self.part.take() else {
+            return Ok(());
+        };
+        may_replace(&self.place, &self.heads).map_err(|why| cannot(&why))?;
+        part.replace().map_err(|error| cannot(&error))
+    }
+
     /// Puts the file in its place.
     ///
     /// # Errors
-    /// The disk is full or gone.
+    /// As [`NewFile::appear`].
     pub fn finish(mut self) -> Result<(), Failure> {
-        self.settle()?;
-        let Self { part, place, .. } = self;
-        part.replace().map_err(|error| cannot_write(&place, &error))
+        self.appear()
     }
 
     /// Puts the file in its place, or under a name beside it that is free (`sheet.pdf`, `sheet-2.pdf` …):
@@ -116,7 +204,8 @@ impl NewFile {
         self.settle()?;
         let beside = (2..BESIDE).map(|number| numbered(&self.place, number));
         for name in std::iter::once(self.place.clone()).chain(beside) {
-            match self.part.publish_as(&name) {
+            let done = self.part.as_ref().map(|part| part.publish_as(&name));
+            match done.unwrap_or(Ok(())) {
                 Ok(()) => return Ok(name),
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(cannot_write(&name, &error)),
@@ -139,6 +228,26 @@ impl Write for NewFile {
 impl Seek for NewFile {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
         self.file.seek(to)
+    }
+}
+
+/// Finds out whether what stands there, if anything, may be replaced by a file that begins so.
+fn may_replace(place: &Path, heads: &[String]) -> Result<(), String> {
+    if is_of_database(place) {
+        return Err("it is a history or another database, or belongs to one".to_owned());
+    }
+    let mut found = Vec::new();
+    if let Ok(file) = open_regular_file(place) {
+        let read = file.take(HEAD).read_to_end(&mut found);
+        read.map_err(|error| error.to_string())?;
+    }
+    let begins = head(&found);
+    match found.is_empty() || heads.iter().any(|head| begins.starts_with(head)) {
+        true => Ok(()),
+        false => Err(
+            "what is there was not written as this kind by this program; name another file"
+                .to_owned(),
+        ),
     }
 }
 
@@ -171,7 +280,7 @@ mod tests {
     use super::*;
 
     fn written(place: &Path, text: &str) -> NewFile {
-        let mut file = NewFile::begin(place).expect("begun");
+        let mut file = NewFile::begin(place, &["old", "new", "1"]).expect("begun");
         file.write_all(text.as_bytes()).expect("written");
         file
     }
@@ -203,13 +312,17 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_replaced_is_reported_before_writing() {
         let folder = tempfile::tempdir().expect("folder");
-        let told = |place: &Path| NewFile::begin(place).expect_err("refused").message;
+        let told = |place: &Path| {
+            NewFile::begin(place, kind::OWN)
+                .expect_err("refused")
+                .message
+        };
         assert!(told(folder.path()).ends_with("it is a folder"));
         assert!(told(&folder.path().join("no/where.csv")).contains("there is no folder"));
         assert!(told(Path::new("/dev/full")).ends_with("it is no regular file"));
         let place = folder.path().join("a.csv");
         written(&place, "1").finish().expect("finished");
-        let failure = NewFile::begin_new(&place).expect_err("there already");
+        let failure = NewFile::begin_new(&place, kind::CSV).expect_err("there already");
         assert!(failure.message.contains("--force"), "{}", failure.message);
     }
 

@@ -17,6 +17,7 @@ use ptu_report::campaign::{campaign_json, campaign_text};
 use ptu_runs::campaign::{self, Ran, Request, Suite, figures, redundancy};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::new_file::kind;
 use ptu_runs::pool::cores;
 use ptu_runs::progress::Progress;
 use ptu_runs::run_diagnosis::settings;
@@ -133,7 +134,7 @@ impl CampaignArguments {
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         let count = asked.keep.ours(count).count();
         if let Some(file) = &self.out {
-            ptu_runs::data::check_writable(file)?;
+            ptu_runs::data::check_writable(file, kind::DICTIONARY)?;
         }
         // A shard makes no dictionary: nodes of a cluster need no database.
         let store = match self.keep.is_part() {
@@ -162,7 +163,7 @@ impl CampaignArguments {
         let dictionary = &outcome.dictionary;
         let data = dictionary.to_bytes().map_err(Failure::bench)?;
         if let Some(file) = &self.out {
-            ptu_runs::data::write(file, &data)?;
+            ptu_runs::data::write(file, kind::DICTIONARY, &data)?;
         }
         store.put_dictionary(&DictionaryRecord {
             made_at_us: clock::now_us(),

@@ -16,6 +16,7 @@ use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::new_file::kind;
 use ptu_runs::pool::cores;
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
@@ -176,7 +177,7 @@ impl DriveArguments {
                     "--out: a sequence is a file ending in .toml",
                 ));
             }
-            check_writable(file)?;
+            check_writable(file, kind::SEQUENCE)?;
         }
         let case = self.request()?.manual(directory, source)?;
         let stop = Stop::default();
@@ -201,7 +202,7 @@ impl DriveArguments {
             &stop,
         );
         match save {
-            Some((file, sequence)) if done => write(file, sequence)?,
+            Some((file, sequence)) if done => write(file, kind::SEQUENCE, sequence)?,
             Some(_) => stdio::note("nothing was done: nothing saved"),
             None => {}
         }

@@ -1,14 +1,14 @@
 //! `ptu help-files`: what a package installs that the program knows best.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory as _};
 use clap_complete::Shell;
 
 use super::{Cli, WindowOptions, help, print_out};
+use ptu_runs::data::write_text;
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::new_file::cannot_write;
 
 /// The type of a history among files, with a gap for the number that marks one.
 const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
@@ -24,18 +24,14 @@ impl HelpFilesArguments {
     /// Writes them.
     pub fn run(self) -> Result<Exit, Failure> {
         let folder = &self.folder;
-        manuals(&folder.join("man1"))
-            .and_then(|()| completions(folder))
-            .and_then(|()| fs::write(folder.join("ptu.xml"), file_types()))
-            .map_err(|error| {
-                Failure::bench(format!("cannot write to {}: {error}", folder.display()))
-            })?;
+        manuals(&folder.join("man1"))?;
+        completions(folder)?;
+        write_text(&folder.join("ptu.xml"), file_types())?;
         print_out(&format!("written: {}", folder.display()))
     }
 }
 
-fn manuals(folder: &Path) -> io::Result<()> {
-    fs::create_dir_all(folder)?;
+fn manuals(folder: &Path) -> Result<(), Failure> {
     let mut command = help::flowing(Cli::command()).disable_help_subcommand(true);
     command.build();
     pages(folder, &command)?;
@@ -44,28 +40,30 @@ fn manuals(folder: &Path) -> io::Result<()> {
 }
 
 /// The page of a command, and those of its verbs.
-fn pages(folder: &Path, command: &Command) -> io::Result<()> {
+fn pages(folder: &Path, command: &Command) -> Result<(), Failure> {
     let name = command.get_display_name().unwrap_or(command.get_name());
     let mut page = Vec::new();
+    let file = folder.join(format!("{name}.1"));
     clap_mangen::Man::new(command.clone())
         .manual("PTU")
-        .render(&mut page)?;
-    fs::write(folder.join(format!("{name}.1")), page)?;
+        .render(&mut page)
+        .map_err(|error| cannot_write(&file, &error))?;
+    write_text(&file, page)?;
     command
         .get_subcommands()
         .filter(|verb| !verb.is_hide_set())
         .try_for_each(|verb| pages(folder, verb))
 }
 
-fn completions(folder: &Path) -> io::Result<()> {
-    for (shell, name) in [
-        (Shell::Bash, "bash"),
-        (Shell::Zsh, "zsh"),
-        (Shell::Fish, "fish"),
+fn completions(folder: &Path) -> Result<(), Failure> {
+    for (shell, file) in [
+        (Shell::Bash, "bash/ptu.bash"),
+        (Shell::Zsh, "zsh/_ptu"),
+        (Shell::Fish, "fish/ptu.fish"),
     ] {
-        let folder = folder.join(name);
-        fs::create_dir_all(&folder)?;
-        clap_complete::generate_to(shell, &mut Cli::command(), "ptu", &folder)?;
+        let mut text = Vec::new();
+        clap_complete::generate(shell, &mut Cli::command(), "ptu", &mut text);
+        write_text(&folder.join(file), text)?;
     }
     Ok(())
 }

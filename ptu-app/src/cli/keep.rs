@@ -9,6 +9,7 @@ use super::print_out;
 use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::kept::{Keep, QueueAt, Shard};
+use ptu_runs::new_file::kind;
 
 /// Where runs are kept, and which are made here.
 #[derive(Debug, Args)]
@@ -36,7 +37,8 @@ impl KeepOptions {
             return Err(Failure::usage("--runs and --queue go with --monte-carlo"));
         }
         self.keep()?;
-        self.runs.as_deref().map_or(Ok(()), check_writable)
+        let check = |file| check_writable(file, kind::OWN);
+        self.runs.as_deref().map_or(Ok(()), check)
     }
 
     /// What was asked for.

@@ -1,7 +1,6 @@
 //! `ptu key`: keys that runs are signed with, and the list of those that are trusted.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -9,15 +8,14 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
-use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
     own_folder, public_name, sought,
 };
-use ptu_runs::new_file::{NewFile, cannot_write};
 use ptu_runs::owner_only;
 use ptu_runs::table::Table;
+use ptu_runs::{clock, data};
 
 /// Years for which a new key holds.
 const YEARS: u32 = 2;
@@ -135,16 +133,9 @@ impl KeysOption {
             false => KeyList::default(),
         };
         list.add(entry);
-        write(&file, &list.text())?;
+        data::write_text(&file, list.text())?;
         Ok(file)
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    let mut file = NewFile::begin(path)?;
-    file.write_all(text.as_bytes())
-        .map_err(|error| cannot_write(path, &error))?;
-    file.finish()
 }
 
 impl KeyArguments {

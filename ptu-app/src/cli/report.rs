@@ -9,7 +9,6 @@ use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
 use ptu_report::{Target, write_case};
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::process_id;
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///
@@ -72,7 +71,7 @@ impl ReportArguments {
             }
             Told::Run(id) => {
                 self.signing.sign(&store)?;
-                let run = store.run(id, &process_id::is_alive)?;
+                let run = store.run(id)?;
                 ptu_report::write(&self.out, &store, &directory, &run, self.lang)?;
             }
             Told::Case(id) => {

@@ -282,7 +282,6 @@ impl RunArguments {
         setup: BenchSetup,
         directory: &ScriptsDirectory,
     ) -> Result<Exit, Failure> {
-        self.reports.check()?;
         let symptom = self.symptom.as_deref();
         let symptom = symptom
             .map(|id| symptoms::find(directory, &directory.faults()?.lrus, id))
@@ -290,6 +289,8 @@ impl RunArguments {
         let signer = self.signing.signer()?;
         let store = self.database.open_file()?;
         store.sign_with(signer);
+        // After the history is made: no report replaces that.
+        self.reports.check()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
             return Err(Failure::usage(
                 "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
@@ -323,6 +324,9 @@ impl RunArguments {
         let (console, streamed) = console.finish(outcome);
         console.finish();
         let (store, outcome) = result?;
+        if let Some(lost) = &outcome.lost {
+            Failure::bench(lost).tell();
+        }
         let answer = self.diagnosis(&store, directory, &outcome);
         let proofs = match outcome.exit {
             Exit::Passed => prove_repairs(&store, directory, outcome.id),
@@ -334,7 +338,7 @@ impl RunArguments {
         {
             failure.tell();
         }
-        let detail = store.run(outcome.id, &ptu_runs::process_id::is_alive)?;
+        let detail = store.run(outcome.id)?;
         // Database and reports have the result: a terminal that takes no output changes no verdict.
         let said = match self.show.json {
             true => Ok(()),
@@ -345,8 +349,11 @@ impl RunArguments {
         if let Err(failure) = said {
             failure.tell();
         }
-        self.reports.write(&store, directory, &detail)?;
+        let reported = self.reports.write(&store, directory, &detail);
+        let outputs = Failure::of_all([streamed, recorded, reported]);
+        let outputs = outputs.map_err(|failure| Failure::bench(failure.message));
+        let told = answered(outputs.map(|()| outcome.exit), outcome.exit);
         store.close()?;
-        answered(streamed.and(recorded).map(|()| outcome.exit), outcome.exit)
+        told
     }
 }

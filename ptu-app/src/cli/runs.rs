@@ -16,7 +16,6 @@ use ptu_report::{Target, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::data;
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::process_id;
 use ptu_runs::table::Table;
 
 /// Show recorded runs, and note what is to be said of them
@@ -144,7 +143,7 @@ impl RunsArguments {
                     limit: Some(limit),
                     ..RunFilter::default()
                 };
-                let runs = store.runs(&filter, &process_id::is_alive)?;
+                let runs = store.runs(&filter)?;
                 let document = || runs.iter().map(run_summary_json).collect::<Vec<_>>();
                 json.answer(document, || table(&runs))
             }
@@ -174,7 +173,7 @@ impl RunsArguments {
                 scripts,
             } => {
                 reports.check()?;
-                let run = store.run(store.resolve_run(&id)?, &process_id::is_alive)?;
+                let run = store.run(store.resolve_run(&id)?)?;
                 if !reports.is_empty() {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
@@ -216,7 +215,7 @@ fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
             run.short()
         )));
     };
-    data::write(out, format!("{signed}\n").as_bytes())?;
+    data::write_text(out, format!("{signed}\n"))?;
     print_out(&format!("written: {}", out.display()))
 }
 

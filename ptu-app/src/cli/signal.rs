@@ -15,6 +15,7 @@ use ptu_report::signal::{self as report, Recording};
 use ptu_report::words::Language;
 use ptu_runs::data::{check_writable, write};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, FULL_SCALE_MV, Strength, Wave};
 use serde_json::Value;
 
@@ -228,7 +229,7 @@ impl ReadArguments {
         let unit = self.scale.unit.find()?;
         self.report
             .iter()
-            .try_for_each(|file| check_writable(file))?;
+            .try_for_each(|file| check_writable(file, kind::HTML))?;
         let full_scale_mv = self.scale.full_scale;
         let reading = match self.report.is_empty() {
             true => signal::read(&self.file, &unit, full_scale_mv)?,
@@ -245,7 +246,7 @@ impl ReadArguments {
                 };
                 let page = html(&recording, self.lang.words());
                 for file in &self.report {
-                    write(file, &page)?;
+                    write(file, kind::HTML, &page)?;
                 }
                 recording.reading
             }

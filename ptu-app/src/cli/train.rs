@@ -6,8 +6,9 @@ use clap::{ArgGroup, Args};
 use ptu_runs::drive::SectionChoice;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::BenchChoice;
+use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
-use ptu_runs::train_server::{self, Place, TrainRequest};
+use ptu_runs::train_server::{self, NO_AUTHENTICATION, Place, TrainRequest, check_exposed};
 
 use super::ScriptsOption;
 
@@ -36,6 +37,9 @@ pub struct TrainArguments {
     /// Serve one TCP client at a time; others get the answer that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
+    /// Serve at an address that other computers reach, too: there is no authentication
+    #[arg(long, requires = "tcp")]
+    expose: bool,
     /// Line, lines/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "line8")]
     line: String,
@@ -76,7 +80,11 @@ impl TrainArguments {
         let directory = self.scripts.find()?;
         let place = match (self.serial, self.tcp) {
             (Some(port), _) => port,
-            (_, Some(address)) => Place::Tcp(address),
+            (_, Some(address)) => {
+                check_exposed(&address, self.expose).map_err(Failure::usage)?;
+                stdio::note(NO_AUTHENTICATION);
+                Place::Tcp(address)
+            }
             _ => Place::Pty,
         };
         let request = TrainRequest {

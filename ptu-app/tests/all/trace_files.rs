@@ -61,7 +61,7 @@ fn number_channel(name: &str, unit: &str, lsb: f64) -> Channel {
 }
 
 /// Every kind of signal, with gaps, over more rows than any writer takes at once (4 096).
-fn trace(rows: usize) -> TraceData {
+pub fn trace(rows: usize) -> TraceData {
     let mode = Channel {
         name: "mode".into(),
         unit: String::new(),
@@ -116,7 +116,7 @@ fn trace(rows: usize) -> TraceData {
 }
 
 /// A history with one trace; gives its id.
-fn kept(place: &Place, trace: &TraceData) -> Id {
+pub fn kept(place: &Place, trace: &TraceData) -> Id {
     let mut next = 0u8;
     let ids = IdSource::new(move || {
         next += 1;
@@ -492,10 +492,15 @@ fn a_file_of_very_many_signals_is_refused_at_once() {
 
 /// `ptu` where no file may grow longer than so much, with the shell's words before it.
 fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
+    // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
+    limited(place, &format!("{before} ulimit -f 80;"), arguments)
+}
+
+/// `ptu` with the shell's words before it.
+pub fn limited(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
     let ptu = place.command(arguments);
     let mut command = Command::new("sh");
-    // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
-    let script = format!("{before} ulimit -f 80; exec \"$0\" \"$@\"");
+    let script = format!("{before} exec \"$0\" \"$@\"");
     command
         .arg("-c")
         .arg(script)

@@ -512,11 +512,8 @@ fn databases() {
         };
         let _ = store.check();
         let _ = store.faults(&FaultFilter::default());
-        for run in store
-            .runs(&RunFilter::default(), &|_| true)
-            .unwrap_or_default()
-        {
-            let _ = store.run(run.id, &|_| true);
+        for run in store.runs(&RunFilter::default()).unwrap_or_default() {
+            let _ = store.run(run.id);
             for trace in store.traces(run.id).unwrap_or_default() {
                 let _ = store.trace(trace.id);
                 let _ = store

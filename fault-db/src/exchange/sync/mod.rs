@@ -52,7 +52,7 @@ impl Store {
         })?;
         let known = self.change(DOING, |file| {
             let prepare = || {
-                outbox::enqueue_interrupted_runs(file, options.is_alive)?;
+                outbox::enqueue_interrupted_runs(self)?;
                 outbox::enqueue_rows_before_outbox(file)?;
                 cursors::load(file, id)
             };

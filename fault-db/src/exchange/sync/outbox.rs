@@ -3,20 +3,20 @@
 
 use super::cursors;
 use crate::backend::{Backend, SqlResult, values};
+use crate::id::Id;
+use crate::store::Store;
 
 /// Enters the runs of dead programs with their traces: they never finish by themselves.
-pub(super) fn enqueue_interrupted_runs(
-    file: &Backend,
-    is_alive: &dyn Fn(&str) -> bool,
-) -> SqlResult<()> {
+pub(super) fn enqueue_interrupted_runs(store: &Store) -> SqlResult<()> {
+    let file = store.backend();
     let unfinished = file.select(
-        "SELECT seq, owner FROM run WHERE verdict IS NULL
+        "SELECT seq, id FROM run WHERE verdict IS NULL
             AND seq NOT IN (SELECT row FROM outbox WHERE what = 'run')",
         &[],
-        |row| Ok((row.get::<i64>(0)?, row.get::<String>(1)?)),
+        |row| Ok((row.get::<i64>(0)?, row.get::<Id>(1)?)),
     )?;
-    for (run, owner) in unfinished {
-        if is_alive(&owner) {
+    for (run, id) in unfinished {
+        if store.is_under_way(id) {
             continue;
         }
         for sql in [

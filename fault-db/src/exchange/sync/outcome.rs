@@ -15,8 +15,6 @@ pub struct SyncOptions<'a> {
     /// The file is a copy, or was restored from a backup: it gets an id of its own if the server knows more
     /// of its chain, or other entries.
     pub as_copy: bool,
-    /// Whether the owner of an unfinished run is alive; the run of a dead one is sent as it is.
-    pub is_alive: &'a dyn Fn(&str) -> bool,
     /// The laptop's clock, µs since 1970, UTC.
     pub now_us: &'a dyn Fn() -> i64,
     /// Called after each batch; returning `false` ends the sync there.

@@ -12,5 +12,22 @@ use unix as system;
 use windows as system;
 
 pub(crate) use system::{
-    LOGGED_IN, at_socket, for_owner, is_open_to_others, password_file, special_kind,
+    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_owner, identity, is_open_to_others, password_file,
+    special_kind,
 };
+
+/// Which file it is, whatever it is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Identity {
+    device: u64,
+    number: u64,
+    /// Names that it has.
+    pub(crate) names: u64,
+}
+
+impl Identity {
+    /// Whether it is the same file, by whichever name.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        (self.device, self.number) == (other.device, other.number)
+    }
+}

@@ -2,15 +2,32 @@
 
 use std::ffi::OsString;
 use std::fs::{FileType, Metadata, OpenOptions};
-use std::os::unix::fs::{FileTypeExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::os::unix::fs::{
+    FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _,
+};
 use std::path::{Path, PathBuf};
+
+use super::Identity;
 
 /// The variable with the name of who is logged in.
 pub(crate) const LOGGED_IN: &str = "USER";
 
+/// Whether a lock keeps those from a file who do not ask for it.
+pub(crate) const LOCKS_BIND_ALL: bool = false;
+
 /// A file that is made is for its owner alone.
 pub(crate) fn for_owner(options: &mut OpenOptions) {
     options.mode(0o600);
+}
+
+/// Which file it is.
+#[expect(clippy::unnecessary_wraps, reason = "not every system numbers files")]
+pub(crate) fn identity(about: &Metadata) -> Option<Identity> {
+    Some(Identity {
+        device: about.dev(),
+        number: about.ino(),
+        names: about.nlink(),
+    })
 }
 
 /// Whether others than its owner can read or write a file.

@@ -4,11 +4,21 @@ use std::ffi::OsString;
 use std::fs::{FileType, Metadata, OpenOptions};
 use std::path::{Path, PathBuf};
 
+use super::Identity;
+
 /// The variable with the name of who is logged in.
 pub(crate) const LOGGED_IN: &str = "USERNAME";
 
+/// Whether a lock keeps those from a file who do not ask for it.
+pub(crate) const LOCKS_BIND_ALL: bool = true;
+
 /// Leaves it to the folder who may read a file that is made.
 pub(crate) fn for_owner(_: &mut OpenOptions) {}
+
+/// Not told. A file that is open can be neither removed nor replaced here.
+pub(crate) fn identity(_: &Metadata) -> Option<Identity> {
+    None
+}
 
 /// Not asked: rights are lists here. libpq does not ask either.
 pub(crate) fn is_open_to_others(_: &Metadata) -> bool {

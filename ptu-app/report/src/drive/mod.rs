@@ -23,6 +23,7 @@ use ptu_runs::drive::Driven;
 use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::failure::Failure;
+use ptu_runs::new_file::{Kind, kind};
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
@@ -92,7 +93,15 @@ impl Target {
     /// # Errors
     /// It cannot.
     pub fn check(&self) -> Result<(), Failure> {
-        data::check_writable(&self.path)
+        data::check_writable(&self.path, self.kind())
+    }
+
+    fn kind(&self) -> Kind<'static> {
+        match self.format {
+            Format::Html => kind::HTML,
+            Format::Json => kind::JSON,
+            Format::Csv => kind::CSV,
+        }
     }
 
     /// Writes the report.
@@ -105,6 +114,6 @@ impl Target {
             Format::Json => json_text(&json(results))? + "\n",
             Format::Csv => csv::csv(results),
         };
-        data::write(&self.path, &text)
+        data::write(&self.path, self.kind(), &text)
     }
 }

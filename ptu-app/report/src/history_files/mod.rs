@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use partition::Partition;
 use ptu_runs::data;
 use ptu_runs::failure::Failure;
+use ptu_runs::new_file::kind;
 use views::{VIEWS, View};
 
 /// What is in a folder's partitions, so that the next export need not read them.
@@ -82,7 +83,7 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
                 if let Some(folder) = file.parent() {
                     std::fs::create_dir_all(folder).map_err(cannot)?;
                 }
-                data::write(&file, bytes)?;
+                data::write(&file, kind::PARQUET, bytes)?;
                 done.written += 1;
             }
             if view.is_final {
@@ -93,9 +94,9 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
         known.retain(|month, _| there.contains(month));
         done.removed += remove_others(&folder, &there).map_err(cannot)?;
     }
-    data::write(&to.join("views.sql"), views_sql())?;
+    data::write_text(&to.join("views.sql"), views_sql())?;
     let known = serde_json::to_string_pretty(&known).unwrap_or_default();
-    data::write(&to.join(KNOWN), known)?;
+    data::write(&to.join(KNOWN), &["{"], known)?;
     Ok(done)
 }
 

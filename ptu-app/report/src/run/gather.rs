@@ -8,7 +8,6 @@ use super::plots::drawn_channels;
 use super::{Sheet, SheetTrace};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
-use ptu_runs::process_id;
 use ptu_runs::run_diagnosis::diagnose_run;
 
 impl Sheet {
@@ -18,7 +17,7 @@ impl Sheet {
     /// # Errors
     /// There is no such run, or the database cannot be read.
     pub fn gather(store: &Store, directory: &ScriptsDirectory, id: Id) -> Result<Self, Failure> {
-        let run = store.run(id, &process_id::is_alive)?;
+        let run = store.run(id)?;
         let occurrences = store.run_occurrences(id)?;
         let mut all = traces(&run, &occurrences);
         all.extend(of_passed_steps(store, &run)?);

@@ -21,11 +21,6 @@ pub fn column_name(channel: &Channel) -> String {
     }
 }
 
-/// Whether a signal is called so in a file: as [`column_name`] has it, or by its bare name.
-pub fn is_called(channel: &Channel, text: &str) -> bool {
-    text == channel.name || text == column_name(channel)
-}
-
 /// The word for a sample of an enumeration; what has no word is a number still.
 pub fn word(channel: &Channel, sample: f64) -> Option<&str> {
     let ChannelKind::Enum { labels } = &channel.kind else {

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use fault_db::{Channel, ChannelKind, open_regular_file, read_regular_file};
+use fault_db::{Channel, open_regular_file, read_regular_file};
 use serde_json::Value;
 
 use super::about::TraceInfo;
-use super::column::is_called;
 use super::csv::beside;
-use super::series::{Import, Table, check_size, plain, wrong};
+use super::known::KnownSignals;
+use super::series::{Import, Table, check_size, wrong};
 use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::Failure;
 
@@ -31,7 +31,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
         bytes: Vec::new(),
     };
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let table = read_table(&mut lines, &[own, known])?;
+    let table = read_table(&mut lines, &KnownSignals::of(&[own, known]))?;
     Ok(Import {
         tables: vec![table],
         is_utc: false,
@@ -108,7 +108,7 @@ impl<R: BufRead> Lines<'_, R> {
 
 fn read_table<R: BufRead>(
     lines: &mut Lines<'_, R>,
-    known: &[&[Channel]],
+    known: &KnownSignals,
 ) -> Result<Table, Failure> {
     let file = lines.file;
     let Some(line) = lines.next()? else {
@@ -122,20 +122,23 @@ fn read_table<R: BufRead>(
         return Err(lines.wrong(what));
     }
     check_size(file, headings.len() - 1, 0)?;
-    let channels: Vec<Channel> = headings[1..]
+    let signals: Vec<_> = headings[1..]
         .iter()
-        .map(|heading| channel(heading, known))
+        .map(|heading| known.signal(heading))
         .collect();
     let mut names = BTreeSet::new();
-    for (place, channel) in channels.iter().enumerate() {
-        if !names.insert(channel.name.as_str()) {
+    for (place, signal) in signals.iter().enumerate() {
+        if !names.insert(signal.channel.name.as_str()) {
             return Err(lines.wrong_cell(place + 1, &headings[place + 1], "it comes twice"));
         }
     }
     let mut table = Table {
         times_us: Vec::new(),
-        columns: vec![Vec::new(); channels.len()],
-        channels,
+        columns: vec![Vec::new(); signals.len()],
+        channels: signals
+            .iter()
+            .map(|signal| signal.channel.clone())
+            .collect(),
     };
     let mut cells = Vec::new();
     loop {
@@ -156,7 +159,7 @@ fn read_table<R: BufRead>(
         }
         table.times_us.push(time_us);
         for (place, cell) in cells[1..].iter().enumerate() {
-            let sample = sample(cell, &table.channels[place].kind);
+            let sample = signals[place].sample(cell);
             let wrong = |what: String| lines.wrong_cell(place + 1, &headings[place + 1], &what);
             table.columns[place].push(sample.map_err(wrong)?);
         }
@@ -199,14 +202,6 @@ fn fields(line: &str, separator: char) -> Result<Vec<String>, &'static str> {
     Ok(fields)
 }
 
-/// The signal that is called so.
-pub(super) fn channel(text: &str, known: &[&[Channel]]) -> Channel {
-    let all = || known.iter().flat_map(|channels| channels.iter());
-    all()
-        .find(|channel| is_called(channel, text))
-        .map_or_else(|| plain(text), Clone::clone)
-}
-
 fn time_us(cell: &str) -> Result<i64, String> {
     let seconds = cell.parse::<f64>().ok();
     let time_us = seconds.and_then(whole_us);
@@ -218,29 +213,11 @@ pub(super) fn whole_us(seconds: f64) -> Option<i64> {
     (seconds.abs() < 9e12).then(|| (seconds * 1e6).round() as i64)
 }
 
-/// What a cell says: a number, or a word of this kind.
-pub(super) fn sample(cell: &str, kind: &ChannelKind) -> Result<f64, String> {
-    if cell.is_empty() {
-        return Ok(f64::NAN);
-    }
-    if let Ok(number) = cell.parse::<f64>() {
-        return Ok(number);
-    }
-    match kind {
-        ChannelKind::Bit if cell.eq_ignore_ascii_case("true") => Ok(1.0),
-        ChannelKind::Bit if cell.eq_ignore_ascii_case("false") => Ok(0.0),
-        ChannelKind::Enum { labels } => {
-            let found = labels.iter().find(|(_, word)| *word == cell);
-            let words = || labels.values().cloned().collect::<Vec<_>>().join(", ");
-            let found = found.ok_or_else(|| format!("\"{cell}\" is none of {}", words()));
-            found.map(|(number, _)| *number as f64)
-        }
-        _ => Err(format!("\"{cell}\" is no number")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use fault_db::ChannelKind;
+
+    use super::super::series::plain;
     use super::*;
 
     fn read(text: &str) -> Result<Table, String> {
@@ -261,7 +238,8 @@ mod tests {
             unit: "km/h".into(),
             ..plain("speed")
         };
-        read_table(&mut lines, &[&[mode, speed]]).map_err(|failure| failure.message)
+        read_table(&mut lines, &KnownSignals::of(&[&[mode, speed]]))
+            .map_err(|failure| failure.message)
     }
 
     #[test]

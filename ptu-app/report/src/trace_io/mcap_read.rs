@@ -5,14 +5,14 @@ use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
 
-use fault_db::{Channel, ChannelKind, open_regular_file};
+use fault_db::{Channel, open_regular_file};
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
 use super::about::{NAME, TraceInfo};
-use super::column::is_called;
+use super::known::{Known, KnownSignals};
 use super::series::{Import, Table, check_size, plain, wrong};
 use ptu_runs::failure::Failure;
 
@@ -20,6 +20,8 @@ use ptu_runs::failure::Failure;
 const MAX_RECORD: usize = 32 << 20;
 /// All records together, unpacked: several times what the samples allowed take as text.
 const MAX_BYTES: usize = 512 << 20;
+/// What a record takes beside its content.
+const RECORD: usize = 64;
 /// Longest message of signals, bytes; a longer one is refused.
 const MAX_MESSAGE: usize = 1 << 20;
 /// Longest name of a topic or signal, bytes; a longer one is refused.
@@ -61,6 +63,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let mut reading = Reading {
         file,
         known,
+        names: KnownSignals::of(&[known]),
         topics: BTreeMap::new(),
         about: None,
         messages: 0,
@@ -83,7 +86,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
                 bytes += read;
             }
             LinearReadEvent::Record { opcode, data } => {
-                unpacked += data.len();
+                unpacked += data.len() + RECORD;
                 if unpacked > MAX_BYTES {
                     let what = format!("it unpacks to more than {MAX_BYTES} bytes");
                     return Err(wrong(file, &what));
@@ -109,6 +112,7 @@ fn told(error: &McapError) -> String {
 struct Reading<'a> {
     file: &'a Path,
     known: &'a [Channel],
+    names: KnownSignals,
     /// By the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
     about: Option<TraceInfo>,
@@ -149,17 +153,20 @@ impl Reading<'_> {
                 let at_us = i64::try_from(header.log_time / 1000).unwrap_or(i64::MAX);
                 self.signals -= topic.table.columns.len();
                 self.samples -= topic.table.samples();
-                let own = self.about.as_ref().map_or(&[][..], |about| &about.channels);
-                topic.take(at_us, &message, &[own, self.known]);
+                topic.take(at_us, &message, &self.names);
                 self.signals += topic.table.columns.len();
                 self.samples += topic.table.samples();
                 check_size(self.file, self.signals, self.samples)?;
                 topic.check_names(self.file)?;
             }
-            Record::Metadata(metadata) if metadata.name == NAME => {
+            Record::Metadata(metadata) if metadata.name == NAME && self.about.is_none() => {
                 let about = metadata.metadata.get("about");
                 let about = about.filter(|about| about.len() <= MAX_ABOUT);
-                self.about = about.and_then(|about| serde_json::from_str(about).ok());
+                let about: Option<TraceInfo> =
+                    about.and_then(|about| serde_json::from_str(about).ok());
+                let own = about.as_ref().map_or(&[][..], |about| &about.channels);
+                self.names = KnownSignals::of(&[own, self.known]);
+                self.about = about;
             }
             _ => {}
         }
@@ -205,7 +212,7 @@ impl Reading<'_> {
 }
 
 impl Topic {
-    fn take(&mut self, at_us: i64, message: &Value, known: &[&[Channel]]) {
+    fn take(&mut self, at_us: i64, message: &Value, known: &KnownSignals) {
         self.table.times_us.push(at_us);
         self.fields(&mut String::new(), message, 0, known);
         let rows = self.table.times_us.len();
@@ -223,24 +230,7 @@ impl Topic {
         Ok(())
     }
 
-    /// The number of a word, if it is one of a signal that has words.
-    fn number(&self, path: &str, word: &str, known: &[&[Channel]]) -> Option<f64> {
-        let made;
-        let channel = match self.places.get(path) {
-            Some(place) => &self.table.channels[*place],
-            None => {
-                made = channel(&self.name, path, known);
-                &made
-            }
-        };
-        let ChannelKind::Enum { labels } = &channel.kind else {
-            return None;
-        };
-        let found = labels.iter().find(|(_, label)| *label == word);
-        found.map(|(number, _)| *number as f64)
-    }
-
-    fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &[&[Channel]]) {
+    fn fields(&mut self, path: &mut String, value: &Value, depth: usize, known: &KnownSignals) {
         let sample = match value {
             Value::Object(fields) if depth < MAX_DEPTH => {
                 for (name, value) in fields {
@@ -257,17 +247,26 @@ impl Topic {
             Value::Number(number) => number.as_f64().unwrap_or(f64::NAN),
             Value::Bool(bit) => f64::from(u8::from(*bit)),
             Value::Null => f64::NAN,
-            Value::String(word) => match self.number(path, word, known) {
-                Some(number) => number,
-                None => return,
-            },
+            Value::String(word) => {
+                let signal = signal(&self.name, path, known);
+                match signal.and_then(|signal| signal.number(word)) {
+                    Some(number) => number,
+                    None => return,
+                }
+            }
             _ => return,
         };
         let before = self.table.times_us.len() - 1;
         let place = match self.places.get(path.as_str()) {
             Some(place) => *place,
             None => {
-                self.table.channels.push(channel(&self.name, path, known));
+                let name = &self.name;
+                let channel = match (signal(name, path, known), path.as_str()) {
+                    (Some(signal), _) => signal.channel.clone(),
+                    (None, "") => plain(name),
+                    (None, path) => plain(&format!("{name}.{path}")),
+                };
+                self.table.channels.push(channel);
                 self.table.columns.push(Vec::new());
                 let place = self.table.columns.len() - 1;
                 self.places.insert(path.clone(), place);
@@ -280,19 +279,11 @@ impl Topic {
     }
 }
 
-/// The signal a field stands for: of its own name, or of its topic's where it is just the value there; else
-/// one of the name of both.
-fn channel(topic: &str, path: &str, known: &[&[Channel]]) -> Channel {
-    let named = |name: &str| {
-        let mut all = known.iter().copied().flatten();
-        all.find(|channel| is_called(channel, name)).cloned()
-    };
+/// The signal a field stands for: of its own name, or of its topic's where it is just the value there.
+fn signal<'a>(topic: &str, path: &str, known: &'a KnownSignals) -> Option<&'a Known> {
     let is_value = matches!(path, "" | "value" | "data");
-    let of_topic = if is_value { named(topic) } else { None };
-    named(path).or(of_topic).unwrap_or_else(|| match path {
-        "" => plain(topic),
-        path => plain(&format!("{topic}.{path}")),
-    })
+    let of_topic = || is_value.then(|| known.named(topic)).flatten();
+    known.named(path).or_else(of_topic)
 }
 
 /// Puts rows into the order of their times: messages need not be.

@@ -12,10 +12,17 @@ use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use super::about::{NAME, TraceInfo};
-use super::csv_read::{channel, sample, whole_us};
+use super::csv_read::whole_us;
+use super::known::{Known, KnownSignals};
 use super::parquet::UTC;
+use super::parquet_pages::{check_footer, check_pages};
 use super::series::{Import, Table, check_size, wrong};
 use ptu_runs::failure::Failure;
+
+/// All pages that are read, unpacked.
+const MAX_UNPACKED: u64 = 512 << 20;
+/// Rows that are held as they come from the file: a text may be as long as a page.
+const AT_ONCE: usize = 16;
 
 /// Reads a file: one row after the other, each column but the first and that of UTC a signal.
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
@@ -29,13 +36,19 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
 fn read_table(file: &Path, opened: File, known: &[Channel]) -> Result<Import, Failure> {
     let damaged =
         |error: ParquetError| wrong(file, &format!("damaged, or no Parquet file: {error}"));
+    let refused = |what: String| wrong(file, &what);
+    let mut pages = opened
+        .try_clone()
+        .map_err(|error| refused(error.to_string()))?;
+    check_footer(&mut pages).map_err(refused)?;
     let reader = SerializedFileReader::new(opened).map_err(damaged)?;
     let about = about(reader.metadata());
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let columns = columns(file, reader.metadata(), &[own, known])?;
+    let columns = columns(file, reader.metadata(), &KnownSignals::of(&[own, known]))?;
+    let mut left = MAX_UNPACKED;
     let mut table = Table {
         times_us: Vec::new(),
-        channels: columns.iter().map(|(_, channel)| channel.clone()).collect(),
+        channels: (columns.iter().map(|(_, known)| known.channel.clone())).collect(),
         columns: vec![Vec::new(); columns.len()],
     };
     for place in 0..reader.num_row_groups() {
@@ -43,6 +56,11 @@ fn read_table(file: &Path, opened: File, known: &[Channel]) -> Result<Import, Fa
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(usize::MAX);
         let all = rows.saturating_add(table.times_us.len());
         check_size(file, columns.len(), all.saturating_mul(columns.len() + 1))?;
+        let read = std::iter::once(0).chain(columns.iter().map(|(place, _)| *place));
+        for place in read {
+            let column = group.metadata().column(place);
+            check_pages(&pages, column, &mut left).map_err(refused)?;
+        }
         read_group(&*group, rows, &columns, &mut table)
             .map_err(|what| wrong(file, &format!("rows from {}: {what}", table.times_us.len())))?;
     }
@@ -64,8 +82,8 @@ fn about(metadata: &ParquetMetaData) -> Option<TraceInfo> {
 fn columns(
     file: &Path,
     metadata: &ParquetMetaData,
-    known: &[&[Channel]],
-) -> Result<Vec<(usize, Channel)>, Failure> {
+    known: &KnownSignals,
+) -> Result<Vec<(usize, Known)>, Failure> {
     let schema = metadata.file_metadata().schema_descr();
     let mut columns = Vec::new();
     for (place, column) in schema.columns().iter().enumerate() {
@@ -74,7 +92,7 @@ fn columns(
             return Err(wrong(file, &format!("column \"{path}\" is no plain one")));
         }
         if place > 0 && column.name() != UTC {
-            columns.push((place, channel(column.name(), known)));
+            columns.push((place, known.signal(column.name())));
         }
     }
     check_size(file, columns.len(), 0)?;
@@ -90,7 +108,7 @@ fn columns(
 fn read_group(
     group: &dyn RowGroupReader,
     rows: usize,
-    columns: &[(usize, Channel)],
+    columns: &[(usize, Known)],
     table: &mut Table,
 ) -> Result<(), String> {
     let reader = |place: usize| group.get_column_reader(place).map_err(|e| e.to_string());
@@ -102,19 +120,15 @@ fn read_group(
         }
         table.times_us.push(time_us);
     }
-    for ((place, channel), column) in columns.iter().zip(&mut table.columns) {
-        let read = samples(reader(*place)?, rows, Some(channel));
-        column.extend(read.map_err(|what| format!("column \"{}\": {what}", channel.name))?);
+    for ((place, known), column) in columns.iter().zip(&mut table.columns) {
+        let read = samples(reader(*place)?, rows, Some(known));
+        column.extend(read.map_err(|what| format!("column \"{}\": {what}", known.channel.name))?);
     }
     Ok(())
 }
 
 /// A column's samples; an unknown one is NaN, and words are those of the channel.
-fn samples(
-    reader: ColumnReader,
-    rows: usize,
-    channel: Option<&Channel>,
-) -> Result<Vec<f64>, String> {
+fn samples(reader: ColumnReader, rows: usize, known: Option<&Known>) -> Result<Vec<f64>, String> {
     match reader {
         ColumnReader::DoubleColumnReader(column) => numbers(column, rows, |n| Ok(*n)),
         ColumnReader::FloatColumnReader(column) => numbers(column, rows, |n| Ok(f64::from(*n))),
@@ -124,10 +138,10 @@ fn samples(
             numbers(column, rows, |n| Ok(f64::from(u8::from(*n))))
         }
         ColumnReader::ByteArrayColumnReader(column) => {
-            let channel = channel.ok_or("the first column has texts in place of seconds")?;
+            let known = known.ok_or("the first column has texts in place of seconds")?;
             let number = |word: &parquet::data_type::ByteArray| {
                 let word = word.as_utf8().map_err(|error| error.to_string())?;
-                sample(word, &channel.kind)
+                known.sample(word)
             };
             numbers(column, rows, number)
         }
@@ -141,18 +155,24 @@ fn numbers<T: DataType>(
     number: impl Fn(&T::T) -> Result<f64, String>,
 ) -> Result<Vec<f64>, String> {
     let (mut levels, mut values) = (Vec::new(), Vec::new());
-    let (read, _, _) = column
-        .read_records(rows, Some(&mut levels), None, &mut values)
-        .map_err(|error| error.to_string())?;
-    if read != rows {
-        return Err(format!("it has {read} of {rows} rows"));
+    let mut samples = Vec::new();
+    while samples.len() < rows {
+        levels.clear();
+        values.clear();
+        let most = AT_ONCE.min(rows - samples.len());
+        let (read, _, _) = column
+            .read_records(most, Some(&mut levels), None, &mut values)
+            .map_err(|error| error.to_string())?;
+        if read == 0 {
+            return Err(format!("it has {} of {rows} rows", samples.len()));
+        }
+        let mut values = values.iter();
+        let mut next = || values.next().map_or(Ok(f64::NAN), &number);
+        for row in 0..read {
+            // A column that has a value in each row has no levels.
+            let has_value = levels.get(row).is_none_or(|level| *level > 0);
+            samples.push(if has_value { next()? } else { f64::NAN });
+        }
     }
-    let mut values = values.iter();
-    let mut next = || values.next().map_or(Ok(f64::NAN), &number);
-    // A column that has a value in each row has no levels.
-    if levels.is_empty() {
-        return (0..rows).map(|_| next()).collect();
-    }
-    let one = |level: &i16| if *level > 0 { next() } else { Ok(f64::NAN) };
-    levels.iter().map(one).collect()
+    Ok(samples)
 }

@@ -7,7 +7,6 @@ use crate::naming::PartNames;
 use crate::words::Language;
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
-use ptu_runs::process_id;
 
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;
@@ -118,7 +117,7 @@ pub fn list(store: &Store, parts: &PartNames) -> Result<Vec<ListedRun>, Failure>
         ..RunFilter::default()
     };
     let mut listed = Vec::new();
-    for run in store.runs(&newest, &process_id::is_alive)? {
+    for run in store.runs(&newest)? {
         let traces = store.traces(run.id)?;
         if traces.is_empty() {
             continue;

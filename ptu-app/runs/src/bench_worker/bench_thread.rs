@@ -19,8 +19,8 @@ use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
 use crate::link::{Pace, keep_time};
 use crate::run::{
-    BenchSetup, Connected, Listener, READY_WITHIN, RunStart, Session, SessionEvent, run_on,
-    settled, trace_repaired,
+    BenchSetup, Connected, Listener, Outcome, READY_WITHIN, RunStart, Session, SessionEvent,
+    run_on, settled, trace_repaired,
 };
 use crate::stop::Stop;
 
@@ -277,6 +277,9 @@ impl BenchThread {
             Ok(outcome)
         });
         self.tell(match closed {
+            Ok(Outcome {
+                lost: Some(lost), ..
+            }) => BenchEvent::RunFailed(lost),
             Ok(outcome) => BenchEvent::RunEnded(outcome),
             Err(failure) => BenchEvent::RunFailed(failure.message),
         });

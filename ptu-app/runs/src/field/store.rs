@@ -11,6 +11,7 @@ use protocol::Instant;
 use protocol::signal::{Sample, Signal};
 
 use super::read::{Entry, StoredPlace, StoredRead};
+use crate::platform;
 use crate::run::of_event;
 use crate::stored::fault_record;
 
@@ -161,7 +162,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         scripts_sha256: String::new(),
         unit_config_sha256: source.unit_config_sha256.clone(),
         injected: None,
-        owner: crate::process_id::this_process(),
+        owner: platform::this_process(),
         continues: None,
         connection: None,
         symptom: None,

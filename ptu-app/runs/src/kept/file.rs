@@ -14,6 +14,7 @@ use super::Head;
 use super::record::{Found, head_record, in_order, run_of};
 use crate::data;
 use crate::failure::Failure;
+use crate::new_file::kind;
 use crate::stdio;
 
 /// A file has at most this many bytes: some twenty thousand runs of the suite.
@@ -185,7 +186,7 @@ impl RunsFile {
         let runs = found.runs.iter();
         let ordered = in_order(head, runs.map(|(name, (_, at))| (name, &bytes[at.clone()])));
         if ordered != bytes {
-            data::write(&self.path, ordered)?;
+            data::write(&self.path, kind::RUNS, ordered)?;
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use super::list::{KeyEntry, KeyList};
 use super::{located, sought};
 use crate::failure::Failure;
-use crate::new_file::{NewFile, cannot_write};
+use crate::new_file::{NewFile, cannot_write, kind};
 
 /// Fewest letters of a PIN.
 const SHORTEST_PIN: usize = 6;
@@ -105,9 +105,9 @@ impl NewKey<'_> {
         }
         .text();
         let head = public.trim_start_matches("[[key]]\n");
-        let mut private = NewFile::begin_new(path)?;
+        let mut private = NewFile::begin_new(path, kind::OWN)?;
         private.keep_to_owner()?;
-        let mut shared = NewFile::begin_new(&public_name(path))?;
+        let mut shared = NewFile::begin_new(&public_name(path), kind::OWN)?;
         (write!(private, "{}\n{}", head.trim_end(), &*pem))
             .map_err(|error| cannot_write(path, &error))?;
         (shared.write_all(public.as_bytes())).map_err(|error| cannot_write(path, &error))?;

@@ -18,10 +18,14 @@ pub use system::process::{
 };
 pub use system::signals::survive_file_limit;
 
+/// This process, for people.
+pub(crate) fn this_process() -> String {
+    format!("{}:{}", computer_name(), std::process::id())
+}
+
 pub(crate) use system::files::{keep_to_owner, make_folder, real_path};
 pub(crate) use system::limits::{ended_by_time, limit_memory, limit_time, without_window};
 pub(crate) use system::pipes::shorten_pipe;
 pub(crate) use system::ports::{holder, open_alone};
-pub(crate) use system::process::start_of;
 pub(crate) use system::signals::StopSignals;
 pub(crate) use system::terminal::{KeyTerminal, columns, in_foreground};

@@ -7,7 +7,6 @@ use super::{RecordComparison, compare, find_section};
 use crate::data::ScriptsDirectory;
 use crate::drive::{Fixed, Request, SectionChoice};
 use crate::failure::Failure;
-use crate::process_id;
 
 /// The train of the sound unit.
 const TRAIN: &str = "line6";
@@ -52,7 +51,7 @@ impl CompareRequest {
         trace: Id,
     ) -> Result<Compared, Failure> {
         let head = store.trace_head(trace)?;
-        let run = store.run(head.run_id, &process_id::is_alive)?.run;
+        let run = store.run(head.run_id)?.run;
         let line_name = self.line.clone().unwrap_or(run.line);
         let unit_config = self.unit_config.clone().unwrap_or(run.unit_config_name);
         let line = directory.line(&line_name)?;

@@ -13,6 +13,7 @@ use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Exit, Failure};
 use crate::link::Endpoint;
+use crate::platform;
 use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
 
@@ -250,7 +251,7 @@ fn run_record(
         scripts_sha256: String::new(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: crate::process_id::this_process(),
+        owner: platform::this_process(),
         continues: None,
         connection: None,
         symptom: None,

@@ -50,6 +50,8 @@ pub struct Outcome {
     pub bench_time: Duration,
     /// Exit code that goes with it.
     pub exit: Exit,
+    /// The history does not hold the run: why, and where it is kept.
+    pub lost: Option<String>,
 }
 
 pub struct Collector<'a> {
@@ -345,6 +347,7 @@ impl<'a> Collector<'a> {
                 verdict,
                 bench_time: self.before,
                 exit,
+                lost: None,
             },
         )
     }

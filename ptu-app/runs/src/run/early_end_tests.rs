@@ -126,7 +126,7 @@ fn recorded(
     let (began, stop) = (RunStart::now(), &presser.stop);
     let ran = run_on(&mut connected, &began, plan, &setup, store, stop, &mut ());
     let (store, outcome) = ran.expect("it is recorded");
-    let detail = store.run(outcome.id, &|_| true).expect("the run");
+    let detail = store.run(outcome.id).expect("the run");
     (outcome, detail)
 }
 
@@ -271,7 +271,7 @@ fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
                 &mut slow,
             );
             let (kept, outcome) = ran.expect("it is recorded");
-            let run = kept.run(outcome.id, &|_| true).expect("the run");
+            let run = kept.run(outcome.id).expect("the run");
             store = kept;
             let steps: Vec<_> = run.steps.iter().map(|s| s.procedure.as_str()).collect();
             assert_eq!(steps, ["0", "1"], "turn {turn}");
@@ -384,9 +384,7 @@ fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     };
     assert_eq!(failure.exit, Exit::Aborted, "{}", failure.message);
     let store = Store::open_read_only(&folder.path().join("history.db")).expect("the database");
-    let runs = store
-        .runs(&fault_db::RunFilter::default(), &|_| true)
-        .expect("runs");
+    let runs = store.runs(&fault_db::RunFilter::default()).expect("runs");
     let verdicts: Vec<_> = runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [Some(fault_db::Verdict::Aborted)]);
 }

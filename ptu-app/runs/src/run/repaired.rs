@@ -7,7 +7,6 @@ use fault_db::{FaultFilter, FaultState, Id, Store, StoreError};
 
 use super::plan::Task;
 use crate::failure::Failure;
-use crate::process_id;
 
 /// Faults of a unit that are looked at, and occurrences of each, the latest first.
 const MOST_FAULTS: u32 = 50;
@@ -50,7 +49,7 @@ fn failed_before_repair(store: &Store, unit: &str) -> Result<BTreeSet<(String, S
     let runs: BTreeSet<Id> = seen.iter().map(|(run, _)| *run).collect();
     let mut checks = BTreeSet::new();
     for run in runs {
-        let steps = store.run(run, &process_id::is_alive)?.steps.into_iter();
+        let steps = store.run(run)?.steps.into_iter();
         let failed = steps.filter(|step| seen.contains(&(run, step.index)));
         // A repetition is named by its number, too.
         checks.extend(failed.map(|step| {

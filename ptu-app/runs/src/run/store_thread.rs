@@ -1,7 +1,7 @@
 //! The writer: one thread owns the database. It stores the records of a run in order, and prints lines about
 //! them once they are in the file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -160,15 +160,19 @@ impl RunStore {
         let _ = self.entries.send(entry);
     }
 
-    /// Ends the run and gives the store back.
+    /// Ends the run and gives the store back; with it, if the history does not hold the run, why, and where it is kept.
     ///
     /// # Errors
     /// The first error of writing.
-    pub fn finish(self, end: RunEnd) -> Result<Store, Failure> {
+    pub fn finish(self, end: RunEnd) -> Result<(Store, Option<String>), Failure> {
         self.send(Entry::Finish(end));
         drop(self.entries);
         match self.thread.join() {
-            Ok((store, Ok(()))) => Ok(store),
+            Ok((store, Ok(()))) => {
+                let held = store.check_holds(self.id);
+                let lost = held.err().map(|error| keep_beside(&store, self.id, &error));
+                Ok((store, lost))
+            }
             Ok((_, Err(error))) => Err(error),
             Err(_) => Err(Failure::bench("the writer ended unexpectedly")),
         }
@@ -183,7 +187,8 @@ fn write(
     begun: &SyncSender<Id>,
     (busy_timeout, stop): (BusyTimeout, &Stop),
 ) -> Result<(), Failure> {
-    // Nothing is lost yet: a file that is locked is said as soon as any.
+    // Nothing is lost yet: a file that is locked, or has two names, is said as soon as any.
+    store.check_place()?;
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
     let _ = begun.send(writer.id());
@@ -329,9 +334,7 @@ fn keep_rest(
     at_hand: Option<Box<Entry>>,
     entries: &Receiver<Entry>,
 ) -> Option<PathBuf> {
-    let mut name = writer.path().as_os_str().to_owned();
-    name.push(format!(".run-{}.db", writer.id().short()));
-    let path = PathBuf::from(name);
+    let path = beside(writer.path(), writer.id());
     let store = Store::open(&path, clock::open_options()).ok()?;
     let mut rest = writer.continue_in(&store, record).ok()?;
     for entry in at_hand
@@ -355,6 +358,34 @@ fn keep_rest(
     drop(rest);
     store.close().ok()?;
     Some(path)
+}
+
+/// Keeps what an open file holds that its name no longer leads to; tells where, in one sentence with the reason.
+fn keep_beside(store: &Store, run: Id, error: &StoreError) -> String {
+    let beside = beside(store.path(), run);
+    let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
+    let kept = [beside, elsewhere]
+        .into_iter()
+        .find(|path| store.backup(path).is_ok());
+    let error = store_message(error);
+    match kept {
+        Some(kept) => format!(
+            "run {} is not in the history: {error}; it is kept in {kept}: bring it in with `ptu db import {kept}`",
+            run.short(),
+            kept = kept.display()
+        ),
+        None => format!(
+            "run {} is not in the history, and lost: {error}",
+            run.short()
+        ),
+    }
+}
+
+/// The file beside a history that takes a run of it.
+fn beside(history: &Path, run: Id) -> PathBuf {
+    let mut name = history.as_os_str().to_owned();
+    name.push(format!(".run-{}.db", run.short()));
+    PathBuf::from(name)
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ use super::store_thread::RunStore;
 use super::workers;
 use crate::clock;
 use crate::failure::{Exit, Failure};
+use crate::platform;
 use crate::stop::Stop;
 use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
 
@@ -155,7 +156,7 @@ pub fn run_on(
     if worked.is_err() {
         collector.broken_off("the program failed in this run");
     }
-    let (run_store, outcome) = collector.finish(id, left_out(stop));
+    let (run_store, mut outcome) = collector.finish(id, left_out(stop));
     let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
@@ -165,7 +166,12 @@ pub fn run_on(
             id.short()
         )));
     }
-    Ok((run_store.finish(end)?, outcome))
+    let (store, lost) = run_store.finish(end)?;
+    if lost.is_some() {
+        outcome.exit = Exit::Bench;
+    }
+    outcome.lost = lost;
+    Ok((store, outcome))
 }
 
 /// The verdict on what was still due when stop was pressed.
@@ -232,7 +238,7 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
         scripts_sha256: plan.scripts_sha256.clone(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: crate::process_id::this_process(),
+        owner: platform::this_process(),
         continues: plan.continues,
         connection: None,
         symptom: plan.symptom.clone(),

@@ -18,7 +18,6 @@ use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
-use crate::process_id;
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
 use crate::structure::Structure;
@@ -101,7 +100,7 @@ pub fn diagnose(
         with,
         why_not,
     } = *asked;
-    let run = store.run(id, &process_id::is_alive)?;
+    let run = store.run(id)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
     let Chosen {
@@ -202,7 +201,7 @@ pub(super) fn observed(
     run: Id,
     dictionary: &Dictionary,
 ) -> Result<(RunDetail, Observation), Failure> {
-    let run = store.run(run, &process_id::is_alive)?;
+    let run = store.run(run)?;
     let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
     let seen = comparable(&run, seen, dictionary, &mut Vec::new());
     Ok((run, seen))
@@ -210,7 +209,7 @@ pub(super) fn observed(
 
 /// What was seen in another run of the unit.
 fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation, Failure> {
-    let other = store.run(other, &process_id::is_alive)?;
+    let other = store.run(other)?;
     let (this, that) = (&run.run, &other.run);
     if this.id == that.id {
         return Err(Failure::usage(format!("run {} is named twice", that.id)));

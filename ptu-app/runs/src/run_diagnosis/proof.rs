@@ -10,7 +10,6 @@ use super::dictionary::choose;
 use super::settings;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
-use crate::process_id;
 
 /// What a run that passed says of the repair of a fault.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +39,7 @@ pub fn prove_repairs(
         return Ok(Vec::new());
     }
     let settings = settings(directory)?;
-    let connection = connection_of(&store.run(run, &process_id::is_alive)?);
+    let connection = connection_of(&store.run(run)?);
     let dictionary = choose(Some(store), directory, connection)?.dictionary;
     let no_factors = BTreeMap::new();
     let model = Model::new(&dictionary, &settings, &no_factors);

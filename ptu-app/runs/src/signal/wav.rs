@@ -7,6 +7,7 @@ use std::path::Path;
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 
 use crate::failure::Failure;
+use crate::new_file::{NewFile, kind};
 
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
@@ -128,7 +129,8 @@ pub fn write(
         bits_per_sample: 16,
         sample_format: SampleFormat::Int,
     };
-    let mut writer = WavWriter::create(path, spec).map_err(failed)?;
+    let file = NewFile::begin(path, kind::WAV)?;
+    let mut writer = WavWriter::new(file.writer()?, spec).map_err(failed)?;
     let mut clipped = 0;
     for sample in samples {
         let sample = (sample / full_scale_mv * 32_768.0).round();
@@ -137,5 +139,6 @@ pub fn write(
         writer.write_sample(kept as i16).map_err(failed)?;
     }
     writer.finalize().map_err(failed)?;
+    file.finish()?;
     Ok(clipped)
 }

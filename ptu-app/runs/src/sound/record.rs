@@ -9,6 +9,7 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 use super::carried::Carried;
 use super::{CHANNELS, Direction, SAMPLE_HZ, programs};
 use crate::failure::Failure;
+use crate::new_file::{NewFile, kind};
 use crate::signal::FULL_SCALE_MV;
 use crate::stop::Stop;
 
@@ -79,7 +80,8 @@ pub fn record(
 }
 
 /// Records to a WAV file, whose full scale stands for the usual level; `heard` gets the samples, too. What was recorded
-/// is in the file even if this program is killed, but for the last second.
+/// is in the file even if this program is killed, but for the last second; a file that was there stays until a second is
+/// recorded.
 ///
 /// # Errors
 /// As [`record`], or the file cannot be written.
@@ -99,7 +101,8 @@ pub fn record_to_file(
         bits_per_sample: 32,
         sample_format: SampleFormat::Float,
     };
-    let mut writer = WavWriter::create(path, spec).map_err(failed)?;
+    let mut file = NewFile::begin(path, kind::WAV)?;
+    let mut writer = WavWriter::new(file.writer()?, spec).map_err(failed)?;
     let mut unsaved = 0;
     let recorded = record(device, seconds, stop, &mut |block| {
         let [atp, twc] = block else { return Ok(()) };
@@ -112,11 +115,14 @@ pub fn record_to_file(
         unsaved += atp.len();
         if unsaved >= SAMPLE_HZ as usize {
             writer.flush().map_err(failed)?;
+            file.appear()?;
             unsaved = 0;
         }
         heard(block);
         Ok(())
     });
     writer.finalize().map_err(failed)?;
-    recorded
+    let recorded = recorded?;
+    file.finish()?;
+    Ok(recorded)
 }

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use ato_under_test::flash::FileFlash;
-pub use ato_under_test::serve::Place;
+pub use ato_under_test::serve::{NO_AUTHENTICATION, Place, check_exposed};
 use ato_under_test::serve::{Served, Wire, in_real_time};
 use btu_rig::rig::UnitLink;
 use protocol::Instant;

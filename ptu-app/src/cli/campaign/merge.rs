@@ -8,6 +8,7 @@ use super::super::print_out;
 use ptu_runs::data::write;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::kept::merge;
+use ptu_runs::new_file::kind;
 use ptu_runs::stdio;
 
 /// Put the runs of shards together, of a campaign or of `ptu drive --monte-carlo`
@@ -34,7 +35,7 @@ impl MergeArguments {
     /// Merges.
     pub fn run(self) -> Result<Exit, Failure> {
         let merged = merge(&self.files)?;
-        write(&self.out, &merged.bytes)?;
+        write(&self.out, kind::RUNS, &merged.bytes)?;
         if merged.runs < merged.all {
             stdio::note(&format!(
                 "{} of {} runs are missing; `ptu campaign missing {}` lists their shards",

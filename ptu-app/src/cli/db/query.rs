@@ -13,8 +13,6 @@ use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 use ptu_runs::table::Table;
 
-/// Rows a query prints at most.
-const MAX_ROWS: usize = 10_000;
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
 
@@ -38,6 +36,9 @@ pub struct QueryArguments {
     /// Temporary disk it may take in a file, MB
     #[arg(long, value_name = "MB", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     max_disk: u32,
+    /// Print at most so many rows, whatever LIMIT says
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    max_rows: u32,
     #[command(flatten)]
     output: Output,
 }
@@ -50,7 +51,7 @@ impl QueryArguments {
             u64::from(self.max_disk) * MEGABYTE,
         );
         let bounds = QueryBounds {
-            rows: MAX_ROWS,
+            rows: self.max_rows as usize,
             memory_bytes: Some(u64::from(self.max_memory) * MEGABYTE),
             server_ms: Some(self.max_time * 1000),
         };
@@ -60,13 +61,14 @@ impl QueryArguments {
             other => other.into(),
         })?;
         self.output.save()?;
+        if answer.truncated {
+            let most = self.max_rows;
+            stdio::note(&format!(
+                "only the first {most} rows; allow more with --max-rows N, or ask for less"
+            ));
+        }
         if self.output.is_json() {
             return print_json(&answer);
-        }
-        if answer.truncated && !self.output.is_table() {
-            stdio::note(&format!(
-                "only the first {MAX_ROWS} rows; add LIMIT, or ask for less"
-            ));
         }
         let columns = columns(&answer);
         let columns: Vec<_> = columns.iter().map(String::as_str).collect();
@@ -146,11 +148,7 @@ fn table(answer: &QueryResult) -> String {
             SqlValue::Text(text) => text.clone(),
         }));
     }
-    let more = match answer.truncated {
-        true => "\n… more rows; add LIMIT",
-        false => "",
-    };
-    format!("{}{more}", table.render())
+    table.render()
 }
 
 /// As few digits as tell it from all other numbers; with an exponent where zeros would fill the table.

@@ -12,7 +12,7 @@ use crate::cli::{Database, Json, answered};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::platform::computer_name;
 use ptu_runs::stop::Stop;
-use ptu_runs::{clock, process_id, stdio};
+use ptu_runs::{clock, stdio};
 
 /// Send this laptop's history to a server, and receive what others recorded about its faults
 ///
@@ -61,7 +61,6 @@ impl SyncArguments {
                 laptop: &computer_name(),
                 traces: !self.no_traces,
                 as_copy: self.as_copy,
-                is_alive: &process_id::is_alive,
                 now_us: &clock::now_us,
                 go_on: &mut |progress| {
                     shown.tell(progress);

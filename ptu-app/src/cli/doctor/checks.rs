@@ -11,7 +11,6 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 use ptu_runs::link::ports;
 use ptu_runs::owner_only;
-use ptu_runs::process_id;
 use ptu_runs::run::{BenchChoice, Suite};
 
 /// Below this, runs may soon find no room, bytes, a value of this program: some thousand runs with their traces.
@@ -178,9 +177,7 @@ pub(super) fn database(file: &Path) -> Vec<Finding> {
             "keep it to yourself, or leave it if that is meant",
         ));
     }
-    let newest = store
-        .resolve_run("latest")
-        .and_then(|id| store.run(id, &process_id::is_alive));
+    let newest = store.resolve_run("latest").and_then(|id| store.run(id));
     match newest {
         Ok(run) if run.run.started_at_us > now_us() + AHEAD_US => findings.push(Finding::warning(
             "clock",

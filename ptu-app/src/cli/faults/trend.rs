@@ -14,6 +14,7 @@ use ptu_report::trend::{TimeSeries, Trend};
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::new_file::kind;
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///
@@ -72,7 +73,7 @@ impl TrendArguments {
         let trend = self.read(store)?;
         self.output.save()?;
         if let Some(file) = &self.plot {
-            data::write(file, trend_plot::page(&trend))?;
+            data::write(file, kind::HTML, trend_plot::page(&trend))?;
         }
         if self.output.is_json() {
             return crate::cli::print_json(&json(&trend));

@@ -1,13 +1,12 @@
 //! `ptu new`: commented files to begin with, in the user's own scripts.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use script_files::own_folder;
 
 use super::{ScriptsOption, print_out};
-use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::data::{ScriptsDirectory, write_text};
 use ptu_runs::failure::{Exit, Failure};
 
 /// Begin a procedure, unit configuration, line or fault mode of your own
@@ -177,27 +176,19 @@ fn summed(text: &str) -> String {
 }
 
 fn write_new(file: &Path, text: &str) -> Result<(), Failure> {
-    let cannot = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::AlreadyExists => Failure::usage(format!(
+    if file.exists() {
+        return Err(Failure::usage(format!(
             "{} is there already; choose another name, or change that one",
             file.display()
-        )),
-        _ => Failure::bench(format!("cannot write {}: {error}", file.display())),
-    };
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(cannot)?;
+        )));
     }
-    let mut new = std::fs::File::create_new(file).map_err(cannot)?;
-    new.write_all(text.as_bytes()).map_err(cannot)
+    write_text(file, text)
 }
 
 /// One file for each namespace, and one for the words outside of all.
 fn stubs(folder: &Path) -> Result<Exit, Failure> {
     for (name, text) in btu_rig::procedure::loader::stubs() {
-        let file = folder.join(name);
-        std::fs::create_dir_all(folder)
-            .and_then(|()| std::fs::write(&file, text))
-            .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))?;
+        write_text(&folder.join(name), text)?;
     }
     print_out(&format!(
         "written: {}\nname this folder to the editor's Starlark server, for instance `starlark-lsp start \
@@ -211,21 +202,16 @@ fn stubs(folder: &Path) -> Result<Exit, Failure> {
 fn schemas(folder: &Path) -> Result<Exit, Failure> {
     let mut rules = String::new();
     let into = folder.join("schemas");
-    let write = |file: &Path, text: &str| {
-        std::fs::create_dir_all(&into)
-            .and_then(|()| std::fs::write(file, text))
-            .map_err(|error| Failure::bench(format!("cannot write {}: {error}", file.display())))
-    };
     for one in ptu_runs::schemas::all() {
         let name = format!("{}.schema.json", one.name);
         let text = format!("{:#}\n", one.schema.as_value());
-        write(&into.join(&name), &text)?;
+        write_text(&into.join(&name), &text)?;
         rules.push_str(&format!(
             "[[rule]]\ninclude = {:?}\nexclude = {:?}\nschema.path = \"schemas/{name}\"\n\n",
             one.files, one.except
         ));
     }
-    write(&folder.join(".taplo.toml"), &rules)?;
+    write_text(&folder.join(".taplo.toml"), &rules)?;
     print_out(&format!(
         "written: {} and {}",
         into.display(),

@@ -8,8 +8,9 @@ use fault_db::Store;
 
 use crate::cli::{Json, ScriptsOption};
 use ptu_report::{json_text, record};
-use ptu_runs::data::{check_writable, write};
+use ptu_runs::data::{check_writable, write_text};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::new_file::kind;
 use ptu_runs::record::CompareRequest;
 
 /// Compare a run of a unit's own record with its target, and with a sound unit's run through the same section
@@ -60,7 +61,7 @@ impl CompareArguments {
                     file.display()
                 )));
             }
-            check_writable(file)?;
+            check_writable(file, kind::OWN)?;
         }
         let trace = store.resolve_trace(&self.trace)?;
         let request = CompareRequest {
@@ -78,7 +79,7 @@ impl CompareArguments {
             } else {
                 text.clone()
             };
-            write(file, format!("{}\n", content.trim_end()))?;
+            write_text(file, format!("{}\n", content.trim_end()))?;
         }
         self.json.answer(|| &document, || text)?;
         Ok(match compared.comparison.is_as_expected() {

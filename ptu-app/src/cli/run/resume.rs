@@ -9,7 +9,6 @@ use fault_db::{RunDetail, RunState};
 use super::RunArguments;
 use ptu_runs::failure::Failure;
 use ptu_runs::link::Endpoint;
-use ptu_runs::process_id::is_alive;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
 use ptu_runs::stdio;
 
@@ -38,7 +37,7 @@ impl RunArguments {
             (None, None) => return Ok(None),
         };
         let store = self.database.open_read_only()?;
-        let earlier = store.run(store.resolve_run(name)?, &is_alive)?;
+        let earlier = store.run(store.resolve_run(name)?)?;
         let (run, id) = (&earlier.run, earlier.run.id.short());
         if run.state == RunState::Running {
             return Err(Failure::usage(format!(

@@ -10,6 +10,7 @@ use ptu_options::sound_file;
 use ptu_runs::clock;
 use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, End, Samples, Wav, Wave};
 use ptu_runs::sound::{
     self, CHANNELS, Calibration, Calibrations, Direction, Lead, SAMPLE_HZ, Side,
@@ -209,7 +210,7 @@ fn of_file(
 impl RecordArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let device = self.device.device.as_str();
-        check_writable(&self.out)?;
+        check_writable(&self.out, kind::WAV)?;
         let full_scale_mv = full_scale(device, Direction::Input)?;
         let stop = Stop::default();
         stop.listen();

@@ -74,7 +74,7 @@ impl ReplayArguments {
             operator: self.who.clone(),
         };
         let rerun = rerun(&store, &directory, &original, &rerunning, &stop)?;
-        let detail = store.run(rerun.run_id, &ptu_runs::process_id::is_alive)?;
+        let detail = store.run(rerun.run_id)?;
         let document = || rerun_json(&original, &rerun);
         let told = self.json.answer(document, || text(&original, &rerun));
         self.reports.write(&store, &directory, &detail)?;

@@ -10,7 +10,6 @@ use ptu_report::run_json;
 use ptu_report::words::Language;
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::process_id;
 use ptu_runs::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
 use ptu_runs::run_diagnosis::diagnose_run;
 use ptu_runs::stop::Stop;
@@ -127,9 +126,7 @@ impl TestBench {
             let first = answer.diagnosis.candidates.first();
             first_candidate = first.map_or(String::new(), |first| first.lru.to_string());
         }
-        let detail = store
-            .run(outcome.id, &process_id::is_alive)
-            .expect("the run");
+        let detail = store.run(outcome.id).expect("the run");
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         let junit = place.text_path("r.junit.xml");
         let target = junit.parse().expect("a report");

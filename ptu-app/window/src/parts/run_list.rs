@@ -10,7 +10,6 @@ use crate::{PageContext, Palette};
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
-use ptu_runs::process_id;
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;
@@ -163,7 +162,7 @@ impl RunList {
                     limit: Some(MOST),
                     ..RunFilter::default()
                 };
-                Ok(paths.read()?.runs(&filter, &process_id::is_alive)?)
+                Ok(paths.read()?.runs(&filter)?)
             }));
         }
         self.runs.poll();

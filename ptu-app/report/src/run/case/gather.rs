@@ -9,7 +9,6 @@ use crate::naming::spoken;
 use crate::run::Sheet;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
-use ptu_runs::process_id;
 use ptu_runs::symptoms::{self, Symptom};
 
 impl CaseSheet {
@@ -125,7 +124,7 @@ fn symptom(
         }
     }
     for run in runs {
-        let Some(id) = store.run(run, &process_id::is_alive)?.run.symptom else {
+        let Some(id) = store.run(run)?.run.symptom else {
             continue;
         };
         let known = (directory.faults().ok())

@@ -16,7 +16,6 @@ use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict};
 
 use super::steps::passed;
 use ptu_runs::failure::Failure;
-use ptu_runs::process_id;
 
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};
@@ -134,7 +133,7 @@ impl RunComparison {
                 a.short()
             )));
         }
-        let read = |run| store.run(run, &process_id::is_alive);
+        let read = |run| store.run(run);
         Ok(Self {
             a: read(a)?,
             b: read(b)?,

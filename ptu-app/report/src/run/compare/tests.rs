@@ -6,12 +6,11 @@ use super::super::tests::{stored, words_of};
 use super::{Differs, RunComparison, Tally, comparison_json, comparison_text};
 use crate::run::page::pages;
 use crate::words::Language;
-use ptu_runs::process_id;
 
 /// A run of a few steps twice; `change` makes the second one another.
 fn twice(change: impl FnOnce(&mut Vec<StepRecord>)) -> RunComparison {
     let (stored, run) = stored(4, true);
-    let read = || stored.store.run(run, &process_id::is_alive).expect("a run");
+    let read = || stored.store.run(run).expect("a run");
     let (a, mut b) = (read(), read());
     change(&mut b.steps);
     RunComparison { a, b, all: false }

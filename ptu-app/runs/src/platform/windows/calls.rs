@@ -67,25 +67,6 @@ pub fn join_job(limit: JobLimit) -> Result<()> {
     }
 }
 
-/// When a process that still runs was started, in ticks of the system's clock.
-pub fn started_at(process: u32) -> Option<u64> {
-    let none = FILETIME::default();
-    let (mut made, mut ended, mut kernel, mut user) = (none, none, none, none);
-    // SAFETY: the handle is checked before it is used, and closed once; the four times outlive the call.
-    let runs = unsafe {
-        let access = PROCESS_QUERY_LIMITED_INFORMATION | PROCESS_SYNCHRONIZE;
-        let handle = OpenProcess(access, 0, process);
-        if handle.is_null() {
-            return None;
-        }
-        let runs = WaitForSingleObject(handle, 0) == WAIT_TIMEOUT
-            && GetProcessTimes(handle, &mut made, &mut ended, &mut kernel, &mut user) != 0;
-        CloseHandle(handle);
-        runs
-    };
-    runs.then(|| u64::from(made.dwHighDateTime) << 32 | u64::from(made.dwLowDateTime))
-}
-
 /// Gives up a console that this process has to itself.
 pub fn leave_own_console() {
     let mut processes = [0u32; 2];

@@ -16,11 +16,6 @@ pub fn running_program() -> PathBuf {
     std::env::current_exe().unwrap_or_default()
 }
 
-/// When a process that runs was started.
-pub fn start_of(process: u32) -> Option<String> {
-    calls::started_at(process).map(|ticks| ticks.to_string())
-}
-
 /// Consoles of Windows 10 act on control sequences once that is switched on.
 pub fn ready_output() {
     let _ = anstyle_query::windows::enable_ansi_colors();

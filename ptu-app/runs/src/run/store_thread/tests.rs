@@ -113,7 +113,7 @@ fn a_run_under_way_waits_for_another_writer() {
     std::thread::sleep(Duration::from_millis(300));
     other.execute_batch("ROLLBACK").expect("released");
     let store = ends.join().expect("no panic").expect("recorded");
-    let found = store.run(id, &|_| false).expect("there").run.verdict;
+    let found = store.run(id).expect("there").run.verdict;
     assert_eq!((found, stop.presses()), (Some(Verdict::Passed), 0));
 }
 
@@ -140,8 +140,9 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     run.trace(vec![0], trace());
     run.step(step(1));
     other.execute_batch("ROLLBACK").expect("released");
-    let store = run.finish(end(Verdict::Error)).expect("recorded");
-    let found = store.run(id, &|_| false).expect("there");
+    let (store, lost) = run.finish(end(Verdict::Error)).expect("recorded");
+    assert_eq!(lost, None);
+    let found = store.run(id).expect("there");
     assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
     assert_eq!(found.run.verdict, Some(Verdict::Error));
     assert!(found.faults[0].trace_id.is_some());
@@ -179,7 +180,7 @@ fn records_that_a_busy_database_refuses_can_be_imported_later() {
     let file = folder.path().join("history.db");
     let store = Store::open(&file, clock::open_options()).expect("free");
     store.import(&rest).expect("the rest");
-    let found = store.run(id, &|_| false).expect("there");
+    let found = store.run(id).expect("there");
     assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
     assert_eq!(found.run.verdict, Some(Verdict::Error));
     assert!(found.faults[0].trace_id.is_some());

@@ -8,9 +8,9 @@ use crate::PageContext;
 use crate::parts::{Done, Job, Told};
 use ptu_report::care::{self, Said};
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::platform::computer_name;
-use ptu_runs::{clock, process_id};
 
 /// Exchanges the history with a server.
 pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, traces: bool) {
@@ -23,7 +23,6 @@ pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, trac
             laptop: &computer_name(),
             traces,
             as_copy: false,
-            is_alive: &process_id::is_alive,
             now_us: &clock::now_us,
             go_on: &mut |progress| {
                 told.say(care::progress(progress, words));

@@ -8,7 +8,6 @@ use crate::request::CachedResponse;
 use crate::{PageContext, Sizes};
 use ptu_report::naming::DOT;
 use ptu_runs::clock;
-use ptu_runs::process_id;
 use ptu_runs::run::BenchChoice;
 
 /// As many runs are looked at, the latest first.
@@ -82,7 +81,7 @@ impl SeenUnits {
                 limit: Some(MOST),
                 ..RunFilter::default()
             };
-            let runs = paths.read()?.runs(&filter, &process_id::is_alive)?;
+            let runs = paths.read()?.runs(&filter)?;
             let mut seen: Vec<RunSummary> = Vec::new();
             for run in runs {
                 let is_new = seen

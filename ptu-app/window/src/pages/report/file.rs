@@ -8,8 +8,6 @@ use crate::parts::usual_folder;
 use ptu_report::run::{CaseSheet, RunComparison};
 use ptu_report::{self, Target};
 use ptu_runs::failure::Failure;
-use ptu_runs::new_file::NewFile;
-use ptu_runs::process_id;
 
 /// Endings a typed name may have; the one of the format asked for takes its place.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
@@ -44,12 +42,12 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
 /// The file cannot be written, or the database not be read.
 pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<PathBuf, Failure> {
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
-    let file = NewFile::begin(wanted)?;
+    let file = target.begin()?;
     let (store, scripts) = (paths.read()?, &paths.scripts);
     let language = asked.language;
     let content = match asked.of {
         SheetOf::Run(run) => {
-            let run = store.run(run, &process_id::is_alive)?;
+            let run = store.run(run)?;
             ptu_report::run_content(&target, &store, scripts, &run, language)?
         }
         SheetOf::Case { fault, .. } => {

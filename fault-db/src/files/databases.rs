@@ -1,0 +1,64 @@
+//! Which files are databases or belong to one, so that nothing is ever written over them.
+
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use crate::files::platform::identity;
+use crate::files::regular_file::open_regular_file;
+
+/// What SQLite keeps beside a database, by the ends of the names.
+const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
+/// How an SQLite database begins.
+const MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// Databases that this program opened.
+static OPENED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Notes that this program opened a database.
+pub(crate) fn note_opened(database: &Path) {
+    let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+    if !opened.iter().any(|known| known == database) {
+        opened.push(database.to_path_buf());
+    }
+}
+
+/// Whether a file is an SQLite database, or one that SQLite keeps beside a database: by what it holds, whatever it is called,
+/// and through links.
+pub fn is_of_database(place: &Path) -> bool {
+    let of = |end: &&str| {
+        let name = place.file_name()?.to_str()?.strip_suffix(*end)?;
+        Some(place.with_file_name(name))
+    };
+    is_database(place) || BESIDE.iter().filter_map(of).any(|of| is_database(&of))
+}
+
+fn is_database(place: &Path) -> bool {
+    // One that is open here is not looked into: closing it again would release SQLite's locks.
+    let opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+    let parts = |database: &PathBuf| ["", "-wal", "-shm"].map(|end| with_end(database, end));
+    if opened.iter().flat_map(parts).any(|of| is_same(&of, place)) {
+        return true;
+    }
+    let mut head = [0; MAGIC.len()];
+    let read = open_regular_file(place).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == MAGIC
+}
+
+/// The same name with an end.
+pub(crate) fn with_end(path: &Path, end: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(end);
+    name.into()
+}
+
+/// Whether two names are of one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let of = |path: &Path| std::fs::metadata(path).ok().as_ref().and_then(identity);
+    let (here, there) = (of(a), of(b));
+    match (here, there) {
+        (Some(here), Some(there)) => here.is_same(&there),
+        // Where the system does not number files.
+        _ => std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b)),
+    }
+}

@@ -1,0 +1,83 @@
+//! Files that are there as long as the program that made them: a lock tells whether it still runs, in whatever container or
+//! on whatever computer. A number of a process means nothing there.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Result};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crate::files::databases::with_end;
+use crate::files::platform;
+
+/// Where a disk has no locks, a file that was not written to for this long is abandoned.
+const GIVEN_UP: Duration = Duration::from_secs(3_600);
+
+/// One that this program made; it is removed with this, and with what SQLite keeps beside it.
+#[derive(Debug)]
+pub(crate) struct HeldFile {
+    pub(crate) file: File,
+    pub(crate) path: PathBuf,
+}
+
+impl HeldFile {
+    /// Makes it, perhaps for its owner only; SQLite and the umask would let others read it.
+    ///
+    /// # Errors
+    /// It exists, or cannot be made.
+    pub(crate) fn make(path: &Path, is_private: bool) -> Result<Self> {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create_new(true);
+        if is_private {
+            platform::for_owner(&mut options);
+        }
+        loop {
+            let file = options.open(path)?;
+            let _ = file.lock();
+            // Before it was locked another program may have taken it for abandoned.
+            if path.exists() {
+                let path = path.to_path_buf();
+                return Ok(Self { file, path });
+            }
+        }
+    }
+}
+
+impl Drop for HeldFile {
+    fn drop(&mut self) {
+        remove(&self.path);
+    }
+}
+
+/// Whether whoever made a file still holds it. Where that cannot be known, it is taken to be so.
+pub(crate) fn is_held(path: &Path) -> bool {
+    match File::open(path) {
+        Ok(file) => file.try_lock_shared().is_err(),
+        Err(error) => error.kind() != ErrorKind::NotFound,
+    }
+}
+
+/// Removes the abandoned ones among the files of a folder whose names are of such.
+pub(crate) fn remove_abandoned(folder: &Path, is_one: impl Fn(&str) -> bool) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if !entry.file_name().to_str().is_some_and(&is_one) {
+            continue;
+        }
+        let Ok(file) = File::open(&path) else {
+            continue;
+        };
+        let is_old = || file.metadata().ok()?.modified().ok()?.elapsed().ok();
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {}
+            Err(TryLockError::Error(_)) if is_old().is_none_or(|age| age < GIVEN_UP) => {}
+            // Without the right to remove it there may still be the right to write beside it.
+            _ => remove(&path),
+        }
+    }
+}
+
+fn remove(path: &Path) {
+    for end in ["", "-journal", "-wal", "-shm"] {
+        let _ = std::fs::remove_file(with_end(path, end));
+    }
+}

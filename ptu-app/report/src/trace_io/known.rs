@@ -1,0 +1,89 @@
+//! Signals by the names and words that they have in files: found at once, however many there are.
+
+use std::collections::HashMap;
+
+use fault_db::{Channel, ChannelKind};
+
+use super::column::column_name;
+use super::series::plain;
+
+/// A longer text is no word of a signal, bytes.
+const MAX_WORD: usize = 1024;
+
+/// A signal, and the numbers of its words.
+#[derive(Clone)]
+pub(super) struct Known {
+    pub channel: Channel,
+    words: HashMap<String, f64>,
+}
+
+/// Signals by their names.
+#[derive(Default)]
+pub(super) struct KnownSignals {
+    signals: Vec<Known>,
+    places: HashMap<String, usize>,
+}
+
+impl Known {
+    fn new(channel: Channel) -> Self {
+        let mut words = HashMap::new();
+        if let ChannelKind::Enum { labels } = &channel.kind {
+            for (number, word) in labels {
+                words.entry(word.clone()).or_insert(*number as f64);
+            }
+        }
+        Self { channel, words }
+    }
+
+    /// The number of a word, if it has that.
+    pub fn number(&self, word: &str) -> Option<f64> {
+        self.words.get(word).copied()
+    }
+
+    /// What a cell says: a number, or a word of this signal.
+    pub fn sample(&self, cell: &str) -> Result<f64, String> {
+        if cell.is_empty() {
+            return Ok(f64::NAN);
+        }
+        if cell.len() > MAX_WORD {
+            return Err(format!("a text of {} bytes is no sample", cell.len()));
+        }
+        if let Ok(number) = cell.parse::<f64>() {
+            return Ok(number);
+        }
+        match &self.channel.kind {
+            ChannelKind::Bit if cell.eq_ignore_ascii_case("true") => Ok(1.0),
+            ChannelKind::Bit if cell.eq_ignore_ascii_case("false") => Ok(0.0),
+            ChannelKind::Enum { labels } => self.number(cell).ok_or_else(|| {
+                let words: Vec<_> = labels.values().map(String::as_str).collect();
+                format!("\"{cell}\" is none of {}", words.join(", "))
+            }),
+            _ => Err(format!("\"{cell}\" is no number")),
+        }
+    }
+}
+
+impl KnownSignals {
+    /// Of these lists, of which the first counts that has a name.
+    pub fn of(lists: &[&[Channel]]) -> Self {
+        let mut all = Self::default();
+        for channel in lists.iter().copied().flatten() {
+            for name in [channel.name.clone(), column_name(channel)] {
+                all.places.entry(name).or_insert(all.signals.len());
+            }
+            all.signals.push(Known::new(channel.clone()));
+        }
+        all
+    }
+
+    /// The signal that is called so in a file.
+    pub fn named(&self, name: &str) -> Option<&Known> {
+        self.places.get(name).map(|place| &self.signals[*place])
+    }
+
+    /// The same; else a number of this name.
+    pub fn signal(&self, name: &str) -> Known {
+        let known = self.named(name).cloned();
+        known.unwrap_or_else(|| Known::new(plain(name)))
+    }
+}

@@ -1,0 +1,256 @@
+//! Output files: none is ever the history, none replaces what this program did not write as that kind, and one that cannot
+//! be written keeps no other from being written. A history that is lost under a run costs no run.
+
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::common::{Place, Said, list, record_bad_unit, relay_fault, text};
+
+/// A place whose history has this name, and the run of a bad unit.
+fn named(history: &str) -> Place {
+    let place = Place::new();
+    record_bad_unit(&place);
+    std::fs::rename(place.path("history.db"), place.path(history)).expect("renamed");
+    place
+}
+
+fn words(command: &str) -> Vec<&str> {
+    command.split_whitespace().collect()
+}
+
+/// The command on the history of this name.
+fn on(place: &Place, history: &str, command: &str) -> Said {
+    place.ptu(&[&words(command)[..], &["--db", history]].concat())
+}
+
+/// Goal: no output is ever the history. Method: each command that writes a file is told to write it over the history, by its
+/// name, by a symbolic and by a hard link, and over the files beside it.
+#[test]
+#[cfg(unix)]
+fn no_output_is_ever_the_history() {
+    for (ending, command) in [
+        ("jsonl", "run tcms/link --events"),
+        ("mcap", "run tcms/link --mcap"),
+        ("json", "run tcms/link --report"),
+        ("pdf", "report latest --out"),
+        ("html", "report FAULT --case --out"),
+        ("junit.xml", "runs show latest --report"),
+        ("csv", "trace export latest --force --out"),
+        ("parquet", "trace export latest --force --out"),
+        ("html", "faults trend eb_reaction --plot"),
+        ("zst", "campaign --faults eb_relay.slow --out"),
+        ("zst", "campaign --faults eb_relay.slow --runs"),
+        ("wav", "signal make code 55"),
+    ] {
+        let [history, soft, hard] = ["h", "soft", "hard"].map(|name| format!("{name}.{ending}"));
+        let place = named(&history);
+        let fault = on(&place, &history, "faults list --part eb_relay --json").exits(0);
+        let fault: Value = serde_json::from_str(&fault.out).expect("JSON");
+        let command = command.replace("FAULT", text(&fault[0]["id"]));
+        let before = std::fs::read(place.path(&history)).expect("a history");
+        std::os::unix::fs::symlink(&history, place.path(&soft)).expect("linked");
+        for out in [&history, &soft, &hard] {
+            if *out == hard {
+                std::fs::hard_link(place.path(&history), place.path(out)).expect("linked");
+            }
+            let said = match command.starts_with("signal") {
+                true => place.ptu(&words(&format!("{command} {out}"))),
+                false => on(&place, &history, &format!("{command} {out}")),
+            };
+            said.exits(2)
+                .explains(&["it is a history or another database"]);
+            let after = std::fs::read(place.path(out)).expect("a link");
+            assert!(before == after, "{command} {out}");
+        }
+    }
+    for beside in ["h.db-wal", "h.db-shm", "h.db-journal"] {
+        let place = named("h.db");
+        let said = on(&place, "h.db", &format!("run tcms/link --events {beside}"));
+        said.exits(2).explains(&[beside, "belongs to one"]);
+        on(&place, "h.db", "runs show latest")
+            .exits(0)
+            .prints(&["eb_reaction"]);
+    }
+}
+
+/// Goal: a history that is made by the same command is no output either.
+#[test]
+fn a_history_that_is_being_made_is_no_output() {
+    for option in ["--events", "--mcap", "--report"] {
+        let place = Place::new();
+        let said = on(
+            &place,
+            "new.json",
+            &format!("run tcms/link {option} new.json"),
+        );
+        said.exits(2)
+            .explains(&["it is a history or another database"]);
+        let head = std::fs::read(place.path("new.json")).expect("a history");
+        assert!(head.starts_with(b"SQLite format 3"), "{option}");
+    }
+}
+
+/// Goal: an existing file is replaced only by one of its kind. Method: notes under each name that is written to; then the
+/// command twice.
+#[test]
+fn an_existing_file_of_another_kind_is_refused() {
+    let place = Place::new();
+    record_bad_unit(&place);
+    place.recorded_run();
+    let fault = text(&relay_fault(&place)["id"]).to_owned();
+    let runs = place.run_ids().join(" ");
+    std::fs::create_dir(place.path("man1")).expect("a folder");
+    for (name, command) in [
+        ("a.jsonl", "run tcms/link --events a.jsonl"),
+        ("a.mcap", "run tcms/link --mcap a.mcap"),
+        ("a.json", "run tcms/link --report a.json"),
+        ("a.junit.xml", "report latest --out a.junit.xml"),
+        ("a.pdf", "report latest --out a.pdf"),
+        ("a.csv", "report latest --out a.csv"),
+        ("a.html", "report FAULT --case --out a.html"),
+        ("a.json", "runs compare RUNS --report a.json"),
+        ("a.html", "faults trend eb_reaction --plot a.html"),
+        ("a.html", "drive --line line8 --section 61 --report a.html"),
+        ("a.csv", "drive --line line8 --section 61 --report a.csv"),
+        ("a.wav", "signal make code 55 --seconds 1 a.wav"),
+        ("man1/ptu.1", "help-files ."),
+    ] {
+        let command = command.replace("FAULT", &fault).replace("RUNS", &runs);
+        for notes in ["my notes\n", "{\"mine\": 1}\n", "a,b\n1,2\n"] {
+            place.write(name, notes);
+            place
+                .ptu(&words(&command))
+                .exits(2)
+                .explains(&[name, "name another file"]);
+            assert_eq!(place.read(name), notes, "{command}");
+            std::fs::remove_file(place.path(name)).expect("removed");
+        }
+        for _ in 0..2 {
+            let said = place.ptu(&words(&command));
+            assert!(
+                matches!(said.code, Some(0 | 1)),
+                "{command}: {}",
+                said.all()
+            );
+        }
+        std::fs::remove_file(place.path(name)).expect("written");
+    }
+}
+
+/// Goal: a recording that does not begin leaves the one before.
+#[test]
+fn a_recording_is_kept_where_the_device_does_not_exist() {
+    let place = Place::new();
+    place
+        .ptu(&words("signal make code 55 --seconds 1 a.wav"))
+        .exits(0);
+    let before = std::fs::read(place.path("a.wav")).expect("made");
+    let record = "signal record --device none --out a.wav";
+    let said = place.ptu(&words(record)).exits(3);
+    let after = std::fs::read(place.path("a.wav")).expect("there");
+    assert!(before == after, "the recording is gone: {}", said.all());
+}
+
+/// Goal: one output that cannot be written keeps no other from being written, and a run's verdict stays. Method: the MCAP
+/// file takes the name of a report.
+#[test]
+fn an_output_that_fails_keeps_no_other_back() {
+    let outputs = "--mcap a.json --report a.json --report b.json --events c.jsonl --report d.csv";
+    for (run, code) in [
+        ("run tcms/link", 3),
+        ("run atp/overspeed --inject eb_relay.slow", 1),
+    ] {
+        let place = Place::new();
+        let said = place.ptu(&words(&format!("{run} {outputs}")));
+        let said = said.exits(code).explains(&["a.json"]);
+        for file in ["b.json", "c.jsonl", "d.csv"] {
+            assert!(place.path(file).is_file(), "no {file}: {}", said.all());
+        }
+    }
+}
+
+/// A long run, of which the first steps are in the history.
+fn under_way(place: &Place, history: &str) -> Child {
+    let command = ["run", "tcms/link", "--repeat", "200", "--db", history];
+    let mut command = place.command(&[&command[..], &["--events", "e.jsonl"]].concat());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("ptu starts");
+    let begun = Instant::now();
+    let steps = || std::fs::read_to_string(place.path("e.jsonl")).map_or(0, |e| e.lines().count());
+    while steps() < 20 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no step");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+/// The one history beside, which is named, and its latest run.
+fn kept_beside(place: &Place, said: &Said) {
+    let said_of = |name: &str| said.err.contains(name);
+    let files = std::fs::read_dir(place.path("")).expect("a folder");
+    let names = files.map(|file| file.expect("a file").file_name().display().to_string());
+    let kept: Vec<_> = names
+        .filter(|name| name.contains(".run-") && said_of(name))
+        .collect();
+    let [kept] = &kept[..] else {
+        panic!("no history is named: {}", said.all())
+    };
+    let run = on(place, kept, "runs show latest --json").exits(0);
+    let run: Value = serde_json::from_str(&run.out).expect("JSON");
+    assert_eq!(run["run"]["verdict"], "passed");
+    assert!(list(&run["steps"]).len() > 200);
+}
+
+/// Goal: a history that is taken away under a run costs no run, and no such run is told as stored. Method: it is removed, an
+/// older copy takes its place, it gets a second name.
+#[test]
+#[cfg(unix)]
+fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
+    let deeds: [fn(&Path); 3] = [
+        |folder| {
+            for end in ["", "-wal", "-shm"] {
+                let _ = std::fs::remove_file(folder.join(format!("h.db{end}")));
+            }
+        },
+        |folder| std::fs::rename(folder.join("old.db"), folder.join("h.db")).expect("moved"),
+        |folder| std::fs::hard_link(folder.join("h.db"), folder.join("g.db")).expect("linked"),
+    ];
+    for deed in deeds {
+        let place = named("h.db");
+        std::fs::copy(place.path("h.db"), place.path("old.db")).expect("copied");
+        let run = under_way(&place, "h.db");
+        deed(&place.path(""));
+        let said = Said::from(run.wait_with_output().expect("ended")).exits(3);
+        kept_beside(&place, &said);
+    }
+}
+
+/// Goal: two names of one history are no two histories.
+#[test]
+fn a_history_with_two_names_takes_no_run() {
+    let place = named("h.db");
+    std::fs::hard_link(place.path("h.db"), place.path("g.db")).expect("linked");
+    on(&place, "g.db", "run tcms/link")
+        .exits(3)
+        .explains(&["g.db"]);
+    std::fs::remove_file(place.path("g.db")).expect("unlinked");
+    on(&place, "h.db", "run tcms/link").exits(0);
+}
+
+/// Goal: the name of a history is a path, whatever SQLite makes of it.
+#[test]
+#[cfg(unix)]
+fn the_name_of_a_history_is_a_path() {
+    for name in [":memory:", "file:x?mode=memory", "file:y.db", "a?b#c%20.db"] {
+        let place = Place::new();
+        on(&place, name, "run tcms/link").exits(0);
+        assert!(place.path(name).is_file(), "{name}");
+        on(&place, name, "runs show latest").exits(0);
+        let copy = format!("{name}.copy");
+        place.ptu(&["db", "backup", &copy, "--db", name]).exits(0);
+        on(&place, &copy, "runs show latest").exits(0);
+    }
+}
