@@ -1,5 +1,7 @@
 //! `ptu help-files`: what a package installs that the program knows best.
 
+mod documents;
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -18,6 +20,9 @@ const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
 pub struct HelpFilesArguments {
     /// Folder to write into
     folder: PathBuf,
+    /// Also the manuals with all that they link to, as pages for a browser (html/), from this folder of the sources
+    #[arg(long, value_name = "FOLDER")]
+    documents: Option<PathBuf>,
 }
 
 impl HelpFilesArguments {
@@ -27,6 +32,10 @@ impl HelpFilesArguments {
         manuals(&folder.join("man1"))
             .and_then(|()| completions(folder))
             .and_then(|()| fs::write(folder.join("ptu.xml"), file_types()))
+            .and_then(|()| match &self.documents {
+                Some(sources) => documents::write(sources, &folder.join("html")),
+                None => Ok(()),
+            })
             .map_err(|error| {
                 Failure::bench(format!("cannot write to {}: {error}", folder.display()))
             })?;
