@@ -17,6 +17,15 @@ for %%f in (ptu.exe ptu-window.exe ato-under-test.exe) do (
         exit /b 3
     )
 )
+rem The manuals, as pages for a browser.
+if exist "%from%manual" (
+    if exist "%target%\manual" rmdir /s /q "%target%\manual"
+    xcopy /e /i /q /y "%from%manual" "%target%\manual" >nul
+    if errorlevel 1 (
+        echo install: cannot write %target%\manual
+        exit /b 3
+    )
+)
 rem The scripts are in the program; a folder of an earlier version beside it would be taken in their place.
 if exist "%target%\scripts" rmdir /s /q "%target%\scripts"
 

@@ -175,7 +175,9 @@ impl Collecting<'_> {
             let ending = path.extension().and_then(|ending| ending.to_str());
             if path.is_dir() {
                 self.collect(&path, depth + 1)?;
-            } else if matches!(ending, Some("star" | "toml" | "zst")) {
+            } else if matches!(ending, Some("star" | "toml" | "zst"))
+                || (ending == Some("json") && folder.ends_with("matrices"))
+            {
                 let name = path.strip_prefix(self.root).unwrap_or(&path);
                 let name = name.to_string_lossy().replace('\\', "/");
                 self.found.push((name, Found::File(path)));

@@ -1,5 +1,7 @@
 //! `ptu help-files`: what a package installs that the program knows best.
 
+mod documents;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory as _};
@@ -18,6 +20,9 @@ const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
 pub struct HelpFilesArguments {
     /// Folder to write into
     folder: PathBuf,
+    /// Also the manuals with all that they link to, as pages for a browser (html/), from this folder of the sources
+    #[arg(long, value_name = "FOLDER")]
+    documents: Option<PathBuf>,
 }
 
 impl HelpFilesArguments {
@@ -27,6 +32,9 @@ impl HelpFilesArguments {
         manuals(&folder.join("man1"))?;
         completions(folder)?;
         write_text(&folder.join("ptu.xml"), file_types())?;
+        if let Some(sources) = &self.documents {
+            documents::write(sources, &folder.join("html"))?;
+        }
         print_out(&format!("written: {}", folder.display()))
     }
 }

@@ -9,7 +9,7 @@ use diagnosis::matrix::{
     Posterior, plan, read_outcomes,
 };
 
-use super::{Json, print_out};
+use super::{Json, ScriptsOption, print_out};
 use ptu_report::json_safe;
 use ptu_runs::data::read_within;
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
@@ -25,6 +25,7 @@ const LONGEST_FILE: u64 = 64 << 20;
 ///
 /// Examples:
 ///   ptu matrix pump.json                            cheapest order of tests
+///   ptu matrix six_by_six                           of an example that comes with the program
 ///   ptu matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
 ///   ptu matrix pump.json --outcomes found.json --json
 ///
@@ -32,7 +33,9 @@ const LONGEST_FILE: u64 = 64 << 20;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct MatrixArguments {
-    /// Dependency matrix of states and tests; its format is in docs/dictionaries.md
+    /// Dependency matrix of states and tests: a file, or NAME for matrices/NAME.json of the scripts; its format is in the
+    /// manual's chapter on dictionaries
+    #[arg(value_name = "FILE|NAME")]
     file: PathBuf,
     /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
     #[arg(long, value_name = "OUTCOMES")]
@@ -45,6 +48,8 @@ pub struct MatrixArguments {
     confidence: f64,
     #[command(flatten)]
     json: Json,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -59,8 +64,7 @@ impl MatrixArguments {
     /// Answers for one matrix.
     pub fn run(self) -> Result<Exit, Failure> {
         let place = self.file.display();
-        let matrix =
-            Matrix::from_json(&read(&self.file)?).map_err(|error| wrong(&place, &error))?;
+        let matrix = Matrix::from_json(&self.text()?).map_err(|error| wrong(&place, &error))?;
         let known = match &self.outcomes {
             Some(given) => known(&matrix, given)?,
             None => Posterior::prior(&matrix),
@@ -84,6 +88,16 @@ impl MatrixArguments {
             return Ok(Exit::Passed);
         }
         print_out(&text(&matrix, &known, &plan, self.outcomes.is_some()))
+    }
+
+    /// The file that was named, or the matrix of the scripts that is called so.
+    fn text(&self) -> Result<String, Failure> {
+        let named = format!("matrices/{}.json", self.file.display());
+        let directory = match self.file.exists() {
+            true => None,
+            false => Some(self.scripts.find()?).filter(|directory| directory.has(&named)),
+        };
+        directory.map_or_else(|| read(&self.file), |directory| directory.text(&named))
     }
 }
 

@@ -4,9 +4,8 @@ use clap::Args;
 use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::{Event, Severity};
 
-use crate::cli::check_unit;
+use crate::cli::{ScriptsOption, check_unit};
 use ptu_runs::clock::Span;
-use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, did_you_mean, did_you_mean_number};
 
 /// Which faults.
@@ -52,6 +51,8 @@ pub struct FilterArguments {
     /// Only with these words in a note on it, on its repair, or on a run that saw it
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 impl FilterArguments {
@@ -138,7 +139,9 @@ impl FilterArguments {
         }
         if let Some(part) = &self.part {
             let known = store.known_lrus()?;
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(part)) && !is_part(part) {
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(part))
+                && !is_part(&self.scripts, part)
+            {
                 let hint = did_you_mean(part, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault ever named the part \"{part}\"{hint}"
@@ -147,7 +150,9 @@ impl FilterArguments {
         }
         if let Some(cause) = &self.cause {
             let known = store.known_causes()?;
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(cause)) && !is_part(cause) {
+            if !known.iter().any(|known| known.eq_ignore_ascii_case(cause))
+                && !is_part(&self.scripts, cause)
+            {
                 let hint = did_you_mean(cause, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault ever came from the part \"{cause}\"{hint}"
@@ -165,7 +170,7 @@ impl FilterArguments {
         }
         if let Some(line) = &self.line {
             let known = store.known_lines()?;
-            if !known.contains(line) && !has_script(&format!("lines/{line}.toml")) {
+            if !known.contains(line) && !self.has_script(&format!("lines/{line}.toml")) {
                 let hint = did_you_mean(line, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault was ever seen on the line \"{line}\"{hint}"
@@ -174,7 +179,7 @@ impl FilterArguments {
         }
         if let Some(procedure) = &self.procedure {
             let known = store.known_procedures()?;
-            if !known.contains(procedure) && !has_script(&format!("{procedure}.star")) {
+            if !known.contains(procedure) && !self.has_script(&format!("{procedure}.star")) {
                 let hint = did_you_mean(procedure, known.iter().map(String::as_str));
                 return Ok(Some(format!(
                     "no fault was ever seen in the procedure \"{procedure}\"{hint}"
@@ -192,18 +197,19 @@ impl FilterArguments {
         }
         Ok(None)
     }
+
+    /// Whether the scripts have this file.
+    fn has_script(&self, path: &str) -> bool {
+        let scripts = self.scripts.find();
+        scripts.is_ok_and(|directory| directory.has(path))
+    }
 }
 
 /// Whether the scripts know a part of this name, without any fault of it here.
-pub(super) fn is_part(name: &str) -> bool {
-    let catalogue = ScriptsDirectory::find(None).and_then(|directory| directory.faults());
+pub(super) fn is_part(scripts: &ScriptsOption, name: &str) -> bool {
+    let catalogue = scripts.find().and_then(|directory| directory.faults());
     catalogue.is_ok_and(|catalogue| {
         let mut parts = catalogue.lrus.iter();
         parts.any(|lru| lru.id.as_str().eq_ignore_ascii_case(name))
     })
-}
-
-/// Whether the scripts have this file.
-fn has_script(path: &str) -> bool {
-    ScriptsDirectory::find(None).is_ok_and(|directory| directory.has(path))
 }

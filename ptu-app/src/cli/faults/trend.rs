@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::filter::is_part;
 use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
-use crate::cli::{at_least_one, check_unit};
+use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
@@ -66,6 +66,8 @@ pub struct TrendArguments {
     plot: Option<PathBuf>,
     #[command(flatten)]
     output: Output,
+    #[command(flatten)]
+    scripts: ScriptsOption,
 }
 
 impl TrendArguments {
@@ -111,7 +113,7 @@ impl TrendArguments {
             let repaired = store.last_repair(unit, part)?;
             query.since_us = Some(match repaired {
                 Some(at_us) => at_us,
-                None => return Err(never_repaired(store, unit, part)?),
+                None => return Err(never_repaired(store, &self.scripts, unit, part)?),
             });
         }
         match Trend::read(store, query.clone())? {
@@ -267,10 +269,15 @@ fn json(trend: &Trend) -> Value {
 }
 
 /// That a unit has no repair of a part, and the part that is meant where none has this name.
-fn never_repaired(store: &Store, unit: &str, part: &str) -> Result<Failure, Failure> {
+fn never_repaired(
+    store: &Store,
+    scripts: &ScriptsOption,
+    unit: &str,
+    part: &str,
+) -> Result<Failure, Failure> {
     let known = store.known_parts()?;
     let is_known = known.iter().any(|known| known.eq_ignore_ascii_case(part));
-    let hint = match is_known || is_part(part) {
+    let hint = match is_known || is_part(scripts, part) {
         true => String::new(),
         false => did_you_mean(part, known.iter().map(String::as_str)),
     };
