@@ -217,7 +217,7 @@ fn a_fault_is_found_through_the_program_as_in_process() {
 
 #[test]
 fn the_tables_name_no_fault_that_is_gone() {
-    let catalogue = Place::new().json(&["catalog", "faults", "--json"]);
+    let catalogue = Place::new().json("catalog faults --json");
     let keys = [
         ("id", "text"),
         ("part", "text"),
@@ -280,7 +280,7 @@ fn every_row_of_the_protection_table_is_run() {
 #[test]
 fn two_faults_at_once_are_both_seen() {
     let place = Place::new();
-    let (said, report) = place.run(&["--inject", "tra.dead,rs485_link.transmitter_dead"]);
+    let (said, report) = place.run("--inject tra.dead,rs485_link.transmitter_dead");
     said.exits(1);
     assert_eq!(
         report["run"]["injected"],

@@ -152,7 +152,7 @@ pub fn run_program(id: &str) -> FaultRun {
     let place = Place::new();
     let (said, report) = place.run(&["--inject", id, "--report", "r.junit.xml"]);
     assert!(!said.err.contains("panicked"), "{}", said.all());
-    let diagnosis = place.json(&["diagnose", "latest", "--json"]);
+    let diagnosis = place.json("diagnose latest --json");
     let first = &diagnosis["candidates"][0]["part"];
     let ids = list(&report["faults"])
         .iter()
