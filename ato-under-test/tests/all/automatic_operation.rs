@@ -22,16 +22,8 @@ const PULSE_M: f64 = std::f64::consts::PI * 0.86 / 100.0;
 #[test]
 fn a_good_run_ends_at_the_stop_point_and_says_nothing() {
     let mut journey = Journey::new(&[]).run();
-    assert!(
-        journey.stop_error_m().abs() < 0.3,
-        "{}",
-        journey.stop_error_m()
-    );
-    assert!(
-        journey.position_error_m.abs() < PULSE_M,
-        "{}",
-        journey.position_error_m
-    );
+    journey.stops_within(0.3);
+    journey.knows_its_place_within(PULSE_M);
     assert_eq!(journey.bench.status.ato_state, AtoState::Stop);
     assert!(journey.bench.status.bits.contains(StatusBits::ALIGNED));
     assert!(journey.bench.has(Outputs::DOOR_ENABLE_RIGHT));
@@ -64,22 +56,10 @@ fn worn_wheels_are_calibrated_between_markers() {
     let journey = journey.until_position(828.0);
     let correction = f64::from(journey.bench.status.wheel_correction_10ppm) / 1e5;
     assert!((correction + 0.02).abs() < 5e-4, "{correction}");
-    assert!(
-        journey.position_error_m.abs() < 0.1,
-        "{}",
-        journey.position_error_m
-    );
+    journey.knows_its_place_within(0.1);
     let mut journey = journey.run();
-    assert!(
-        journey.position_error_m.abs() < 0.015,
-        "{}",
-        journey.position_error_m
-    );
-    assert!(
-        journey.stop_error_m().abs() < 0.3,
-        "{}",
-        journey.stop_error_m()
-    );
+    journey.knows_its_place_within(0.015);
+    journey.stops_within(0.3);
     assert_eq!(journey.faults(), [""; 0]);
 }
 
@@ -94,11 +74,7 @@ fn wheels_that_no_service_wears_are_told_once() {
         (-395..=-375).contains(&found),
         "1/1.04 is -385 in 0.01 %: {found}"
     );
-    assert!(
-        journey.stop_error_m().abs() < 0.3,
-        "{}",
-        journey.stop_error_m()
-    );
+    journey.stops_within(0.3);
 }
 
 /// Wheels so far from the configured ones that PSM1 is not believed: known to be further on when it came
@@ -123,16 +99,8 @@ fn a_missing_marker_costs_no_centimetre_once_the_next_has_come() {
     journey.wheels_tell = 0.995;
     journey.markers.remove(1);
     let mut journey = journey.run();
-    assert!(
-        journey.position_error_m.abs() < 0.025,
-        "{}",
-        journey.position_error_m
-    );
-    assert!(
-        journey.stop_error_m().abs() < 0.3,
-        "{}",
-        journey.stop_error_m()
-    );
+    journey.knows_its_place_within(0.025);
+    journey.stops_within(0.3);
     assert_eq!(journey.faults(), ["position_unsure", "marker_missing"]);
     assert_eq!(journey.parameters("position_unsure"), [2]);
     assert_eq!(journey.parameters("marker_missing"), [2]);
@@ -189,11 +157,7 @@ fn a_late_psm4_is_not_believed() {
     let mut journey = Journey::new(&[]);
     journey.markers[3].1 += 2.5;
     let mut journey = journey.run();
-    assert!(
-        journey.stop_error_m().abs() < 0.3,
-        "{}",
-        journey.stop_error_m()
-    );
+    journey.stops_within(0.3);
     let faults = journey.faults();
     assert!(faults.contains(&"marker_position"), "{faults:?}");
     assert!(!journey.bench.status.bits.contains(StatusBits::ALIGNED));

@@ -264,16 +264,12 @@ fn run_record(fleet: &Fleet, visit: &Visit, chance: &mut Chance) -> RunRecord {
         app_version: "0.1.0".to_owned(),
         scripts_sha256: "ab".repeat(32),
         unit_config_sha256: "cd".repeat(32),
-        injected: None,
         owner: "history".to_owned(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
         scripts: if visit.of_log {
             Vec::new()
         } else {
             scripts.iter().map(script).collect()
         },
+        ..RunRecord::default()
     }
 }

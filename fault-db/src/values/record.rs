@@ -30,7 +30,7 @@ text_enum! {
 }
 
 /// The unit under test, as a run finds it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitRecord {
     /// Serial number; identifies the unit permanently.
     pub serial: String,
@@ -52,7 +52,7 @@ pub struct ScriptRecord {
 }
 
 /// A run at its beginning.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunRecord {
     /// The unit under test.
     pub unit: UnitRecord,
@@ -148,7 +148,7 @@ pub struct MeasurementRecord {
 }
 
 /// One occurrence of a fault.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaultRecord {
     /// Stable number of the fault.
     pub code: i64,
@@ -213,7 +213,7 @@ pub struct CauseRecord {
 }
 
 /// A repair made for a fault.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepairRecord {
     /// The part replaced or worked on.
     pub part: String,

@@ -50,9 +50,8 @@ fn from(part: &str) -> CauseRecord {
 fn repair(part: &str) -> RepairRecord {
     RepairRecord {
         part: part.to_owned(),
-        serial_old: None,
         serial_new: Some("SN-77".to_owned()),
-        note: String::new(),
+        ..RepairRecord::default()
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::common::{T0_US, by_hand, end, fault, measurement, open, run_record, step};
+use crate::common::{T0_US, by_hand, end, fault, measurement, open, rows, run_record, step};
 use fault_db::{Id, Problem, PruneRule, RepairRecord, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -43,94 +43,7 @@ fn problems(store: &Store) -> Vec<Problem> {
 /// Method: rows changed behind the program's back; `{1}` stands for the second run's id.
 #[test]
 fn every_change_to_a_run_is_detected() {
-    let no_trace_of_run_2 = "DELETE FROM measurement WHERE run = 2; DELETE FROM step WHERE run = 2;
-        DELETE FROM run_script WHERE run = 2; DELETE FROM fault_occurrence WHERE run = 2;
-        DELETE FROM run WHERE seq = 2";
-    let no_run_2 = format!("{no_trace_of_run_2}; DELETE FROM seal WHERE ordinal = 6");
-    let no_last_run = no_run_2.replace("= 2", "= 3").replace("= 6", "= 8");
-    let changed = "run {1} was changed";
-    let cases: &[(&str, &[&str])] = &[
-        (
-            "UPDATE run SET verdict = 'passed' WHERE seq = 2",
-            &[changed],
-        ),
-        ("UPDATE run SET operator = 'lee' WHERE seq = 2", &[changed]),
-        ("UPDATE run SET train = '601' WHERE seq = 2", &[changed]),
-        ("UPDATE step SET message = 'fine' WHERE run = 2", &[changed]),
-        (
-            "UPDATE step SET step_index = 4 WHERE run = 2; UPDATE measurement SET step_index = 4 WHERE run = 2",
-            &[changed],
-        ),
-        ("UPDATE measurement SET high = 9 WHERE run = 2", &[changed]),
-        (
-            "UPDATE measurement SET limit_source = 'S3 eq. 1' WHERE run = 2",
-            &[changed],
-        ),
-        (
-            "UPDATE step SET limit_source = 'S3 eq. 1' WHERE run = 2",
-            &[changed],
-        ),
-        (
-            "UPDATE fault_occurrence SET message = '' WHERE run = 2",
-            &[changed],
-        ),
-        (
-            "UPDATE fault_occurrence SET freeze_json = '[]' WHERE run = 2",
-            &[changed],
-        ),
-        (
-            "UPDATE run_script SET sha256 = '' WHERE run = 2",
-            &[changed],
-        ),
-        ("DELETE FROM run_script WHERE run = 2", &[changed]),
-        (
-            "UPDATE seal SET digest = (SELECT digest FROM seal WHERE ordinal = 3) WHERE ordinal = 6",
-            &["seal 6 of file", changed],
-        ),
-        (
-            "UPDATE seal SET hash = zeroblob(32) WHERE ordinal = 6",
-            &["seal 6 of file", "seal 7 of file"],
-        ),
-        (
-            "UPDATE seal SET id = (SELECT id FROM run WHERE seq = 3) WHERE ordinal = 6",
-            &[
-                "run {2} was changed",
-                "run {1} was finished and has no seal",
-            ],
-        ),
-        (
-            &no_run_2,
-            &[
-                "before it seals were taken out, number 6",
-                "1 runs that were recorded here",
-            ],
-        ),
-        (
-            no_trace_of_run_2,
-            &["seal 6 of file", "1 runs that were recorded here"],
-        ),
-        (&no_last_run, &["1 runs that were recorded here"]),
-        (
-            "DELETE FROM seal WHERE ordinal = 6",
-            &["number 6", "run {1} was finished and has no seal"],
-        ),
-        (
-            "DELETE FROM seal WHERE ordinal < 6",
-            &[
-                "number 1 to 5",
-                "the beginning",
-                "one of the events",
-                "one of the events",
-                "one of the events",
-                "{0} was finished",
-            ],
-        ),
-        (
-            "UPDATE run SET verdict = NULL WHERE seq = 2",
-            &[changed, "run {1} has a seal and no verdict"],
-        ),
-    ];
-    for (sql, expected) in cases {
+    for [sql, expected] in rows(include_str!("checking/changed_runs.txt")) {
         let dir = tempdir().expect("a directory");
         let path = dir.path().join("a.db");
         let store = open(&path);
@@ -142,14 +55,10 @@ fn every_change_to_a_run_is_detected() {
             .into_iter()
             .filter(|problem| problem.kind == "seal")
             .collect();
-        let expected: Vec<_> = expected
-            .iter()
-            .map(|text| {
-                (0..3).fold((*text).to_owned(), |text, n| {
-                    text.replace(&format!("{{{n}}}"), &runs[n].to_string())
-                })
-            })
-            .collect();
+        let expected = (0..3).fold(expected.to_owned(), |text, n| {
+            text.replace(&format!("{{{n}}}"), &runs[n].to_string())
+        });
+        let expected: Vec<_> = expected.split("; ").collect();
         assert_eq!(found.len(), expected.len(), "{sql}: {found:?}");
         for (problem, expected) in found.iter().zip(&expected) {
             assert!(problem.detail.contains(expected), "{sql}: {found:?}");
@@ -162,54 +71,7 @@ fn every_change_to_a_run_is_detected() {
 /// anything being written, and derived from them again.
 #[test]
 fn derived_rows_are_checked_and_can_be_rebuilt() {
-    for (sql, kind, expected) in [
-        (
-            "UPDATE packed SET faults = x'', occurrences = x'', repairs = x''",
-            "derived",
-            "1 blocks of packed faults",
-        ),
-        ("DELETE FROM packed", "derived", "1 blocks of packed faults"),
-        (
-            "UPDATE repair SET opened_at_us = 5",
-            "derived",
-            "1 rows of the table of repairs",
-        ),
-        (
-            "UPDATE repair SET back_at_us = 5",
-            "derived",
-            "rows of the table of repairs",
-        ),
-        (
-            "UPDATE measured_day SET x = x * 1.0001",
-            "derived",
-            "sums of measured values by day",
-        ),
-        (
-            "UPDATE measured_day SET most = 7",
-            "derived",
-            "sums of measured values by day",
-        ),
-        (
-            "UPDATE measured_month SET tx = tx * 1.0001",
-            "derived",
-            "sums of measured values by month",
-        ),
-        (
-            "DELETE FROM measured_month",
-            "derived",
-            "1 sums of measured values by month",
-        ),
-        (
-            "INSERT INTO event_words(event_words) VALUES ('delete-all')",
-            "derived",
-            "1 notes on faults",
-        ),
-        (
-            "UPDATE fault SET occurrences = 9 WHERE code = 1",
-            "count",
-            "is not as its occurrences and events say",
-        ),
-    ] {
+    for [sql, kind, expected] in rows(include_str!("checking/derived_rows.txt")) {
         let dir = tempdir().expect("a directory");
         let path = dir.path().join("a.db");
         let store = open(&path);
@@ -283,117 +145,7 @@ fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
 /// Goal: whatever a row says, a change of it is found, and no `rebuild` takes the finding away.
 #[test]
 fn every_row_that_says_something_is_covered() {
-    for (sql, expected) in [
-        ("UPDATE run_note SET text = 'all fine'", "note"),
-        ("UPDATE run_note SET who = 'lee'", "note"),
-        ("UPDATE run_note SET at_us = at_us + 1", "note"),
-        ("DELETE FROM run_note", "its note was taken out"),
-        (
-            "INSERT INTO run_note SELECT 9, randomblob(16), run, at_us, who, trace, place_us, text FROM run_note",
-            "one of the notes",
-        ),
-        (
-            "UPDATE fault_event SET body = replace(body, 'SN-2', 'SN-3') WHERE kind = 'repair'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET at_us = 5 WHERE kind = 'acknowledged'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET who = 'kim' WHERE kind = 'acknowledged'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET state = 'closed' WHERE kind = 'acknowledged'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET turn = 9 WHERE kind = 'repair'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET seen = 9 WHERE kind = 'repair'",
-            "event",
-        ),
-        (
-            "UPDATE fault_event SET fault = fault + 1 WHERE kind = 'repair'",
-            "event",
-        ),
-        (
-            "DELETE FROM fault_event WHERE kind = 'repair'",
-            "its event was taken out",
-        ),
-        (
-            "INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
-             VALUES (randomblob(16), 1, 'closed', 5, 'x', '', 'closed', 1, x'', 0)",
-            "one of the events",
-        ),
-        (
-            "UPDATE fault SET code_name = 'OTHER' WHERE seq = 1",
-            "has a name or a severity",
-        ),
-        (
-            "UPDATE fault SET severity = 'minor' WHERE seq = 1",
-            "has a name or a severity",
-        ),
-        (
-            "UPDATE fault SET state = 'closed' WHERE seq = 1",
-            "is not as its",
-        ),
-        (
-            "UPDATE fault SET first_at_us = 5 WHERE seq = 1",
-            "is not as its",
-        ),
-        (
-            "UPDATE fault SET last_at_us = last_at_us + 5 WHERE seq = 1",
-            "is not as its",
-        ),
-        (
-            "UPDATE fault SET code = 77 WHERE seq = 1",
-            "is of another unit, code or part",
-        ),
-        (
-            "UPDATE fault_occurrence SET code_name = 'OTHER' WHERE seq = 1",
-            "was changed after it was sealed",
-        ),
-        (
-            "UPDATE fault_occurrence SET severity = 'minor' WHERE seq = 1",
-            "was changed after it was sealed",
-        ),
-        (
-            "UPDATE fault_occurrence SET at_us = 5 WHERE seq = 1",
-            "was changed after",
-        ),
-        (
-            "UPDATE fault_occurrence SET line = 'x' WHERE seq = 1",
-            "was changed after",
-        ),
-        ("UPDATE trace SET t0_us = t0_us + 1", "trace"),
-        ("UPDATE trace SET trigger_row = 1", "trace"),
-        ("UPDATE trace SET recording = NULL", "trace"),
-        ("UPDATE fault_occurrence SET trace = NULL", "trace"),
-        ("DELETE FROM trace", "no seal says that it was pruned"),
-        ("DELETE FROM recording", "no seal says that it was pruned"),
-        ("UPDATE recording SET bench_json = '[]'", "recording"),
-        ("UPDATE recording SET t0_bench_us = 7", "recording"),
-        (
-            "UPDATE run SET sw_versions = '{}' WHERE seq = 1",
-            "was changed after",
-        ),
-        (
-            "UPDATE run SET owner = '' WHERE seq = 1",
-            "was changed after",
-        ),
-        (
-            "UPDATE unit SET sw_versions = '{}'",
-            "what no run found it to be",
-        ),
-        (
-            "UPDATE unit SET config_name = 'x'",
-            "what no run found it to be",
-        ),
-    ] {
+    for [sql, expected] in rows(include_str!("checking/covered_rows.txt")) {
         let dir = tempdir().expect("a directory");
         let (path, store, _) = a_little_of_everything(dir.path());
         by_hand(&path, sql);

@@ -40,9 +40,8 @@ fn history(store: &Store, random: &mut Random) {
                 (0 | 1, FaultState::Open) => {
                     let repair = RepairRecord {
                         part: "EB_Relay ".into(),
-                        serial_old: None,
                         serial_new: Some(format!("SN-{day}")),
-                        note: String::new(),
+                        ..RepairRecord::default()
                     };
                     store.record_repair(id, &repair, "kim", later_us)
                 }
@@ -156,9 +155,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
     let id = writer.fault(&fault(1, T0_US)).expect("stored").fault;
     let repair = RepairRecord {
         part: "eb_relay".into(),
-        serial_old: None,
-        serial_new: None,
-        note: String::new(),
+        ..RepairRecord::default()
     };
     store
         .record_repair(id, &repair, "kim", T0_US - 30 * DAY_US)

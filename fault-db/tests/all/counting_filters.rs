@@ -56,9 +56,8 @@ fn handle(store: &Store, id: fault_db::Id, at_us: i64, random: &mut Random) {
         (0 | 1, FaultState::Open) => {
             let repair = RepairRecord {
                 part: "eb_relay".into(),
-                serial_old: None,
                 serial_new: Some(format!("SN-{}", random.next() % 9)),
-                note: String::new(),
+                ..RepairRecord::default()
             };
             store.record_repair(id, &repair, "kim", later_us)
         }

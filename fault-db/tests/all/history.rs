@@ -53,9 +53,8 @@ impl History {
     fn repair(&self, fault: Id, part: &str, day: i64) {
         let repair = RepairRecord {
             part: part.into(),
-            serial_old: None,
             serial_new: Some("N-2".into()),
-            note: String::new(),
+            ..RepairRecord::default()
         };
         let at_us = T0_US + day * DAY_US + DAY_US / 2;
         self.store

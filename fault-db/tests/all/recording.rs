@@ -378,8 +378,7 @@ fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
     let repair = RepairRecord {
         part: "relay".into(),
         serial_old: Some(name),
-        serial_new: None,
-        note: String::new(),
+        ..RepairRecord::default()
     };
     let repaired = store.record_repair(fault, &repair, "kim", 1);
     refused(repaired.map(drop), "serial number");

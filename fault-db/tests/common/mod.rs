@@ -12,6 +12,15 @@ use fault_db::{
 /// 2026-03-01 00:00:00 UTC.
 pub const T0_US: i64 = 1_772_323_200_000_000;
 
+/// The rows of a table: cells with ` | ` between them, remarks behind `#`.
+pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    let rows = table.lines().filter(|row| !row.starts_with('#'));
+    rows.map(|row| {
+        let cells: Vec<_> = row.split(" | ").map(str::trim_end).collect();
+        cells.try_into().expect("each cell of the row")
+    })
+}
+
 /// A small generator with a seed, so that a failure repeats (xorshift64*).
 pub struct Random(u64);
 
@@ -89,7 +98,6 @@ pub fn run_record(serial: &str) -> RunRecord {
             sw_versions: BTreeMap::from([("atp".to_owned(), "1.2.0".to_owned())]),
         },
         line: "line-1".to_owned(),
-        train: String::new(),
         seed: u64::MAX - 3,
         operator: "kim".to_owned(),
         source: "sim".to_owned(),
@@ -97,16 +105,12 @@ pub fn run_record(serial: &str) -> RunRecord {
         app_version: "0.1.0".to_owned(),
         scripts_sha256: "ab".repeat(32),
         unit_config_sha256: "cd".repeat(32),
-        injected: None,
         owner: "pid 1 started 2".to_owned(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
         scripts: vec![ScriptRecord {
             path: "scripts/atp/speed.star".to_owned(),
             sha256: "ef".repeat(32),
         }],
+        ..RunRecord::default()
     }
 }
 

@@ -312,9 +312,8 @@ fn laptops_with_work(number: u64) -> Vec<Laptop> {
         (store.add_note(faults[1], "kim", "seen before", at_us)).expect("a note");
         let repair = RepairRecord {
             part: "eb_relay".to_owned(),
-            serial_old: None,
             serial_new: Some(format!("SN-{n}")),
-            note: String::new(),
+            ..RepairRecord::default()
         };
         let state = match n % 3 {
             0 => store.record_repair(faults[0], &repair, "lee", at_us),

@@ -72,9 +72,8 @@ fn a_withdrawal_reaches_server_and_laptops() {
     two.run("U-1", day(1), &[101], false);
     let repair = RepairRecord {
         part: "EB_relay".to_owned(),
-        serial_old: None,
         serial_new: Some("SN-2".to_owned()),
-        note: String::new(),
+        ..RepairRecord::default()
     };
     one.sync(&address);
     two.sync(&address);
@@ -160,9 +159,7 @@ fn a_case_is_one_on_laptops_and_server() {
         .expect("said");
     let repair = RepairRecord {
         part: "eb_relay".to_owned(),
-        serial_old: None,
-        serial_new: None,
-        note: String::new(),
+        ..RepairRecord::default()
     };
     let settled = desk.repair_case(fault_of(&desk, 101).id, &repair, "lee", day(3));
     assert_eq!(settled.expect("repaired").1.len(), 1);

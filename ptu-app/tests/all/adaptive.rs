@@ -1,24 +1,20 @@
 //! Adaptive runs: few steps to the part that failed, and no acceptance of a unit by a part of the suite.
 
-use crate::common::{Place, list, text};
+use crate::common::{Place, has, list, text};
 use serde_json::Value;
 
 #[test]
 fn an_adaptive_run_finds_the_part_in_fewer_steps() {
     let place = Place::new();
-    let (_, whole) = place.run(&["--inject", "tra.dead"]);
+    let (_, whole) = place.run("--inject tra.dead");
     let place = Place::new();
-    let (said, report) = place.run(&["--adaptive", "--inject", "tra.dead"]);
+    let (said, report) = place.run("--adaptive --inject tra.dead");
     let said = said.exits(1);
     let steps = |report: &Value| list(&report["steps"]).len();
     assert!(steps(&report) * 4 < steps(&whole), "{}", said.all());
-    assert!(
-        said.out.contains("replace the TRA (tra, "),
-        "{}",
-        said.all()
-    );
+    has(&said.out, &["replace the TRA (tra, "]);
     assert_eq!(
-        place.json(&["diagnose", "latest", "--json"])["candidates"][0]["part"],
+        place.json("diagnose latest --json")["candidates"][0]["part"],
         "tra"
     );
 }
@@ -39,7 +35,7 @@ fn a_search_that_finds_nothing_is_no_acceptance() {
         said.all()
     );
     assert!(said.out.contains("\nno fault found ("), "{}", said.all());
-    let shown = place.json(&["runs", "show", "latest", "--json"]);
+    let shown = place.json("runs show latest --json");
     assert_eq!(shown["run"]["verdict"], "inconclusive");
     let whole = list(&shown["steps"]).last().expect("an entry").clone();
     let message = text(&whole["message"]);
@@ -55,10 +51,7 @@ fn a_search_that_finds_nothing_is_no_acceptance() {
         "{message}"
     );
     let xml = std::fs::read_to_string(place.path("r.junit.xml")).expect("JUnit");
-    assert!(
-        xml.contains("<error") && xml.contains("not an acceptance"),
-        "{xml}"
-    );
+    has(&xml, &["<error", "not an acceptance"]);
     let sheet = ["report", "latest", "--lang", "ko", "--out", "r.html"];
     place.ptu(&sheet).exits(0);
     let sheet = std::fs::read_to_string(place.path("r.html")).expect("a sheet");

@@ -75,7 +75,7 @@ fn long_procedures_run_only_when_named() {
     for named in ["ato/line_run", "ato", "ato/*_run"] {
         assert!(holds(&listed(&[named])), "{named}");
     }
-    let said = place.ptu(&["run", "--list"]).exits(0);
+    let said = place.ptu("run --list").exits(0);
     said.explains(&["run only when named: ato/driverless_section, ato/line_run"]);
 }
 

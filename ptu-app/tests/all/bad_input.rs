@@ -5,18 +5,6 @@ use crate::bad_scripts::does_not_load;
 use crate::common::{Place, list, scripts, text};
 use protocol::display_text::is_unseen;
 
-/// Each refused with exit 2 and these words, on a database that holds an earlier run.
-#[track_caller]
-fn refused(cases: &[(&[&str], &[&str])]) {
-    let place = Place::new();
-    let earlier = place.recorded_run();
-    for (arguments, words) in cases {
-        let said = place.ptu(arguments).exits(2).explains(words);
-        assert_eq!(said.out, "", "{}", said.all());
-    }
-    assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
-}
-
 #[test]
 fn a_text_longer_than_is_kept_is_refused_before_anything_is_driven() {
     let place = Place::new();
@@ -78,7 +66,7 @@ fn what_others_wrote_acts_on_no_terminal() {
     for file in ["r.html", "r.csv", "r.json", "r.junit.xml"] {
         told.push(place.read(file));
     }
-    let fault = place.json(&["faults", "list", "--json"]);
+    let fault = place.json("faults list --json");
     let fault = text(&list(&fault)[0]["id"]).to_owned();
     let two_lines = format!("first{ACTS}\nsecond");
     let sql = format!("SELECT serial AS \"head{ACTS}\", char(27, 155, 127, 8238) FROM unit");
@@ -120,175 +108,15 @@ fn what_others_wrote_acts_on_no_terminal() {
         (&["diagnose", "latest"], 0),
     ];
     for (arguments, exit) in questions {
-        let said = place.ptu(arguments).exits(*exit);
+        let said = place.ptu(*arguments).exits(*exit);
         told.extend([said.out, said.err]);
     }
     let acts = |letter: char| is_unseen(letter) && letter != '\n';
     for said in &told {
         assert!(!said.contains(acts), "{said:?}");
     }
-    let json = place.json(&["runs", "show", "latest", "--json"]);
+    let json = place.json("runs show latest --json");
     assert_eq!(json["run"]["operator"], ACTS, "JSON has every letter");
-}
-
-#[test]
-fn unknown_names_are_named_and_the_near_one_suggested() {
-    refused(&[
-        (
-            &["run", "--inject", "eb_relay.slwo"],
-            &[
-                "no fault \"eb_relay.slwo\"",
-                "\"eb_relay.slow\"",
-                "`ptu catalog faults`",
-            ],
-        ),
-        (
-            &["run", "--inject", "tra.dead,nothing"],
-            &["no fault \"nothing\"", "`ptu catalog faults`"],
-        ),
-        (
-            &["run", "--line", "lin8"],
-            &["no line \"lin8\"", "\"line8\""],
-        ),
-        (
-            &["run", "--unit-config", "sg1000"],
-            &["no unit configuration \"sg1000\"", "\"sg100\""],
-        ),
-        (
-            &["catalog", "codes", "--unit-config", "sg1000"],
-            &["no unit configuration \"sg1000\"", "\"sg100\""],
-        ),
-        (
-            &["run", "atp/overspeeed"],
-            &[
-                "\"atp/overspeeed\"",
-                "\"atp/overspeed\"",
-                "`ptu run --list`",
-            ],
-        ),
-        (&["run", "atp/[over"], &["\"atp/[over\" is not a glob"]),
-        (
-            &["run", "atp/overspeed", "--step", "code 99*"],
-            &["no step matches \"code 99*\"", "`ptu run --list`"],
-        ),
-        (&["run", "--step", "code [9"], &["--step is not a glob"]),
-        (
-            &["run", "--scripts", "nowhere"],
-            &["nowhere is not a directory"],
-        ),
-    ]);
-}
-
-#[test]
-fn a_wrong_unit_is_refused_before_anything_is_opened() {
-    refused(&[
-        (&["run", "--unit", "usb:3"], &["usb:3", "tcp:HOST:PORT"]),
-        (
-            &["run", "--unit", "tcp:nowhere"],
-            &["\"nowhere\" is not HOST:PORT"],
-        ),
-        (
-            &["run", "--unit", "tcp:host:port"],
-            &["\"host:port\" is not HOST:PORT"],
-        ),
-        (
-            &["run", "--unit", "serial:/dev/ttyS0@fast"],
-            &["\"fast\" is not a baud rate"],
-        ),
-        (&["run", "--unit", "serial:"], &["`ptu ports`"]),
-        (
-            &["run", "--unit", "serial:/dev/null", "--inject", "tra.dead"],
-            &["--inject", "ato-under-test --inject"],
-        ),
-        (
-            &[
-                "run",
-                "--unit",
-                "serial:/dev/null",
-                "--inject",
-                "inverter.dead,tra.dead",
-            ],
-            &["--inject", "ato-under-test --inject"],
-        ),
-        (
-            &["run", "--train", "ideal", "--inject", "inverter.dead"],
-            &["inverter.dead is on a car", "point mass", "--train"],
-        ),
-        (
-            &["run", "--unit", "serial:/dev/null", "--jobs", "2"],
-            &["--jobs", "one port is one unit"],
-        ),
-        (
-            &[
-                "run",
-                "--serial-no",
-                "a serial number that is too long for the wire",
-            ],
-            &["a serial number is 1 to"],
-        ),
-    ]);
-}
-
-#[test]
-fn a_report_that_cannot_be_written_is_refused_before_the_run() {
-    refused(&[
-        (
-            &["run", "tcms/link", "--report", "out.txt"],
-            &["out.txt", ".json", ".junit.xml"],
-        ),
-        (
-            &["run", "tcms/link", "--report", "nofolder/out.json"],
-            &["nofolder/out.json", "folder"],
-        ),
-    ]);
-}
-
-#[test]
-fn unknown_records_and_wrong_times_are_refused() {
-    refused(&[
-        (&["runs", "show", "abcd1234"], &["no run \"abcd1234\""]),
-        (
-            &["runs", "list", "--verdict", "good"],
-            &["\"good\"", "passed"],
-        ),
-        (
-            &["runs", "list", "--when", "last week"],
-            &["last week", "30d", "2026-03-21"],
-        ),
-        (&["faults", "show", "abcd1234"], &["no fault \"abcd1234\""]),
-        (&["faults", "show", "latest"], &["no fault"]),
-        (
-            &["faults", "state", "latest", "broken"],
-            &["broken", "acknowledged"],
-        ),
-        (
-            &["faults", "trend", "los_time"],
-            &[
-                "no measurement \"los_time\"",
-                "\"loss_time\"",
-                "`ptu run --list`",
-            ],
-        ),
-        (
-            &["faults", "trend", "loss_time", "--serial-no", "X-1"],
-            &["no unit \"X-1\"", "`ptu runs list`"],
-        ),
-        (&["trace", "show", "latest"], &["no trace"]),
-        (&["trace", "export", "latest", "--out", "x.txt"], &[".csv"]),
-        (
-            &["db", "query", "DELETE FROM run"],
-            &["only one reading statement", "SELECT"],
-        ),
-        (&["db", "query", "SELEC 1"], &["the query failed", "SELEC"]),
-        (
-            &["db", "backup", "history.db"],
-            &["history.db", "name a file that does not"],
-        ),
-        (
-            &["db", "import", "history.db"],
-            &["history.db", "name another file"],
-        ),
-    ]);
 }
 
 /// Nothing is opened that is no file: nobody writes to these pipes, and who opens one waits for that.
@@ -324,12 +152,12 @@ fn pipes_and_devices_are_refused_wherever_a_file_is_named() {
         place.ptu(arguments).exits(2).explains(&["no regular file"]);
     }
     pipe("p.db");
-    let said = place.ptu(&["runs", "list", "--db", "p.db"]);
+    let said = place.ptu("runs list --db p.db");
     said.exits(3).explains(&["p.db is not a database"]);
     let looped = std::os::unix::fs::symlink(".", place.path("scripts/again"));
     looped.expect("linked");
     std::fs::remove_file(place.path("scripts/p.star")).expect("there");
-    let said = place.ptu(&["run", "--check", "--scripts", "scripts"]);
+    let said = place.ptu("run --check --scripts scripts");
     said.exits(2).explains(&["again", "does a link lead back?"]);
 }
 

@@ -25,56 +25,6 @@ pub fn does_not_load(body: &str, words: &[&str]) {
     assert_eq!(place.run_ids(), [earlier], "nothing lost, nothing added");
 }
 
-#[test]
-fn a_syntax_error_is_shown_with_its_place() {
-    does_not_load(
-        "step(\"a\", do = wait(s(1))\n",
-        &["wrong.star:3:1:", "Parse error"],
-    );
-}
-
-#[test]
-fn a_misspelt_name_is_found_in_a_branch_never_taken() {
-    does_not_load(
-        "step(\"a\", do = wait(s(1)), expect = becomes(eb, \"applied\"))\n\
-         if False:\n    step(\"b\", expect = becomes(ebb, \"applied\"))\n",
-        &["wrong.star:4:", "`ebb`", "`eb`"],
-    );
-}
-
-#[test]
-fn a_runtime_error_is_shown_with_its_place() {
-    does_not_load("x = [1][3]\n", &["wrong.star:2:5:", "Index `3`"]);
-}
-
-#[test]
-fn wrong_types_units_and_verbs_are_shown_with_what_is_wanted() {
-    does_not_load(
-        "step(\"a\", do = wait(kmh(3)))\n",
-        &["wrong.star:2:", "wants a time such as s(2)", "3 km/h"],
-    );
-    does_not_load(
-        "step(\"a\", do = tacho.speed(to = \"fast\"))\n",
-        &["wrong.star:2:", "wants a speed such as kmh(55)", "\"fast\""],
-    );
-    does_not_load(
-        "step(\"a\", do = tacho.sped(kmh(3)))\n",
-        &["wrong.star:2:", "sped", "speed"],
-    );
-    does_not_load(
-        "step(\"a\", expect = becomes(eb, \"aplied\"))\n",
-        &["wrong.star:2:", "aplied", "applied"],
-    );
-}
-
-#[test]
-fn a_script_that_never_ends_is_stopped() {
-    does_not_load(
-        "def long():\n    for a in range(1000000):\n        for b in range(1000000):\n            pass\nlong()\n",
-        &["wrong.star:"],
-    );
-}
-
 /// Goal: what a few characters of the script language ask for is refused in bounded time, memory and stack, with
 /// the script, by all that reads scripts. Method: built-ins that no count of steps sees into.
 #[test]
@@ -101,82 +51,18 @@ fn a_script_that_asks_for_more_than_a_machine_has_is_refused() {
         does_not_load(body, &[words]);
         let place = Place::new();
         place.write("wrong.star", &format!("{HEAD}{body}"));
-        let list = place.ptu(&["run", "--list", "wrong.star"]);
+        let list = place.ptu("run --list wrong.star");
         list.exits(2).explains(&["wrong.star:1:1: ", words]);
     }
     let place = Place::new();
     let square = "def f():\n    x = 3\n    for i in range(40):\n        x = x * x\nf()\n";
     place.write("wrong.star", &format!("{HEAD}{square}"));
     let began = std::time::Instant::now();
-    let said = place.ptu(&["run", "--check", "wrong.star"]);
+    let said = place.ptu("run --check wrong.star");
     said.exits(2)
         .explains(&["wrong.star:1:1: takes longer than 9 s to load"]);
     // By the clock of a machine that has other work.
     assert!(began.elapsed() < std::time::Duration::from_secs(70));
-}
-
-#[test]
-fn a_part_that_is_none_cannot_be_suspected() {
-    let place = Place::new();
-    let script = HEAD.replace("atp_cpu", "atp_cqu") + "step(\"a\", do = wait(s(1)))\n";
-    place.write("wrong.star", &script);
-    place.ptu(&["run", "wrong.star"]).exits(2).explains(&[
-        "wrong.star:1:",
-        "no part \"atp_cqu\"",
-        "\"atp_cpu\"",
-        "`ptu catalog parts`",
-    ]);
-}
-
-#[test]
-fn check_reports_the_errors_of_all_scripts() {
-    let place = Place::new();
-    place.write("one.star", &format!("{HEAD}step(\"a\", do = wait(s(1))\n"));
-    place.write(
-        "two.star",
-        &format!("{HEAD}step(\"a\", do = wait(kmh(1)))\n"),
-    );
-    place.write(
-        "good.star",
-        &format!("{HEAD}step(\"a\", do = wait(s(1)))\n"),
-    );
-    place
-        .ptu(&["run", "--check", "one.star", "two.star", "good.star"])
-        .exits(2)
-        .explains(&["one.star:3:1:", "two.star:2:", "2 errors in the scripts"]);
-    let said = place.ptu(&["run", "--check"]).exits(0);
-    assert!(said.out.contains("no errors"), "{}", said.all());
-}
-
-#[test]
-fn check_names_each_limit_without_a_source_and_each_text_without_korean_and_is_no_error() {
-    let place = Place::new();
-    let limit = |source: &str| {
-        format!("{HEAD}step(\"a\", measure = value(\"v\", speed, high = kmh(1{source})))\n")
-    };
-    place.write("with.star", &limit(", source = \"default: it stands\""));
-    let said = place.ptu(&["run", "--check", "with.star"]).exits(0);
-    assert!(
-        said.out.contains("each limit names its source"),
-        "{}",
-        said.all()
-    );
-    // A depot's own reason, which the program has no Korean for.
-    assert!(said.out.contains("1 text has no Korean"), "{}", said.all());
-    assert!(said.err.contains("\"it stands\""), "{}", said.all());
-    place.write("without.star", &limit(""));
-    let said = place.ptu(&["run", "--check", "without.star"]).exits(0);
-    assert!(
-        said.out.contains("1 limits name no source"),
-        "{}",
-        said.all()
-    );
-    assert!(
-        said.err
-            .contains("without.star:2: step \"a\", measurement \"v\""),
-        "{}",
-        said.all()
-    );
 }
 
 /// Goal: a step that outlasts its limit is an error, not a pass and not a hang, the other steps
@@ -191,7 +77,7 @@ fn a_step_that_runs_too_long_is_an_error_and_clean_up_runs() {
          step(\"too long\", do = wait(s(60)), limit = s(2))\n\
          step(\"short\", do = wait(s(1)))\n",
     );
-    let (said, report) = place.run(&["long.star"]);
+    let (said, report) = place.run("long.star");
     let said = said
         .exits(3)
         .explains(&["too long", "time limit of 2.000 s", "clean-up:", "yard"]);
@@ -243,27 +129,11 @@ fn a_clean_up_that_fails_is_in_every_report() {
         place.read("r.csv"),
         place.read("r.html"),
         said.all(),
-        place.ptu(&["runs", "show", "latest"]).exits(0).out,
+        place.ptu("runs show latest").exits(0).out,
     ] {
         assert!(shown.to_lowercase().contains("clean-up"), "{shown}");
         assert!(shown.contains("yard"), "{shown}");
     }
-}
-
-#[test]
-fn a_prompt_that_nobody_can_answer_is_skipped_and_said() {
-    let place = Place::new();
-    place.write(
-        "prompt.star",
-        &format!("{HEAD}step(\"ask\", do = prompt(\"Is the lamp lit?\"))\n"),
-    );
-    let (said, report) = place.run(&["prompt.star"]);
-    let said = said.exits(3).all();
-    assert!(
-        said.contains("needs an operator: Is the lamp lit?"),
-        "{said}"
-    );
-    assert_eq!(report["steps"][0]["verdict"], "skipped");
 }
 
 /// A scripts directory with one line file, `lines/slip.toml`, and a sound unit configuration.

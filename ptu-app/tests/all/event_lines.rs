@@ -109,15 +109,15 @@ fn the_stream_of_a_run_says_what_the_database_says() {
 fn a_stream_that_cannot_be_written_is_told() {
     let place = Place::new();
     place
-        .ptu(&["run", "tcms/link", "--events", "no/folder/x"])
+        .ptu("run tcms/link --events no/folder/x")
         .exits(2)
         .explains(&["--events", "no/folder/x"]);
     place
-        .ptu(&["run", "tcms/link", "--events", "/dev/full"])
+        .ptu("run tcms/link --events /dev/full")
         .exits(3)
         .explains(&["has not all events", "ptu runs show latest"]);
     // A reader that has read enough is none that missed something.
-    let mut run = place.command(&["run", "tcms/link", "--json"]);
+    let mut run = place.command("run tcms/link --json");
     let mut run = run.stdout(Stdio::piped()).spawn().expect("started");
     drop(run.stdout.take());
     assert_eq!(run.wait().expect("over").code(), Some(0));
@@ -158,7 +158,7 @@ fn a_recorded_run_has_every_row_and_every_event() {
         .map(text)
         .collect();
     assert_eq!(events.join("\n"), place.read("run.jsonl").trim_end());
-    let stored = place.json(&["runs", "show", "latest", "--json"]);
+    let stored = place.json("runs show latest --json");
     let rows = number(&read["counts"]["signals"]);
     let expected = number(&stored["run"]["bench_time_s"]) / 0.05;
     // Bring-up is part of the time, and before the first row.
@@ -177,6 +177,6 @@ fn a_recorded_run_has_every_row_and_every_event() {
 #[test]
 fn a_recording_that_has_no_place_is_refused_first() {
     let place = Place::new();
-    let told = place.ptu(&["run", "tcms/link", "--mcap", "nowhere/run.mcap"]);
+    let told = place.ptu("run tcms/link --mcap nowhere/run.mcap");
     told.exits(2).explains(&["cannot write nowhere/run.mcap"]);
 }

@@ -33,19 +33,10 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
         line: "line8".into(),
         train: train.to_owned(),
         seed: 1,
-        operator: String::new(),
         source: "sim".into(),
         started_at_us: at_us,
         app_version: "1".into(),
-        scripts_sha256: String::new(),
-        unit_config_sha256: String::new(),
-        injected: None,
-        owner: String::new(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     };
     let mut writer = RunWriter::begin(store, &record).expect("begun");
     let measured = MeasurementRecord {
@@ -79,8 +70,7 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
             at_us,
             bench_us: 0,
             step_index: Some(0),
-            message: String::new(),
-            freeze: Vec::new(),
+            ..FaultRecord::default()
         };
         writer.fault(&record).expect("stored").fault
     });
@@ -125,9 +115,7 @@ fn count_all_that_was_done_in_them() {
     let fault = record(&history, noon_us(3, 5), Some("eb_relay")).expect("a fault");
     let repair = RepairRecord {
         part: "eb_relay".into(),
-        serial_old: None,
-        serial_new: None,
-        note: String::new(),
+        ..RepairRecord::default()
     };
     history
         .record_repair(fault, &repair, "kim", noon_us(3, 10))

@@ -59,7 +59,7 @@ fn told(answers: &[(&str, Value)]) -> Vec<String> {
 #[test]
 fn every_answer_has_the_keys_that_are_promised() {
     let place = Place::new();
-    place.ptu(&["run", "tcms/link"]).exits(0);
+    place.ptu("run tcms/link").exits(0);
     let run = [
         "run",
         "atp/overspeed",
@@ -76,19 +76,15 @@ fn every_answer_has_the_keys_that_are_promised() {
         "brakes_late",
     ];
     place.ptu(&[&run[..], &by].concat()).exits(1);
-    let faults = place.json(&["faults", "list", "--json"]);
+    let faults = place.json("faults list --json");
     let fault = text(&list(&faults)[0]["id"]).to_owned();
     let repair = [
         "faults", "repair", &fault, "--part", "eb_relay", "--old", "R-1",
     ];
     let new = ["--new", "R-2", "--who", "Kim"];
     place.ptu(&[&repair[..], &new].concat()).exits(0);
-    place
-        .ptu(&["signal", "make", "code", "55", "code.wav"])
-        .exits(0);
-    place
-        .ptu(&["signal", "make", "twc", "01", "twc.wav"])
-        .exits(0);
+    place.ptu("signal make code 55 code.wav").exits(0);
+    place.ptu("signal make twc 01 twc.wav").exits(0);
     let cut = std::fs::read(place.path("twc.wav")).expect("made");
     std::fs::write(place.path("twc.wav"), &cut[..cut.len() - 1]).expect("cut");
     let asked: [&[&str]; 18] = [

@@ -17,7 +17,7 @@ fn a_shuffled_suite_passes_twice_over_a_pseudo_terminal_in_lock_step() {
     assert_eq!(report["run"]["unit_serial"], "SIM-0001");
     assert!(text(&report["run"]["source"]).starts_with("lockstep:"));
     assert!(list(&report["faults"]).is_empty(), "{}", said.all());
-    let planned = place.json(&["run", "--list", "--json"]);
+    let planned = place.json("run --list --json");
     assert_eq!(list(&report["steps"]).len(), 2 * steps_of(list(&planned)));
 }
 
@@ -67,7 +67,7 @@ fn a_served_unit_with_a_fast_clock_is_measured_and_named() {
         "atp_cpu",
         "{report}"
     );
-    let said = place.json(&["diagnose", "latest", "--json"]);
+    let said = place.json("diagnose latest --json");
     assert_eq!(said["candidates"][0]["part"], "atp_cpu", "{said}");
 }
 
@@ -79,6 +79,6 @@ fn a_unit_without_a_serial_number_is_shown_as_one() {
     let (said, report) = place.run(&["tcms/link", "--unit", &unit.address]);
     said.exits(0);
     assert_eq!(text(&report["run"]["unit_serial"]), "(no serial number)");
-    let (_, report) = place.run(&["tcms/link", "--serial-no", "A\u{1b}[2J"]);
+    let (_, report) = place.run("tcms/link --serial-no 'A\u{1b}[2J'");
     assert_eq!(text(&report["run"]["unit_serial"]), "A\\x1b[2J");
 }

@@ -44,51 +44,6 @@ fn six_by_six_costs_what_huffman_says() {
 }
 
 #[test]
-fn outcomes_give_posterior_and_next_test() {
-    let place = Place::new();
-    let file = example("six_by_six.json");
-    let asked = |outcomes: &str| {
-        let arguments = ["matrix", &file, "--outcomes", outcomes, "--json"];
-        place.json(&arguments)
-    };
-    let inline = asked("pulses at 40 km/h=1");
-    let states: Vec<&str> = list(&inline["posterior"])
-        .iter()
-        .map(|s| text(&s["id"]))
-        .collect();
-    assert_eq!(states, ["speed sensor 1", "speed sensor 2"]);
-    assert_eq!(number(&inline["posterior"][0]["p"]), 0.5);
-    assert_eq!(number(&inline["expected_cost"]), 1.0);
-    let found = place.write("found.json", r#"{"pulses at 40 km/h": "fail"}"#);
-    assert_eq!(asked(&found), inline);
-    let done = asked("pulses at 40 km/h=fail, sensor 1 alone=pass");
-    assert_eq!(done["next_test"], Value::Null);
-    assert_eq!(done["tree"]["state"], "speed sensor 2");
-    assert_eq!(number(&done["expected_cost"]), 0.0);
-}
-
-#[test]
-fn states_that_are_alike_end_together_and_are_pointed_out() {
-    let place = Place::new();
-    let file = example("ambiguous.json");
-    let answer = place.json(&["matrix", &file, "--json"]);
-    let tree = answer["tree"].to_string();
-    assert!(
-        tree.contains(r#""states":["twc antenna","antenna cable"]"#),
-        "{tree}"
-    );
-    assert!(text(&answer["warnings"][0]).contains("\"twc antenna\", \"antenna cable\""));
-    let said = place.ptu(&["matrix", &file]).exits(0);
-    for word in [
-        "twc antenna or antenna cable",
-        "note: no test tells",
-        "IF IT FAILS",
-    ] {
-        assert!(said.out.contains(word), "{}", said.all());
-    }
-}
-
-#[test]
 fn uncertain_tests_end_at_the_confidence_asked() {
     let place = Place::new();
     let file = example("false_alarms.json");
@@ -106,81 +61,6 @@ fn uncertain_tests_end_at_the_confidence_asked() {
         number(&answer["expected_cost"])
     };
     assert!(cost("0.9") < cost("0.99"), "surer answers cost more");
-}
-
-#[test]
-fn wrong_matrices_and_outcomes_are_named_and_refused() {
-    let place = Place::new();
-    let good = json!({
-        "states": [{"id": "a", "p": 0.5}, {"id": "b", "p": 0.5}],
-        "tests": [{"id": "flow", "cost": 1}],
-        "outcomes": {"flow": {"a": 1}},
-    });
-    let with = |pointer: &str, value: Value| {
-        let mut matrix = good.clone();
-        *matrix.pointer_mut(pointer).expect("there") = value;
-        matrix.to_string()
-    };
-    let cases: [(String, &[&str]); 7] = [
-        (
-            with("/tests/0/cost", json!(-1)),
-            &["wrong.json: test \"flow\"", "-1"],
-        ),
-        (
-            with("/tests/0/cost", json!(0)),
-            &["wrong.json: test \"flow\"", "above 0"],
-        ),
-        (
-            with("/states/0/p", json!(0.6)),
-            &["wrong.json:", "sum to 1.1"],
-        ),
-        (
-            with("/outcomes/flow", json!({"c": 1})),
-            &["wrong.json:", "state \"c\""],
-        ),
-        (
-            with("/outcomes/flow", json!({"a": 2})),
-            &["wrong.json: test \"flow\"", "2"],
-        ),
-        (
-            "{\"states\": [\n  nothing".into(),
-            &["wrong.json:", "line 2 column"],
-        ),
-        (
-            with("/states", json!([])),
-            &["wrong.json:", "\"states\" is empty"],
-        ),
-    ];
-    for (matrix, words) in cases {
-        let file = place.write("wrong.json", &matrix);
-        let said = place.ptu(&["matrix", &file, "--json"]);
-        let said = said.exits(2).explains(words);
-        assert_eq!(said.out, "");
-    }
-    let file = place.write("good.json", &good.to_string());
-    let cases: [(&[&str], &[&str]); 7] = [
-        (
-            &["--outcomes", "flwo=1"],
-            &["\"flwo\"", "did you mean \"flow\""],
-        ),
-        (
-            &["--outcomes", "flow=1,flow=0"],
-            &["two outcomes", "\"flow\""],
-        ),
-        (&["--outcomes", "flow=maybe"], &["flow=maybe"]),
-        (&["--outcomes", "no_such_file.json"], &["no_such_file.json"]),
-        (&["--confidence", "0.2"], &["--confidence", "0.2"]),
-        (&["--tree", "best"], &["best", "optimal", "greedy"]),
-        (&["--outcomes", ""], &["cannot read"]),
-    ];
-    for (options, words) in cases {
-        let arguments = [&["matrix", &file], options].concat();
-        place.ptu(&arguments).exits(2).explains(words);
-    }
-    place
-        .ptu(&["matrix", "nowhere.json"])
-        .exits(2)
-        .explains(&["nowhere.json"]);
 }
 
 #[test]

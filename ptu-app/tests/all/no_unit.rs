@@ -24,7 +24,7 @@ pub fn fails(unit: &str, words: &[&str]) {
     let runs = place.run_ids();
     assert_eq!(runs.len(), 2);
     assert_eq!(runs[1], earlier);
-    let run = place.json(&["runs", "show", "latest", "--json"]);
+    let run = place.json("runs show latest --json");
     assert_eq!(run["run"]["verdict"], "error");
     assert_eq!(run["run"]["state"], "finished");
 }

@@ -19,16 +19,8 @@ fn procedures(report: &Value) -> Vec<&str> {
 
 /// Starts a run in real time and kills it in its second procedure, without any chance to put things in order.
 fn killed_run(place: &Place) -> Value {
-    let arguments = [
-        "run",
-        "ptu/identity",
-        "tcms/link",
-        "twc/exchange",
-        "--realtime",
-        "--seed",
-        "7",
-    ];
-    let mut run = (place.command(&arguments))
+    let arguments = "run ptu/identity tcms/link twc/exchange --realtime --seed 7";
+    let mut run = (place.command(arguments))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -40,7 +32,7 @@ fn killed_run(place: &Place) -> Value {
             "no step of the second procedure was stored"
         );
         std::thread::sleep(Duration::from_millis(100));
-        let said = place.ptu(&["runs", "show", "latest", "--json"]);
+        let said = place.ptu("runs show latest --json");
         let shown: Value = serde_json::from_str(&said.out).unwrap_or_default();
         let of_second = |step: &&Value| step["procedure"] == "tcms/link";
         let steps = shown["steps"]
@@ -52,7 +44,7 @@ fn killed_run(place: &Place) -> Value {
     };
     run.kill().expect("killed");
     run.wait().expect("over");
-    let left = place.json(&["runs", "show", "latest", "--json"]);
+    let left = place.json("runs show latest --json");
     assert_eq!(left["run"]["state"], "interrupted", "{left}");
     assert!(list(&left["steps"]).len() >= seen, "{left}");
     left
@@ -78,20 +70,18 @@ fn a_killed_run_keeps_its_steps_and_is_gone_on_with() {
     assert_eq!(procedures(&report), ["tcms/link", "twc/exchange"]);
     assert_eq!(report["run"]["continues"], id);
     assert_eq!(number(&report["run"]["seed"]), 7.0);
-    let shown = place
-        .ptu(&["runs", "show", "latest", "--report", "sheet.html"])
-        .exits(0);
+    let shown = place.ptu("runs show latest --report sheet.html").exits(0);
     assert!(shown.out.contains("continues run"), "{}", shown.all());
     let sheet = place.read("sheet.html");
     assert!(
         sheet.contains("Continues run") && sheet.contains(id),
         "the report says it"
     );
-    place.ptu(&["db", "check"]).exits(0);
+    place.ptu("db check").exits(0);
 
     // All that was due has a verdict now.
     place
-        .ptu(&["run", "--resume", "latest"])
+        .ptu("run --resume latest")
         .exits(2)
         .explains(&["each procedure of run", "--retry-errors"]);
 }
@@ -105,7 +95,7 @@ fn another_unit_does_not_continue_a_run_and_changed_scripts_are_told() {
         "asks.star",
         &format!("{head}, setup = [prompt(\"Is it on?\")])\n{step}"),
     );
-    let (said, report) = place.run(&["asks.star", "tcms/link", "--serial-no", "A-1"]);
+    let (said, report) = place.run("asks.star tcms/link --serial-no A-1");
     said.exits(3);
     assert_eq!(report["run"]["verdict"], "error", "{report}");
     let id = text(&report["run"]["id"]);
@@ -132,7 +122,7 @@ fn another_unit_does_not_continue_a_run_and_changed_scripts_are_told() {
     assert_eq!(again["run"]["unit_serial"], "A-1");
     assert_eq!(again["run"]["continues"], id);
     place
-        .ptu(&["run", "--retry-errors", "latest"])
+        .ptu("run --retry-errors latest")
         .exits(2)
         .explains(&["no procedure of run", "ended as an error"]);
 }
@@ -141,9 +131,9 @@ fn another_unit_does_not_continue_a_run_and_changed_scripts_are_told() {
 fn what_ran_no_procedures_is_not_continued() {
     let place = Place::new();
     place
-        .ptu(&["run", "--resume", "latest"])
+        .ptu("run --resume latest")
         .exits(3)
         .explains(&["there is no database"]);
     place.recorded_run();
-    place.ptu(&["run", "--resume", "ffffffff"]).exits(2);
+    place.ptu("run --resume ffffffff").exits(2);
 }

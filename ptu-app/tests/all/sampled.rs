@@ -6,16 +6,8 @@ use crate::common::Place;
 #[test]
 fn scripts_pass_through_waveforms() {
     let place = Place::new();
-    let run = [
-        "run",
-        "atp/limit_speed",
-        "atp/speed_input",
-        "ato/markers",
-        "twc",
-        "--signals",
-        "sampled",
-    ];
-    place.ptu(&run).exits(0);
+    let run = "run atp/limit_speed atp/speed_input ato/markers twc --signals sampled";
+    place.ptu(run).exits(0);
 }
 
 /// Goal: a fault that weakens the signal is found in its waveform, and noise that a receiver stands is none.
@@ -44,29 +36,4 @@ fn a_weak_receiver_is_found_and_noise_is_none() {
         .exits(1);
     let codes = ["run", "atp/limit_speed", "--step", "code * gives *"];
     place.ptu(&[&codes[..], &noisy].concat()).exits(0);
-}
-
-#[test]
-fn a_channel_that_is_wrong_is_explained() {
-    let place = Place::new();
-    place.write("wrong.toml", "noise_mv = -1.0\n");
-    place.write("unknown.toml", "noise = 1.0\n");
-    for (signals, says) in [
-        ("sampled:wrong.toml", "noise_mv = -1"),
-        ("sampled:unknown.toml", "unknown field `noise`"),
-        ("sampled:none.toml", "none.toml cannot be read"),
-        ("waves", "values, sampled or sampled:FILE"),
-    ] {
-        let run = ["run", "atp/limit_speed", "--signals", signals];
-        place.ptu(&run).exits(2).explains(&[says]);
-    }
-    let serial = [
-        "run",
-        "atp",
-        "--unit",
-        "serial:/dev/ttyS9",
-        "--signals",
-        "sampled",
-    ];
-    place.ptu(&serial).exits(2).explains(&["6 Mbit/s"]);
 }

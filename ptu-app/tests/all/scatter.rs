@@ -38,7 +38,7 @@ fn the_same_seed_gives_the_same_unit_and_another_seed_another_one() {
     let first = report("7", "1");
     assert_eq!(first, report("7", "2"));
     assert_ne!(first["steps"], report("8", "1")["steps"]);
-    let (_, nominal) = Place::new().run(&["atp/speed_input", "ato/station_run", "--seed", "7"]);
+    let (_, nominal) = Place::new().run("atp/speed_input ato/station_run --seed 7");
     assert_ne!(first["steps"], normalised(nominal)["steps"]);
 }
 
@@ -69,7 +69,7 @@ fn a_wrong_file_is_told_by_name_and_key() {
         .exits(2)
         .explains(&["wrong.toml", "teeth"]);
     place
-        .ptu(&["run", "--scattered=gone.toml"])
+        .ptu("run --scattered=gone.toml")
         .exits(2)
         .explains(&["gone.toml"]);
 }

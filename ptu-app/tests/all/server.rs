@@ -45,18 +45,14 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
     // The other laptop saw the same fault; what is done about it at the desk reaches both.
     record_bad_unit_anew(&two);
     two.ptu(&["db", "sync", &server]).exits(0);
-    let faults = two.json(&[
-        "faults", "list", "--part", "eb_relay", "--json", "--db", &server,
-    ]);
+    let faults = two.json(&format!("faults list --part eb_relay --json --db {server}"));
     assert_eq!(list(&faults).len(), 1, "{faults}");
     let fault = text(&faults[0]["id"]);
-    let repair = [
-        "faults", "repair", fault, "--part", "eb_relay", "--new", "SN-77", "--db", &server,
-    ];
+    let repair = format!("faults repair {fault} --part eb_relay --new SN-77 --db {server}");
     one.ptu(&repair).exits(0);
     one.ptu(&["faults", "note", fault, "바꿈", "--db", &server])
         .exits(0);
-    let run = text(&one.json(&["runs", "list", "--json"])[0]["id"]).to_owned();
+    let run = text(&one.json("runs list --json")[0]["id"]).to_owned();
     one.ptu(&["runs", "note", &run, "seen at the desk", "--db", &server])
         .exits(0);
     for place in [&one, &two] {
@@ -65,7 +61,7 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
         assert_eq!(relay_fault(place)["state"], "repaired");
     }
     // A server in the environment is as good as one on the command line.
-    let mut asked = one.command(&["faults", "list", "--state", "repaired", "--json"]);
+    let mut asked = one.command("faults list --state repaired --json");
     let said =
         crate::common::Said::from(asked.env("PTU_DB", &server).output().expect("ptu starts"));
     assert!(said.exits(0).out.contains(fault));
@@ -154,7 +150,7 @@ fn a_password_on_the_command_line_is_refused_and_never_shown() {
                 .explains(&["~/.pgpass", "PGPASSWORD", "passfile="]);
         }
         // In the environment it is the user's own, and not shown either.
-        let mut asked = place.command(&["runs", "list"]);
+        let mut asked = place.command("runs list");
         let said =
             crate::common::Said::from(asked.env("PTU_DB", address).output().expect("ptu starts"));
         assert!(!said.all().contains("s3cret"), "{address}: {}", said.all());

@@ -105,7 +105,7 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
         .exits(2)
         .explains(&["--runs"]);
     place
-        .ptu(&["drive", "--runs", "a.zst"])
+        .ptu("drive --runs a.zst")
         .exits(2)
         .explains(&["go with --monte-carlo"]);
     // A file of drives does not belong to a campaign.
@@ -116,14 +116,7 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
         .explains(&["drives.zst", "by another program or with other scripts"]);
     said(&place, &CAMPAIGN, &[&one[..], &["suite.zst"]].concat()).exits(0);
     place
-        .ptu(&[
-            "campaign",
-            "merge",
-            "suite.zst",
-            "drives.zst",
-            "--out",
-            "m.zst",
-        ])
+        .ptu("campaign merge suite.zst drives.zst --out m.zst")
         .exits(2)
         .explains(&["drives.zst: ", "unlike those of suite.zst", "leave one"]);
 }

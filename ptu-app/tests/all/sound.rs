@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use ptu_runs::signal::{FULL_SCALE_MV, Wav};
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::common::{Place, list, number, text};
+use crate::common::{Place, Typed, has, list, number, text};
 
 /// What may pass from a stop to silence.
 const SILENT_WITHIN: Duration = Duration::from_millis(100);
@@ -57,26 +57,26 @@ impl SoundServer {
             .expect("the sound server starts");
         let started = Self { place, server };
         let until = Instant::now() + Duration::from_secs(20);
-        while !started.ptu(&["signal", "devices"]).out.contains("coil") {
+        while !started.ptu("signal devices").out.contains("coil") {
             assert!(Instant::now() < until, "the sound server does not answer");
             std::thread::sleep(Duration::from_millis(100));
         }
         Some(started)
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    fn command(&self, arguments: &(impl Typed + ?Sized)) -> Command {
         let mut command = self.place.command(arguments);
         let address = format!("unix:{}", self.place.text_path("socket"));
         command.env("PULSE_SERVER", address);
         command
     }
 
-    fn ptu(&self, arguments: &[&str]) -> crate::common::Said {
+    fn ptu(&self, arguments: &(impl Typed + ?Sized)) -> crate::common::Said {
         let output = self.command(arguments).output().expect("ptu starts");
         crate::common::Said::from(output)
     }
 
-    fn begin(&self, arguments: &[&str]) -> Child {
+    fn begin(&self, arguments: &(impl Typed + ?Sized)) -> Child {
         let mut command = self.command(arguments);
         let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         piped.spawn().expect("ptu starts")
@@ -84,15 +84,8 @@ impl SoundServer {
 
     /// Records for so many seconds while something is done.
     fn recorded(&self, seconds: &str, meanwhile: impl FnOnce()) -> crate::common::Said {
-        let record = [
-            "signal",
-            "record",
-            "--device",
-            "coil.monitor",
-            "--out",
-            "r.wav",
-        ];
-        let recorder = self.begin(&[&record[..], &["--seconds", seconds]].concat());
+        let record = "signal record --device coil.monitor --out r.wav";
+        let recorder = self.begin(&format!("{record} --seconds {seconds}"));
         std::thread::sleep(Duration::from_millis(500));
         meanwhile();
         let output = recorder.wait_with_output().expect("it ends");
@@ -116,8 +109,8 @@ fn what_is_played_comes_back_by_sound() {
     };
     let mut kept_up = false;
     let said = server.recorded("6", || {
-        let play = ["signal", "play", "code", "55", "--seconds", "2"];
-        let said = server.ptu(&[&play[..], &["--device", "coil"]].concat());
+        let play = "signal play code 55 --seconds 2";
+        let said = server.ptu(&format!("{play} --device coil"));
         let said = said.exits(0).prints(&["played 2.00 s"]);
         assert!(said.err.contains("no calibration"), "{}", said.all());
         assert!(!said.out.contains("cut off"), "{}", said.all());
@@ -130,7 +123,7 @@ fn what_is_played_comes_back_by_sound() {
         eprintln!("skipped, this machine is too busy for sound without gaps");
         return;
     }
-    let reading = server.place.json(&["signal", "read", "r.wav", "--json"]);
+    let reading = server.place.json("signal read r.wav --json");
     let sources = list(&reading["sources"]);
     let heard = |kind: &str| sources.iter().find(|source| text(&source["kind"]) == kind);
     let code = heard("code").unwrap_or_else(|| panic!("{reading}"));
@@ -235,15 +228,11 @@ fn levels_follow_the_calibration() {
     let said = server.ptu(&[&output[..], &measured, &by].concat()).exits(0);
     assert!(said.out.contains("3840.0 mV ± 2 %"), "{}", said.all());
     server.recorded("4", || {
-        let play = ["signal", "play", "code", "55", "--seconds", "3"];
-        let said = server.ptu(&[&play[..], &["--device", "coil"]].concat());
+        let play = "signal play code 55 --seconds 3";
+        let said = server.ptu(&format!("{play} --device coil"));
         // Of the other channel there is none.
         let said = said.exits(0);
-        assert!(
-            said.err.contains("no calibration of the channel twc"),
-            "{}",
-            said.all()
-        );
+        has(&said.err, &["no calibration of the channel twc"]);
     });
     let mut wav = Wav::open(&server.place.path("r.wav")).expect("a recording");
     let (channels, _) = wav.block(4 * 48_000, 2, FULL_SCALE_MV);
@@ -268,7 +257,7 @@ fn levels_follow_the_calibration() {
         .expect("one");
     assert!((full_scale - 3_840.0).abs() < 40.0, "{}", said.all());
     player.wait_with_output().expect("it ends");
-    let said = server.ptu(&["signal", "devices"]).exits(0);
+    let said = server.ptu("signal devices").exits(0);
     assert!(said.out.contains("Fluke 87 serial 123"), "{}", said.all());
 }
 
@@ -295,19 +284,8 @@ fn what_cannot_be_played_or_recorded_is_said() {
         .ptu(&[&record[..], &["nothing"]].concat())
         .exits(3)
         .explains(&["record from nothing"]);
-    let loud = [
-        "signal",
-        "play",
-        "code",
-        "55",
-        "--seconds",
-        "0.5",
-        "--level",
-        "4000",
-    ];
-    let said = server
-        .ptu(&[&loud[..], &["--device", "coil"]].concat())
-        .exits(0);
+    let loud = "signal play code 55 --seconds 0.5 --level 4000";
+    let said = server.ptu(&format!("{loud} --device coil")).exits(0);
     assert!(said.out.contains("lower --level"), "{}", said.all());
     for wrong in ["code", "twc"] {
         server

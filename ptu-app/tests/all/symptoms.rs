@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::common::{Place, list, number, text};
+use crate::common::{Place, list, number};
 
 /// Probability of a part among the candidates, and what speaks for it.
 fn candidate(diagnosis: &Value, part: &str) -> (f64, String) {
@@ -19,12 +19,12 @@ fn a_symptom_is_kept_in_the_run_and_weighs_a_little() {
     let place = Place::with_database();
     let steps = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
     place.ptu(&steps).exits(1);
-    let without = place.json(&["diagnose", "latest", "--json"]);
+    let without = place.json("diagnose latest --json");
     let said = [&steps[..], &["--symptom", "brakes_late"]].concat();
     place.ptu(&said).exits(1);
-    let run = place.json(&["runs", "show", "latest", "--json"]);
+    let run = place.json("runs show latest --json");
     assert_eq!(run["run"]["symptom"], "brakes_late");
-    let with = place.json(&["diagnose", "latest", "--json"]);
+    let with = place.json("diagnose latest --json");
     let (before, _) = candidate(&without, "eb_relay");
     let (after, reasons) = candidate(&with, "eb_relay");
     assert!(after >= before, "{before} {after}");
@@ -33,27 +33,6 @@ fn a_symptom_is_kept_in_the_run_and_weighs_a_little() {
     // Against what was measured it is nothing.
     let against = [&steps[..], &["--symptom", "no_communication"]].concat();
     place.ptu(&against).exits(1);
-    let other = place.json(&["diagnose", "latest", "--json"]);
+    let other = place.json("diagnose latest --json");
     assert_eq!(other["candidates"][0]["part"], "eb_relay", "{other}");
-}
-
-#[test]
-fn a_symptom_that_nobody_knows_is_told_before_anything_is_run() {
-    let place = Place::with_database();
-    place
-        .ptu(&["run", "atp/overspeed", "--symptom", "brake_late"])
-        .exits(2)
-        .explains(&[
-            "brake_late",
-            "did you mean",
-            "brakes_late",
-            "ptu catalog symptoms",
-        ]);
-    assert!(place.run_ids().is_empty());
-    let known = place.json(&["catalog", "symptoms", "--json"]);
-    let ids: Vec<_> = list(&known)
-        .iter()
-        .map(|known| text(&known["id"]))
-        .collect();
-    assert!(ids.contains(&"brakes_late"), "{ids:?}");
 }

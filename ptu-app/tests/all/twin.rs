@@ -1,6 +1,6 @@
 //! What was expected beside what came: good twins, first deviations, differences, replays.
 
-use crate::common::{Place, copy_folder, has_shape, list, number, text};
+use crate::common::{Place, copy_folder, has, has_shape, list, number, text};
 use fault_db::Store;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::replay::{Original, explain, good_twin};
@@ -40,7 +40,7 @@ impl Place {
 
     /// The latest trace with where it deviates.
     fn explained(&self) -> Value {
-        self.json(&["trace", "show", "latest", "--twin", "--json"])
+        self.json("trace show latest --twin --json")
     }
 }
 
@@ -108,7 +108,7 @@ fn the_twin_of_a_good_unit_is_its_trace_bit_by_bit() {
     let shown = place.explained();
     assert_eq!(shown["first_deviation"], Value::Null);
     assert_eq!(list(&shown["deviations"]).len(), 0);
-    let said = place.ptu(&["trace", "show", "latest"]).exits(0);
+    let said = place.ptu("trace show latest").exits(0);
     assert!(said.out.contains("as expected"), "{}", said.all());
 }
 
@@ -184,80 +184,10 @@ fn a_dead_sensor_leads_through_the_speed_to_the_brake() {
 }
 
 #[test]
-fn a_replay_shows_the_fault_again_with_it_and_not_without() {
-    let place = Place::new();
-    place
-        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
-        .exits(1);
-    let trace = first_trace(&place);
-    let replay = |more: &[&str], exit: i32| -> Value {
-        let all = [&["trace", "replay", trace.as_str(), "--json"], more].concat();
-        let said = place.ptu(&all).exits(exit);
-        serde_json::from_str(&said.out).expect("JSON")
-    };
-    let without = replay(&[], 0);
-    assert_eq!(without["result"], "as_good_twin");
-    assert_eq!(list(&without["from_trace"])[0]["signal"], "eb");
-    let with = replay(&["--inject", "eb_relay.slow"], 1);
-    assert_eq!(with["result"], "reproduced");
-    assert_eq!(list(&with["from_trace"]).len(), 0);
-    let other = replay(&["--inject", "fsb_output.dead"], 1);
-    assert_eq!(other["result"], "otherwise");
-    // The replay is a run of its own, and its trace can be had again, too.
-    let run = place.json(&["runs", "show", text(&with["run"]), "--json"]);
-    assert!(
-        text(&run["run"]["source"]).starts_with("replay of"),
-        "{run}"
-    );
-    assert_eq!(list(&run["steps"])[0]["message"], "reproduced");
-    assert_eq!(list(&run["faults"]).len(), 0, "a replay finds nothing new");
-    let again = text(&with["replay_trace"]);
-    let shown = place.json(&["trace", "show", again, "--twin", "--json"]);
-    assert_eq!(shown["first_deviation"]["signal"], "eb");
-    let diff = place.json(&["trace", "diff", &trace, again, "--json"]);
-    assert_eq!(list(&diff["deviations"]).len(), 0);
-    let diff = place.json(&[
-        "trace",
-        "diff",
-        &trace,
-        text(&without["replay_trace"]),
-        "--json",
-    ]);
-    assert_eq!(list(&diff["deviations"])[0]["signal"], "eb");
-    let twin = place.json(&["trace", "diff", &trace, "twin", "--json"]);
-    assert_eq!(list(&twin["deviations"]), list(&diff["deviations"]));
-}
-
-#[test]
-fn diff_keeps_to_the_signals_asked_for_and_names_what_is_missing() {
-    let place = Place::new();
-    place
-        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
-        .exits(1);
-    let trace = first_trace(&place);
-    let diff = |signals: &str| {
-        place.json(&[
-            "trace", "diff", &trace, "twin", "--signal", signals, "--json",
-        ])
-    };
-    let signals: Vec<_> = list(&diff("speed,eb")["deviations"])
-        .iter()
-        .map(|deviation| text(&deviation["signal"]).to_owned())
-        .collect();
-    assert_eq!(signals, ["eb"]);
-    place
-        .ptu(&["trace", "diff", &trace, "twin", "--signal", "spede"])
-        .exits(2)
-        .explains(&["spede", "catalog signals"]);
-    let said = place.ptu(&["trace", "diff", &trace, &trace]).exits(0);
-    assert!(said.out.contains("no signal differs"), "{}", said.all());
-}
-
-#[test]
 fn what_cannot_be_had_again_says_why() {
     let place = Place::new();
     place
-        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .ptu("run atp/overspeed --inject eb_relay.slow")
         .exits(1);
     let trace = first_trace(&place);
     // A scripts directory in which the configuration was changed since.
@@ -287,11 +217,7 @@ fn what_cannot_be_had_again_says_why() {
     let said = place
         .ptu(&["trace", "show", &trace, "--scripts", &scripts])
         .exits(0);
-    assert!(
-        said.out.contains("what was expected is not known"),
-        "{}",
-        said.all()
-    );
+    has(&said.out, &["what was expected is not known"]);
     place
         .ptu(&["trace", "replay", &trace, "--inject", "eb_relay.slwo"])
         .exits(2)
@@ -322,30 +248,11 @@ fn what_cannot_be_had_again_says_why() {
 #[test]
 fn an_explanation_comes_from_the_library_too() {
     let place = Place::new();
-    place
-        .ptu(&["run", "ato/markers", "--inject", "tra.dead"])
-        .exits(1);
+    place.ptu("run ato/markers --inject tra.dead").exits(1);
     let store = place.store();
     let id = store.resolve_trace(&first_trace(&place)).expect("a trace");
     let explanation = explain(&store, &directory(), id).expect("explained");
     assert_eq!(explanation.procedure, "ato/markers");
     assert!(explanation.first().is_some());
     assert!(!explanation.chain.is_empty());
-}
-
-/// A good run keeps nothing: a recording without a trace is of no use.
-#[test]
-fn a_good_run_keeps_no_stimuli() {
-    let place = Place::new();
-    place.ptu(&["run", "tcms/link", "atp/overspeed"]).exits(0);
-    let rows = place.json(&[
-        "db",
-        "query",
-        "SELECT count(*) AS n FROM recording",
-        "--json",
-    ]);
-    assert!(
-        rows.to_string().contains('0') && !rows.to_string().contains('1'),
-        "{rows}"
-    );
 }

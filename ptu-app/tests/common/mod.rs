@@ -27,6 +27,44 @@ pub struct Place {
     folder: TempDir,
 }
 
+/// What is typed behind the name of a program.
+pub trait Typed {
+    /// Its words.
+    fn words(&self) -> Vec<String>;
+}
+
+/// One line, in which `'…'` is one word.
+impl Typed for str {
+    fn words(&self) -> Vec<String> {
+        shlex::split(self).expect("each quote has its end")
+    }
+}
+
+impl Typed for String {
+    fn words(&self) -> Vec<String> {
+        self.as_str().words()
+    }
+}
+
+impl Typed for [&str] {
+    fn words(&self) -> Vec<String> {
+        self.iter().map(|&word| word.to_owned()).collect()
+    }
+}
+
+impl<const N: usize> Typed for [&str; N] {
+    fn words(&self) -> Vec<String> {
+        self.as_slice().words()
+    }
+}
+
+impl<T: AsRef<str>> Typed for Vec<T> {
+    fn words(&self) -> Vec<String> {
+        let each = self.iter();
+        each.map(|word| word.as_ref().to_owned()).collect()
+    }
+}
+
 /// What a program said, and how it ended.
 pub struct Said {
     pub code: Option<i32>,
@@ -82,10 +120,10 @@ impl Place {
     }
 
     /// `ptu` with these arguments, not started yet.
-    pub fn command(&self, arguments: &[&str]) -> Command {
+    pub fn command(&self, arguments: &(impl Typed + ?Sized)) -> Command {
         let mut command = Command::new(program("ptu"));
         command
-            .args(arguments)
+            .args(arguments.words())
             .current_dir(self.folder.path())
             .env("PTU_SCRIPTS", scripts())
             .env("PTU_DB", self.path("history.db"))
@@ -95,20 +133,21 @@ impl Place {
         command
     }
 
-    pub fn ptu(&self, arguments: &[&str]) -> Said {
+    pub fn ptu(&self, arguments: &(impl Typed + ?Sized)) -> Said {
         let output = self.command(arguments).output().expect("ptu starts");
         Said::from(output)
     }
 
     /// The one JSON document a question is answered with.
-    pub fn json(&self, arguments: &[&str]) -> Value {
+    pub fn json(&self, arguments: &(impl Typed + ?Sized)) -> Value {
         let said = self.ptu(arguments).exits(0);
         serde_json::from_str(&said.out).expect("one JSON document on stdout")
     }
 
     /// Runs procedures and gives exit code and report.
-    pub fn run(&self, arguments: &[&str]) -> (Said, Value) {
-        let all = [&["run", "--report", "report.json"], arguments].concat();
+    pub fn run(&self, arguments: &(impl Typed + ?Sized)) -> (Said, Value) {
+        let mut all = ["run", "--report", "report.json"].words();
+        all.extend(arguments.words());
         let said = self.ptu(&all);
         assert!(
             self.path("report.json").is_file(),
@@ -282,6 +321,14 @@ pub fn normalised(mut report: Value) -> Value {
     }
     strip(&mut report);
     report
+}
+
+/// Holds a text to words.
+#[track_caller]
+pub fn has(text: &str, words: &[&str]) {
+    for word in words {
+        assert!(text.contains(word), "no \"{word}\"\n{text}");
+    }
 }
 
 #[track_caller]

@@ -141,6 +141,18 @@ impl Journey {
         self.x_m - self.section.stop_m
     }
 
+    #[track_caller]
+    pub fn stops_within(&self, most_m: f64) {
+        let error_m = self.stop_error_m();
+        assert!(error_m.abs() < most_m, "{error_m}");
+    }
+
+    #[track_caller]
+    pub fn knows_its_place_within(&self, most_m: f64) {
+        let error_m = self.position_error_m;
+        assert!(error_m.abs() < most_m, "{error_m}");
+    }
+
     /// Events besides those of a good run.
     pub fn faults(&mut self) -> Vec<&'static str> {
         let usual = ["power_up", "mode_changed", "eb_released"];

@@ -112,6 +112,11 @@ fn diagnosed(dictionary: &Dictionary, seen: &Observation) -> Diagnosis {
     Diagnosis::of(&model, seen)
 }
 
+#[track_caller]
+fn comes_to(found: &Diagnosis, finding: Finding) {
+    assert_eq!(found.finding, finding, "{}", found.conclusion.english);
+}
+
 fn top(diagnosis: &Diagnosis) -> &str {
     &diagnosis.candidates[0].fault
 }
@@ -125,12 +130,7 @@ fn each_fault_of_the_dictionary_is_found() {
         (vec!["a.s2", "b.s1"], Some(241.0), "sensor.dead"),
     ] {
         let found = diagnosed(&dictionary, &run(&fails, t));
-        assert_eq!(
-            found.finding,
-            Finding::Found,
-            "{fault}: {}",
-            found.conclusion.english
-        );
+        comes_to(&found, Finding::Found);
         assert_eq!(top(&found), fault);
         assert!(!found.candidates[0].for_it.is_empty());
         assert_eq!(found.next_check, None);
@@ -174,12 +174,7 @@ fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
 #[test]
 fn two_faults_at_once_are_both_named() {
     let found = diagnosed(&dictionary(), &run(&["a.s1", "a.s2", "b.s1"], Some(641.0)));
-    assert_eq!(
-        found.finding,
-        Finding::TwoFound,
-        "{}",
-        found.conclusion.english
-    );
+    comes_to(&found, Finding::TwoFound);
     let parts: BTreeSet<_> = found.lrus[..2].iter().map(|p| p.lru.as_str()).collect();
     assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
 }
@@ -193,12 +188,7 @@ fn a_part_that_has_failed_beside_one_of_two_others_is_found() {
     let seen = run(&["a.s1", "b.s1", "c.s1"], Some(643.0));
     let assessed = Assessment::of(&model, &seen);
     let found = assessed.diagnosis();
-    assert_eq!(
-        found.finding,
-        Finding::Found,
-        "{}",
-        found.conclusion.english
-    );
+    comes_to(&found, Finding::Found);
     assert!(
         found.conclusion.english.starts_with("replace relay"),
         "{}",
@@ -298,12 +288,7 @@ fn a_fault_in_a_way_not_seen_yet_is_the_part_s_that_the_failed_checks_judge() {
             "{}",
             found.conclusion.english
         );
-        assert_eq!(
-            found.finding,
-            Finding::CannotTell,
-            "{}",
-            found.conclusion.english
-        );
+        comes_to(&found, Finding::CannotTell);
         let text = &found.candidates[0].text;
         assert!(
             text.starts_with("in a way that is not in the dictionary"),
@@ -342,16 +327,11 @@ fn the_shares_of_an_answer_add_up_to_one() {
 fn a_healthy_run_finds_nothing_and_a_short_one_is_not_enough() {
     let dictionary = dictionary();
     let all = diagnosed(&dictionary, &run(&[], Some(240.0)));
-    assert_eq!(all.finding, Finding::NoFault, "{}", all.conclusion.english);
+    comes_to(&all, Finding::NoFault);
     let mut short = run(&[], Some(240.0));
     short.steps.truncate(2);
     let short = diagnosed(&dictionary, &short);
-    assert_eq!(
-        short.finding,
-        Finding::NotEnough,
-        "{}",
-        short.conclusion.english
-    );
+    comes_to(&short, Finding::NotEnough);
     let next = short.next_check.expect("something is left to test");
     assert_eq!(
         next.check,

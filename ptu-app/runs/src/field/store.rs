@@ -159,15 +159,9 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
         source: format!("{LOG_SOURCE}{}", source.endpoint),
         started_at_us: source.from_us,
         app_version: env!("CARGO_PKG_VERSION").into(),
-        scripts_sha256: String::new(),
         unit_config_sha256: source.unit_config_sha256.clone(),
-        injected: None,
         owner: platform::this_process(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     }
 }
 

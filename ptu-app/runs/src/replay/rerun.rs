@@ -241,22 +241,16 @@ fn run_record(
             sw_versions: std::collections::BTreeMap::new(),
         },
         line: setup.line.content.name.clone(),
-        train: String::new(),
         seed: setup.seed,
         operator: rerunning.operator.clone(),
         source: format!("replay of {} on {}", original.id.short(), setup.endpoint),
         started_at_us,
         app_version: env!("CARGO_PKG_VERSION").into(),
         // No script is run.
-        scripts_sha256: String::new(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
         owner: platform::this_process(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     }
 }
 

@@ -14,7 +14,7 @@ const BENCHES: usize = 6;
 #[ignore = "long suite: takes four minutes of real time on a quiet machine"]
 fn a_whole_acceptance_suite_over_pseudo_terminals_passes_in_real_time() {
     let place = Place::new();
-    let planned = list(&place.json(&["run", "--list", "--json"])).to_vec();
+    let planned = list(&place.json("run --list --json")).to_vec();
     let passed: usize = std::thread::scope(|scope| {
         let run = |share: Vec<String>| scope.spawn(move || steps_passed(&share));
         let running: Vec<_> = shared_out(&planned).into_iter().map(run).collect();

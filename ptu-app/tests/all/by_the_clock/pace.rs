@@ -54,7 +54,7 @@ fn a_unit_with_another_configuration_is_told_at_once() {
         .ptu(&["run", "tcms/link", "--unit", &unit.address])
         .exits(3)
         .explains(&["unit configuration", "checksum", "choose"]);
-    let run = &place.json(&["runs", "show", "latest", "--json"])["run"];
+    let run = &place.json("runs show latest --json")["run"];
     assert!(number(&run["wall_time_s"]) < BESIDE_S, "{run}");
 }
 
@@ -129,7 +129,7 @@ fn a_tester_slower_than_the_unit_is_told() {
 fn the_embedded_unit_can_be_run_at_the_wall_clocks_pace() {
     let place = Place::new();
     place.write("short.star", SHORT);
-    let (said, report) = place.run(&["short.star", "--realtime"]);
+    let (said, report) = place.run("short.star --realtime");
     said.exits(0);
     let (bench, wall) = (
         &report["run"]["bench_time_s"],

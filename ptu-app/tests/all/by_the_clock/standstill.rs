@@ -105,12 +105,12 @@ fn killed_in_an_overspeed_step() {
     );
     drop(observer);
 
-    let killed_run = &place.json(&["runs", "list", "--json"])[0];
+    let killed_run = &place.json("runs list --json")[0];
     assert_eq!(killed_run["state"], "interrupted");
     assert!(killed_run["verdict"].is_null(), "{killed_run}");
     assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
     passes(&place, &unit, "tcms/link");
-    let states: Vec<_> = list(&place.json(&["runs", "list", "--json"]))
+    let states: Vec<_> = list(&place.json("runs list --json"))
         .iter()
         .map(|run| text(&run["state"]).to_owned())
         .collect();
@@ -160,9 +160,6 @@ fn killed_in_a_step_of_the_test_board(share: f64) {
         assert!(in_time, "{what} after {after:?}");
     }
     drop(observer);
-    assert_eq!(
-        place.json(&["runs", "list", "--json"])[0]["state"],
-        "interrupted"
-    );
+    assert_eq!(place.json("runs list --json")[0]["state"], "interrupted");
     passes(&place, &unit, "ptu/twc");
 }

@@ -38,13 +38,9 @@ impl Base {
         let record = || {
             record_bad_unit_anew(&place);
             place
-                .ptu(&[
-                    "faults", "repair", "latest", "--part", "eb_relay", "--who", "Kim",
-                ])
+                .ptu("faults repair latest --part eb_relay --who Kim")
                 .exits(0);
-            place
-                .ptu(&["run", "atp/overspeed", "--serial-no", "BAD-1"])
-                .exits(0);
+            place.ptu("run atp/overspeed --serial-no BAD-1").exits(0);
             record_bad_unit_anew(&place);
         };
         record();

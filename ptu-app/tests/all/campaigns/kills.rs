@@ -126,9 +126,7 @@ fn a_sync_that_is_killed_is_taken_up() {
     let time = began.elapsed();
     let (mut killed, mut over, mut notes) = (0, 0, 0);
     for _ in 0..amount(2) {
-        place
-            .ptu(&["runs", "note", "latest", "one more", "--who", "Kim"])
-            .exits(0);
+        place.ptu("runs note latest 'one more' --who Kim").exits(0);
         let output = killed_after(time.mul_f64(0.7 * random.unit()), place.command(&sync));
         match output.status.signal() {
             Some(signal) if signal == Signal::KILL.as_raw() => killed += 1,
@@ -136,9 +134,9 @@ fn a_sync_that_is_killed_is_taken_up() {
         }
         let synced = place.json(&sync);
         assert_eq!(synced["waiting"], 0, "{synced}");
-        let shown = ["runs", "show", "latest", "--json"];
-        let here = place.json(&shown);
-        let there = place.json(&[&shown[..], &["--db", &server]].concat());
+        let shown = "runs show latest --json";
+        let here = place.json(shown);
+        let there = place.json(&format!("{shown} --db {server}"));
         assert_eq!(here, there, "in the file and on the server");
         notes += 1;
         assert_eq!(list(&here["notes"]).len(), notes);

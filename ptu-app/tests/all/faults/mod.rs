@@ -232,7 +232,7 @@ fn procedures_of(mode: &FaultMode) -> BTreeSet<&'static str> {
 
 #[test]
 fn the_tables_name_no_fault_that_is_gone() {
-    let catalogue = Place::new().json(&["catalog", "faults", "--json"]);
+    let catalogue = Place::new().json("catalog faults --json");
     let keys = [
         ("id", "text"),
         ("part", "text"),
@@ -295,7 +295,7 @@ fn every_row_of_the_protection_table_is_run() {
 #[test]
 fn two_faults_at_once_are_both_seen() {
     let place = Place::new();
-    let (said, report) = place.run(&["--inject", "tra.dead,rs485_link.transmitter_dead"]);
+    let (said, report) = place.run("--inject tra.dead,rs485_link.transmitter_dead");
     said.exits(1);
     assert_eq!(
         report["run"]["injected"],

@@ -157,7 +157,7 @@ pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     let arguments: Vec<_> = faulty.chain(procedures.iter().copied()).collect();
     let (said, report) = place.run(&arguments);
     assert!(!said.err.contains("panicked"), "{}", said.all());
-    let diagnosis = place.json(&["diagnose", "latest", "--json"]);
+    let diagnosis = place.json("diagnose latest --json");
     let first = &diagnosis["candidates"][0]["part"];
     let path = place.path("history.db");
     let store = Store::open(&path, clock::open_options()).expect("the program's database");

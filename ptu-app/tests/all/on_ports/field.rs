@@ -64,7 +64,7 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
         "an entry does not tell of it"
     );
 
-    let runs = depot.json(&["runs", "list", "--json"]);
+    let runs = depot.json("runs list --json");
     let run = &list(&runs)[0];
     assert_eq!(run["source"], format!("log of {}", unit.address));
     assert_eq!(
@@ -72,7 +72,7 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
         (&"failed".into(), &"Kim".into())
     );
     assert_eq!(run["step_count"], 0);
-    depot.ptu(&["runs", "show", "latest"]).exits(0);
+    depot.ptu("runs show latest").exits(0);
 
     let second = import(&depot, &unit, &[]);
     assert_eq!(number(&second["imported"]), 0.0, "{second}");
@@ -145,15 +145,15 @@ fn without_a_unit_nothing_is_stored() {
     let earlier = place.recorded_run();
     // A free port might be taken by another test.
     place
-        .ptu(&["faults", "import", "--unit", "tcp:127.0.0.1:1"])
+        .ptu("faults import --unit tcp:127.0.0.1:1")
         .exits(3)
         .explains(&["127.0.0.1:1", "check that the unit is served there"]);
     place
-        .ptu(&["faults", "import", "--unit", "sim"])
+        .ptu("faults import --unit sim")
         .exits(2)
         .explains(&["simulated unit", "--unit"]);
     place
-        .ptu(&["faults", "import", "--unit", "lockstep:/dev/pts/0"])
+        .ptu("faults import --unit lockstep:/dev/pts/0")
         .exits(2)
         .explains(&["lock step", "--unit serial:PATH"]);
     assert_eq!(place.run_ids(), [earlier]);

@@ -79,7 +79,7 @@ fn blames_nobody(address: &str, words: &[&str]) {
         .ptu(&["run", "twc/exchange", "--unit", address])
         .exits(3)
         .explains(words);
-    let run = place.json(&["runs", "show", "latest", "--json"]);
+    let run = place.json("runs show latest --json");
     assert_eq!(run["run"]["verdict"], "error");
     assert!(list(&run["faults"]).is_empty(), "{}", run["faults"]);
 }

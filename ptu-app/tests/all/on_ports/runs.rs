@@ -69,7 +69,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
     let mut run = terminal.start(&place.command(&arguments));
     let begun = Instant::now();
     let armed = |place: &Place| {
-        let shown = place.ptu(&["runs", "show", "latest", "--json"]);
+        let shown = place.ptu("runs show latest --json");
         let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
         run["steps"]
             .as_array()
@@ -91,7 +91,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
         }
         matches!(message, Message::Status(_))
     });
-    let run = &place.json(&["runs", "list", "--json"])[0];
+    let run = &place.json("runs list --json")[0];
     assert_eq!(run["verdict"], "aborted", "{run}");
     assert_eq!(run["state"], "finished", "{run}");
 }
@@ -126,7 +126,7 @@ fn over_tcp_a_procedure_passes_and_the_next_tester_is_let_in() {
     let unit = Unit::on_tcp(&["--serial-no", "TCP-7"]);
     let place = Place::new();
     passes(&place, &unit, "tcms/link");
-    let run = &place.json(&["runs", "list", "--json"])[0];
+    let run = &place.json("runs list --json")[0];
     assert_eq!(run["unit_serial"], "TCP-7");
     assert_eq!(run["source"], unit.address);
     let other = ["tcms/link", "--serial-no", "TCP-8"];

@@ -70,7 +70,7 @@ fn a_unit_that_never_drove_has_no_run_to_pull() {
     );
     assert_eq!(place.run_ids().len(), 0);
     place
-        .ptu(&["record", "pull", "--unit", "sim"])
+        .ptu("record pull --unit sim")
         .exits(2)
         .explains(&["simulated unit"]);
 }

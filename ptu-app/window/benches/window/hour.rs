@@ -67,20 +67,10 @@ pub fn write(file: &Path) {
         },
         line: "line8".into(),
         seed: 1,
-        operator: String::new(),
-        train: String::new(),
         source: "sim".into(),
         started_at_us: clock::now_us(),
         app_version: env!("CARGO_PKG_VERSION").into(),
-        scripts_sha256: String::new(),
-        unit_config_sha256: String::new(),
-        injected: None,
-        owner: String::new(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     };
     let mut writer = RunWriter::begin(&store, &record).expect("a run");
     let fault = |row: i64| FaultRecord {
@@ -90,9 +80,7 @@ pub fn write(file: &Path) {
         severity: "major".into(),
         at_us: clock::now_us(),
         bench_us: row * PERIOD_US,
-        step_index: None,
-        message: String::new(),
-        freeze: Vec::new(),
+        ..FaultRecord::default()
     };
     let rows = [9_000, 30_000, i64::from(TRIGGER)];
     let occurrences: Vec<_> = rows

@@ -35,7 +35,7 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
         window.click(words.import);
         let added = words.imported.split("{runs}").next().unwrap_or_default();
         window.wait_for_part(added);
-        let runs = window.place.json(&["runs", "list", "--json"]);
+        let runs = window.place.json("runs list --json");
         assert_eq!(list(&runs).len(), 2, "{runs}");
 
         let copy = window.place.text_path("copy.db");
@@ -82,7 +82,7 @@ fn an_import_ends_when_it_is_stopped() {
     window.click(words.memory.stop);
     holder.execute_batch("ROLLBACK").expect("let go");
     window.wait_for(words.care.nothing_done);
-    let runs = window.place.json(&["runs", "list", "--json"]);
+    let runs = window.place.json("runs list --json");
     assert_eq!(list(&runs).len(), 1, "{runs}");
 }
 

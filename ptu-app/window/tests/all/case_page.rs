@@ -143,7 +143,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     let proof = latest(&window);
     assert_eq!(proof["run"]["verdict"], "passed");
     assert_eq!(list(&proof["notes"])[0]["who"], "Kim", "{}", proof["notes"]);
-    let faults = window.place.json(&["faults", "list", "--json"]);
+    let faults = window.place.json("faults list --json");
     assert!(!list(&faults).is_empty());
     for fault in list(&faults) {
         assert_eq!(fault["state"], "verified", "{fault}");
@@ -248,7 +248,7 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     counted.click(case.prove);
     counted.window.wait_for(case.record_repair);
     assert_eq!(latest(&counted.window)["run"]["verdict"], "failed");
-    let faults = counted.window.place.json(&["faults", "list", "--json"]);
+    let faults = counted.window.place.json("faults list --json");
     assert!(
         list(&faults)
             .iter()

@@ -102,7 +102,7 @@ fn a_korean_comparison_has_no_english_sentence() {
 #[test]
 fn runs_that_are_hard_to_compare_are_compared_and_it_is_said() {
     let (place, [before, _]) = before_and_after();
-    place.ptu(&["run", "tcms/link", "--line", "line6"]).exits(0);
+    place.ptu("run tcms/link --line line6").exits(0);
     let said = place
         .ptu(&["runs", "compare", &before, "latest"])
         .exits(0)
@@ -130,7 +130,7 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         let report = &words.report;
         let (place, [_, after]) = before_and_after();
         // A run of another unit is not offered.
-        place.ptu(&["run", "tcms/link"]).exits(0);
+        place.ptu("run tcms/link").exits(0);
         let settings = Settings {
             page: Page::Report,
             language,

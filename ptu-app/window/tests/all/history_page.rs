@@ -136,7 +136,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     window.click(words.procedures.run);
     window.wait_for_part("교체 대상: 비상제동 계전기 (eb_relay, ");
     window.wait_for_part("EB 반응 시간");
-    let report = window.place.json(&["runs", "show", "latest", "--json"]);
+    let report = window.place.json("runs show latest --json");
     let steps = report["steps"].as_array().expect("steps").iter();
     let measured = steps.flat_map(|step| step["measurements"].as_array().expect("a list"));
     let mut names: Vec<_> = measured.filter_map(|of| of["name"].as_str()).collect();
@@ -168,7 +168,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
 #[test]
 fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
-    let faults = place.json(&["faults", "list", "--json"]);
+    let faults = place.json("faults list --json");
     let part = |fault: &Value| fault["part"].as_str().expect("a part").to_owned();
     let faults = faults.as_array().expect("faults");
     let other = faults
@@ -208,7 +208,7 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
 #[test]
 fn filters_leave_what_they_say_in_korean_too() {
     let place = with_a_run("tra.dead", &["ato/markers"]);
-    let of = place.json(&["faults", "list", "--json"]);
+    let of = place.json("faults list --json");
     let of = of.as_array().map_or(0, Vec::len);
     let mut window = on(place, Page::Faults, Language::Korean);
     window.wait_for(&format!("고장 {of}건 중 {of}건"));
@@ -241,14 +241,14 @@ fn the_window_says_what_the_command_line_says() {
     for (run, code, begins) in runs {
         let place = Place::new();
         place.ptu(&[&["run"], run].concat()).exits(code);
-        let answer = place.json(&["diagnose", "latest", "--json"]);
+        let answer = place.json("diagnose latest --json");
         let said = |key: &str| answer[key].as_str().expect("a sentence").to_owned();
         assert!(
             said("conclusion").contains(begins),
             "{}",
             said("conclusion")
         );
-        let said_by_text = place.ptu(&["diagnose", "latest"]).exits(0);
+        let said_by_text = place.ptu("diagnose latest").exits(0);
         assert!(said_by_text.out.contains(&said("conclusion")));
         let mut window = on(place, Page::Diagnosis, Language::English);
         window.wait_for(&said("conclusion"));
@@ -271,7 +271,7 @@ fn the_window_says_what_the_command_line_says() {
 #[test]
 fn three_parts_are_shown_and_the_other_candidates_on_demand() {
     let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
-    let answer = place.json(&["diagnose", "latest", "--json"]);
+    let answer = place.json("diagnose latest --json");
     let candidates = answer["candidates"].as_array().expect("candidates").clone();
     assert!(candidates.len() > 3, "{answer:#}");
     let mut window = on(place, Page::Diagnosis, Language::English);
@@ -299,7 +299,7 @@ fn three_parts_are_shown_and_the_other_candidates_on_demand() {
 fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
     // A run of one procedure that fails leaves more than one part to blame.
     let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
-    let answer = place.json(&["diagnose", "latest", "--json"]);
+    let answer = place.json("diagnose latest --json");
     let next = answer["next_check"]["step"]
         .as_str()
         .expect("a next check")
@@ -315,7 +315,7 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
         window.app().page() == Page::Procedures
     });
     window.wait_for_part("Run over: ");
-    let run = window.place.json(&["runs", "show", "latest", "--json"]);
+    let run = window.place.json("runs show latest --json");
     let step = &run["steps"][0];
     let ran = format!(
         "{}: {}",
@@ -331,7 +331,7 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
 #[test]
 fn a_double_click_changes_a_fault_once() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
-    let faults = place.json(&["faults", "list", "--part", "eb_relay", "--json"]);
+    let faults = place.json("faults list --part eb_relay --json");
     let id = faults[0]["id"].as_str().expect("an id").to_owned();
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");

@@ -59,7 +59,7 @@ fn sheets_and_reasons_have_no_internal_names() {
     for fault in FAULTS {
         let place = Place::new();
         place.ptu(&["run", "--inject", fault]).exits(1);
-        let answer = place.json(&["diagnose", "latest", "--json"]);
+        let answer = place.json("diagnose latest --json");
         let candidates = answer["candidates"].as_array().expect("candidates");
         let reasons = candidates.iter().flat_map(|one| {
             let both = ["for", "against"].map(|key| one[key].as_array().expect("reasons"));

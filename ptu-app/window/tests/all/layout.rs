@@ -62,15 +62,8 @@ fn an_operator_has_the_pages_in_one_line_in_the_usual_window() {
 fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
     let place = Place::new();
     // In a train whose distance is known.
-    let in_train = [
-        "run",
-        "tcms/link",
-        "--serial-no",
-        "OLD-1",
-        "--train-no",
-        "612",
-    ];
-    place.ptu(&in_train).exits(0);
+    let in_train = "run tcms/link --serial-no OLD-1 --train-no 612";
+    place.ptu(in_train).exits(0);
     record_bad_unit(&place);
     let words = language.words();
     let mut settings = settings(Page::Faults);

@@ -245,7 +245,7 @@ fn notes_are_written_and_shown_on_the_command_line_and_in_reports() {
     let note = ["runs", "note", &run, "=HYPERLINK(\"x\")", "--who", "김"];
     place.ptu(&note).exits(0);
     place.ptu(&["runs", "note", &run, " "]).exits(2);
-    place.ptu(&["runs", "note", "ffffffff", "x"]).exits(2);
+    place.ptu("runs note ffffffff x").exits(2);
     let said = place.ptu(&["runs", "show", &run]).exits(0);
     assert!(
         said.out.contains("=HYPERLINK") && said.out.contains('김'),

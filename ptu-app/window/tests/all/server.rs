@@ -85,9 +85,7 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
     let place = Place::new();
     record_bad_unit(&place);
     let fault = text(&relay_fault(&place)["id"]).to_owned();
-    let repair = [
-        "faults", "repair", &fault, "--part", "eb_relay", "--new", "SN-77", "--who", "Kim",
-    ];
+    let repair = format!("faults repair {fault} --part eb_relay --new SN-77 --who Kim");
     place.ptu(&repair).exits(0);
     place.ptu(&["db", "sync", &server]).exits(0);
     // A unit is not connected to a window that could not record what it does.
@@ -135,6 +133,6 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
         assert!(!window.shows(words.care.sync));
     }
     let faults = place.json(&["faults", "list", "--json", "--db", &server]);
-    let here = place.json(&["faults", "list", "--json"]);
+    let here = place.json("faults list --json");
     assert_eq!(faults, here, "nothing was written");
 }

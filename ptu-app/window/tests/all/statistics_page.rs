@@ -19,19 +19,9 @@ fn depot() -> Place {
         let run = ["run", procedure, "--serial-no", unit, "--inject", mode];
         place.ptu(&run).exits(1);
     }
-    let of_relay = [
-        "faults",
-        "list",
-        "--cause",
-        "eb_relay",
-        "--serial-no",
-        "A-1",
-        "--json",
-    ];
-    let fault = text(&list(&place.json(&of_relay))[0]["id"]).to_owned();
-    let repair = [
-        "faults", "repair", &fault, "--part", "eb_relay", "--new", "SN-1", "--who", "Kim",
-    ];
+    let of_relay = "faults list --cause eb_relay --serial-no A-1 --json";
+    let fault = text(&list(&place.json(of_relay))[0]["id"]).to_owned();
+    let repair = format!("faults repair {fault} --part eb_relay --new SN-1 --who Kim");
     place.ptu(&repair).exits(0);
     place
 }
@@ -54,7 +44,7 @@ fn bar(words: &Words, name: &str, (count, share, sum): (u64, u64, u64)) -> Strin
 fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
     for language in Language::ALL {
         let place = depot();
-        let stats = place.json(&["faults", "stats", "--json"]);
+        let stats = place.json("faults stats --json");
         // Of each cause its cases, their share and that of all so far, in the order of the list.
         let cases = |row: &Value| row["faults"].as_u64().expect("a number");
         let all: u64 = list(&stats).iter().map(cases).sum();
@@ -89,9 +79,7 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
         window.wait_for_part(&format!("{antenna} · "));
 
         window.page(Page::Statistics);
-        let month = window
-            .place
-            .json(&["faults", "stats", "--by", "month", "--json"]);
+        let month = window.place.json("faults stats --by month --json");
         let month = list(&month).last().expect("this month").clone();
         let of_month = format!("{}: {}", text(&month["key"]), month["faults"]);
         window.click(&of_month);
@@ -159,7 +147,7 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
         window.click(words.life.show);
         window.wait_for_part(&fill(words.life.unit, &[("serial", &"A-1")]));
         window.wait_for(words.life.stored);
-        let lives = window.place.json(&["faults", "life", "A-1", "--json"]);
+        let lives = window.place.json("faults life A-1 --json");
         let events = list(&lives[0]["events"]).len();
         let told = fill(
             words.life.span,
@@ -237,15 +225,7 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
             .exits(1);
         let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
         let file = place.write("odometers.csv", readings);
-        let stats = [
-            "faults",
-            "stats",
-            "--by",
-            "month",
-            "--distances",
-            &file,
-            "--json",
-        ];
+        let stats = format!("faults stats --by month --distances {file} --json");
         let mut window = window(place, language);
         window.wait_for(said.no_distances);
         window.write(said.odometers, &file);

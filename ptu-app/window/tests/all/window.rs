@@ -368,7 +368,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
         window.shows_part("The run was not begun") || window.shows_part("could not be recorded")
     });
     drop(lock);
-    let before = window.place.json(&["runs", "list", "--json"]);
+    let before = window.place.json("runs list --json");
     window.click("Run");
     window.until("one more run", |window| {
         let run = window.app().units().chosen().run.as_ref();
@@ -430,7 +430,7 @@ fn two_units_are_tested_side_by_side() {
         let mut units = window.app().units().iter();
         units.all(|unit| unit.run.as_ref().is_some_and(|run| run.id().is_some()))
     });
-    let runs = window.place.json(&["runs", "list", "--json"]);
+    let runs = window.place.json("runs list --json");
     assert_eq!(runs.as_array().map(Vec::len), Some(2));
     // Which unit is said of each.
     window.wait_for_part("SIM-0001: Run over: ");

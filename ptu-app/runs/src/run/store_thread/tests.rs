@@ -16,21 +16,10 @@ fn record() -> RunRecord {
             sw_versions: BTreeMap::new(),
         },
         line: "line8".into(),
-        train: String::new(),
         seed: 1,
-        operator: String::new(),
         source: "sim".into(),
         started_at_us: 0,
-        app_version: String::new(),
-        scripts_sha256: String::new(),
-        unit_config_sha256: String::new(),
-        injected: None,
-        owner: String::new(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     }
 }
 

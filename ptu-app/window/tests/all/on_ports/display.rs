@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::common::display::{Display, Picture, Shown};
-use crate::common::{Place, list};
+use crate::common::{Place, has, list};
 use ptu_options::Page;
 use ptu_runs::run::BenchChoice;
 use ptu_window::Settings;
@@ -29,7 +29,7 @@ const AGAIN: Duration = Duration::from_secs(3);
 #[test]
 fn every_page_is_shown_on_a_real_display_in_both_languages() {
     let place = Place::new();
-    let failed = place.ptu(&["run", "atp", "--inject", "eb_relay.slow"]);
+    let failed = place.ptu("run atp --inject eb_relay.slow");
     assert_eq!(failed.code, Some(1), "{}", failed.err);
     let display = Display::new(&place);
     for language in ["en", "ko"] {
@@ -91,13 +91,13 @@ fn a_window_closed_in_mid_run_leaves_a_closed_record() {
                 display.tool(&["mousemove", x, y, "click", "1"]);
                 clicked.set(Some(Instant::now()));
             }
-            place.ptu(&["runs", "show", "latest"]).code == Some(0)
+            place.ptu("runs show latest").code == Some(0)
         });
         match told_to_end {
             Some(signal) => shown.tell(signal),
             None => shown.close(),
         }
-        let runs = place.json(&["runs", "list", "--json"]);
+        let runs = place.json("runs list --json");
         let [run] = list(&runs) else {
             panic!("one run: {runs}")
         };
@@ -122,10 +122,7 @@ fn without_a_display_it_says_so_and_ends() {
     // Without a verb it is the window, too.
     for arguments in [&["gui"][..], &[]] {
         let said = say(arguments, None);
-        assert!(
-            said.contains("no display") && said.contains("ptu run"),
-            "{said}"
-        );
+        has(&said, &["no display", "ptu run"]);
         let said = say(arguments, Some(":4711"));
         assert!(said.contains("cannot open a window"), "{said}");
     }

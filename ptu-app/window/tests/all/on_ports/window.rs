@@ -73,7 +73,7 @@ fn the_whole_way(language: Language) {
         Language::English => "replace the EB relay (eb_relay, ",
         Language::Korean => "교체 대상: 비상제동 계전기 (eb_relay, ",
     });
-    let run = window.place.json(&["runs", "show", "latest", "--json"]);
+    let run = window.place.json("runs show latest --json");
     for step in run["steps"].as_array().expect("steps") {
         if step["procedure"] == "ptu/identity" {
             assert_eq!(step["verdict"], "passed", "{step}");
