@@ -2,12 +2,12 @@
 //! programs take, and those in code blocks marked `sh run` end with the exit code that stands behind them.
 
 mod command_line;
+mod installed;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::Place;
 use command_line::{CommandLine, words};
 use ptu_report::words::Language;
 
@@ -197,26 +197,6 @@ fn named_path(code: &str) -> Option<&str> {
         .then_some(code)
 }
 
-/// Runs the lines of a block one after the other, in a folder and with a database of their own.
-fn run(document: &Document, block: &Block<'_>) -> Vec<String> {
-    let place = Place::new();
-    std::os::unix::fs::symlink(crate::common::scripts(), place.path("scripts")).expect("a link");
-    let mut wrong = Vec::new();
-    for (number, line) in &block.lines {
-        let command = CommandLine::of(line);
-        let Some((program, arguments)) = command.words.split_first() else {
-            continue;
-        };
-        assert_eq!(program, "ptu", "{}: only ptu is run", document.at(*number));
-        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let said = place.ptu(&arguments);
-        if said.code != Some(command.exit) || said.err.contains("panicked") {
-            wrong.push(format!("{}: {line}\n{}", document.at(*number), said.all()));
-        }
-    }
-    wrong
-}
-
 #[track_caller]
 fn none(wrong: &[String]) {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
@@ -301,32 +281,6 @@ fn every_command_line_is_one_that_the_programs_take() {
     }
     none(&wrong);
     assert!(read > 100, "{read} command lines");
-}
-
-#[test]
-fn every_command_line_marked_to_be_run_ends_as_it_says() {
-    let guides = Document::guides();
-    let (mut wrong, mut ran) = (Vec::new(), 0);
-    std::thread::scope(|scope| {
-        let runs = guides.iter().map(|document| {
-            let blocks = document.blocks().into_iter();
-            let blocks: Vec<_> = blocks.filter(|block| block.info == RUN).collect();
-            ran += blocks.len();
-            scope.spawn(move || {
-                blocks
-                    .iter()
-                    .flat_map(|block| run(document, block))
-                    .collect()
-            })
-        });
-        let runs: Vec<_> = runs.collect();
-        for run in runs {
-            let failed: Vec<String> = run.join().expect("it is run");
-            wrong.extend(failed);
-        }
-    });
-    none(&wrong);
-    assert!(ran > 5, "{ran} blocks");
 }
 
 /// Goal: who reads of a button finds it. Method: what stands in bold begins a text of the window.
