@@ -7,7 +7,7 @@ use super::csv::{self, beside};
 use super::part::TracePart;
 use super::{mcap_write, parquet};
 use ptu_runs::failure::Failure;
-use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
+use ptu_runs::new_file::{NewFile, cannot_write, kind};
 
 /// What a trace is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,20 +44,16 @@ impl Format {
 /// The file cannot be written, or the trace cannot be read.
 pub fn export(chosen: &TracePart<'_>, to: &Path, force: bool) -> Result<(), Failure> {
     let format = Format::of(to)?;
-    let begin = |file: &Path, kind: Kind<'_>| match force {
-        true => NewFile::begin(file, kind),
-        false => NewFile::begin_new(file, kind),
+    // With `force` whatever is there is replaced, but for a database.
+    let begin = match force {
+        true => NewFile::begin,
+        false => NewFile::begin_new,
     };
-    let kind = match format {
-        Format::Csv => kind::CSV,
-        Format::Parquet => kind::PARQUET,
-        Format::Mcap => kind::MCAP,
-    };
-    let mut file = begin(to, kind)?;
+    let mut file = begin(to, kind::OWN)?;
     match format {
         Format::Csv => {
             let beside = beside(to);
-            let mut description = begin(&beside, &["{\"@context\":"])?;
+            let mut description = begin(&beside, kind::OWN)?;
             let name = to.file_name().unwrap_or_default().to_string_lossy();
             let document = csv::description(&name, &chosen.about);
             writeln!(description, "{document:#}").map_err(|error| cannot_write(&beside, &error))?;
