@@ -79,6 +79,7 @@ pub use values::record::{
     CauseRecord, FaultRecord, FreezeSample, LOG_SOURCE, MeasurementRecord, RepairRecord, RunEnd,
     RunRecord, ScriptRecord, StepRecord, UnitRecord, Verdict,
 };
+pub use values::step_counts::{StepCounter, StepCounts, base_name, rank};
 pub use values::text_enum::UnknownWord;
 pub use values::trace_place::TracePlace;
 pub use values::withdrawal_error::WithdrawalError;

@@ -1,6 +1,6 @@
 //! The console during a run: progress, and the table of verdicts at its end.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -8,19 +8,19 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
-use fault_db::RunDetail;
+use fault_db::{RunDetail, StepCounts, base_name};
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
 use crate::operator::HOW_TO_ANSWER;
-use ptu_report::coverage_text;
 use ptu_report::limits::short;
 use ptu_report::words::Language;
-use ptu_runs::coverage::Coverage;
+use ptu_report::{count_short, coverage_text};
+use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::failure::Failure;
 use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_runs::stdio;
-use ptu_runs::stored::{of_procedure, outside_of, standing, was_repeated};
+use ptu_runs::stored::{by_procedure, of_procedure, standing, was_repeated};
 use ptu_runs::table::{Table, cell};
 
 /// How often the bar's clock moves while nothing happens.
@@ -244,17 +244,18 @@ fn repeated(run: &RunDetail) -> String {
 
 /// Why steps were skipped, each reason once.
 fn skipped(run: &RunDetail) -> String {
-    let mut reasons = BTreeMap::<&str, usize>::new();
+    let mut reasons = BTreeMap::<&str, BTreeSet<(&str, &str)>>::new();
     let skipped = standing(&run.steps);
     for step in skipped.filter(|step| step.verdict == fault_db::Verdict::Skipped) {
-        *reasons.entry(&step.message).or_default() += 1;
+        let steps = reasons.entry(&step.message).or_default();
+        steps.insert((&step.procedure, base_name(&step.name)));
     }
     if reasons.is_empty() {
         return String::new();
     }
     let mut table = Table::new(&["SKIPPED STEPS", "WHY"]);
     for (reason, steps) in reasons {
-        table.row([steps.to_string(), reason.to_owned()]);
+        table.row([steps.len().to_string(), reason.to_owned()]);
     }
     format!("\n\n{}", table.render())
 }
@@ -320,27 +321,17 @@ fn not_passed(run: &RunDetail) -> String {
 
 fn procedures(run: &RunDetail) -> Table {
     let mut table = Table::new(&["PROCEDURE", "VERDICT", "STEPS", "PASSED", "BENCH TIME"]);
-    let mut steps = run.steps.as_slice();
-    while let Some(first) = steps.first() {
-        let end = steps
-            .iter()
-            .position(|s| s.procedure != first.procedure)
-            .unwrap_or(steps.len());
-        let (mine, rest) = steps.split_at(end);
-        let of_script = standing(mine).filter(|s| outside_of(s).is_none()).count();
-        let passed = mine
-            .iter()
-            .filter(|s| s.verdict == fault_db::Verdict::Passed)
-            .count();
+    for (procedure, mine) in by_procedure(&run.steps) {
+        let counts = StepCounts::of(mine.iter().copied());
+        let verdict = of_procedure(mine.iter().copied(), run.run.verdict);
         let time: i64 = mine.iter().map(|step| step.bench_time_us).sum();
         table.row([
-            first.procedure.clone(),
-            of_procedure(mine, run.run.verdict).as_str().into(),
-            of_script.to_string(),
-            passed.to_string(),
+            procedure.to_owned(),
+            verdict.as_str().into(),
+            counts.planned.to_string(),
+            counts.passed.to_string(),
             format!("{:.1} s", time as f64 / 1e6),
         ]);
-        steps = rest;
     }
     table
 }
@@ -355,7 +346,7 @@ fn summary(run: &RunDetail) -> String {
         "run {}  unit {}  {} steps, {} faults: {}\nbench time {bench_s:.1} s in {wall_s:.2} s{continued}",
         run.run.id.short(),
         display_text::line(&run.run.unit_serial),
-        Coverage::of_run(&run.steps).of,
+        count_short(&counts_of(&run.run)),
         run.faults.len(),
         verdict_word(run)
     )
@@ -368,7 +359,7 @@ fn verdict_word(run: &RunDetail) -> &'static str {
 
 /// The first line, where steps were skipped.
 fn part(run: &RunDetail) -> String {
-    let coverage = coverage_text(&Coverage::of_run(&run.steps), Language::English.words());
+    let coverage = coverage_text(&Coverage::of_run(run), Language::English.words());
     coverage.map_or_else(String::new, |part| {
         format!("{}: {part}\n\n", verdict_word(run))
     })

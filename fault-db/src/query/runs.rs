@@ -19,6 +19,7 @@ use crate::signature::{Statement, signature_of_run};
 use crate::store::Store;
 use crate::values::fault_state::FaultState;
 use crate::values::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
+use crate::values::step_counts::{COUNTS_OF_RUN, StepCounts, counts_of_text};
 use crate::values::text_enum::text_enum;
 
 text_enum! {
@@ -101,10 +102,8 @@ pub struct RunSummary {
     pub symptom: Option<String>,
     /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
-    /// Steps recorded, and what failed outside them.
-    pub steps: u32,
-    /// Of these, what failed, could not be tested or was stopped.
-    pub steps_not_passed: u32,
+    /// What its steps came to, of those that it has a result of; how many were due, its evidence may say.
+    pub recorded: StepCounts,
     /// Number of distinct faults seen.
     pub faults: u32,
 }
@@ -159,14 +158,14 @@ pub struct RunFault {
     pub trace_id: Option<Id>,
 }
 
+/// Of runs `r`, where [`COUNTS_OF_RUN`] stands for itself.
 const SELECT_RUN: &str = "
     SELECT r.id, u.serial, u.kind, u.config_name, r.line, r.seed, r.operator, r.source,
         r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
         r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
-        (SELECT count(*) FROM step s WHERE s.run = r.seq),
-        (SELECT count(*) FROM step s WHERE s.run = r.seq AND s.verdict IN ('failed', 'error', 'inconclusive', 'aborted')),
+        (COUNTS_OF_RUN), r.seq,
         (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.seq, r.train, r.continues, r.connection, r.symptom, r.evidence
+        r.train, r.continues, r.connection, r.symptom, r.evidence
     FROM run r JOIN unit u ON u.seq = r.unit";
 
 impl Store {
@@ -184,7 +183,7 @@ impl Store {
         conditions.add("r.started_at_us < ?", filter.until_us);
         let order = "ORDER BY r.started_at_us DESC, r.seq DESC";
         let limit = limit(filter.limit);
-        let sql = format!("{SELECT_RUN} {} {order} {limit}", conditions.sql());
+        let sql = format!("{} {} {order} {limit}", select_runs(), conditions.sql());
         self.select("listing runs", &sql, conditions.values(), |row| {
             self.summary(row)
         })
@@ -193,8 +192,8 @@ impl Store {
     /// One run with its steps, measurements, faults and notes.
     pub fn run(&self, id: Id) -> Result<RunDetail, StoreError> {
         const DOING: &str = "reading a run";
-        let select = format!("{SELECT_RUN} WHERE r.id = ?1");
-        let row = |row: Row<'_>| Ok((self.summary(row)?, row.get::<i64>(21)?));
+        let select = format!("{} WHERE r.id = ?1", select_runs());
+        let row = |row: Row<'_>| Ok((self.summary(row)?, row.get::<i64>(19)?));
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
         let rest = || -> SqlResult<_> {
@@ -360,7 +359,7 @@ impl Store {
             unit_kind: row.get(2)?,
             unit_config_name: row.get(3)?,
             line: row.get(4)?,
-            train: row.get(22)?,
+            train: row.get(21)?,
             seed: row.get::<i64>(5)?.cast_unsigned(),
             operator: row.get(6)?,
             source: row.get(7)?,
@@ -374,13 +373,16 @@ impl Store {
             scripts_sha256: row.get(15)?,
             unit_config_sha256: row.get(16)?,
             injected: row.get(17)?,
-            continues: row.get(23)?,
-            connection: row.get(24)?,
-            symptom: row.get(25)?,
-            evidence: row.get(26)?,
-            steps: row.get(18)?,
-            steps_not_passed: row.get(19)?,
+            continues: row.get(22)?,
+            connection: row.get(23)?,
+            symptom: row.get(24)?,
+            evidence: row.get(25)?,
+            recorded: counts_of_text(row.get(18)?),
             faults: row.get(20)?,
         })
     }
+}
+
+fn select_runs() -> String {
+    SELECT_RUN.replace("COUNTS_OF_RUN", COUNTS_OF_RUN)
 }

@@ -36,7 +36,13 @@ fn a_finished_run_reads_back_as_recorded() {
     assert_eq!(detail.run.seed, u64::MAX - 3);
     assert_eq!(detail.run.verdict, Some(Verdict::Failed));
     assert_eq!(detail.run.state, RunState::Finished);
-    assert_eq!((detail.run.steps, detail.run.steps_not_passed), (2, 1));
+    assert_eq!(
+        (
+            detail.run.recorded.planned,
+            detail.run.recorded.not_passed()
+        ),
+        (2, 1)
+    );
     assert_eq!(detail.run.injected.as_deref(), Some("atp.rx.dead"));
     assert_eq!(detail.scripts, record.scripts);
     assert_eq!(detail.steps[1].measurements[0].value, Some(0.42));
@@ -70,7 +76,7 @@ fn a_killed_run_is_interrupted_and_keeps_its_fault() {
     let run = &runs(&killed)[0];
     assert_eq!((run.state, run.verdict), (RunState::Interrupted, None));
     assert_eq!(
-        (run.steps, run.faults),
+        (run.recorded.planned, run.faults),
         (1, 1),
         "the fault took the waiting step along"
     );
@@ -89,7 +95,10 @@ fn a_dropped_writer_writes_its_buffered_steps() {
     writer.step(step(0)).expect("kept");
     drop(writer);
     let runs = store.runs(&RunFilter::default()).expect("listed");
-    assert_eq!((runs[0].steps, runs[0].state), (1, RunState::Interrupted));
+    assert_eq!(
+        (runs[0].recorded.planned, runs[0].state),
+        (1, RunState::Interrupted)
+    );
 }
 
 /// Goal: two programs that start together on a new file both get it. Method: many new files, since
@@ -142,7 +151,9 @@ fn two_runs_write_one_file_at_the_same_time() {
     let store = open(&path);
     let runs = store.runs(&RunFilter::default()).expect("listed");
     assert_eq!(
-        runs.iter().map(|run| run.steps).collect::<Vec<_>>(),
+        runs.iter()
+            .map(|run| run.recorded.planned)
+            .collect::<Vec<_>>(),
         [STEPS, STEPS]
     );
     let faults = store.faults(&FaultFilter::default()).expect("listed");
@@ -188,7 +199,7 @@ fn a_full_disk_is_an_error_and_loses_nothing() {
     assert_eq!(reader.check().expect("checked").problems, []);
     let run = reader.run(id).expect("kept");
     assert_eq!(
-        run.run.steps + waiting,
+        run.run.recorded.planned + waiting,
         kept + 1,
         "each step is written or waits"
     );

@@ -1,32 +1,57 @@
-//! How much of what was chosen was run, in words: a verdict of a part of the suite says so in its first line.
+//! How much of what was due was run, in words: every surface that tells a count of a run tells this one.
 
+use fault_db::StepCounts;
 use ptu_runs::coverage::Coverage;
 
 use crate::words::{Words, fill};
 
-/// What was run, if that is not all that was chosen.
-pub fn coverage_text(coverage: &Coverage, words: &Words) -> Option<String> {
-    let (report, skipped) = (&words.report, coverage.skipped());
-    if skipped == 0 || coverage.run == 0 {
-        return None;
-    }
-    let wording = match coverage.run == coverage.passed {
-        true => report.part_passed,
-        false => report.part_not_passed,
+/// The count of a run as a sentence.
+pub fn count_text(counts: &StepCounts, words: &Words) -> String {
+    let report = &words.report;
+    let wording = match (counts.run(), counts.not_run(), counts.not_passed()) {
+        (0, 0, _) => report.no_steps,
+        (0, ..) => report.none_run,
+        (_, 0, 0) => report.all_passed,
+        (_, 0, _) => report.not_passed,
+        (_, _, 0) => report.part_passed,
+        _ => report.part_not_passed,
     };
     let mut text = fill(
         wording,
         &[
-            ("run", &coverage.run),
-            ("of", &coverage.of),
-            ("n", &(coverage.run - coverage.passed)),
-            ("skipped", &skipped),
+            ("run", &counts.run()),
+            ("of", &counts.planned),
+            ("n", &counts.not_passed()),
+            ("left", &counts.not_run()),
         ],
     );
+    if counts.attempts > counts.run() {
+        text += &fill(report.attempts, &[("n", &counts.attempts)]);
+    }
+    if counts.outside > 0 {
+        text += &fill(report.outside_steps, &[("n", &counts.outside)]);
+    }
+    text
+}
+
+/// The same for a table: steps that were due, and how many of these were run if that is not all.
+pub fn count_short(counts: &StepCounts) -> String {
+    match counts.not_run() {
+        0 => counts.planned.to_string(),
+        _ => format!("{} of {}", counts.run(), counts.planned),
+    }
+}
+
+/// What was run, if that is not all that was due, and what the rest needs.
+pub fn coverage_text(coverage: &Coverage, words: &Words) -> Option<String> {
+    if coverage.steps.not_run() == 0 {
+        return None;
+    }
+    let mut text = count_text(&coverage.steps, words);
     if coverage.need_bench > 0 {
         let folders: Vec<_> = coverage.on_bench.iter().map(String::as_str).collect();
         text += &fill(
-            report.needs_bench,
+            words.report.needs_bench,
             &[("n", &coverage.need_bench), ("what", &folders.join(", "))],
         );
     }
@@ -41,9 +66,12 @@ mod tests {
     #[test]
     fn a_part_of_the_suite_says_what_it_left_out_in_both_languages() {
         let mut coverage = Coverage {
-            of: 466,
-            run: 80,
-            passed: 80,
+            steps: StepCounts {
+                planned: 466,
+                passed: 80,
+                attempts: 80,
+                ..StepCounts::default()
+            },
             need_bench: 386,
             on_bench: ["ato", "atp"].map(String::from).into(),
         };
@@ -52,17 +80,17 @@ mod tests {
         };
         assert_eq!(
             said(&coverage, Language::English),
-            "80 of 466 steps run, all passed; 386 skipped; 386 need the bench harness: ato, atp"
+            "80 of 466 steps run, all passed; 386 not run; 386 need the bench harness: ato, atp"
         );
         assert_eq!(
             said(&coverage, Language::Korean),
-            "466개 단계 중 80개 수행, 모두 합격; 386개 건너뜀; 386개는 시험대 하네스 필요: ato, atp"
+            "466개 단계 중 80개 수행, 모두 합격; 386개 미수행; 386개는 시험대 하네스 필요: ato, atp"
         );
-        coverage.passed = 79;
+        (coverage.steps.passed, coverage.steps.failed) = (79, 1);
         assert!(
             said(&coverage, Language::English).starts_with("80 of 466 steps run, 1 did not pass")
         );
-        coverage.run = 466;
+        coverage.steps.planned = 80;
         assert_eq!(coverage_text(&coverage, Language::English.words()), None);
     }
 }

@@ -8,7 +8,9 @@ use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
 
+use crate::coverage::count_short;
 use crate::words::Language;
+use ptu_runs::coverage::counts_of;
 use ptu_runs::run_diagnosis::Answer;
 
 /// Parts that are shown at once.
@@ -70,12 +72,13 @@ fn details(reasons: &[Reason]) -> Vec<&str> {
 pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
+    let counts = counts_of(run);
     let mut text = format!(
         "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
         run.id.short(),
         display_text::line(&run.unit_serial),
-        run.steps,
-        run.steps_not_passed,
+        count_short(&counts),
+        counts.not_passed(),
         run.faults,
         d.conclusion.english
     );

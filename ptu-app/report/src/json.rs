@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::trace_notes::note_json;
 use ptu_runs::clock::rfc3339;
-use ptu_runs::coverage::Coverage;
+use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::failure::Failure;
 use ptu_runs::run::Evidence;
 use ptu_runs::stored::{STEP, outside_of};
@@ -23,7 +23,7 @@ pub fn run_json(run: &RunDetail) -> Value {
     let evidence = run.run.evidence.as_deref().and_then(Evidence::of);
     json!({
         "run": run_summary_json(&run.run),
-        "coverage": coverage_json(&Coverage::of_run(&run.steps)),
+        "coverage": coverage_json(&Coverage::of_run(run)),
         "scripts": run.scripts.iter().map(|script| json!({
             "path": script.path, "sha256": script.sha256,
         })).collect::<Vec<_>>(),
@@ -68,13 +68,14 @@ fn evidence_json(evidence: &Evidence) -> Value {
 
 fn coverage_json(coverage: &Coverage) -> Value {
     json!({
-        "steps": coverage.of, "run": coverage.run, "passed": coverage.passed,
+        "steps": coverage.steps.planned, "run": coverage.steps.run(), "passed": coverage.steps.passed,
         "need_bench": coverage.need_bench, "on_bench": coverage.on_bench,
     })
 }
 
 /// A run in a list.
 pub fn run_summary_json(run: &RunSummary) -> Value {
+    let counts = counts_of(run);
     json!({
         "id": run.id.to_string(),
         "verdict": run.verdict.map(|verdict| verdict.as_str()),
@@ -97,8 +98,15 @@ pub fn run_summary_json(run: &RunSummary) -> Value {
         "app_version": run.app_version,
         "scripts_sha256": run.scripts_sha256,
         "unit_config_sha256": run.unit_config_sha256,
-        "step_count": run.steps,
-        "steps_not_passed": run.steps_not_passed,
+        "step_count": counts.planned,
+        "steps_run": counts.run(),
+        "steps_passed": counts.passed,
+        "steps_failed": counts.failed,
+        "steps_error": counts.error,
+        "steps_not_passed": counts.not_passed(),
+        "steps_not_run": counts.not_run(),
+        "step_attempts": counts.attempts,
+        "outside_steps": counts.outside,
         "fault_count": run.faults,
     })
 }

@@ -4,39 +4,34 @@ use std::time::Duration;
 
 use btu_rig::procedure::Outside;
 use chrono::{DateTime, FixedOffset};
-use fault_db::{RunDetail, StepRecord, Verdict};
+use fault_db::{RunDetail, StepRecord, Verdict, base_name, rank};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
-use crate::coverage_text;
+use crate::coverage::{count_text, coverage_text};
 use crate::words::Language;
 use ptu_runs::coverage::Coverage;
 use ptu_runs::failure::Failure;
-use ptu_runs::stored::{STEP, WHOLE_RUN, outside_of, was_repeated};
+use ptu_runs::stored::{STEP, WHOLE_RUN, by_procedure, outside_of};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
 ///
 /// A run that did not pass has a case that did not: also one without a verdict, and one of a program that did not
 /// store what failed outside steps.
 pub fn junit(run: &RunDetail) -> Result<String, Failure> {
-    let coverage = coverage_text(&Coverage::of_run(&run.steps), Language::English.words());
-    let part = coverage.map_or_else(String::new, |part| format!(": {part}"));
-    let mut report = Report::new(format!("ptu run {}{part}", run.run.id));
+    let (coverage, words) = (Coverage::of_run(run), Language::English.words());
+    let counted = coverage_text(&coverage, words);
+    let counted = counted.unwrap_or_else(|| count_text(&coverage.steps, words));
+    let mut report = Report::new(format!("ptu run {}: {counted}", run.run.id));
     let began_us = run.run.started_at_us;
     report.set_timestamp(utc(began_us));
-    for steps in run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
-        let procedure = &*display_text::line(&steps[0].procedure);
-        let mut suite = TestSuite::new(procedure);
+    for (procedure, steps) in by_procedure(&run.steps) {
+        let mut suite = TestSuite::new(&*display_text::line(procedure));
         suite.set_timestamp(utc(began_us + steps[0].started_bench_us));
         let all_us = steps.iter().map(|step| step.bench_time_us.max(0) as u64);
         suite.set_time(Duration::from_micros(all_us.sum()));
-        for (place, step) in steps.iter().enumerate() {
-            if was_repeated(steps, place) {
-                continue;
-            }
-            let before = steps[..place].iter();
-            let attempts = before.filter(|before| before.name == step.name);
-            suite.add_test_case(case(step, attempts, began_us));
+        for results in by_step(steps) {
+            suite.add_test_case(case(&results, began_us));
         }
         report.add_test_suite(suite);
     }
@@ -48,6 +43,23 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
     report
         .to_string()
         .map_err(|error| Failure::bench(format!("cannot make the JUnit report: {error}")))
+}
+
+/// Results of each step in order; what is outside steps stands alone.
+fn by_step(steps: Vec<&StepRecord>) -> Vec<Vec<&StepRecord>> {
+    let mut all: Vec<Vec<&StepRecord>> = Vec::new();
+    for step in steps {
+        let name = base_name(&step.name);
+        let same = all.iter_mut().find(|results| {
+            let is_step = |step: &StepRecord| outside_of(step).is_none();
+            is_step(step) && is_step(results[0]) && base_name(&results[0].name) == name
+        });
+        match same {
+            Some(results) => results.push(step),
+            None => all.push(vec![step]),
+        }
+    }
+    all
 }
 
 /// What the run came to, where no step says it.
@@ -65,19 +77,24 @@ fn of_whole(run: &RunDetail) -> Option<TestCase> {
     Some(case)
 }
 
-/// A case with the attempts at it that were not tested.
-fn case<'a>(
-    step: &StepRecord,
-    attempts: impl Iterator<Item = &'a StepRecord>,
-    began_us: i64,
-) -> TestCase {
+/// The case of a step, by the result that stands, with the others that did not pass.
+fn case(results: &[&StepRecord], began_us: i64) -> TestCase {
+    let stands = results.iter().rev().max_by_key(|step| rank(step.verdict));
+    let step = stands.unwrap_or(&results[0]);
     let kind = outside_of(step).map_or(STEP, Outside::name);
     let mut status = status(step.verdict, kind, &step.message);
-    for attempt in attempts {
-        let mut rerun = TestRerun::new(NonSuccessKind::Error);
+    let others = results.iter().filter(|other| other.index != step.index);
+    for attempt in others.filter(|other| other.verdict != Verdict::Passed) {
+        let mut rerun = TestRerun::new(match attempt.verdict {
+            Verdict::Failed => NonSuccessKind::Failure,
+            _ => NonSuccessKind::Error,
+        });
         rerun.set_timestamp(utc(began_us + attempt.started_bench_us));
         rerun.set_time(Duration::from_micros(attempt.bench_time_us.max(0) as u64));
-        rerun.set_type("not tested");
+        rerun.set_type(match attempt.verdict {
+            Verdict::Skipped => "not tested",
+            verdict => verdict.as_str(),
+        });
         rerun.set_message(&*display_text::lines(&attempt.message));
         status.add_rerun(rerun);
     }
@@ -100,9 +117,9 @@ fn case<'a>(
             case.add_property((&*display_text::line(&name), &*display_text::line(source)));
         }
     }
-    let lines: Vec<_> = step
-        .measurements
+    let lines: Vec<_> = results
         .iter()
+        .flat_map(|result| &result.measurements)
         .map(|m| {
             let value = m
                 .value

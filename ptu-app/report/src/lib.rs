@@ -44,7 +44,7 @@ mod without_korean;
 pub mod words;
 
 pub use certificate::{SheetCertificate, SheetStatement, has_certificate, read_certificate};
-pub use coverage::coverage_text;
+pub use coverage::{count_short, count_text, coverage_text};
 pub use json::{
     FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json, signature_json,
 };

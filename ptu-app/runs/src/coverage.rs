@@ -1,53 +1,60 @@
-//! How much of what was chosen was run: what a verdict stands for where steps were skipped.
+//! How much of what was due was run: what a verdict stands for where steps were not run.
 
 use std::collections::BTreeSet;
 
 use btu_rig::procedure::plan::NEEDS_HARNESS;
-use fault_db::{StepRecord, Verdict};
+use fault_db::{RunDetail, RunSummary, StepCounts, Verdict, base_name};
 
-use crate::stored::{outside_of, standing};
+use crate::run::Evidence;
 
-/// Steps of scripts, each attempt at one counted once.
+/// The one count of a stored run: what its steps came to, of all that were due.
+pub fn counts_of(run: &RunSummary) -> StepCounts {
+    let evidence = run.evidence.as_deref().and_then(Evidence::of);
+    let due = evidence.map_or(0, |evidence| evidence.planned);
+    StepCounts {
+        planned: run.recorded.planned.max(due),
+        ..run.recorded
+    }
+}
+
+/// Steps of scripts, and why some were not run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Steps chosen.
-    pub of: usize,
-    /// Steps that were run.
-    pub run: usize,
-    /// Steps that were run and passed.
-    pub passed: usize,
+    /// What they came to.
+    pub steps: StepCounts,
     /// Steps skipped because they need the bench harness.
-    pub need_bench: usize,
+    pub need_bench: u32,
     /// Folders of the procedures that do.
     pub on_bench: BTreeSet<String>,
 }
 
 impl Coverage {
     /// Of a stored run.
-    pub fn of_run(steps: &[StepRecord]) -> Self {
-        let mut coverage = Self::default();
-        for step in standing(steps).filter(|step| outside_of(step).is_none()) {
-            let (verdict, message) = (step.verdict, step.message.as_str());
-            coverage.note(&step.procedure, verdict, message);
-        }
-        coverage
+    pub fn of_run(run: &RunDetail) -> Self {
+        let steps = run.steps.iter();
+        let skipped = steps.filter(|step| step.verdict == Verdict::Skipped);
+        let skipped = skipped.map(|step| (&*step.procedure, &*step.name, &*step.message));
+        Self::of(counts_of(&run.run), skipped)
     }
 
-    /// One more step of this procedure, and why it was skipped.
-    pub fn note(&mut self, procedure: &str, verdict: Verdict, message: &str) {
-        self.of += 1;
-        self.run += usize::from(verdict != Verdict::Skipped);
-        self.passed += usize::from(verdict == Verdict::Passed);
-        if verdict == Verdict::Skipped && message.ends_with(NEEDS_HARNESS) {
-            self.need_bench += 1;
-            let folder = procedure.split('/').next().unwrap_or(procedure);
-            self.on_bench.insert(folder.to_owned());
+    /// Of these counts; `skipped` = procedure, name and reason of each step that was skipped.
+    pub fn of<'a>(
+        steps: StepCounts,
+        skipped: impl Iterator<Item = (&'a str, &'a str, &'a str)>,
+    ) -> Self {
+        let on_bench = skipped.filter(|(_, _, why)| why.ends_with(NEEDS_HARNESS));
+        let on_bench: BTreeSet<_> = on_bench
+            .map(|(procedure, name, _)| (procedure, base_name(name)))
+            .collect();
+        let folder = |procedure: &str| procedure.split('/').next().unwrap_or(procedure).to_owned();
+        Self {
+            steps,
+            need_bench: on_bench.len() as u32,
+            on_bench: on_bench
+                .iter()
+                .map(|(procedure, _)| folder(procedure))
+                .collect(),
         }
-    }
-
-    /// Steps that were chosen and not run.
-    pub fn skipped(&self) -> usize {
-        self.of - self.run
     }
 }
 
@@ -57,14 +64,28 @@ mod tests {
 
     #[test]
     fn what_was_skipped_is_no_part_of_what_was_run() {
-        let mut coverage = Coverage::default();
-        coverage.note("ptu/identity", Verdict::Passed, "");
-        coverage.note("ptu/markers", Verdict::Failed, "");
-        coverage.note("atp/overspeed", Verdict::Skipped, NEEDS_HARNESS);
-        coverage.note("atp/power_up", Verdict::Skipped, NEEDS_HARNESS);
-        coverage.note("ptu/identity", Verdict::Skipped, "needs an operator");
-        assert_eq!((coverage.of, coverage.run, coverage.passed), (5, 2, 1));
-        assert_eq!((coverage.skipped(), coverage.need_bench), (3, 2));
+        let mut counter = fault_db::StepCounter::default();
+        for (place, verdict) in [
+            (1, Verdict::Passed),
+            (1, Verdict::Failed),
+            (1, Verdict::Passed),
+            (2, Verdict::Passed),
+            (3, Verdict::Skipped),
+            (4, Verdict::Skipped),
+            (5, Verdict::Error),
+        ] {
+            counter.note(place, verdict);
+        }
+        let skipped = [
+            ("atp/overspeed", "a (1/2)", NEEDS_HARNESS),
+            ("atp/overspeed", "a (2/2)", NEEDS_HARNESS),
+            ("ptu/identity", "b", "needs an operator"),
+        ];
+        let coverage = Coverage::of(counter.counts(6), skipped.into_iter());
+        let steps = &coverage.steps;
+        assert_eq!((steps.planned, steps.run(), steps.attempts), (6, 3, 5));
+        assert_eq!((steps.passed, steps.failed, steps.error), (1, 1, 1));
+        assert_eq!((steps.not_run(), coverage.need_bench), (3, 1));
         assert_eq!(coverage.on_bench, BTreeSet::from(["atp".to_owned()]));
     }
 }

@@ -97,14 +97,32 @@ pub fn was_repeated(steps: &[StepRecord], place: usize) -> bool {
 
 /// The verdict of a procedure by its records, in a run with this verdict. One that was broken off is an error, as its
 /// run is; in any other run a check that failed is said before one that could not be made.
-pub fn of_procedure(records: &[StepRecord], run: Option<fault_db::Verdict>) -> fault_db::Verdict {
+pub fn of_procedure<'a>(
+    records: impl Iterator<Item = &'a StepRecord> + Clone,
+    run: Option<fault_db::Verdict>,
+) -> fault_db::Verdict {
     use fault_db::Verdict::{Aborted, Error, Failed, Passed, Skipped};
     let order = match run {
         Some(Error) => [Aborted, Error, Failed, Passed],
         _ => [Aborted, Failed, Error, Passed],
     };
-    let is_there = |verdict: &fault_db::Verdict| records.iter().any(|r| r.verdict == *verdict);
+    let is_there = |verdict: &fault_db::Verdict| records.clone().any(|r| r.verdict == *verdict);
     order.into_iter().find(is_there).unwrap_or(Skipped)
+}
+
+/// Records by procedure, in the order in which each was run first: a search runs one more than once.
+pub fn by_procedure(steps: &[StepRecord]) -> Vec<(&str, Vec<&StepRecord>)> {
+    let mut all: Vec<(&str, Vec<&StepRecord>)> = Vec::new();
+    for step in steps {
+        match all
+            .iter_mut()
+            .find(|(procedure, _)| *procedure == step.procedure)
+        {
+            Some((_, records)) => records.push(step),
+            None => all.push((&step.procedure, vec![step])),
+        }
+    }
+    all
 }
 
 /// Results of steps that stand, without attempts that were made again.

@@ -12,8 +12,9 @@ use crate::console::verdict_table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
 use ptu_report::trace_notes::note_text;
 use ptu_report::words::Language;
-use ptu_report::{Target, run_json, run_summary_json, write_comparison};
+use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
+use ptu_runs::coverage::counts_of;
 use ptu_runs::data;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::table::Table;
@@ -236,7 +237,7 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
             run.unit_serial.clone(),
             run.source.clone(),
             state.to_owned(),
-            run.steps.to_string(),
+            count_short(&counts_of(run)),
             run.faults.to_string(),
             run.injected.clone().unwrap_or_default(),
         ]);

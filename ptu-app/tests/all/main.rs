@@ -12,6 +12,7 @@ mod by_the_clock;
 mod campaigns;
 mod care;
 mod cases;
+mod counts;
 mod diagnose;
 
 mod documents;

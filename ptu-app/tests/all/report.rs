@@ -258,7 +258,7 @@ fn a_part_of_the_suite_says_so_first_in_every_report() {
     let coverage = &report["coverage"];
     let [run, of, left] = ["run", "steps", "need_bench"].map(|key| coverage[key].to_string());
     let part = format!(
-        "{run} of {of} steps run, all passed; {left} skipped; {left} need the bench harness: atp"
+        "{run} of {of} steps run, all passed; {left} not run; {left} need the bench harness: atp"
     );
     assert_eq!(said.out.lines().next(), Some(&*format!("passed: {part}")));
     assert!(place.read("a.html").contains(&part));

@@ -64,9 +64,13 @@ impl EventLines {
 
     /// The last line.
     pub fn finished(&mut self, outcome: &Outcome) -> String {
+        let counts = &outcome.counts;
         let keys = json!({
             "run": outcome.id.to_string(), "verdict": outcome.verdict.label(),
             "bench_time_us": outcome.bench_time.as_us(), "exit": outcome.exit.code(),
+            "steps": counts.planned, "run_steps": counts.run(), "passed": counts.passed, "failed": counts.failed,
+            "error": counts.error, "not_run": counts.not_run(), "attempts": counts.attempts,
+            "outside": counts.outside,
         });
         self.line(None, "run_finished", keys)
     }

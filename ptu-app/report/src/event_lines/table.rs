@@ -266,6 +266,26 @@ pub const EVENTS: &[EventKeys] = &[
             VERDICT,
             ("bench_time_us", Whole, "bench time of all procedures"),
             ("exit", Whole, "exit code of the run"),
+            ("steps", Whole, "different steps that were due"),
+            ("run_steps", Whole, "of these, steps that were run"),
+            (
+                "passed",
+                Whole,
+                "of these, steps that passed whenever they were run",
+            ),
+            ("failed", Whole, "steps that failed at least once"),
+            (
+                "error",
+                Whole,
+                "steps that did not fail and could not be tested to their end",
+            ),
+            ("not_run", Whole, "steps that were due and not run"),
+            (
+                "attempts",
+                Whole,
+                "results of steps that were run, each repetition by itself",
+            ),
+            ("outside", Whole, "what did not pass outside steps"),
         ],
     ),
 ];

@@ -1,7 +1,7 @@
 //! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
 //! with what and by whom.
 
-use fault_db::{FaultState, RunState, RunSummary, StepRecord, Verdict};
+use fault_db::{FaultState, RunState, RunSummary, StepCounts, StepRecord, Verdict};
 
 use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
 use super::code::Code;
@@ -11,14 +11,14 @@ use super::settled::settled;
 use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
-use crate::coverage_text;
 use crate::naming;
 use crate::trace_notes::note_text;
 use crate::words::{Words, fill};
+use crate::{count_text, coverage_text};
 use ptu_runs::clock::{local, local_zoned};
-use ptu_runs::coverage::Coverage;
+use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::run::{Evidence, InstrumentEvidence};
-use ptu_runs::stored::{outside_of, standing};
+use ptu_runs::stored::by_procedure;
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
@@ -62,19 +62,9 @@ pub fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
 
 fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let (run, report) = (&sheet.run.run, &words.report);
-    let outside = sheet.run.steps.iter().filter_map(outside_of).count();
-    let coverage = Coverage::of_run(&sheet.run.steps);
+    let coverage = Coverage::of_run(&sheet.run);
     let part = coverage_text(&coverage, words);
-    let of = coverage.of;
-    let mut counted = part.unwrap_or_else(|| match (of, of - coverage.passed) {
-        (0, _) => report.no_steps.to_owned(),
-        (_, 0) => fill(report.all_passed, &[("of", &of)]),
-        (_, n) => fill(report.not_passed, &[("n", &n), ("of", &of)]),
-    });
-    if outside > 0 {
-        let more = fill(report.outside_steps, &[("n", &outside)]);
-        counted = format!("{counted}   {more}");
-    }
+    let counted = part.unwrap_or_else(|| count_text(&coverage.steps, words));
     let who: [(&str, &dyn std::fmt::Display); 2] =
         [("serial", &run.unit_serial), ("run", &run.id.short())];
     let (tone, said) = verdict(run, words);
@@ -99,31 +89,22 @@ fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// Verdicts counted.
+/// Different steps counted.
 fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
-    let steps = &sheet.run.steps;
-    if steps.is_empty() {
+    if sheet.run.steps.is_empty() {
         return Vec::new();
     }
+    let (counts, common) = (counts_of(&sheet.run.run), &words.common);
+    let of = |verdict| (common.stored_verdict(verdict), tone(verdict));
     let all = [
-        Verdict::Passed,
-        Verdict::Failed,
-        Verdict::Error,
-        Verdict::Skipped,
-        Verdict::Aborted,
+        (of(Verdict::Passed), counts.passed),
+        (of(Verdict::Failed), counts.failed),
+        (of(Verdict::Error), counts.error),
+        ((words.report.not_run, Tone::Soft), counts.not_run()),
     ];
-    let columns = all.map(|verdict| {
-        let name = words.common.stored_verdict(verdict);
-        Column::new(name, 0.2, Align::Left)
-    });
-    let counts = all.map(|verdict| {
-        let of_script = standing(steps).filter(|step| outside_of(step).is_none());
-        let count = of_script.filter(|step| step.verdict == verdict).count();
-        let tone = if count == 0 {
-            Tone::Soft
-        } else {
-            tone(verdict)
-        };
+    let columns = all.map(|((name, _), _)| Column::new(name, 0.25, Align::Left));
+    let counts = all.map(|((_, tone), count)| {
+        let tone = if count == 0 { Tone::Soft } else { tone };
         (Cell::Text(tone, count.to_string()), 1)
     });
     vec![
@@ -407,11 +388,12 @@ fn signed_by(sheet: &Sheet, words: &Words) -> String {
 fn all_steps(sheet: &Sheet, sources: &Sources<'_>, words: &Words) -> Vec<Block> {
     let report = &words.report;
     let mut blocks = Vec::new();
-    for mine in sheet.run.steps.chunk_by(|a, b| a.procedure == b.procedure) {
-        let good = mine.iter().filter(|s| s.verdict == Verdict::Passed).count();
-        let of = mine.iter().filter(|s| outside_of(s).is_none()).count();
-        let counted = fill(report.procedure_passed, &[("passed", &good), ("of", &of)]);
-        blocks.push(Block::Subheading(mine[0].procedure.clone(), counted));
+    for (procedure, mine) in by_procedure(&sheet.run.steps) {
+        let counts = StepCounts::of(mine.iter().copied());
+        let told: [(&str, &dyn std::fmt::Display); 2] =
+            [("passed", &counts.passed), ("of", &counts.planned)];
+        let counted = fill(report.procedure_passed, &told);
+        blocks.push(Block::Subheading(procedure.to_owned(), counted));
         blocks.push(Block::Table(steps::table(mine, sources, words)));
     }
     if !blocks.is_empty() {

@@ -15,7 +15,11 @@ use crate::words::Words;
 const MEASURED: usize = 4;
 
 /// Steps, each with its message and measurements below it.
-pub fn table(steps: &[StepRecord], sources: &Sources<'_>, words: &Words) -> Table {
+pub fn table<'a>(
+    steps: impl IntoIterator<Item = &'a StepRecord>,
+    sources: &Sources<'_>,
+    words: &Words,
+) -> Table {
     let (common, report) = (&words.common, &words.report);
     Table {
         columns: vec![
@@ -30,7 +34,7 @@ pub fn table(steps: &[StepRecord], sources: &Sources<'_>, words: &Words) -> Tabl
             Column::new(report.seconds, 0.07, Align::Right),
         ],
         rows: steps
-            .iter()
+            .into_iter()
             .flat_map(|step| rows(step, sources, words))
             .collect(),
     }

@@ -12,15 +12,18 @@ wordings! {
         sheet: "Test sheet", "시험 성적서";
         of_unit: "Unit {serial}, run {run}", "장치 {serial}, 시험 {run}";
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
-        part_passed: "{run} of {of} steps run, all passed; {skipped} skipped", "{of}개 단계 중 {run}개 수행, 모두 합격; {skipped}개 건너뜀";
-        part_not_passed: "{run} of {of} steps run, {n} did not pass; {skipped} skipped", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {skipped}개 건너뜀";
+        none_run: "0 of {of} steps run", "{of}개 단계 중 0개 수행";
+        part_passed: "{run} of {of} steps run, all passed; {left} not run", "{of}개 단계 중 {run}개 수행, 모두 합격; {left}개 미수행";
+        part_not_passed: "{run} of {of} steps run, {n} did not pass; {left} not run", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {left}개 미수행";
+        attempts: "; {n} attempts", "; 시도 {n}회";
+        not_run: "not run", "미수행";
         needs_bench: "; {n} need the bench harness: {what}", "; {n}개는 시험대 하네스 필요: {what}";
         and_others: " and {n} more", " 외 {n}건";
         repair_proven: "Fault {fault}: the repair is verified. With the fault still there, the runs since it would all have passed in {hidden} of 100 cases", "고장 {fault}: 조치가 검증되었습니다. 고장이 남아 있다면 이후 시험이 모두 합격할 확률은 100회 중 {hidden}회입니다";
         repair_claimed: "Fault {fault}: the repair is not proven yet. Runs passed since it: {passed}; such a fault hides in {hidden} of 100 such runs. More such runs needed: {more}", "고장 {fault}: 조치가 아직 검증되지 않았습니다. 조치 이후 합격 {passed}회; 이런 고장은 이런 시험 100회 중 {hidden}회 드러나지 않습니다. {more}회 더 시험하십시오";
         repair_not_shown: "Fault {fault}: the repair is not proven. Runs passed since it: {passed}; such a fault hides in {hidden} of 100 such runs. Run the whole procedures that saw it", "고장 {fault}: 조치가 검증되지 않았습니다. 조치 이후 합격 {passed}회; 이런 고장은 이런 시험 100회 중 {hidden}회 드러나지 않습니다. 고장이 나타난 절차 전체를 시험하십시오";
         all_passed: "{of} steps", "{of}개 단계";
-        outside_steps: "Outside steps: {n}", "단계 외 미합격: {n}건";
+        outside_steps: "; outside steps: {n}", "; 단계 외 미합격: {n}건";
         no_steps: "No steps were run.", "수행된 단계가 없습니다.";
         not_finished: "The run has no verdict: it is under way or was broken off. What is here was recorded until then.",
             "판정이 없는 시험입니다. 진행 중이거나 도중에 끊겼으며, 그때까지 기록된 내용만 실었습니다.";

@@ -7,10 +7,12 @@ use btu_rig::procedure::plan::Step;
 use btu_rig::procedure::{
     Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
 };
+use fault_db::{StepCounter, StepCounts};
 use protocol::Duration;
 
 use crate::coverage::Coverage;
-use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, steps_of};
+use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, different_steps, steps_of};
+use crate::stored::stored;
 
 /// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
 /// database.
@@ -25,12 +27,16 @@ pub struct Progress {
     pub scripts_sha256: String,
     /// Procedures in order.
     pub procedures: Vec<ProcedureProgress>,
-    /// Steps in all, repetitions counted.
-    pub steps: usize,
-    /// Steps that are over.
-    pub done: usize,
-    /// Steps over that neither passed nor were skipped.
+    /// Steps in all, repetitions counted: how long it takes.
+    steps: usize,
+    /// Of these, steps that are over.
+    done: usize,
+    /// Results, and entries outside steps, that neither passed nor were skipped.
     pub not_passed: usize,
+    /// Different steps that are due.
+    planned: usize,
+    /// Steps by procedure and place in it.
+    counter: StepCounter<(usize, usize)>,
     /// Where it is.
     pub present: Option<RunPosition>,
     /// Faults found, in order.
@@ -105,17 +111,19 @@ impl Waiting {
 }
 
 impl Progress {
-    /// How much of what was chosen was run.
+    /// What its steps came to so far, of all that are due.
+    pub fn counts(&self) -> StepCounts {
+        self.counter.counts(self.planned)
+    }
+
+    /// How much of what was due was run.
     pub fn coverage(&self) -> Coverage {
-        let mut coverage = Coverage::default();
-        for procedure in &self.procedures {
-            let results = procedure.results.iter();
-            for step in results.filter(|step| !step.repeated && outside_place(step).is_none()) {
-                let verdict = crate::stored::stored(step.verdict);
-                coverage.note(&procedure.procedure.id, verdict, &step.message);
-            }
-        }
-        coverage
+        let skipped = self.procedures.iter().flat_map(|progress| {
+            let results = progress.results.iter();
+            let skipped = results.filter(|step| step.verdict == Verdict::Skipped);
+            skipped.map(|step| (&*progress.procedure.id, &*step.name, &*step.message))
+        });
+        Coverage::of(self.counts(), skipped)
     }
 
     /// Of a plan that has not begun, on this unit.
@@ -150,6 +158,8 @@ impl Progress {
             procedures,
             done: 0,
             not_passed: 0,
+            planned: different_steps(&plan.tasks),
+            counter: StepCounter::default(),
             present: None,
             faults: Vec::new(),
             ended: None,
@@ -280,6 +290,7 @@ impl Progress {
     }
 
     fn outside_step(&mut self, place: usize, entry: &OutsideStep) {
+        self.counter.note_outside(stored(entry.verdict));
         self.not_passed += 1;
         if self.not_passed < KEPT {
             self.procedures[place].results.push(StepResult {
@@ -300,6 +311,8 @@ impl Progress {
 
     fn step_finished(&mut self, place: usize, result: &StepResult) {
         self.done += usize::from(!result.repeated);
+        self.counter
+            .note((place, result.index), stored(result.verdict));
         if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
             self.not_passed += 1;
         }

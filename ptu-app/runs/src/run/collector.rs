@@ -1,17 +1,14 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
-use std::collections::BTreeSet;
-
 use btu_rig::procedure::{Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
-use fault_db::{Id, MeasurementRecord, RecordingRecord, StepRecord};
+use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
 use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
 use super::fault_watch::FaultSeen;
-use super::plan::Task;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use crate::clock;
@@ -52,6 +49,8 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<String>,
+    /// What its steps came to.
+    pub counts: StepCounts,
 }
 
 pub struct Collector<'a> {
@@ -79,22 +78,26 @@ pub struct Collector<'a> {
     run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,
-    /// The steps that a search for a fault could have run; such a run that passed without all of them accepts nothing.
-    searched: Option<usize>,
-    /// Steps of a search that passed, by procedure and name.
-    passed: BTreeSet<(String, String)>,
+    /// Different steps that are due.
+    planned: usize,
+    /// It is a search for a fault; one that passed without all steps accepts nothing.
+    search: bool,
+    /// Steps by procedure and place in it.
+    counter: StepCounter<(String, usize)>,
     link_lost: bool,
     /// The tester itself could not go on.
     broken_off: bool,
 }
 
 impl<'a> Collector<'a> {
-    /// A collector that records in `store`; `searched` = the steps that a search for a fault could run.
+    /// A collector that records in `store`, of a run in which so many different steps are due; `search` = as many of them as
+    /// a fault takes.
     pub fn new(
         store: RunStore,
         listener: &'a mut dyn Listener,
         made: BenchContents,
-        searched: Option<usize>,
+        planned: usize,
+        search: bool,
     ) -> Self {
         Self {
             store,
@@ -112,8 +115,9 @@ impl<'a> Collector<'a> {
             says_why: false,
             run_says_why: false,
             finished: 0,
-            searched,
-            passed: BTreeSet::new(),
+            planned,
+            search,
+            counter: StepCounter::default(),
             link_lost: false,
             broken_off: false,
         }
@@ -235,6 +239,7 @@ impl<'a> Collector<'a> {
     fn store_outside(&mut self, procedure: &str) {
         for entry in std::mem::take(&mut self.outside) {
             let index = self.next_index(entry.verdict);
+            self.counter.note_outside(stored(entry.verdict));
             let at = self.before + Duration::from_us(entry.at.as_us());
             let record = outside_record(procedure, &entry, at.as_us() as i64);
             self.store.step(StepRecord { index, ..record });
@@ -243,10 +248,8 @@ impl<'a> Collector<'a> {
 
     fn step(&mut self, procedure: &Procedure, result: StepResult) {
         let index = self.next_index(result.verdict);
-        if self.searched.is_some() && result.verdict == Verdict::Passed {
-            self.passed
-                .insert((procedure.id.clone(), result.name.clone()));
-        }
+        let step = (procedure.id.clone(), result.index);
+        self.counter.note(step, stored(result.verdict));
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
@@ -310,15 +313,22 @@ impl<'a> Collector<'a> {
         }
         self.broken_off = stopped == Some(Verdict::Error) && self.verdict == Verdict::Error;
         let mut verdict = self.overall();
-        if let Some(of) = self.searched.filter(|of| self.passed.len() < *of)
-            && is_passed(verdict)
-        {
+        let counts = self.counter.counts(self.planned);
+        let (run, of, left) = (counts.run(), counts.planned, counts.not_run());
+        let mut of_whole = None;
+        if self.link_lost && left > 0 {
+            of_whole = Some(format!("link lost at step {run} of {of}; {left} not run"));
+        } else if self.search && left > 0 && is_passed(verdict) {
             verdict = Verdict::Inconclusive;
-            let run = self.passed.len();
+            of_whole = Some(format!(
+                "not an acceptance: {run} of {of} steps run, all passed"
+            ));
+        }
+        if let Some(message) = of_whole {
             self.outside.push(OutsideStep {
                 place: Outside::Whole,
                 verdict,
-                message: format!("not an acceptance: {run} of {of} steps run, all passed"),
+                message,
                 at: Instant::ZERO,
             });
             self.run_says_why = true;
@@ -333,6 +343,7 @@ impl<'a> Collector<'a> {
         }
         // Also what a procedure said that the program did not run to its end.
         self.store_outside(WHOLE_RUN);
+        let counts = self.counter.counts(self.planned);
         let exit = match verdict {
             Verdict::Passed | Verdict::Skipped => Exit::Passed,
             Verdict::Failed => Exit::Failed,
@@ -348,6 +359,7 @@ impl<'a> Collector<'a> {
                 bench_time: self.before,
                 exit,
                 lost: None,
+                counts,
             },
         )
     }
@@ -357,22 +369,6 @@ fn is_passed(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Passed | Verdict::Skipped)
 }
 
-/// Steps a plan will run, repetitions counted.
-pub fn steps_of(tasks: &[Task]) -> usize {
-    let steps = |task: &Task| {
-        let all = &task.procedure.steps;
-        let turns: u32 = match &task.options.chosen {
-            Some(chosen) => chosen
-                .iter()
-                .filter_map(|i| all.get(*i))
-                .map(|s| s.repeat)
-                .sum(),
-            None => all.iter().map(|step| step.repeat).sum(),
-        };
-        turns as usize * task.options.repeat as usize
-    };
-    tasks.iter().map(steps).sum()
-}
 /// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
 fn records(measured: btu_rig::procedure::Measurement) -> impl Iterator<Item = MeasurementRecord> {
     let verdict = stored(measured.verdict);

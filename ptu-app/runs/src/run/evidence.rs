@@ -21,6 +21,9 @@ pub struct Evidence {
     /// Limits were narrowed by the uncertainty of what was measured.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub guard_banded: bool,
+    /// Different steps that were due.
+    #[serde(default)]
+    pub planned: u32,
 }
 
 /// An instrument that a run used.
@@ -44,7 +47,12 @@ pub struct ClockEvidence {
 
 impl Evidence {
     /// With the clock as it is now.
-    pub fn now(bench: BenchContents, used: Vec<Instrument>, rules: MeasuringRules) -> Self {
+    pub fn now(
+        bench: BenchContents,
+        used: Vec<Instrument>,
+        rules: MeasuringRules,
+        planned: usize,
+    ) -> Self {
         let today = day_of(now_us());
         let used = used.into_iter().map(|of| InstrumentEvidence {
             is_calibrated: of.is_calibrated_on(&today),
@@ -64,6 +72,7 @@ impl Evidence {
             },
             instruments: used.collect(),
             guard_banded: rules.guard_band,
+            planned: planned as u32,
         }
     }
 

@@ -71,3 +71,30 @@ pub struct Adaptive {
 pub(super) fn stream() -> (mpsc::SyncSender<SessionEvent>, Receiver<SessionEvent>) {
     mpsc::sync_channel(QUEUE)
 }
+
+/// Different steps that a plan is to run.
+pub fn different_steps(tasks: &[Task]) -> usize {
+    let of = |task: &Task| {
+        let all = task.procedure.steps.len();
+        let chosen = task.options.chosen.as_ref();
+        chosen.map_or(all, |chosen| chosen.iter().filter(|at| **at < all).count())
+    };
+    tasks.iter().map(of).sum()
+}
+
+/// Steps a plan will run, repetitions counted.
+pub fn steps_of(tasks: &[Task]) -> usize {
+    let steps = |task: &Task| {
+        let all = &task.procedure.steps;
+        let turns: u32 = match &task.options.chosen {
+            Some(chosen) => chosen
+                .iter()
+                .filter_map(|i| all.get(*i))
+                .map(|s| s.repeat)
+                .sum(),
+            None => all.iter().map(|step| step.repeat).sum(),
+        };
+        turns as usize * task.options.repeat as usize
+    };
+    tasks.iter().map(steps).sum()
+}

@@ -32,7 +32,7 @@ pub fn unfinished(run: &RunDetail, which: Unfinished) -> Vec<String> {
             .get(procedure)
             .filter(|_| broken_off != Some(procedure))?;
         let not_begun = |r| outside_of(r) == Some(Outside::NotBegun);
-        match of_procedure(records, run.run.verdict) {
+        match of_procedure(records.iter(), run.run.verdict) {
             Verdict::Aborted => None,
             _ if records.iter().all(not_begun) => None,
             verdict => Some(verdict),

@@ -10,11 +10,11 @@ use protocol::Instant;
 use super::adaptive;
 use super::bench_contents::BenchContents;
 use super::bench_setup::{BenchSetup, Connected};
-use super::collector::{Collector, Listener, Outcome, steps_of};
+use super::collector::{Collector, Listener, Outcome};
 use super::evidence::Evidence;
 use super::first_failure::FirstFailure;
 use super::instruments;
-use super::plan::{Adaptive, ProcedureStream, RunPlan, Task};
+use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, different_steps};
 use super::repaired::trace_repaired;
 use super::store_thread::RunStore;
 use super::workers;
@@ -119,15 +119,15 @@ pub fn run_on(
     let connection = connected.connection();
     let made = BenchContents::of(setup, connected.serial(), connection);
     let used = instruments::of_run(&store, setup, plan.measuring.uncalibrated)?;
+    let planned = different_steps(&plan.tasks);
     let record = RunRecord {
         connection: Some(connection.word().into()),
-        evidence: Some(Evidence::now(made.clone(), used, plan.measuring).text()),
+        evidence: Some(Evidence::now(made.clone(), used, plan.measuring, planned).text()),
         ..run_record(plan, setup, connected.serial(), began.at_us)
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let searched = plan.adaptive.as_ref().map(|_| steps_of(&plan.tasks));
-    let mut collector = Collector::new(run_store, listener, made, searched);
+    let mut collector = Collector::new(run_store, listener, made, planned, plan.adaptive.is_some());
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
         std::thread::scope(|scope| match &plan.adaptive {

@@ -362,7 +362,8 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
 fn check_junit(run: &FaultRun) -> Option<String> {
     let junit = Report::deserialize_from_str(&run.junit).expect("JUnit XML");
     let not_passed = junit.failures + junit.errors;
-    let json = number(&run.report["run"]["steps_not_passed"]) as usize;
+    let counted = ["steps_not_passed", "outside_steps"].map(|key| number(&run.report["run"][key]));
+    let json = counted.iter().sum::<f64>() as usize;
     let wrong = || format!("exit {}: {not_passed} in JUnit, {json} in JSON", run.exit);
     ((run.exit == 0) != (not_passed == 0) || json != not_passed).then(wrong)
 }

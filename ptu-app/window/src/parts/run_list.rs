@@ -7,9 +7,11 @@ use super::chip;
 use crate::request::CachedResponse;
 use crate::request::Request;
 use crate::{PageContext, Palette};
+use ptu_report::count_text;
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
+use ptu_runs::coverage::counts_of;
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;
@@ -195,12 +197,7 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
             (None, _) => (common.interrupted, palette.warn),
         };
         chip(ui, said, colour);
-        let counts: [(&str, &dyn std::fmt::Display); 2] =
-            [("n", &run.steps_not_passed), ("of", &run.steps)];
-        let counts = match run.steps_not_passed {
-            0 => fill(words.report.all_passed, &counts),
-            _ => fill(words.report.not_passed, &counts),
-        };
+        let counts = count_text(&counts_of(run), words);
         ui.label(RichText::new(counts).color(palette.quiet));
     });
     clicked

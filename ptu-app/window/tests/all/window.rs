@@ -176,7 +176,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     window.wait_for_part("Paused before: ");
     let steps = |window: &Window| {
         let run = window.app().units().chosen().run.as_ref();
-        run.map_or(0, |run| run.done)
+        run.map_or(0, |run| run.counts().run())
     };
     let before = steps(&window);
     window.click("One step");
@@ -202,7 +202,7 @@ fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     window.click("Run");
     window.until("a step", |window| {
         let run = window.app().units().chosen().run.as_ref();
-        run.is_some_and(|run| run.done > 0)
+        run.is_some_and(|run| run.counts().run() > 0)
     });
     for _ in 0..5 {
         window.key(Key::F12);

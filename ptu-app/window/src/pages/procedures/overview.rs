@@ -35,10 +35,11 @@ pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
                     continue;
                 };
                 ui.add(ProgressBar::new(run.share()).desired_width(160.0));
+                let counts = run.counts();
                 let counts: [(&str, &dyn std::fmt::Display); 3] = [
-                    ("done", &run.done),
-                    ("all", &run.steps),
-                    ("bad", &run.not_passed),
+                    ("done", &counts.run()),
+                    ("all", &counts.planned),
+                    ("bad", &counts.not_passed()),
                 ];
                 ui.horizontal(|ui| {
                     if let Some(Some(outcome)) = &run.ended {

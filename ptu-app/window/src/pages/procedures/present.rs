@@ -64,10 +64,11 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
                 .desired_width(260.0)
                 .show_percentage(),
         );
+        let counts = run.counts();
         let counts: [(&str, &dyn std::fmt::Display); 3] = [
-            ("done", &run.done),
-            ("all", &run.steps),
-            ("bad", &run.not_passed),
+            ("done", &counts.run()),
+            ("all", &counts.planned),
+            ("bad", &counts.not_passed()),
         ];
         ui.label(fill(procedures.progress, &counts));
         match &run.ended {

@@ -267,7 +267,7 @@ impl Shown {
                 .into_iter()
                 .map(|trace| (trace, shows(trace)))
                 .collect(),
-            faulty: run.steps_not_passed > 0 || run.faults > 0,
+            faulty: run.recorded.not_passed() + run.recorded.outside > 0 || run.faults > 0,
         }
     }
 }

@@ -150,7 +150,7 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     window.click("시험 시작");
     window.until("a step", |window| {
         let run = window.app().units().chosen().run.as_ref();
-        run.is_some_and(|run| run.done > 0)
+        run.is_some_and(|run| run.counts().run() > 0)
     });
     unit.kill();
     window.wait_for_part("장치와의 링크가 끊어졌습니다");

@@ -1,0 +1,178 @@
+//! One count of a run for all who tell it.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::record::{StepRecord, Verdict};
+
+/// Different steps: each counts once, however often it was repeated or begun again. What failed outside the steps of
+/// procedures is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct StepCounts {
+    /// Due; of a stored run those that it has a result of, unless it says how many were due.
+    pub planned: u32,
+    /// Passed whenever they were run.
+    pub passed: u32,
+    /// Failed at least once.
+    pub failed: u32,
+    /// Did not fail, and could not be tested to their end at least once.
+    pub error: u32,
+    /// Results of steps that were run, each repetition by itself.
+    pub attempts: u32,
+    /// What did not pass outside steps, which is none of them.
+    pub outside: u32,
+}
+
+impl StepCounts {
+    /// Those of these records.
+    pub fn of<'a>(records: impl IntoIterator<Item = &'a StepRecord>) -> Self {
+        let mut counter = StepCounter::default();
+        for record in records {
+            match record.script_line {
+                Some(_) => {
+                    counter.note((&record.procedure, base_name(&record.name)), record.verdict)
+                }
+                None => counter.note_outside(record.verdict),
+            }
+        }
+        counter.counts(0)
+    }
+
+    /// Were run, whatever came of it.
+    pub fn run(&self) -> u32 {
+        self.passed + self.not_passed()
+    }
+
+    /// Were run and did not pass.
+    pub fn not_passed(&self) -> u32 {
+        self.failed + self.error
+    }
+
+    /// Were due and not run.
+    pub fn not_run(&self) -> u32 {
+        self.planned.saturating_sub(self.run())
+    }
+}
+
+/// Counts results as they come; `K` tells steps apart.
+#[derive(Clone, Debug)]
+pub struct StepCounter<K> {
+    /// What each step came to: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
+    steps: BTreeMap<K, u8>,
+    attempts: u32,
+    outside: u32,
+}
+
+impl<K> Default for StepCounter<K> {
+    fn default() -> Self {
+        Self {
+            steps: BTreeMap::new(),
+            attempts: 0,
+            outside: 0,
+        }
+    }
+}
+
+impl<K: Ord> StepCounter<K> {
+    /// One more result of a step.
+    pub fn note(&mut self, step: K, verdict: Verdict) {
+        let rank = rank(verdict);
+        self.attempts += u32::from(rank > 0);
+        let worst = self.steps.entry(step).or_default();
+        *worst = rank.max(*worst);
+    }
+
+    /// One more entry outside steps.
+    pub fn note_outside(&mut self, verdict: Verdict) {
+        self.outside += u32::from(rank(verdict) > 1);
+    }
+
+    /// So far, of so many steps that are due, or more if there are.
+    pub fn counts(&self, planned: usize) -> StepCounts {
+        let of = |rank| self.steps.values().filter(|worst| **worst == rank).count() as u32;
+        StepCounts {
+            planned: planned.max(self.steps.len()) as u32,
+            passed: of(1),
+            failed: of(3),
+            error: of(2),
+            attempts: self.attempts,
+            outside: self.outside,
+        }
+    }
+}
+
+/// How much a result says of its step: of several the greatest stands.
+pub fn rank(verdict: Verdict) -> u8 {
+    match verdict {
+        Verdict::Skipped => 0,
+        Verdict::Passed => 1,
+        Verdict::Error | Verdict::Inconclusive | Verdict::Aborted => 2,
+        Verdict::Failed => 3,
+    }
+}
+
+/// The name of a step without that of its repetition: ` (2/3)`, ` (repeated)`.
+pub fn base_name(name: &str) -> &str {
+    let name = name.strip_suffix(" (repeated)").unwrap_or(name);
+    let repetition = |of: &str| {
+        let (number, all) = of.strip_suffix(')')?.split_once('/')?;
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        (is_number(number) && is_number(all)).then_some(())
+    };
+    let split = name.rsplit_once(" (");
+    match split.and_then(|(base, of)| repetition(of).map(|()| base)) {
+        Some(base) => base,
+        None => name,
+    }
+}
+
+/// [`StepCounts`] of the stored run `r.seq` by the same rule, so that a list of runs reads no steps: a text of numbers in
+/// the order of the fields.
+pub(crate) const COUNTS_OF_RUN: &str = "
+    SELECT count(*) || ' ' || count(CASE WHEN worst = 1 THEN 1 END) || ' ' || count(CASE WHEN worst = 3 THEN 1 END)
+        || ' ' || count(CASE WHEN worst = 2 THEN 1 END) || ' ' || coalesce(sum(attempts), 0)
+        || ' ' || (SELECT count(*) FROM step WHERE run = r.seq AND script_line IS NULL
+            AND verdict NOT IN ('passed', 'skipped'))
+    FROM (SELECT max(verdict_rank) AS worst, count(CASE WHEN verdict_rank > 0 THEN 1 END) AS attempts
+        FROM (SELECT procedure, CASE verdict WHEN 'skipped' THEN 0 WHEN 'passed' THEN 1 WHEN 'failed' THEN 3 ELSE 2 END
+                AS verdict_rank,
+                CASE WHEN name LIKE '% (%/%)' AND rtrim(name, '0123456789/)') LIKE '% ('
+                    THEN rtrim(name, '0123456789/)') ELSE name END AS base
+            FROM (SELECT procedure, verdict,
+                    CASE WHEN name LIKE '% (repeated)' THEN substr(name, 1, length(name) - 11) ELSE name END AS name
+                FROM step WHERE run = r.seq AND script_line IS NOT NULL) AS result) AS turn
+        GROUP BY procedure, base) AS step";
+
+/// What [`COUNTS_OF_RUN`] gave.
+pub(crate) fn counts_of_text(text: &str) -> StepCounts {
+    let mut numbers = text.split(' ').filter_map(|number| number.parse().ok());
+    let mut next = || numbers.next().unwrap_or_default();
+    StepCounts {
+        planned: next(),
+        passed: next(),
+        failed: next(),
+        error: next(),
+        attempts: next(),
+        outside: next(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base_name;
+
+    #[test]
+    fn a_repetition_has_the_name_of_its_step() {
+        for (name, base) in [
+            ("code 25", "code 25"),
+            ("code 25 (2/3)", "code 25"),
+            ("code 25 (12/40) (repeated)", "code 25"),
+            ("code (cab)", "code (cab)"),
+            ("code (a/b)", "code (a/b)"),
+            ("code (/)", "code (/)"),
+        ] {
+            assert_eq!(base_name(name), base);
+        }
+    }
+}
