@@ -280,6 +280,8 @@ fn the_challenge_of_another_start_is_another() {
     let challenge = |started| {
         let mut bench = Bench::new(&[]);
         bench.unit.draw_challenges(started);
+        bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
+        bench.run(0.1);
         assert_eq!(arm(&mut bench), None);
         let challenge = bench.answers.iter().find_map(|answer| match answer {
             Message::ArmChallenge(challenge) => Some(challenge.challenge),

@@ -101,7 +101,7 @@ fn a_run_under_way_waits_for_another_writer() {
     let ends = std::thread::spawn(move || run.finish(end(Verdict::Passed)));
     std::thread::sleep(Duration::from_millis(300));
     other.execute_batch("ROLLBACK").expect("released");
-    let store = ends.join().expect("no panic").expect("recorded");
+    let (store, _) = ends.join().expect("no panic").expect("recorded");
     let found = store.run(id).expect("there").run.verdict;
     assert_eq!((found, stop.presses()), (Some(Verdict::Passed), 0));
 }
