@@ -13,7 +13,7 @@ use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::coverage_text;
 use crate::naming;
-use crate::trace_notes::note_text;
+use crate::trace_notes::{note_text, noted_by};
 use crate::words::{Words, fill};
 use ptu_runs::clock::{local, local_zoned};
 use ptu_runs::coverage::Coverage;
@@ -257,7 +257,8 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
         return Vec::new();
     }
     let rows = sheet.run.notes.iter().map(|note| {
-        let cells = [local(note.at_us), note.who.clone(), note_text(note, words)];
+        let who = noted_by(note, &sheet.run, words);
+        let cells = [local(note.at_us), who, note_text(note, words)];
         Row::words(RowKind::Head, cells)
     });
     vec![

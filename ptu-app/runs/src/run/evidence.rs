@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
-use crate::clock::{ClockState, NOT_KNOWN_MS, now_us};
-use crate::keys::day_of;
+use crate::clock::{ClockState, NOT_KNOWN_MS, local_day, now_us};
 
 /// What the bench was made of, and how right its clock was.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,7 +44,7 @@ pub struct ClockEvidence {
 impl Evidence {
     /// With the clock as it is now.
     pub fn now(bench: BenchContents, used: Vec<Instrument>, rules: MeasuringRules) -> Self {
-        let today = day_of(now_us());
+        let today = local_day(now_us());
         let used = used.into_iter().map(|of| InstrumentEvidence {
             is_calibrated: of.is_calibrated_on(&today),
             of,
