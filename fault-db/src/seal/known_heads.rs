@@ -43,14 +43,21 @@ pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     let sql = "SELECT origin, max(ordinal), hash FROM seal
         WHERE origin IS NOT (SELECT value FROM about WHERE key = 'file_id') GROUP BY origin";
     let mut seen = of_file(file)?;
-    seen.extend(file.select(sql, &[], |row| {
+    let held = file.select(sql, &[], |row| {
         Ok(KnownHead {
             origin: row.get(0)?,
             ordinal: row.get(1)?,
             hash: row.get(2)?,
             seen_at_us: 0,
         })
-    })?);
+    })?;
+    for head in held {
+        let is_known =
+            |known: &KnownHead| known.origin == head.origin && known.ordinal >= head.ordinal;
+        if !seen.iter().any(is_known) {
+            seen.push(head);
+        }
+    }
     Ok(seen)
 }
 

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_does_not_depend_on_order_or_spaces() {
+    fn there_is_one_form_whatever_the_order_and_spaces() {
         let a: Value =
             serde_json::from_str(r#"{"b": [1, {"d": "ü\n", "c": null}], "a": 2}"#).unwrap();
         assert_eq!(
@@ -157,7 +157,7 @@ mod tests {
         let text = signed().text();
         let spaced = serde_json::to_string_pretty(&signed()).unwrap();
         assert_ne!(text, spaced);
-        assert_eq!(Signed::read(&spaced).unwrap().text(), text);
+        assert_eq!(Signed::read(&spaced), Err(SignatureError::Form));
     }
 
     /// Goal: no changed byte of a signed document is taken. Method: each byte is changed in two ways, and cut.
