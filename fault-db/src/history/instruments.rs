@@ -45,7 +45,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// Its calibration holds on a day (2026-11-26).
+    /// Its calibration holds on a day where the bench stands (2026-11-26).
     pub fn is_calibrated_on(&self, day: &str) -> bool {
         self.calibrated.as_deref().is_some_and(|from| from <= day)
             && self.due.as_deref().is_none_or(|due| day < due)

@@ -14,6 +14,8 @@ use crate::values::trace_place::TracePlace;
 /// A note on a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RunNote {
+    /// Its id.
+    pub id: Id,
     /// When it was written.
     pub at_us: i64,
     /// Who wrote it.
@@ -22,6 +24,8 @@ pub struct RunNote {
     pub place: Option<TracePlace>,
     /// What it says.
     pub text: String,
+    /// Who signed it, where the signature holds; looked at only where a whole run is read.
+    pub signed_by: Option<String>,
 }
 
 impl Store {
@@ -133,7 +137,7 @@ impl Store {
     }
 }
 
-const NOTES: &str = "SELECT n.at_us, n.who, n.text, n.trace, n.place_us FROM run_note n";
+const NOTES: &str = "SELECT n.at_us, n.who, n.text, n.trace, n.place_us, n.id FROM run_note n";
 
 fn note(row: Row<'_>) -> SqlResult<RunNote> {
     let (trace, at_us) = (row.get::<Option<Id>>(3)?, row.get::<Option<i64>>(4)?);
@@ -144,5 +148,7 @@ fn note(row: Row<'_>) -> SqlResult<RunNote> {
             .zip(at_us)
             .map(|(trace, at_us)| TracePlace { trace, at_us }),
         text: row.get(2)?,
+        id: row.get(5)?,
+        signed_by: None,
     })
 }

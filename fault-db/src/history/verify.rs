@@ -45,7 +45,7 @@ const SHOWN_GONE: &str = concat!(
             WHERE again.run = ?2 AND again.verdict = 'passed'
                 AND (seen.run, seen.step_index) = (
                     SELECT o.run, o.step_index FROM fault_occurrence o
-                    WHERE o.fault = f.seq ORDER BY o.at_us DESC, o.seq DESC LIMIT 1))
+                    WHERE o.fault = f.seq ORDER BY o.seq DESC LIMIT 1))
     ORDER BY f.seq"
 );
 
@@ -67,18 +67,39 @@ const PROVEN_WITH_IT: &str = "
         AND other.cause = lower(other.lru) AND other.state NOT IN ('verified', 'closed'))
     ORDER BY c.seq";
 
+/// Whether a run was recorded before an event: as their chain says, which no clock changes, or where two files recorded them
+/// by their times.
+macro_rules! before {
+    ($run:literal, $at_us:literal, $event:literal) => {
+        concat!(
+            "coalesce((SELECT a.ordinal < b.ordinal FROM seal a JOIN seal b ON b.origin = a.origin
+                WHERE a.what = 'run' AND a.id = ",
+            $run,
+            ".id AND b.what = 'event' AND b.id = ",
+            $event,
+            ".id LIMIT 1), ",
+            $at_us,
+            " <= ",
+            $event,
+            ".at_us)"
+        )
+    };
+}
+
 /// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
 const THERE: &str = concat!(
     "SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
     WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2
-        AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o WHERE o.fault = f.seq AND o.at_us >
-            coalesce((SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.state = 'verified'",
+        AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o JOIN run q ON q.seq = o.run
+            WHERE o.fault = f.seq AND NOT EXISTS (SELECT 1 FROM fault_event x
+                WHERE x.fault = f.seq AND x.state = 'verified' AND ",
+    before!("q", "o.at_us", "x"),
     standing!("x"),
-    "), -1))
-        AND r.started_at_us <= (SELECT max(x.at_us) FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair'",
+    ")) AND EXISTS (SELECT 1 FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND ",
+    before!("r", "r.started_at_us", "x"),
     standing!("x"),
     ")
-    ORDER BY r.started_at_us DESC, r.seq DESC LIMIT ?3"
+    ORDER BY r.seq DESC LIMIT ?3"
 );
 
 /// A repair that a run may have proved.

@@ -15,7 +15,7 @@ use crate::history::run_notes::RunNote;
 use crate::history::verify::{SETTLED, SettledFault, made_by};
 use crate::id::Id;
 use crate::seal::{RunSealed, sealed_as};
-use crate::signature::{Statement, signature_of_run};
+use crate::signature::{Statement, signatures_of};
 use crate::store::Store;
 use crate::values::fault_state::FaultState;
 use crate::values::record::{MeasurementRecord, ScriptRecord, StepRecord, Verdict};
@@ -197,15 +197,24 @@ impl Store {
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
         let rest = || -> SqlResult<_> {
+            let signed = signatures_of(self.backend(), id)?;
+            let mut notes = self.run_notes(seq)?;
+            for note in &mut notes {
+                let of = |one: &&(String, Statement)| {
+                    one.1.what == "note" && one.1.id == note.id.to_string()
+                };
+                note.signed_by = signed.iter().find(of).map(|(_, of)| of.who.clone());
+            }
             Ok(RunDetail {
                 run,
                 scripts: self.scripts(seq)?,
                 steps: self.steps(seq)?,
                 faults: self.run_faults(seq)?,
                 settled: self.settled_by(id)?,
-                notes: self.run_notes(seq)?,
+                notes,
                 seal: sealed_as(self.backend(), id)?,
-                signature: signature_of_run(self.backend(), id)?,
+                signature: (signed.into_iter())
+                    .find_map(|(_, of)| (of.what == "run").then_some(of)),
             })
         };
         rest().map_err(|error| self.failed(DOING, error))

@@ -38,6 +38,29 @@ pub(crate) fn of_file(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     })
 }
 
+/// Those that a file has seen, and the ends of the chains that it holds of others by import: the time of these is 0.
+pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
+    let sql = "SELECT origin, max(ordinal), hash FROM seal
+        WHERE origin IS NOT (SELECT value FROM about WHERE key = 'file_id') GROUP BY origin";
+    let mut seen = of_file(file)?;
+    let held = file.select(sql, &[], |row| {
+        Ok(KnownHead {
+            origin: row.get(0)?,
+            ordinal: row.get(1)?,
+            hash: row.get(2)?,
+            seen_at_us: 0,
+        })
+    })?;
+    for head in held {
+        let is_known =
+            |known: &KnownHead| known.origin == head.origin && known.ordinal >= head.ordinal;
+        if !seen.iter().any(is_known) {
+            seen.push(head);
+        }
+    }
+    Ok(seen)
+}
+
 /// Those of all laptops on a server.
 pub(crate) fn of_server(server: &Backend, seen_at_us: i64) -> SqlResult<Vec<KnownHead>> {
     let sql =
@@ -72,17 +95,20 @@ pub(crate) fn broken(
         let hash: Option<Vec<u8>> =
             store.first(sql, &values![origin, ordinal], |row| row.get(0))?;
         let at = chrono::DateTime::from_timestamp_micros(head.seen_at_us).unwrap_or_default();
-        let at = at.format("%Y-%m-%d %H:%M:%S UTC");
+        let at = match head.seen_at_us {
+            0 => "here".to_owned(),
+            _ => format!("at {}", at.format("%Y-%m-%d %H:%M:%S UTC")),
+        };
         let file = origin.short();
         match hash {
             Some(hash) if hash == head.hash => {}
             Some(_) => found.push((
                 origin,
-                format!("the chain of file {file} was rewritten: entry {ordinal} is not the one that was known at {at}"),
+                format!("the chain of file {file} was rewritten: entry {ordinal} is not the one that was known {at}"),
             )),
             None if own == Some(origin) => found.push((
                 origin,
-                format!("the chain of file {file} was cut: entry {ordinal}, which was known at {at}, is not there"),
+                format!("the chain of file {file} was cut: entry {ordinal}, which was known {at}, is not there"),
             )),
             None => {}
         }

@@ -14,7 +14,7 @@ pub use places::Places;
 pub(crate) use places::changed_places;
 pub use signed::{SignatureError, Signed, canonical_json};
 pub use statement::{About, Statement};
-pub(crate) use statement::{SIGNATURE, signature_of_run, signatures_of};
+pub(crate) use statement::{SIGNATURE, read_signature, signatures_of};
 
 use ring::signature::{Ed25519KeyPair, KeyPair as _};
 

@@ -6,6 +6,7 @@ use super::places::Places;
 use super::signed::Signed;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
+use crate::seal::{hex, run};
 
 /// The kind of an entry that holds a signature.
 pub(crate) const SIGNATURE: &str = "signature";
@@ -87,20 +88,113 @@ impl Statement {
     }
 }
 
-/// The signed documents about what belongs to this id, in the order in which they were made: of a run its own and those
-/// of its notes, of a fault those of its events.
-pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<String>> {
-    backend.select(
+/// The signed documents about what belongs to this id that hold, in the order in which they were made: of a run its own, if
+/// it still has the content that was signed, and those of its notes, of a fault those of its events.
+pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(String, Statement)>> {
+    let texts = backend.select(
         "SELECT says FROM seal WHERE id = ?1 AND what = 'signature' ORDER BY origin, ordinal",
         &values![group],
-        |row| row.get(0),
-    )
+        |row| row.get::<String>(0),
+    )?;
+    let mut held = Vec::new();
+    for text in texts {
+        if let Ok(statement) = read_signature(backend, group, &text)?
+            && (statement.what != "run" || has_content(backend, group, &statement.digest)?)
+        {
+            held.push((text, statement));
+        }
+    }
+    Ok(held)
 }
 
-/// The signature of a run itself, if it has one that holds.
-pub(crate) fn signature_of_run(backend: &Backend, run: Id) -> SqlResult<Option<Statement>> {
-    let texts = signatures_of(backend, run)?;
-    let signed = texts.iter().filter_map(|text| Signed::read(text).ok());
-    let mut statements = signed.filter_map(|signed| Statement::of(&signed));
-    Ok(statements.find(|statement| statement.what == "run"))
+/// Whether a run has the content that was sealed with this digest.
+fn has_content(backend: &Backend, id: Id, digest: &str) -> SqlResult<bool> {
+    let sealed = backend.select(
+        "SELECT r.seq, s.says, s.digest FROM seal s JOIN run r ON r.id = s.id WHERE s.id = ?1 AND s.what = 'run'",
+        &values![id],
+        |row| Ok((row.get::<i64>(0)?, row.get::<String>(1)?, hex(row.get(2)?))),
+    )?;
+    match sealed.iter().find(|(_, _, sealed)| sealed == digest) {
+        Some((run, payload, _)) => Ok(hex(&run::digest(backend, *run, payload)?) == digest),
+        None => Ok(false),
+    }
+}
+
+/// Reads a signature that hangs on a run, fault or instrument, and holds it against the seal that it signs and against what
+/// it hangs on; what is wrong with it. Nothing else reads one.
+pub(crate) fn read_signature(
+    backend: &Backend,
+    group: Id,
+    text: &str,
+) -> SqlResult<Result<Statement, String>> {
+    let signed = match Signed::read(text) {
+        Ok(signed) => signed,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let Some(statement) = Statement::of(&signed) else {
+        return Ok(Err("it is no statement about a seal".to_owned()));
+    };
+    let wrong = match wrong_subject(backend, group, &statement)? {
+        None => seal_mismatch(backend, &statement)?,
+        wrong => wrong,
+    };
+    Ok(wrong.map_or(Ok(statement), Err))
+}
+
+/// How what a signature names is not what it hangs on: a run or instrument on itself, a note on its run, an event on its fault.
+fn wrong_subject(backend: &Backend, group: Id, statement: &Statement) -> SqlResult<Option<String>> {
+    let what = &statement.what;
+    let Ok(id) = statement.id.parse::<Id>() else {
+        return Ok(Some("it names no seal".to_owned()));
+    };
+    let owners = match &what[..] {
+        "run" | "instrument" => vec![id],
+        "note" => backend.select(
+            "SELECT r.id FROM run_note n JOIN run r ON r.seq = n.run WHERE n.id = ?1",
+            &values![id],
+            |row| row.get(0),
+        )?,
+        "event" => backend.select(
+            "SELECT f.id FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.id = ?1
+             UNION SELECT a.id FROM fault_event e JOIN fault_alias a ON a.fault = e.fault WHERE e.id = ?1",
+            &values![id],
+            |row| row.get(0),
+        )?,
+        _ => return Ok(Some(format!("a \"{what}\" is not signed there"))),
+    };
+    // That a note or event was taken out is told by its seal.
+    let is_own = owners.is_empty() || owners.contains(&group);
+    Ok((!is_own).then(|| format!("it is of another: it signs {what} {id}")))
+}
+
+/// How the seal that a signature names differs from it.
+fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<String>> {
+    let (Ok(id), Ok(file)) = (statement.id.parse::<Id>(), statement.file.parse::<Id>()) else {
+        return Ok(Some("it names no seal".to_owned()));
+    };
+    let sql = "SELECT what, id, digest, hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
+    let sealed = backend.first(sql, &values![file, statement.entry], |row| {
+        let same = row.get::<String>(0)? == statement.what
+            && row.get::<Id>(1)? == id
+            && hex(row.get(2)?) == statement.digest
+            && hex(row.get(3)?) == statement.seal;
+        Ok(same)
+    })?;
+    if sealed == Some(true) {
+        return Ok(None);
+    }
+    // In a copy that was given a name of its own the same content is sealed again.
+    let sql = "SELECT digest FROM seal WHERE id = ?1 AND what = ?2";
+    let again = backend.select(sql, &values![id, &statement.what], |row| {
+        Ok(hex(row.get(0)?))
+    })?;
+    let (what, entry) = (&statement.what, statement.entry);
+    let file = file.short();
+    Ok(match (sealed, again.contains(&statement.digest)) {
+        (None, true) => None,
+        (None, false) if again.is_empty() => Some(format!("the seal of {what} {id} was taken out")),
+        _ => Some(format!(
+            "the seal of {what} {id}, entry {entry} of file {file}, is not the one that was signed"
+        )),
+    })
 }

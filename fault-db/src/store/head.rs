@@ -36,7 +36,7 @@ impl Store {
         if !matches!(self.backend(), Backend::File(_)) {
             return Ok(Vec::new());
         }
-        let known = known_heads::of_file(self.backend());
+        let known = known_heads::seen_by(self.backend());
         let known = known.map_err(|error| self.failed(DOING, error))?;
         let look = || {
             let own = own_file_id(other.backend())?;

@@ -21,7 +21,14 @@ struct NamedTable {
     /// Aliases of its rows: a table expression with `id` and `named`, the row's own id.
     aliases: Option<&'static str>,
     newest_first: &'static str,
+    /// Which rows may be the latest.
+    among: &'static str,
 }
+
+/// The last run of each chain, as it was recorded whatever the clock said, and one that has not ended.
+const LAST_RUNS: &str = "WHERE seq = (SELECT max(seq) FROM run) AND verdict IS NULL OR id IN (
+    SELECT (SELECT s.id FROM seal s WHERE s.origin = o.origin AND s.what = 'run' ORDER BY s.ordinal DESC LIMIT 1)
+    FROM (SELECT DISTINCT origin FROM seal) o)";
 
 impl Store {
     /// The run with this id, the beginning or end of an id, or `latest`.
@@ -33,6 +40,7 @@ impl Store {
                 table: "run",
                 aliases: None,
                 newest_first,
+                among: LAST_RUNS,
             },
             asked,
         )
@@ -49,6 +57,7 @@ impl Store {
                     "(SELECT a.id, f.id AS named FROM fault_alias a JOIN fault f ON f.seq = a.fault) AS other",
                 ),
                 newest_first,
+                among: "",
             },
             asked,
         )
@@ -63,6 +72,7 @@ impl Store {
                 table: "trace",
                 aliases: None,
                 newest_first,
+                among: "",
             },
             asked,
         )
@@ -73,10 +83,11 @@ impl Store {
             what,
             table,
             newest_first,
+            among,
             ..
         } = *named;
         if asked == "latest" {
-            let sql = format!("SELECT id FROM {table} ORDER BY {newest_first} LIMIT 1");
+            let sql = format!("SELECT id FROM {table} {among} ORDER BY {newest_first} LIMIT 1");
             let found = self.first(DOING, &sql, &[], |row| row.get(0))?;
             return found.ok_or_else(|| StoreError::NotFound {
                 what,

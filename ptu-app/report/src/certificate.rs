@@ -1,7 +1,7 @@
 //! The certificate in a sheet: who signed the run, and who signed the text of the sheet. With it the sheet can be verified
 //! without the database.
 
-use fault_db::{RunDetail, Signed, Signer};
+use fault_db::{RunDetail, Signed, Signer, canonical_json};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -10,8 +10,10 @@ use ptu_runs::data::sha256;
 /// What stands before the certificate in a page, and after it.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 const END: &str = "</script>";
-/// Where it is put.
-const PLACE: &str = "</body>";
+/// What a page ends with, behind its certificate.
+const PAGE_END: &str = "</body></html>";
+/// Version of what is signed of a sheet; the first did not cover the certificate.
+const VERSION: u32 = 2;
 
 /// What is signed of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -23,7 +25,7 @@ pub struct SheetStatement {
     pub what: String,
     /// The run.
     pub id: String,
-    /// SHA-256 of the page without its certificate.
+    /// SHA-256 of the page with its certificate, but without this document.
     pub sheet: String,
     /// SHA-256 of the run's content, as its seal has it; empty before its end.
     pub digest: String,
@@ -51,15 +53,29 @@ struct Block {
     sheet: Option<Value>,
 }
 
+impl Block {
+    /// The page that begins so with this certificate, in its one form.
+    fn page(&self, begins: &str) -> String {
+        let json = canonical_json(&serde_json::to_value(self).unwrap_or_default());
+        // No sign of JSON's own: nothing in it ends the element.
+        let json = json.replace('<', "\\u003c");
+        format!("{begins}{BEGIN}{json}{END}{PAGE_END}")
+    }
+
+    /// What the signature of a sheet covers: each byte of the page but its own.
+    fn covered(&self, begins: &str) -> String {
+        let run = self.run.clone();
+        sha256(&Self { run, sheet: None }.page(begins))
+    }
+}
+
 /// A sheet's certificate, read.
 #[derive(Debug)]
 pub struct SheetCertificate {
     /// The signed documents of the run and its notes; an error says why one does not hold.
     pub run: Vec<Result<Signed, String>>,
-    /// The signed document of the sheet, if it was signed.
+    /// The signed document of the sheet, if it was signed; an error says why it does not hold for this page.
     pub sheet: Option<Result<SheetStatement, String>>,
-    /// SHA-256 of the page without its certificate, as it is now.
-    pub sha256: String,
 }
 
 /// Puts the certificate into a page: the run's signatures, and that of the sheet where there is a key.
@@ -73,16 +89,20 @@ pub(crate) fn attach(
     if signatures.is_empty() && signer.is_none() {
         return page;
     }
-    let Some(place) = page.rfind(PLACE) else {
+    let Some(begins) = page.strip_suffix(PAGE_END) else {
         return page;
     };
     let parsed = |text: &String| serde_json::from_str(text).ok();
-    let sheet = signer.map(|signer| {
+    let mut block = Block {
+        run: signatures.iter().filter_map(parsed).collect(),
+        sheet: None,
+    };
+    block.sheet = signer.map(|signer| {
         let statement = SheetStatement {
-            version: 1,
+            version: VERSION,
             what: "sheet".to_owned(),
             id: run.run.id.to_string(),
-            sheet: sha256(&page),
+            sheet: block.covered(begins),
             digest: run
                 .seal
                 .as_ref()
@@ -92,14 +112,7 @@ pub(crate) fn attach(
         };
         serde_json::to_value(Signed::new(signer, &statement)).unwrap_or_default()
     });
-    let block = Block {
-        run: signatures.iter().filter_map(parsed).collect(),
-        sheet,
-    };
-    let json = serde_json::to_string(&block).unwrap_or_default();
-    // No sign of JSON's own: nothing in it ends the element.
-    let json = json.replace('<', "\\u003c");
-    format!("{}{BEGIN}{json}{END}{}", &page[..place], &page[place..])
+    block.page(begins)
 }
 
 /// Whether a text is a page with a certificate.
@@ -107,24 +120,39 @@ pub fn has_certificate(page: &str) -> bool {
     page.contains(BEGIN)
 }
 
-/// Reads the certificate of a sheet.
+/// Reads the certificate of a sheet, which stands once, in one form, at the end of the page.
 ///
 /// # Errors
-/// There is none, or it cannot be read.
+/// There is none, or the page is not as the program writes it.
 pub fn read_certificate(page: &str) -> Result<SheetCertificate, String> {
-    let (before, rest) = page.split_once(BEGIN).ok_or("it has no certificate")?;
-    let (json, after) = rest.split_once(END).ok_or("its certificate has no end")?;
+    let (begins, rest) = page.split_once(BEGIN).ok_or("it has no certificate")?;
+    let json = rest.strip_suffix(PAGE_END);
+    let json = json.and_then(|rest| rest.strip_suffix(END));
+    let json = json.ok_or("the certificate is not what the page ends with")?;
     let block: Block = serde_json::from_str(json)
         .map_err(|error| format!("its certificate cannot be read: {error}"))?;
-    let signed = |value: Value| Signed::read(&value.to_string()).map_err(|error| error.to_string());
-    let sheet = block.sheet.map(|value| {
+    let scripts = page.to_ascii_lowercase().matches("<script").count();
+    if scripts != 1 || block.page(begins) != page {
+        return Err("the certificate is not in the one form in which it was written".to_owned());
+    }
+    let signed =
+        |value: &Value| Signed::read(&canonical_json(value)).map_err(|error| error.to_string());
+    let sheet = block.sheet.as_ref().map(|value| {
         let signed = signed(value)?;
-        serde_json::from_value(signed.statement().clone())
-            .map_err(|_| "it is no statement about a sheet".to_owned())
+        let sheet: SheetStatement = serde_json::from_value(signed.statement().clone())
+            .map_err(|_| "it is no statement about a sheet".to_owned())?;
+        if sheet.version != VERSION || sheet.what != "sheet" {
+            return Err(
+                "it is of another version, or of something else; write the sheet again".to_owned(),
+            );
+        }
+        if sheet.sheet != block.covered(begins) {
+            return Err("the text of the sheet was changed after it was signed".to_owned());
+        }
+        Ok(sheet)
     });
     Ok(SheetCertificate {
-        run: block.run.into_iter().map(signed).collect(),
+        run: block.run.iter().map(signed).collect(),
         sheet,
-        sha256: sha256(&format!("{before}{after}")),
     })
 }

@@ -1,6 +1,6 @@
 //! Notes at places in traces, as they are shown and written.
 
-use fault_db::{Id, RunNote, Store, StoreError};
+use fault_db::{Id, RunDetail, RunNote, Store, StoreError};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -62,9 +62,21 @@ pub fn note_text(note: &RunNote, words: &Words) -> String {
 }
 
 /// A note on a run as JSON.
+/// Who wrote a note on a run; on a signed one, whether it is signed by that name, too.
+pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
+    let who = &note.who;
+    match (&run.signature, &note.signed_by) {
+        (Some(_), None) => format!("{who} ({})", words.report.unsigned),
+        (Some(_), Some(by)) if by.to_lowercase() != who.to_lowercase() => {
+            format!("{who} ({} {by})", words.report.signed_by)
+        }
+        _ => who.clone(),
+    }
+}
+
 pub(crate) fn note_json(note: &RunNote) -> Value {
     let place = note.place.map(
         |place| json!({ "trace": place.trace.to_string(), "time_s": place.at_us as f64 / 1e6 }),
     );
-    json!({ "at": rfc3339(note.at_us), "who": note.who, "text": note.text, "place": place })
+    json!({ "at": rfc3339(note.at_us), "who": note.who, "text": note.text, "place": place, "signed_by": note.signed_by })
 }

@@ -33,3 +33,15 @@ pub fn told_if_shared(file: &Path) -> Option<String> {
         "{shown} is open to others ({rights}); to keep it to yourself: {command}"
     ))
 }
+
+/// Refuses a secret that others can read.
+///
+/// # Errors
+/// They can.
+pub fn refuse_shared(secret: &Path) -> Result<(), Failure> {
+    told_if_shared(secret).map_or(Ok(()), |told| {
+        Err(Failure::usage(format!(
+            "a secret that is shared protects nothing: {told}"
+        )))
+    })
+}

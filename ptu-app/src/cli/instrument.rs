@@ -10,7 +10,7 @@ use super::signing::SigningOption;
 use super::{Database, Json, print_out};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
-use ptu_runs::keys::{day_argument, day_of};
+use ptu_runs::keys::day_argument;
 use ptu_runs::table::Table;
 
 /// Register what measures and generates on this bench, with its calibration
@@ -148,7 +148,7 @@ impl InstrumentArguments {
                 who,
             } => {
                 let known = find(&store, &serial_no)?;
-                let on = on.unwrap_or_else(|| day_of(at_us));
+                let on = on.unwrap_or_else(|| clock::local_day(at_us));
                 if due <= on {
                     return Err(Failure::usage(format!(
                         "it is due on {due}, before it was calibrated on {on}"
@@ -201,7 +201,7 @@ fn find(store: &Store, serial_no: &str) -> Result<Instrument, Failure> {
 
 fn list(store: &Store, json: Json) -> Result<Exit, Failure> {
     let known = store.instruments()?;
-    let today = day_of(clock::now_us());
+    let today = clock::local_day(clock::now_us());
     let document = || {
         let one = |one: &Instrument| {
             json!({

@@ -11,7 +11,7 @@ use super::{Json, print_out};
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
-    own_folder, public_name, sought,
+    name_argument, own_folder, public_name, sought,
 };
 use ptu_runs::owner_only;
 use ptu_runs::table::Table;
@@ -45,7 +45,7 @@ enum Verb {
     /// Make a key: a private key file, protected by a PIN, and beside it a `.pub` file to hand to others
     New {
         /// The name it signs by
-        #[arg(long, value_name = "TEXT")]
+        #[arg(long, value_name = "TEXT", value_parser = name_argument)]
         who: String,
         /// It is the key of a bench, not of a technician
         #[arg(long)]
@@ -119,8 +119,8 @@ impl KeysOption {
         }
     }
 
-    /// Changes the list in its file; that of a folder is `trusted.keys` in it.
-    fn change(&self, entry: KeyEntry) -> Result<PathBuf, Failure> {
+    /// Adds a key to the list in its file; that of a folder is `trusted.keys` in it. How it stands there then.
+    fn change(&self, entry: KeyEntry) -> Result<(KeyEntry, PathBuf), Failure> {
         let place = self.place()?;
         let is_folder = place.is_dir() || self.keys.is_none();
         let file = match is_folder {
@@ -132,9 +132,9 @@ impl KeysOption {
             true => KeyList::read(&file)?,
             false => KeyList::default(),
         };
-        list.add(entry);
+        let stands = list.add(entry).map_err(Failure::usage)?;
         data::write_text(&file, list.text())?;
-        Ok(file)
+        Ok((stands, file))
     }
 }
 
@@ -148,7 +148,7 @@ impl KeyArguments {
                 out,
                 until,
                 pin,
-            } => new(who.trim(), bench, out, until, &pin),
+            } => new(&who, bench, out, until, &pin),
             Verb::List { keys, json } => list(&keys, json),
             Verb::Trust { file, keys } => trust(&file, &keys),
             Verb::Revoke { key, note, keys } => revoke(&key, note.trim(), &keys),
@@ -163,9 +163,6 @@ fn new(
     until: Option<String>,
     pin: &PinOption,
 ) -> Result<Exit, Failure> {
-    if who.is_empty() || who.chars().any(char::is_control) {
-        return Err(Failure::usage("a key signs by a name; give it with --who"));
-    }
     let path = match out {
         Some(path) => path,
         None => own_folder()?.join(format!("{}.key", file_name(who))),
@@ -301,15 +298,14 @@ fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
     }
     let mut said = Vec::new();
     for entry in new.keys {
-        let name = format!(
-            "{} ({}), key {}, {}",
-            entry.who,
-            entry.kind,
+        let (entry, to) = keys.change(entry)?;
+        said.push(format!(
+            "trusted: {}, key {}, {}, in {}",
+            entry.name(),
             entry.short(),
-            span(&entry)
-        );
-        let to = keys.change(entry)?;
-        said.push(format!("trusted: {name}, in {}", to.display()));
+            span(&entry),
+            to.display()
+        ));
     }
     print_out(&said.join("\n"))
 }
@@ -334,7 +330,7 @@ fn revoke(asked: &str, note: &str, keys: &KeysOption) -> Result<Exit, Failure> {
     };
     let (who, key) = (entry.who.clone(), entry.short().to_owned());
     let today = day_of(clock::now_us());
-    let to = keys.change(KeyEntry {
+    let (_, to) = keys.change(KeyEntry {
         revoked: Some(entry.revoked.clone().unwrap_or(today.clone())),
         reason: Some(note.to_owned()).filter(|note| !note.is_empty()),
         ..entry

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use fault_db::{RunDetail, RunFilter, RunNote, Signed, Statement, Store};
+use fault_db::{RunDetail, RunFilter, Signed, Statement, Store};
 
 use super::reports::ReportOption;
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
-use ptu_report::trace_notes::note_text;
+use ptu_report::trace_notes::{note_text, noted_by};
 use ptu_report::words::Language;
 use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
@@ -179,7 +179,7 @@ impl RunsArguments {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
                 }
-                let text = || verdict_table(&run) + &signed(&run) + &notes(&run.notes);
+                let text = || verdict_table(&run) + &signed(&run) + &notes(&run);
                 json.answer(|| run_json(&run), text)
             }
         }
@@ -246,16 +246,17 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
 }
 
 /// What was said about a run, below its verdict.
-fn notes(notes: &[RunNote]) -> String {
-    if notes.is_empty() {
+fn notes(run: &RunDetail) -> String {
+    if run.notes.is_empty() {
         return String::new();
     }
     let mut table = Table::new(&["NOTED", "BY", "NOTE"]);
-    for note in notes {
+    let words = Language::English.words();
+    for note in &run.notes {
         table.row([
             clock::local(note.at_us),
-            note.who.clone(),
-            note_text(note, Language::English.words()),
+            noted_by(note, run, words),
+            note_text(note, words),
         ]);
     }
     format!("\n\n{}", table.render())

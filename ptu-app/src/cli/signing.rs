@@ -9,7 +9,8 @@ use fault_db::{Signer, Store};
 
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
-use ptu_runs::keys::{KeyFile, KeyList, Standing, own_folder};
+use ptu_runs::keys::{KeyFile, KeyList, Standing, located, own_folder};
+use ptu_runs::owner_only;
 
 /// Longest file with a PIN, bytes.
 const LONGEST_PIN: u64 = 4096;
@@ -59,6 +60,7 @@ impl SigningOption {
             return Ok(None);
         };
         let file = KeyFile::read(path)?;
+        owner_only::refuse_shared(&located(path))?;
         check(path, &file)?;
         let pin = self
             .pin
@@ -74,7 +76,7 @@ fn check(path: &Path, file: &KeyFile) -> Result<(), Failure> {
     let listed = listed.map(|folder| KeyList::read(&folder)).transpose()?;
     let listed = listed
         .unwrap_or_default()
-        .standing(&entry.key, &entry.who, now);
+        .standing(&entry.key, &entry.who, &entry.kind, now);
     for standing in [entry.standing(now), listed] {
         if !matches!(standing, Standing::Held | Standing::Unknown) {
             return Err(Failure::usage(format!(
@@ -100,6 +102,7 @@ impl PinOption {
                     path.display()
                 ))
             })?;
+            owner_only::refuse_shared(path)?;
             let text = String::from_utf8_lossy(&bytes);
             return Ok(text.trim_end_matches(['\n', '\r']).to_owned());
         }

@@ -1,5 +1,7 @@
 //! `ptu verify`: who signed, and whether anything was changed since.
 
+mod sheet;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::key::KeysOption;
 use super::{Database, Json, answered};
-use ptu_report::{has_certificate, read_certificate};
+use ptu_report::has_certificate;
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::keys::KeyList;
@@ -122,13 +124,14 @@ impl VerifyArguments {
         let bytes = fault_db::read_regular_file(path, LONGEST).map_err(cannot)?;
         let none = |why: &str| {
             Failure::bench(format!(
-                "{} is no database, no sheet with a certificate and no certificate: {why}",
+                "{} carries no signature: it is no database, no HTML sheet with a certificate and no certificate ({why}). Nothing \
+                 in it is covered; `ptu verify RUN` verifies the run that it names",
                 path.display()
             ))
         };
         let text = String::from_utf8(bytes).map_err(|_| none("it is no text"))?;
         if has_certificate(&text) {
-            return sheet(&text, keys).map_err(|why| none(&why));
+            return Ok(sheet::sheet(&text, keys));
         }
         if text.trim_start().starts_with('{') {
             return self.certificate(&text, keys).map_err(|why| none(&why));
@@ -161,7 +164,7 @@ impl VerifyArguments {
         let signed: u32 = report.signed.iter().map(|key| key.runs).sum();
         for key in report.signed {
             let stood = [key.first_at_us, key.last_at_us]
-                .map(|at_us| keys.standing(&key.key, &key.who, at_us));
+                .map(|at_us| keys.standing(&key.key, &key.who, &key.kind, at_us));
             let wrong = stood.iter().find(|standing| !standing.is_good());
             let standing = wrong.unwrap_or(&stood[0]).text();
             let short = key.key.get(..16).unwrap_or_default();
@@ -176,6 +179,7 @@ impl VerifyArguments {
             if wrong.is_some() {
                 found.doubts.push(format!("the key of {name} {standing}"));
             }
+            found.doubts.extend(dated_ahead(&name, key.last_at_us));
             found.signatures.push(json!({
                 "what": "database", "id": null, "who": key.who, "kind": key.kind, "key": key.key,
                 "at": rfc3339(key.last_at_us), "trusted": wrong.is_none(), "standing": standing,
@@ -198,8 +202,8 @@ impl VerifyArguments {
             what: "certificate",
             ..Findings::default()
         };
-        let signed: Result<Signed, String> =
-            Signed::read(text.trim()).map_err(|error| error.to_string());
+        let signed: Result<Signed, String> = Signed::read(text.strip_suffix('\n').unwrap_or(text))
+            .map_err(|error| error.to_string());
         match signed {
             Err(why) if why.starts_with("it is no signed") => return Err(why),
             Err(why) => found.changes.push(format!("the certificate: {why}")),
@@ -252,62 +256,18 @@ fn looks_like_a_file(name: &str) -> bool {
     (!is_code && name.contains(['/', '\\'])) || matches!(ending, Some("db" | "html" | "ptucert"))
 }
 
-/// A sheet by the certificate in it.
-fn sheet(page: &str, keys: &KeyList) -> Result<Findings, String> {
-    let certificate = read_certificate(page)?;
-    let mut found = Findings {
-        what: "sheet",
-        ..Findings::default()
-    };
-    let mut digest = None;
-    for signed in certificate.run {
-        match signed.and_then(|signed| {
-            Statement::of(&signed).ok_or_else(|| "it is no statement about a run".to_owned())
-        }) {
-            Err(why) => found
-                .changes
-                .push(format!("a signature in its certificate: {why}")),
-            Ok(statement) => {
-                if statement.what == "run" {
-                    found.id.clone_from(&statement.id);
-                    digest = Some(statement.digest.clone());
-                }
-                found.take(&statement, keys);
-            }
-        }
-    }
-    match certificate.sheet {
-        None => found.doubts.push(
-            "the text of the sheet is not signed: hold it against the database, or write it again with --key".to_owned(),
-        ),
-        Some(Err(why)) => found.changes.push(format!("the signature of the sheet: {why}")),
-        Some(Ok(sheet)) => {
-            if sheet.what != "sheet" {
-                found.changes.push("the signature of the sheet is of something else".to_owned());
-            }
-            if sheet.sheet != certificate.sha256 {
-                found.changes.push("the text of the sheet was changed after it was signed".to_owned());
-            }
-            if found.id.is_empty() {
-                found.id.clone_from(&sheet.id);
-                found.doubts.push("the run is not signed, only the sheet is".to_owned());
-            }
-            if sheet.id != found.id || digest.is_some_and(|digest| digest != sheet.digest) {
-                found.changes.push("the sheet and the certificate in it are of two runs".to_owned());
-            }
-            let of = Statement {
-                what: "sheet".to_owned(),
-                id: sheet.id,
-                who: sheet.who,
-                kind: sheet.kind,
-                key: sheet.key,
-                at_us: sheet.at_us,
-                ..Statement::default()
-            };
-            found.take(&of, keys);
-        }
-    }
-    Ok(found)
+/// A clock may be ahead of this one by so much, µs.
+const AHEAD_US: i64 = 86_400_000_000;
+
+/// What to say of a signature that is dated in the future.
+fn dated_ahead(name: &str, at_us: i64) -> Option<String> {
+    let is_ahead = at_us > clock::now_us().saturating_add(AHEAD_US);
+    is_ahead.then(|| {
+        format!(
+            "a signature of {name} is dated in the future: {}",
+            clock::local(at_us)
+        )
+    })
 }
 
 impl Findings {
@@ -334,13 +294,22 @@ impl Findings {
                 seal.file.short()
             ));
         }
+        for (id, who) in &seen.unsigned_notes {
+            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
+            let is_of_signer = |one: &Statement| one.who.to_lowercase() == who.to_lowercase();
+            match seen.signatures.iter().any(is_of_signer) {
+                true => self.doubts.push(said),
+                false => self.remarks.push(said),
+            }
+        }
+        self.remarks.extend(seen.remarks);
         let pruned = seen.pruned.iter().map(|what| format!("{what} was pruned"));
         self.remarks.extend(pruned);
         self.changes.extend(seen.changes);
     }
 
     fn take(&mut self, signed: &Statement, keys: &KeyList) {
-        let standing = keys.standing(&signed.key, &signed.who, signed.at_us);
+        let standing = keys.standing(&signed.key, &signed.who, &signed.kind, signed.at_us);
         let (at, short) = (clock::local(signed.at_us), signed.short_key());
         let name = format!("{} ({}, key {short})", signed.who, signed.kind);
         let id = signed
@@ -359,6 +328,7 @@ impl Findings {
                 standing.text()
             ));
         }
+        self.doubts.extend(dated_ahead(&name, signed.at_us));
         self.signatures.push(json!({
             "what": what, "id": signed.id, "who": signed.who, "kind": signed.kind, "key": signed.key,
             "at": rfc3339(signed.at_us), "trusted": standing.is_good(), "standing": standing.text(),

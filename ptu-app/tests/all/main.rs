@@ -23,6 +23,7 @@ mod fault_months;
 mod faults;
 mod figures;
 mod first_steps;
+mod forged;
 mod history;
 mod history_files;
 mod json_promise;

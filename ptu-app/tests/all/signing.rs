@@ -7,7 +7,7 @@ use crate::common::{Place, Said, list, text};
 const PIN: &str = "sesame-7";
 
 /// A key `kim.key` of Kim, trusted in `depot.keys`.
-fn with_key() -> Place {
+pub fn with_key() -> Place {
     let place = Place::new();
     place.write("pin.txt", &format!("{PIN}\n"));
     let new = [
@@ -30,9 +30,9 @@ fn with_key() -> Place {
     place
 }
 
-const SIGN: [&str; 4] = ["--key", "kim.key", "--pin-file", "pin.txt"];
+pub const SIGN: [&str; 4] = ["--key", "kim.key", "--pin-file", "pin.txt"];
 
-fn verify(place: &Place, what: &str) -> Said {
+pub fn verify(place: &Place, what: &str) -> Said {
     place.ptu(&["verify", what, "--keys", "depot.keys"])
 }
 

@@ -105,9 +105,10 @@ impl Place {
         ScriptsDirectory::find(Some(&empty)).expect("a folder")
     }
 
-    /// Writes a file and gives its path.
+    /// Writes a file, for its owner alone, and gives its path.
     pub fn write(&self, name: &str, text: &str) -> String {
         std::fs::write(self.path(name), text).expect("a file for the test");
+        keep_to_owner(&self.path(name));
         self.text_path(name)
     }
 
@@ -238,11 +239,15 @@ pub fn record_bad_unit(place: &Place) {
         std::fs::read(place.path("history.db")).expect("a history")
     });
     std::fs::write(&path, history).expect("copied");
+    keep_to_owner(&path);
+}
+
+fn keep_to_owner(_path: &Path) {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
         let of_owner = std::fs::Permissions::from_mode(0o600);
-        std::fs::set_permissions(&path, of_owner).expect("its owner's alone");
+        std::fs::set_permissions(_path, of_owner).expect("its owner's alone");
     }
 }
 

@@ -86,9 +86,16 @@ impl Store {
             Ok((own, compare_all_chains(other.backend(), self.backend())?))
         };
         let (own, chains) = look().map_err(|error: SqlError| other.failed(DOING, error))?;
-        let known = known_heads::of_file(self.backend());
-        let known = known.map_err(|error| self.failed(DOING, error))?;
-        let broken = known_heads::broken(other.backend(), &known, None);
+        let known = || {
+            Ok((
+                own_file_id(self.backend())?,
+                known_heads::seen_by(self.backend())?,
+            ))
+        };
+        let (ours, known) = known().map_err(|error: SqlError| self.failed(DOING, error))?;
+        // An older copy of this file may come back; that of another file was put back.
+        let whole = own.filter(|own| Some(*own) != ours);
+        let broken = known_heads::broken(other.backend(), &known, whole);
         let broken = broken.map_err(|error| other.failed(DOING, error))?;
         if let Some((_, what)) = broken.into_iter().next() {
             return Err(StoreError::Altered {

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::seal_entry::{SEALS_PER_BATCH, Seal, position_error, seals_after};
-use super::signatures::{KeyUse, KeyUses, read_signature};
+use super::seal_entry::{SEALS_PER_BATCH, Seal, clock_error, position_error, seals_after};
+use super::signatures::{KeyUse, KeyUses};
 use super::{Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
@@ -12,7 +12,7 @@ use crate::seal::{
     BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex, known_heads, own_file_id, run,
     statement_digest, trace,
 };
-use crate::signature::SIGNATURE;
+use crate::signature::{SIGNATURE, read_signature};
 
 /// What is collected while the chains are read.
 #[derive(Default)]
@@ -109,6 +109,9 @@ fn check_entry(
     remarks: &mut Remarks,
 ) -> SqlResult<()> {
     let id = seal.id;
+    if matches!(&seal.what[..], "run" | "note") {
+        remarks.extend(clock_error(backend, seal.origin, seal.ordinal)?);
+    }
     match (&seal.what[..], seal.row) {
         ("run", None) => found.add(format!("{}: its run was taken out", seal.name())),
         ("event", None) => found.add(format!("{}: its event was taken out", seal.name())),
@@ -150,13 +153,17 @@ fn check_entry(
                     }
                 }
                 BEGUN if own == Some(seal.origin) => summary.is_begun = true,
-                SIGNATURE => match read_signature(backend, &seal.payload)? {
+                SIGNATURE => match read_signature(backend, id, &seal.payload)? {
                     Ok(statement) => summary.keys.add(&statement),
                     Err(wrong) => found.add(format!("the signature at {}: {wrong}", seal.name())),
                 },
                 RECOUNTED => {
                     if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
-                        remarks.push(payload.text());
+                        // What another file has counted again is a finding there.
+                        match own == Some(seal.origin) {
+                            true => found.add(payload.text()),
+                            false => remarks.push(payload.text()),
+                        }
                     }
                 }
                 _ => {}

@@ -45,6 +45,42 @@ pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Strin
     })
 }
 
+/// Times of one clock may differ by so much from the order in which they are sealed, µs.
+const IN_ORDER_US: i64 = 60_000_000;
+
+/// How the clock went backward between a run or note and the one sealed before it in the same chain. What was sealed as found
+/// has times of another clock, as has what was read from a unit's log.
+pub(super) fn clock_error(
+    backend: &Backend,
+    origin: Id,
+    ordinal: i64,
+) -> SqlResult<Option<String>> {
+    let sql = "SELECT s.ordinal, s.what, s.id, coalesce(r.finished_at_us, n.at_us) FROM seal s
+        LEFT JOIN run r ON s.what = 'run' AND r.id = s.id AND r.source NOT LIKE 'log of%'
+        LEFT JOIN run_note n ON s.what = 'note' AND n.id = s.id
+        WHERE s.origin = ?1 AND s.ordinal <= ?2 AND s.what IN ('run', 'note') AND s.says NOT LIKE '%\"found\":\"%'
+        ORDER BY s.ordinal DESC LIMIT 2";
+    let last = backend.select(sql, &values![origin, ordinal], |row| {
+        let named = format!("{} {}", row.get::<String>(1)?, row.get::<Id>(2)?);
+        Ok((row.get::<i64>(0)?, named, row.get::<Option<i64>>(3)?))
+    })?;
+    let [(this, name, Some(at)), (_, earlier, Some(before))] = &last[..] else {
+        return Ok(None);
+    };
+    let time = |at_us: i64| {
+        let at = chrono::DateTime::from_timestamp_micros(at_us).unwrap_or_default();
+        at.format("%Y-%m-%d %H:%M:%S UTC").to_string()
+    };
+    let is_back = *this == ordinal && at.saturating_add(IN_ORDER_US) < *before;
+    Ok(is_back.then(|| {
+        format!(
+            "the clock went backward: {name} is dated {}, and was sealed after {earlier}, dated {}",
+            time(*at),
+            time(*before)
+        )
+    }))
+}
+
 impl Seal {
     pub fn name(&self) -> String {
         format!("seal {} of file {}", self.ordinal, self.origin.short())

@@ -6,14 +6,14 @@ use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
 use super::chain::{ChainSummary, check_traces_and_recordings};
-use super::signatures::read_signature;
+use super::seal_entry::clock_error;
 use super::{ALTERED, Findings};
 use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
 use crate::seal::{RunSealed, chained, hex, run, sealed_as, statement_digest};
-use crate::signature::{SIGNATURE, Statement, changed_places, signatures_of};
+use crate::signature::{SIGNATURE, Statement, changed_places, read_signature, signatures_of};
 use crate::store::Store;
 
 /// What a look at a run's seals and signatures shows.
@@ -29,6 +29,10 @@ pub struct Verification {
     pub changes: Vec<String>,
     /// Traces and recordings that were pruned.
     pub pruned: Vec<String>,
+    /// Notes on it that nobody has signed, and in whose name they are.
+    pub unsigned_notes: Vec<(Id, String)>,
+    /// What is to be known besides: a clock that went backward.
+    pub remarks: Vec<String>,
 }
 
 impl Verification {
@@ -66,19 +70,22 @@ impl Store {
                 signatures: Vec::new(),
                 changes: Vec::new(),
                 pruned: Vec::new(),
+                unsigned_notes: Vec::new(),
+                remarks: Vec::new(),
             },
         };
         look.all().map_err(|error| self.failed(DOING, error))?;
         Ok(look.found)
     }
 
-    /// Signatures of a run and of the notes on it, as they are stored: signed documents.
+    /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.
     ///
     /// # Errors
     /// They cannot be read.
     pub fn signatures(&self, run: Id) -> Result<Vec<String>, StoreError> {
         let read = signatures_of(self.backend(), run);
-        read.map_err(|error| self.failed("reading signatures", error))
+        let read = read.map_err(|error| self.failed("reading signatures", error))?;
+        Ok(read.into_iter().map(|(text, _)| text).collect())
     }
 }
 
@@ -123,7 +130,7 @@ impl Look<'_> {
                 self.change(format!("the signature at {} was changed", place(&seal)));
                 continue;
             }
-            match read_signature(self.backend, &seal.payload)? {
+            match read_signature(self.backend, group, &seal.payload)? {
                 Err(wrong) => self.change(format!("the signature at {}: {wrong}", place(&seal))),
                 Ok(statement) => {
                     let table = match &statement.what[..] {
@@ -233,9 +240,15 @@ impl Look<'_> {
     }
 
     fn notes(&mut self) -> SqlResult<()> {
-        let sql = "SELECT seq, id FROM run_note WHERE run = ?1 ORDER BY id";
-        let rows = self.rows(sql)?;
-        for (note, id) in rows {
+        let sql = "SELECT seq, id, who FROM run_note WHERE run = ?1 ORDER BY id";
+        let rows = self.backend.select(sql, &values![self.run], |row| {
+            Ok((row.get::<i64>(0)?, row.get::<Id>(1)?, row.get::<String>(2)?))
+        })?;
+        for (note, id, who) in rows {
+            let name = id.to_string();
+            if !(self.found.signatures.iter()).any(|of| of.what == "note" && of.id == name) {
+                self.found.unsigned_notes.push((id, who));
+            }
             let sealed = seals(self.backend, "note", id)?;
             self.has_seal("note", id, &sealed);
             for seal in sealed {
@@ -282,6 +295,8 @@ impl Look<'_> {
         let Some(seal) = self.found.seal.clone() else {
             return Ok(());
         };
+        let backward = clock_error(self.backend, seal.file, seal.entry)?;
+        self.found.remarks.extend(backward);
         let first = self.backend.first(
             "SELECT min(s.ordinal) FROM seal s JOIN fault_event e ON e.id = s.id AND s.what = 'event'
              WHERE e.fault IN (SELECT o.fault FROM fault_occurrence o WHERE o.run = ?1)

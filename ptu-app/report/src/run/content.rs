@@ -12,7 +12,7 @@ use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
 use crate::naming;
-use crate::trace_notes::note_text;
+use crate::trace_notes::{note_text, noted_by};
 use crate::words::{Words, fill};
 use crate::{count_text, coverage_text};
 use ptu_runs::clock::{local, local_zoned};
@@ -238,7 +238,8 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
         return Vec::new();
     }
     let rows = sheet.run.notes.iter().map(|note| {
-        let cells = [local(note.at_us), note.who.clone(), note_text(note, words)];
+        let who = noted_by(note, &sheet.run, words);
+        let cells = [local(note.at_us), who, note_text(note, words)];
         Row::words(RowKind::Head, cells)
     });
     vec![

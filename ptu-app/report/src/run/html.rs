@@ -15,6 +15,7 @@ pub fn html(sheet: &impl Printed, words: &Words) -> String {
         html lang=(words.language.code()) {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (paper.name) " " (paper.unit) " " (paper.short) }
@@ -136,5 +137,8 @@ fn class(tone: Tone) -> &'static str {
     }
 }
 
+/// A browser runs nothing that stands in the page, and asks nobody for anything.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 /// Look of the page: light, dark and on paper.
 const STYLE: &str = include_str!("style.css");

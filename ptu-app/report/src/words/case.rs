@@ -53,10 +53,10 @@ wordings! {
         fitted_hint: "Switch the unit off before the part is changed. In practice the injected faults of the part go with it.", "부품을 바꾸기 전에 장치 전원을 끄십시오. 연습에서는 그 부품에 주입한 고장도 함께 없어집니다.";
         prove: "Prove the repair", "수리 확인 시험";
         prove_hint: "Runs what failed, and what this part can break", "불합격한 절차와 이 부품이 영향을 주는 절차를 시험합니다";
-        sign: "Sign", "서명";
-        signed: "Checked and signed", "확인하고 서명함";
-        signed_by: "Signed by {who}", "서명: {who}";
-        not_signed: "Not signed", "서명하지 못했습니다";
+        sign: "Checked", "확인";
+        signed: "Checked", "확인함";
+        signed_by: "Checked by {who}", "확인: {who}";
+        not_signed: "That it was checked was not stored", "확인한 것을 저장하지 못했습니다";
         print: "PDF", "PDF";
     }
 }

@@ -8,14 +8,13 @@ use pkcs8::der::pem::PemLabel as _;
 use pkcs8::der::{Decode as _, Document};
 use pkcs8::pkcs5::{pbes2, scrypt};
 use pkcs8::{EncryptedPrivateKeyInfoRef, LineEnding, PrivateKeyInfoRef};
-use serde::Deserialize;
 
 use super::list::{KeyEntry, KeyList};
 use super::{located, sought};
 use crate::failure::Failure;
 use crate::new_file::{NewFile, cannot_write, kind};
 
-/// Fewest letters of a PIN.
+/// Fewest letters and digits of a PIN.
 const SHORTEST_PIN: usize = 6;
 /// Longest file that is read, bytes.
 const LONGEST: u64 = 64 << 10;
@@ -45,17 +44,6 @@ pub struct KeyFile {
     pem: String,
 }
 
-/// What stands above the private key.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileHead {
-    who: String,
-    kind: String,
-    key: String,
-    from: String,
-    until: Option<String>,
-}
-
 /// The name of the file with the public key beside that of a private key.
 pub fn public_name(private: &Path) -> PathBuf {
     private.with_extension("pub")
@@ -67,7 +55,7 @@ impl NewKey<'_> {
     /// # Errors
     /// The PIN is too short, a file is there already, or the disk does not take it.
     pub fn write(self, path: &Path, pin: &str) -> Result<KeyEntry, Failure> {
-        if pin.chars().count() < SHORTEST_PIN {
+        if pin.chars().filter(|c| c.is_alphanumeric()).count() < SHORTEST_PIN {
             return Err(Failure::usage(format!(
                 "a PIN has at least {SHORTEST_PIN} letters or digits"
             )));
@@ -140,19 +128,12 @@ impl KeyFile {
         let place = text
             .find(BEGIN)
             .ok_or_else(|| no_key("it holds no private key"))?;
-        let head: FileHead =
+        let entry: KeyEntry =
             toml::from_str(&text[..place]).map_err(|error| no_key(error.message()))?;
+        entry.check().map_err(|why| no_key(&why))?;
         Ok(Self {
             path: path.to_path_buf(),
-            entry: KeyEntry {
-                who: head.who,
-                kind: head.kind,
-                key: head.key,
-                from: head.from,
-                until: head.until,
-                revoked: None,
-                reason: None,
-            },
+            entry,
             pem: text[place..].to_owned(),
         })
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chrono::{DateTime, NaiveDate, Utc};
 use fault_db::read_regular_file;
+use protocol::display_text;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
@@ -51,7 +52,7 @@ pub enum Standing {
     Held,
     /// It is not in the list.
     Unknown,
-    /// It is in the list under another name.
+    /// It is in the list under another name, or as another kind of key.
     OtherName(String),
     /// Its time had not begun; the day from which on it holds.
     NotYet(String),
@@ -84,7 +85,7 @@ impl Standing {
 }
 
 impl KeyList {
-    /// Reads a file, or all `.pub` and `.keys` files of a folder. A revocation in any of them holds.
+    /// Reads a file, or all `.pub` and `.keys` files of a folder. An end or revocation in any of them holds.
     ///
     /// # Errors
     /// There is none, or one of them is wrong.
@@ -92,7 +93,8 @@ impl KeyList {
         let mut list = Self::default();
         for file in Self::files(path)? {
             for entry in Self::of_file(&file)?.keys {
-                list.add(entry);
+                let added = list.add(entry);
+                added.map_err(|why| Failure::bench(format!("{}: {why}", path.display())))?;
             }
         }
         Ok(list)
@@ -165,23 +167,28 @@ impl KeyList {
         text
     }
 
-    /// Adds a key; one that is there already keeps its earliest revocation, and takes the other's times.
-    pub fn add(&mut self, entry: KeyEntry) {
+    /// Adds a key; of one that is there already the narrowest days hold. What it is then.
+    ///
+    /// # Errors
+    /// It is there as another's.
+    pub fn add(&mut self, entry: KeyEntry) -> Result<KeyEntry, String> {
         let Some(known) = self.keys.iter_mut().find(|known| known.key == entry.key) else {
-            self.keys.push(entry);
-            return;
+            self.keys.push(entry.clone());
+            return Ok(entry);
         };
-        let revoked = [&known.revoked, &entry.revoked]
-            .into_iter()
-            .flatten()
-            .min()
-            .cloned();
-        let reason = known.reason.clone().or(entry.reason.clone());
+        if known.name() != entry.name() {
+            let (one, other) = (known.name(), entry.name());
+            return Err(format!("one key is listed as that of {one} and of {other}"));
+        }
+        let earliest = |a: &Option<String>, b| [a.clone(), b].into_iter().flatten().min();
         *known = KeyEntry {
-            revoked,
-            reason,
-            ..entry
+            from: known.from.clone().max(entry.from),
+            until: earliest(&known.until, entry.until),
+            revoked: earliest(&known.revoked, entry.revoked),
+            reason: known.reason.clone().or(entry.reason),
+            ..known.clone()
         };
+        Ok(known.clone())
     }
 
     /// The entry of this key.
@@ -195,11 +202,13 @@ impl KeyList {
         (self.keys.iter()).filter(move |entry| entry.who == asked || by_key(entry))
     }
 
-    /// How a key stood at a time under a name.
-    pub fn standing(&self, key: &str, who: &str, at_us: i64) -> Standing {
+    /// How a key stood at a time under a name, as that of a technician or a bench.
+    pub fn standing(&self, key: &str, who: &str, kind: &str, at_us: i64) -> Standing {
         match self.find(key) {
             None => Standing::Unknown,
-            Some(entry) if entry.who != who => Standing::OtherName(entry.who.clone()),
+            Some(entry) if (&*entry.who, &*entry.kind) != (who, kind) => {
+                Standing::OtherName(entry.name())
+            }
             Some(entry) => entry.standing(at_us),
         }
     }
@@ -223,7 +232,17 @@ impl KeyEntry {
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    /// Whose it is, in words.
+    pub fn name(&self) -> String {
+        format!("{} ({})", self.who, self.kind)
+    }
+
+    /// Looks whether it can be one.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn check(&self) -> Result<(), String> {
+        name_argument(&self.who)?;
         let hex = self
             .key
             .bytes()
@@ -241,6 +260,21 @@ impl KeyEntry {
             day_argument(day)?;
         }
         Ok(())
+    }
+}
+
+/// A name that a key signs by: no two that look alike.
+///
+/// # Errors
+/// It is empty, or has what cannot be seen.
+pub fn name_argument(text: &str) -> Result<String, String> {
+    let hidden = |c: char| c != ' ' && c.is_whitespace();
+    let is_plain = text.split(' ').all(|word| !word.is_empty()) && !text.contains(hidden);
+    match is_plain && display_text::line(text) == text {
+        true => Ok(text.to_owned()),
+        false => Err(format!(
+            "{text:?} is no name: write words with one space between them, and nothing that cannot be seen"
+        )),
     }
 }
 
@@ -297,8 +331,8 @@ mod tests {
 
     #[test]
     fn a_list_is_read_as_it_was_written() {
-        let mut odd = entry("Kim \"K\" [[key]]\nwho = 김", "a");
-        odd.reason = Some("lost\\".to_owned());
+        let mut odd = entry("Kim \"K\" [[key]] who = 김", "a");
+        odd.reason = Some("lost\\\n[[key]]\nwho = 'Lee'".to_owned());
         odd.revoked = Some("2027-01-01".to_owned());
         let list = KeyList {
             keys: vec![odd, entry("Lee", "b")],
@@ -320,7 +354,7 @@ mod tests {
             keys: vec![entry("Kim", "a")],
         };
         let key = "a".repeat(64);
-        let standing = |list: &KeyList, day| list.standing(&key, "Kim", at(day));
+        let standing = |list: &KeyList, day| list.standing(&key, "Kim", "technician", at(day));
         assert_eq!(
             standing(&list, "2026-02-28"),
             Standing::NotYet("2026-03-01".to_owned())
@@ -338,10 +372,13 @@ mod tests {
             Standing::Revoked("2027-01-01".to_owned())
         );
         assert_eq!(
-            list.standing(&key, "Lee", at("2026-04-01")),
-            Standing::OtherName("Kim".to_owned())
+            list.standing(&key, "Lee", "technician", at("2026-04-01")),
+            Standing::OtherName("Kim (technician)".to_owned())
         );
-        assert_eq!(list.standing("b", "Lee", 0), Standing::Unknown);
+        assert_eq!(
+            list.standing("b", "Lee", "technician", 0),
+            Standing::Unknown
+        );
     }
 
     #[test]
@@ -349,8 +386,8 @@ mod tests {
         let mut list = KeyList::default();
         let mut revoked = entry("Kim", "a");
         revoked.revoked = Some("2027-01-01".to_owned());
-        list.add(revoked.clone());
-        list.add(entry("Kim", "a"));
+        list.add(revoked.clone()).expect("added");
+        list.add(entry("Kim", "a")).expect("added");
         assert_eq!(list.keys, [revoked]);
     }
 }

@@ -7,7 +7,7 @@ mod list;
 use std::path::{Path, PathBuf};
 
 pub use file::{KeyFile, NewKey, public_name};
-pub use list::{KeyEntry, KeyList, Standing, day_argument, day_of, day_text};
+pub use list::{KeyEntry, KeyList, Standing, day_argument, day_of, day_text, name_argument};
 
 use crate::failure::Failure;
 

@@ -137,11 +137,12 @@ pub fn rerun(
         verdict,
         likeness,
     )?;
+    let wall_time_us = i64::try_from(began.elapsed().as_micros()).unwrap_or(i64::MAX);
     writer.finish(&RunEnd {
         verdict,
-        finished_at_us: clock::now_us(),
+        finished_at_us: started_at_us.saturating_add(wall_time_us),
         bench_time_us: bench_time_us(&again.trace),
-        wall_time_us: i64::try_from(began.elapsed().as_micros()).unwrap_or(i64::MAX),
+        wall_time_us,
     })?;
     Ok(Rerun {
         run_id: writer.id(),

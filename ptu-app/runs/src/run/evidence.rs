@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
-use crate::clock::{ClockState, NOT_KNOWN_MS, now_us};
-use crate::keys::day_of;
+use crate::clock::{ClockState, NOT_KNOWN_MS, local_day, now_us};
 
 /// What the bench was made of, and how right its clock was.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,7 +52,7 @@ impl Evidence {
         rules: MeasuringRules,
         planned: usize,
     ) -> Self {
-        let today = day_of(now_us());
+        let today = local_day(now_us());
         let used = used.into_iter().map(|of| InstrumentEvidence {
             is_calibrated: of.is_calibrated_on(&today),
             of,

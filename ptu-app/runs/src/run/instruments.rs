@@ -9,7 +9,6 @@ use super::bench_setup::BenchSetup;
 use super::plan::Task;
 use crate::clock;
 use crate::failure::Failure;
-use crate::keys::day_of;
 use crate::link::Endpoint;
 
 /// The instruments of this bench that a run on a port uses: all that are registered and not retired. A simulated unit is
@@ -26,7 +25,7 @@ pub(super) fn of_run(
         return Ok(Vec::new());
     }
     let used = store.instruments()?;
-    let today = day_of(clock::now_us());
+    let today = clock::local_day(clock::now_us());
     match used.iter().find(|used| !used.is_calibrated_on(&today)) {
         Some(over) if !uncalibrated => Err(Failure::bench(over_text(over))),
         _ => Ok(used),

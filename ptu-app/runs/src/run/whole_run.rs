@@ -270,11 +270,13 @@ impl RunStart {
     }
 
     fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
+        let wall_time_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
         RunEnd {
             verdict,
-            finished_at_us: clock::now_us(),
+            // Of a clock that is set meanwhile, the run's own beginning counts.
+            finished_at_us: self.at_us.saturating_add(wall_time_us),
             bench_time_us,
-            wall_time_us: i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX),
+            wall_time_us,
         }
     }
 }
