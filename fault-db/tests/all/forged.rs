@@ -121,7 +121,7 @@ fn a_signature_signs_what_it_names_and_nothing_else() {
             "{:?}",
             seen.changes
         );
-        let shown = forged.run(other, &|_| false).expect("read");
+        let shown = forged.run(other).expect("read");
         assert_eq!(shown.signature, None, "{text}");
         assert_eq!(forged.signatures(other).expect("read"), [""; 0]);
         assert!(
@@ -139,7 +139,7 @@ fn a_changed_run_is_not_shown_as_signed() {
     let store = open(&path);
     store.sign_with(Some(signer()));
     let (id, _) = run(&store, "ATC-7");
-    assert!(store.run(id, &|_| false).expect("read").signature.is_some());
+    assert!(store.run(id).expect("read").signature.is_some());
     store.close().expect("closed");
     by_hand(&path, "UPDATE run SET verdict = 'passed'");
     let store = Store::open_read_only(&path).expect("opens");
@@ -149,7 +149,7 @@ fn a_changed_run_is_not_shown_as_signed() {
         left.len() == 1 && left[0].contains("\"what\":\"note\""),
         "{left:?}"
     );
-    assert_eq!(store.run(id, &|_| false).expect("read").signature, None);
+    assert_eq!(store.run(id).expect("read").signature, None);
 }
 
 /// Goal: a signed document has one form, byte for byte.

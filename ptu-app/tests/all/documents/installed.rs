@@ -113,6 +113,10 @@ fn with_ids(line: &str, runs: &[String]) -> String {
 }
 
 /// Runs the lines of blocks one after the other; what is wrong with them.
+#[allow(
+    clippy::print_stdout,
+    reason = "the table of what was run, with --nocapture"
+)]
 fn run(document: &Document, blocks: &[Block<'_>], installed: &Installed) -> Vec<String> {
     let mut wrong = Vec::new();
     let runs = installed.says("ptu runs list --json").out;
