@@ -30,8 +30,9 @@ pub(super) fn check_footer(file: &mut File) -> Result<(), Refused> {
         .seek(SeekFrom::End(-8))
         .and_then(|_| file.read_exact(&mut footer));
     read.map_err(|error| format!("damaged, or no Parquet file: {error}"))?;
-    let [a, b, c, d, ..] = footer;
-    match u32::from_le_bytes([a, b, c, d]) > MAX_FOOTER {
+    let [a, b, c, d, magic @ ..] = footer;
+    // What is no Parquet file has no description: its reader says so.
+    match &magic == b"PAR1" && u32::from_le_bytes([a, b, c, d]) > MAX_FOOTER {
         true => Err(format!("its description is longer than {MAX_FOOTER} bytes")),
         false => Ok(()),
     }

@@ -108,7 +108,7 @@ fn killed_in_an_overspeed_step() {
     let killed_run = &place.json("runs list --json")[0];
     assert_eq!(killed_run["state"], "interrupted");
     assert!(killed_run["verdict"].is_null(), "{killed_run}");
-    assert_eq!(killed_run["step_count"], 1, "what was recorded is kept");
+    assert_eq!(killed_run["steps_run"], 1, "what was recorded is kept");
     passes(&place, &unit, "tcms/link");
     let states: Vec<_> = list(&place.json("runs list --json"))
         .iter()

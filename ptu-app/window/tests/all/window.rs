@@ -141,7 +141,7 @@ fn the_least_of_steps_finds_the_part_too() {
     window.wait_for("SIM-0001");
     window.click("Find the part");
     window.wait_for_part("replace the TRA (tra, ");
-    assert!(latest(&window)["run"]["step_count"].as_u64() < Some(200));
+    assert!(latest(&window)["run"]["steps_run"].as_u64() < Some(200));
 }
 
 #[test]
