@@ -28,6 +28,10 @@ pub struct WindowOptions {
     )]
     #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
     pub page: Option<Page>,
+    #[allow(
+        rustdoc::broken_intra_doc_links,
+        reason = "help, whose brackets are no link"
+    )]
     /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Endpoint>,
