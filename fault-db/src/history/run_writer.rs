@@ -17,8 +17,8 @@ use crate::history::insert::{FaultIds, FaultPlace, insert_fault, insert_run, ins
 use crate::history::limits;
 use crate::id::Id;
 use crate::schema::packed::fill_empty_blocks;
-use crate::seal;
 use crate::seal::run::RunDigest;
+use crate::seal::{self, SealHead};
 use crate::store::Store;
 use crate::trace::TraceData;
 use crate::values::record::LOG_SOURCE;
@@ -51,13 +51,20 @@ pub struct RunWriter<'a> {
     /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
     /// where both are merged.
     is_rest: bool,
+    /// Its end is in the file.
+    ended: bool,
     finished: bool,
+    /// The end of the file's chain of seals when the run began.
+    began: Option<SealHead>,
     /// Tells other programs that the run is under way.
     lock: Option<HeldFile>,
 }
 
 impl<'a> RunWriter<'a> {
     /// Begins a run and commits it.
+    ///
+    /// # Errors
+    /// The file does not take it, was removed or replaced since it was opened, or has a second name.
     pub fn begin(store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
         Self::begin_as(store.mint()?, store, record)
     }
@@ -68,6 +75,9 @@ impl<'a> RunWriter<'a> {
         let sw_versions = json(&record.unit.sw_versions);
         let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
         let seal = RunDigest::begin(id, record, &sw_versions);
+        // Nothing is lost yet.
+        store.check_place()?;
+        let began = store.head()?;
         let lock = store.hold_run(id)?;
         let (run, unit) = store.write(DOING, |conn| {
             insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
@@ -85,7 +95,9 @@ impl<'a> RunWriter<'a> {
             seal,
             last_index: None,
             is_rest: false,
+            ended: false,
             finished: false,
+            began,
             lock: Some(lock),
         })
     }
@@ -105,12 +117,24 @@ impl<'a> RunWriter<'a> {
         store: &'b Store,
         record: &RunRecord,
     ) -> Result<RunWriter<'b>, StoreError> {
-        let mut rest = RunWriter::begin_as(self.id, store, record)?;
+        let mut rest = self.begin_again_in(store, record)?;
         rest.waiting = std::mem::take(&mut self.waiting);
         rest.last_index = self.last_index;
         rest.is_rest = true;
         self.finished = true;
         Ok(rest)
+    }
+
+    /// Begins the same run from its start in another file, where this one was lost.
+    ///
+    /// # Errors
+    /// The other file does not take the run.
+    pub fn begin_again_in<'b>(
+        &self,
+        store: &'b Store,
+        record: &RunRecord,
+    ) -> Result<RunWriter<'b>, StoreError> {
+        RunWriter::begin_as(self.id, store, record)
     }
 
     /// The run's id.
@@ -255,11 +279,32 @@ impl<'a> RunWriter<'a> {
 
     /// Commits the buffered steps and the verdict, and notes a run that passed at the repairs it speaks for. After
     /// an error it can be called again.
+    ///
+    /// # Errors
+    /// It cannot be written, or the file that has the store's name does not hold the run as another program finds it: it
+    /// was removed, replaced or written over meanwhile, or has a second name. Within a transaction that is not looked at.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
+        if self.finished {
+            return Err(StoreError::RunFinished { run: self.id });
+        }
+        if !self.ended {
+            self.end(end)?;
+            self.waiting.clear();
+            self.ended = true;
+        }
+        if self.store.file()?.is_autocommit() {
+            let began = self.began.as_ref();
+            self.store.check_holds(self.id, began, !self.is_rest)?;
+        }
+        self.finished = true;
+        self.lock = None;
+        Ok(())
+    }
+
+    fn end(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         const DOING: &str = "finishing a run";
         const SQL: &str = "UPDATE run SET verdict = ?2, finished_at_us = ?3, bench_time_us = ?4,
             wall_time_us = ?5 WHERE seq = ?1";
-        self.check_unfinished()?;
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
         let (unit, id, known_events) = (self.unit, self.id, self.known_events);
         let (payload, digest) = self.seal.end(end);
@@ -283,15 +328,11 @@ impl<'a> RunWriter<'a> {
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
             store.note_passed((unit, run, id), known_events, end)?;
             fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
-        })?;
-        self.waiting.clear();
-        self.finished = true;
-        self.lock = None;
-        Ok(())
+        })
     }
 
     pub(crate) fn check_unfinished(&self) -> Result<(), StoreError> {
-        if self.finished {
+        if self.ended || self.finished {
             Err(StoreError::RunFinished { run: self.id })
         } else {
             Ok(())

@@ -40,14 +40,17 @@ pub(crate) fn compare_chains(
         return Ok(ChainComparison::Extends { known: 0 });
     };
     let ours = head_of(here, origin)?.map_or(0, |(entries, _)| entries);
-    if ours >= known && hash(here, origin, known)?.as_deref() == Some(&last[..]) {
+    if ours >= known && hash_of(here, origin, known)?.as_deref() == Some(&last[..]) {
         return Ok(ChainComparison::Extends { known });
     }
     // The hash of an entry covers all before it, so the last common entry is found by binary search.
     let (mut same, mut end) = (0, ours.min(known));
     while same < end {
         let middle = same + (end - same + 1) / 2;
-        let alike = match (hash(here, origin, middle)?, hash(there, origin, middle)?) {
+        let alike = match (
+            hash_of(here, origin, middle)?,
+            hash_of(there, origin, middle)?,
+        ) {
             (Some(ours), Some(theirs)) => ours == theirs,
             _ => false,
         };
@@ -73,7 +76,8 @@ pub(crate) fn compare_chains(
     })
 }
 
-fn hash(backend: &Backend, origin: Id, ordinal: i64) -> SqlResult<Option<Vec<u8>>> {
+/// The hash of an entry of a chain.
+pub(crate) fn hash_of(backend: &Backend, origin: Id, ordinal: i64) -> SqlResult<Option<Vec<u8>>> {
     let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
     backend.first(sql, &values![origin, ordinal], |row| row.get(0))
 }

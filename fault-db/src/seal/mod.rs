@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use canonical::CanonicalHash;
+pub(crate) use divergence::hash_of;
 pub use head::{RunSealed, SealHead};
 pub(crate) use head::{head_of, sealed_as};
 

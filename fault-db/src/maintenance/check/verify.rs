@@ -42,6 +42,8 @@ impl Verification {
     }
 }
 
+const DOING: &str = "verifying a run";
+
 /// Entries before a run's seal that are followed back to the first event that the run made.
 const MOST_ENTRIES_BACK: i64 = 20_000;
 
@@ -52,18 +54,29 @@ impl Store {
     /// # Errors
     /// There is no such run, or it cannot be read.
     pub fn verify_run(&self, id: Id) -> Result<Verification, StoreError> {
-        const DOING: &str = "verifying a run";
-        let seq: Option<i64> = self.first(
-            DOING,
-            "SELECT seq FROM run WHERE id = ?1",
-            &values![id],
-            |row| row.get(0),
-        )?;
-        let run = seq.ok_or_else(|| StoreError::not_found("run", id))?;
-        let mut look = Look {
+        let mut look = self.look_at(id)?;
+        look.all().map_err(|error| self.failed(DOING, error))?;
+        Ok(look.found)
+    }
+
+    /// Whether a run that has ended is what its seal says: its rows, traces and recordings.
+    pub(crate) fn is_as_sealed(&self, id: Id) -> Result<bool, StoreError> {
+        let mut look = self.look_at(id)?;
+        let sealed = sealed_as(self.backend(), id);
+        let read = look.content().and_then(|()| look.samples());
+        let sealed = read
+            .and(sealed)
+            .map_err(|error| self.failed(DOING, error))?;
+        Ok(sealed.is_some() && look.found.changes.is_empty())
+    }
+
+    fn look_at(&self, id: Id) -> Result<Look<'_>, StoreError> {
+        let sql = "SELECT seq FROM run WHERE id = ?1";
+        let seq = self.first(DOING, sql, &values![id], |row| row.get(0))?;
+        Ok(Look {
             backend: self.backend(),
             id,
-            run,
+            run: seq.ok_or_else(|| StoreError::not_found("run", id))?,
             found: Verification {
                 run: id,
                 seal: None,
@@ -73,9 +86,7 @@ impl Store {
                 unsigned_notes: Vec::new(),
                 remarks: Vec::new(),
             },
-        };
-        look.all().map_err(|error| self.failed(DOING, error))?;
-        Ok(look.found)
+        })
     }
 
     /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.

@@ -35,6 +35,9 @@ const BUSY_TIMEOUT: BusyTimeout = BusyTimeout {
     gives_up: Duration::from_secs(180),
 };
 
+/// So many values of traces of a run are held until its end (32 MB), to write it anew if its file is lost.
+const MOST_TRACE_VALUES: usize = 4_000_000;
+
 enum Entry {
     Step(StepRecord),
     /// A fault, numbered from 0 through the run.
@@ -72,7 +75,7 @@ impl Lines {
 /// The sender's side of the writer thread.
 pub struct RunStore {
     entries: SyncSender<Entry>,
-    thread: JoinHandle<(Store, Result<(), Failure>)>,
+    thread: JoinHandle<Result<(Store, Option<String>), Failure>>,
     /// The run's id.
     pub id: Id,
 }
@@ -107,15 +110,9 @@ impl RunStore {
             .spawn(move || {
                 let mut kept = RecordedIds::default();
                 kept.lines.line_printer = line_printer;
-                let result = write(
-                    &store,
-                    &record,
-                    &receiver,
-                    kept,
-                    &begun,
-                    (busy_timeout, &stop),
-                );
-                (store, result)
+                let waits = (busy_timeout, &stop);
+                let beside = write(&store, &record, &receiver, kept, &begun, waits)?;
+                Ok(beside.map_or((store, None), |(store, lost)| (store, Some(lost))))
             })
             .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
         match beginning.recv() {
@@ -125,7 +122,7 @@ impl RunStore {
                 id,
             }),
             Err(_) => Err(match thread.join() {
-                Ok((_, Err(error))) => error,
+                Ok(Err(error)) => error,
                 _ => Failure::bench("the writer ended before it began"),
             }),
         }
@@ -160,22 +157,16 @@ impl RunStore {
         let _ = self.entries.send(entry);
     }
 
-    /// Ends the run and gives the store back; with it, if the history does not hold the run, why, and where it is kept.
+    /// Ends the run and gives the store back that holds it: if the history does not, that of the file beside where it is
+    /// kept, and why and where in a sentence.
     ///
     /// # Errors
     /// The first error of writing.
     pub fn finish(self, end: RunEnd) -> Result<(Store, Option<String>), Failure> {
         self.send(Entry::Finish(end));
         drop(self.entries);
-        match self.thread.join() {
-            Ok((store, Ok(()))) => {
-                let held = store.check_holds(self.id);
-                let lost = held.err().map(|error| keep_beside(&store, self.id, &error));
-                Ok((store, lost))
-            }
-            Ok((_, Err(error))) => Err(error),
-            Err(_) => Err(Failure::bench("the writer ended unexpectedly")),
-        }
+        let ended = self.thread.join();
+        ended.unwrap_or_else(|_| Err(Failure::bench("the writer ended unexpectedly")))
     }
 }
 
@@ -186,24 +177,22 @@ fn write(
     mut kept: RecordedIds,
     begun: &SyncSender<Id>,
     (busy_timeout, stop): (BusyTimeout, &Stop),
-) -> Result<(), Failure> {
+) -> Result<Option<(Store, String)>, Failure> {
     // Nothing is lost yet: a file that is locked, or has two names, is said as soon as any.
-    store.check_place()?;
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
     let _ = begun.send(writer.id());
     let result = write_entries(&mut writer, &mut kept, entries, (busy_timeout, stop));
     let Err((error, at_hand)) = result else {
-        return Ok(());
+        return Ok(None);
     };
     stop.press_because(store_message(&error));
-    let rest = match &error {
-        StoreError::Locked { .. } => {
-            kept.before = kept.occurrences.len();
-            keep_rest(&mut writer, kept, record, at_hand, entries)
-        }
-        _ => None,
-    };
+    if !matches!(error, StoreError::Locked { .. }) {
+        kept.hold_all(at_hand.map(|entry| *entry).into_iter().chain(entries));
+        return keep_beside((store, &writer), record, kept, &error).map(Some);
+    }
+    kept.before = kept.occurrences.len();
+    let rest = keep_rest(&mut writer, kept, record, at_hand, entries);
     // Empties the queue so that no sender blocks.
     entries.iter().for_each(drop);
     Err(match rest {
@@ -226,6 +215,41 @@ struct RecordedIds {
     traces: Vec<Id>,
     /// What is to be said of it.
     lines: Lines,
+    /// All that was recorded, in order.
+    records: Vec<Entry>,
+    trace_values: usize,
+    /// Traces that are too much to be held.
+    left_out: usize,
+}
+
+impl RecordedIds {
+    /// Holds what was recorded until the end of the run, to write it anew if the file is lost.
+    fn hold(&mut self, entry: Entry) {
+        match &entry {
+            Entry::Say(_) => return,
+            Entry::Trace(_, trace) => {
+                self.trace_values += trace.rows() * trace.columns.len();
+                if self.trace_values > MOST_TRACE_VALUES {
+                    self.left_out += 1;
+                    return;
+                }
+            }
+            // It is of traces that are held.
+            Entry::Recording(_) if self.left_out > 0 => return,
+            _ => {}
+        }
+        self.records.push(entry);
+    }
+
+    /// Holds all that comes still, to the end.
+    fn hold_all(&mut self, entries: impl Iterator<Item = Entry>) {
+        for entry in entries {
+            match entry {
+                Entry::Say(line) => self.lines.waiting.push(line),
+                entry => self.hold(entry),
+            }
+        }
+    }
 }
 
 /// Records all that comes. An entry that was not taken comes back with the error.
@@ -257,7 +281,7 @@ fn write_entries(
                     kept.lines.stored();
                     return Ok(());
                 }
-                Ok(()) => {}
+                Ok(()) => kept.hold(entry),
                 Err(error) => return Err((error, Some(Box::new(entry)))),
             }
         }
@@ -360,25 +384,83 @@ fn keep_rest(
     Some(path)
 }
 
-/// Keeps what an open file holds that its name no longer leads to; tells where, in one sentence with the reason.
-fn keep_beside(store: &Store, run: Id, error: &StoreError) -> String {
+/// Keeps a run that the history does not hold in a file beside; which, and a sentence that tells where and why.
+///
+/// # Errors
+/// No such file can be made: the run is lost.
+fn keep_beside(
+    (store, writer): (&Store, &RunWriter<'_>),
+    record: &RunRecord,
+    mut kept: RecordedIds,
+    error: &StoreError,
+) -> Result<(Store, String), Failure> {
+    let (run, why) = (writer.id(), store_message(error));
     let beside = beside(store.path(), run);
     let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
-    let kept = [beside, elsewhere]
-        .into_iter()
-        .find(|path| store.backup(path).is_ok());
-    let error = store_message(error);
-    match kept {
-        Some(kept) => format!(
-            "run {} is not in the history: {error}; it is kept in {kept}: bring it in with `ptu db import {kept}`",
-            run.short(),
-            kept = kept.display()
-        ),
-        None => format!(
-            "run {} is not in the history, and lost: {error}",
+    let made = [beside, elsewhere].into_iter().find_map(|path| {
+        // What the open file holds is more than the run, if it can be read still.
+        let copied = match error {
+            StoreError::Misplaced { .. } => copy_with_run(store, run, &path),
+            _ => None,
+        };
+        let made = copied.map(|copy| (copy, String::new()));
+        let made = made.or_else(|| write_anew((store, writer), record, &mut kept, &path))?;
+        Some((path, made))
+    });
+    let Some((path, (made, cut))) = made else {
+        return Err(Failure::bench(format!(
+            "run {} is not in the history, and lost: {why}",
             run.short()
-        ),
+        )));
+    };
+    kept.lines.stored();
+    let said = format!(
+        "run {} is not in the history: {cut}{why}; it is kept in {path}: bring it in with `ptu db import {path}`",
+        run.short(),
+        path = path.display()
+    );
+    Ok((made, said))
+}
+
+/// A copy of the open file, if it holds the run whole.
+fn copy_with_run(store: &Store, run: Id, path: &Path) -> Option<Store> {
+    store.backup(path).ok()?;
+    let copy = Store::open(path, clock::open_options()).ok();
+    let is_whole = |copy: &Store| {
+        let verified = copy.verify_run(run);
+        verified.is_ok_and(|verified| verified.seal.is_some() && verified.changes.is_empty())
+    };
+    let copy = copy.filter(is_whole);
+    if copy.is_none() {
+        let _ = std::fs::remove_file(path);
     }
+    copy
+}
+
+/// A new history with the run alone, from its records; with it what is missing there.
+fn write_anew(
+    (store, writer): (&Store, &RunWriter<'_>),
+    record: &RunRecord,
+    kept: &mut RecordedIds,
+    path: &Path,
+) -> Option<(Store, String)> {
+    if path.exists() {
+        return None;
+    }
+    let made = Store::open(path, clock::open_options()).ok()?;
+    made.sign_with(store.signer());
+    let mut anew = writer.begin_again_in(&made, record).ok()?;
+    let mut ids = RecordedIds::default();
+    for entry in &kept.records {
+        keep(&mut anew, &mut ids, entry, false).ok()?;
+    }
+    anew.flush().ok()?;
+    drop(anew);
+    let cut = match kept.left_out {
+        0 => String::new(),
+        n => format!("the last {n} of its traces are lost: "),
+    };
+    Some((made, cut))
 }
 
 /// The file beside a history that takes a run of it.

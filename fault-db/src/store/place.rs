@@ -1,0 +1,127 @@
+//! Whether the file that a store has open is the one that others find at its name, with what was recorded in it.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rusqlite::config::DbConfig;
+
+use super::Store;
+use crate::error::StoreError;
+use crate::files::databases::with_end;
+use crate::files::platform::{Identity, identity};
+use crate::id::Id;
+use crate::seal::{SealHead, hash_of, hex};
+use crate::store::atomic_file::AtomicFile;
+
+/// The whole file is looked at for as long as this; the rows of the run are read whatever it takes.
+const LOOK: Duration = Duration::from_millis(200);
+
+const WRITTEN_OVER: &str = "was written over, and does not hold the run as it was recorded";
+
+impl Store {
+    /// Holds the file and its log to be those that have this store's name still, and the file to have no other name.
+    ///
+    /// # Errors
+    /// [`StoreError::Misplaced`], and what has happened to it.
+    pub fn check_place(&self) -> Result<(), StoreError> {
+        let Some(opened) = self.identity else {
+            return Ok(());
+        };
+        let what = match identity_of(&self.path) {
+            None => "was removed",
+            Some(now) if !opened.is_same(&now) => "was replaced by another file",
+            Some(now) if now.names > 1 && self.has_second_name() => {
+                "has a second name (a hard link); remove that name"
+            }
+            Some(_) if self.has_lost_its_log() => {
+                "lost its log: the file beside it that ends in -wal was removed or replaced"
+            }
+            Some(_) => return Ok(()),
+        };
+        Err(self.misplaced(what))
+    }
+
+    fn has_second_name(&self) -> bool {
+        // A killed program may have left the second name.
+        drop(AtomicFile::begin(&self.path));
+        identity_of(&self.path).is_some_and(|now| now.names > 1)
+    }
+
+    fn has_lost_its_log(&self) -> bool {
+        let is_same = |opened: &Identity| {
+            identity_of(&log_of(&self.path)).is_some_and(|now| opened.is_same(&now))
+        };
+        self.log.as_ref().is_some_and(|opened| !is_same(opened))
+    }
+
+    fn misplaced(&self, what: &'static str) -> StoreError {
+        StoreError::Misplaced {
+            path: self.path.clone(),
+            what,
+        }
+    }
+
+    /// Holds a run that has ended to be in the file that has this store's name, whole, as another program finds it, and
+    /// with it the chain of seals up to where it was when the run began.
+    ///
+    /// # Errors
+    /// It is not so, and why. From then on nothing of the log is written back to the file when it is closed.
+    pub(crate) fn check_holds(
+        &self,
+        run: Id,
+        began: Option<&SealHead>,
+        is_sealed: bool,
+    ) -> Result<(), StoreError> {
+        let holds = self.holds(run, began, is_sealed);
+        if holds.is_err() {
+            let _ = (self.file()?).set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+        }
+        holds
+    }
+
+    fn holds(&self, run: Id, began: Option<&SealHead>, is_sealed: bool) -> Result<(), StoreError> {
+        self.check_place()?;
+        let found = Self::open_read_only(&self.path)?;
+        let is_there = || -> Result<bool, StoreError> {
+            if let Some(began) = began {
+                let hash = hash_of(found.backend(), began.file, began.entries);
+                let hash =
+                    hash.map_err(|error| found.failed("comparing chains of seals", error))?;
+                if hash.is_none_or(|hash| hex(&hash) != began.seal) {
+                    return Ok(false);
+                }
+            }
+            Ok(found.run(run)?.run.verdict.is_some()
+                && (!is_sealed || found.is_as_sealed(run)?)
+                && found.looks_sound()?)
+        };
+        match is_there()? {
+            true => self.check_place(),
+            false => Err(self.misplaced(WRITTEN_OVER)),
+        }
+    }
+
+    /// Looks at as much of the file as a moment allows.
+    fn looks_sound(&self) -> Result<bool, StoreError> {
+        let until = Instant::now() + LOOK;
+        self.stop_when(move || Instant::now() > until)?;
+        let looked = self
+            .file()?
+            .query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0));
+        match looked.map_err(|error| self.failed("checking", error)) {
+            Err(StoreError::Stopped) => Ok(true),
+            said => Ok(said? == "ok"),
+        }
+    }
+}
+
+/// Which file is there; none where the system does not say.
+pub(super) fn identity_of(path: &Path) -> Option<Identity> {
+    std::fs::metadata(path).ok().as_ref().and_then(identity)
+}
+
+/// The write-ahead log of a file: beside the file itself, whatever links lead to it.
+pub(super) fn log_of(path: &Path) -> PathBuf {
+    let real = std::fs::canonicalize(path);
+    with_end(real.as_deref().unwrap_or(path), "-wal")
+}
