@@ -53,6 +53,8 @@ pub struct RunWriter<'a> {
     is_rest: bool,
     /// Its end is in the file.
     ended: bool,
+    /// Steps recorded.
+    steps: usize,
     finished: bool,
     /// The end of the file's chain of seals when the run began.
     began: Option<SealHead>,
@@ -96,6 +98,7 @@ impl<'a> RunWriter<'a> {
             last_index: None,
             is_rest: false,
             ended: false,
+            steps: 0,
             finished: false,
             began,
             lock: Some(lock),
@@ -177,6 +180,7 @@ impl<'a> RunWriter<'a> {
             step.message = cut;
         }
         self.seal.step(&step);
+        self.steps += 1;
         self.waiting.push(step);
         if self.waiting.len() >= FLUSH_AT_STEPS {
             self.flush()
@@ -294,7 +298,8 @@ impl<'a> RunWriter<'a> {
         }
         if self.store.file()?.is_autocommit() {
             let began = self.began.as_ref();
-            self.store.check_holds(self.id, began, !self.is_rest)?;
+            self.store
+                .check_holds(self.id, began, (!self.is_rest).then_some(self.steps))?;
         }
         self.finished = true;
         self.lock = None;

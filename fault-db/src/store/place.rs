@@ -10,7 +10,7 @@ use crate::error::StoreError;
 use crate::files::databases::with_end;
 use crate::files::platform::{Identity, identity};
 use crate::id::Id;
-use crate::seal::{SealHead, hash_of, hex};
+use crate::seal::{SealHead, hash_of, hex, sealed_as};
 use crate::store::atomic_file::AtomicFile;
 
 /// The whole file is looked at for as long as this; the rows of the run are read whatever it takes.
@@ -61,7 +61,7 @@ impl Store {
         }
     }
 
-    /// Holds a run that has ended to be in the file that has this store's name, whole, as another program finds it, and
+    /// Holds a run that has ended to be in the file that has this store's name, with all its steps, as another program finds it, and
     /// with it the chain of seals up to where it was when the run began.
     ///
     /// # Errors
@@ -70,16 +70,21 @@ impl Store {
         &self,
         run: Id,
         began: Option<&SealHead>,
-        is_sealed: bool,
+        steps: Option<usize>,
     ) -> Result<(), StoreError> {
-        let holds = self.holds(run, began, is_sealed);
+        let holds = self.holds(run, began, steps);
         if holds.is_err() {
             let _ = (self.file()?).set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
         }
         holds
     }
 
-    fn holds(&self, run: Id, began: Option<&SealHead>, is_sealed: bool) -> Result<(), StoreError> {
+    fn holds(
+        &self,
+        run: Id,
+        began: Option<&SealHead>,
+        steps: Option<usize>,
+    ) -> Result<(), StoreError> {
         self.check_place()?;
         let found = Self::open_read_only(&self.path)?;
         let is_there = || -> Result<bool, StoreError> {
@@ -91,9 +96,12 @@ impl Store {
                     return Ok(false);
                 }
             }
-            Ok(found.run(run)?.run.verdict.is_some()
-                && (!is_sealed || found.is_as_sealed(run)?)
-                && found.looks_sound()?)
+            let there = found.run(run)?;
+            let sealed = sealed_as(found.backend(), run);
+            let sealed =
+                sealed.map_err(|error| found.failed("reading the seal of a run", error))?;
+            let is_whole = |steps| sealed.is_some() && there.steps.len() == steps;
+            Ok(there.run.verdict.is_some() && steps.is_none_or(is_whole) && found.looks_sound()?)
         };
         match is_there()? {
             true => self.check_place(),

@@ -60,8 +60,13 @@ fn no_output_is_ever_the_history() {
                 true => place.ptu(&words(&format!("{command} {out}"))),
                 false => on(&place, &history, &format!("{command} {out}")),
             };
-            said.exits(2)
-                .explains(&["it is a history or another database"]);
+            match said.err.contains("has a second name") {
+                true => assert!(*out == hard && said.exits(3).out.is_empty()),
+                false => drop(
+                    said.exits(2)
+                        .explains(&["it is a history or another database"]),
+                ),
+            }
             let after = std::fs::read(place.path(out)).expect("a link");
             assert!(before == after, "{command} {out}");
         }
@@ -223,7 +228,7 @@ fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
         },
         |folder| std::fs::rename(folder.join("old.db"), folder.join("h.db")).expect("moved"),
         |folder| std::fs::hard_link(folder.join("h.db"), folder.join("g.db")).expect("linked"),
-        |folder| drop(std::fs::copy(folder.join("old.db"), folder.join("h.db")).expect("copied")),
+        |folder| assert!(std::fs::copy(folder.join("old.db"), folder.join("h.db")).is_ok()),
         |folder| std::fs::write(folder.join("h.db"), "").expect("emptied"),
         |folder| std::fs::remove_file(folder.join("h.db-wal")).expect("removed"),
     ];
@@ -232,8 +237,18 @@ fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
         std::fs::copy(place.path("h.db"), place.path("old.db")).expect("copied");
         let run = under_way(&place, "h.db");
         deed(&place.path(""));
-        let said = Said::from(run.wait_with_output().expect("ended")).exits(3);
-        kept_beside(&place, &said);
+        let said = Said::from(run.wait_with_output().expect("ended"));
+        // What was written over may be whole again from the log; then the history holds the run.
+        match said.err.contains("is not in the history") {
+            true => kept_beside(&place, &said.exits(3)),
+            false => {
+                said.exits(0);
+                let run = on(&place, "h.db", "runs show latest --json").exits(0);
+                let run: Value = serde_json::from_str(&run.out).expect("JSON");
+                assert!(list(&run["steps"]).len() > 200);
+                on(&place, "h.db", "db check").exits(0);
+            }
+        }
     }
 }
 
@@ -245,7 +260,7 @@ fn a_history_with_two_names_takes_no_run() {
     on(&place, "g.db", "run tcms/link")
         .exits(3)
         .explains(&["g.db"]);
-    let note = "runs note latest --text seen --by Lee";
+    let note = "runs note latest seen --who Lee";
     on(&place, "g.db", note).exits(3).explains(&["second name"]);
     std::fs::remove_file(place.path("g.db")).expect("unlinked");
     on(&place, "h.db", "run tcms/link").exits(0);

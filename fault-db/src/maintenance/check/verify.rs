@@ -59,17 +59,6 @@ impl Store {
         Ok(look.found)
     }
 
-    /// Whether a run that has ended is what its seal says: its rows, traces and recordings.
-    pub(crate) fn is_as_sealed(&self, id: Id) -> Result<bool, StoreError> {
-        let mut look = self.look_at(id)?;
-        let sealed = sealed_as(self.backend(), id);
-        let read = look.content().and_then(|()| look.samples());
-        let sealed = read
-            .and(sealed)
-            .map_err(|error| self.failed(DOING, error))?;
-        Ok(sealed.is_some() && look.found.changes.is_empty())
-    }
-
     fn look_at(&self, id: Id) -> Result<Look<'_>, StoreError> {
         let sql = "SELECT seq FROM run WHERE id = ?1";
         let seq = self.first(DOING, sql, &values![id], |row| row.get(0))?;
