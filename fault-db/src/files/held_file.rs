@@ -48,11 +48,15 @@ impl Drop for HeldFile {
     }
 }
 
-/// Whether whoever made a file still holds it. Where that cannot be known, it is taken to be so.
+/// Whether whoever made a file that all may read still holds it. Where that cannot be known, it is taken to be so.
 pub(crate) fn is_held(path: &Path) -> bool {
     match File::open(path) {
         Ok(file) => file.try_lock_shared().is_err(),
-        Err(error) => error.kind() != ErrorKind::NotFound,
+        // All may read one that is made so; another was left by an earlier version.
+        Err(error) => !matches!(
+            error.kind(),
+            ErrorKind::NotFound | ErrorKind::PermissionDenied
+        ),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::backend::{Backend, Row, SqlResult, values};
 use crate::error::StoreError;
 use crate::files::databases::with_end;
 use crate::files::held_file::{HeldFile, is_held, remove_abandoned};
+use crate::files::platform::for_all;
 use crate::history::run_notes::RunNote;
 use crate::history::verify::{SETTLED, SettledFault, made_by};
 use crate::id::Id;
@@ -342,7 +343,9 @@ impl Store {
             };
             remove_abandoned(folder, is_lock);
         }
-        HeldFile::make(&lock, true).map_err(|error| StoreError::CannotWrite {
+        // It holds nothing, and who shares the history is to see that it is locked.
+        let made = HeldFile::make(&lock, false).and_then(|held| for_all(&held.file).map(|()| held));
+        made.map_err(|error| StoreError::CannotWrite {
             path: lock.clone(),
             reason: error.to_string(),
         })

@@ -67,6 +67,15 @@ fn a_killed_run_is_interrupted_and_keeps_its_fault() {
     let reader = Store::open_read_only(&path).expect("readable meanwhile");
     let runs = |of: &Store| of.runs(&RunFilter::default()).expect("listed");
     assert_eq!(runs(&reader)[0].state, RunState::Running);
+    #[cfg(unix)]
+    {
+        let lock = dir
+            .path()
+            .join(format!("a.db.run-{}.lock", writer.id().short()));
+        let about = std::fs::metadata(lock).expect("locked");
+        let mode = std::os::unix::fs::PermissionsExt::mode(&about.permissions());
+        assert_eq!(mode & 0o444, 0o444, "all who share the history see it");
+    }
     let killed = dir.path().join("killed.db");
     for end in ["", "-wal"] {
         let name = |of: &str| dir.path().join(format!("{of}{end}"));

@@ -12,8 +12,8 @@ use unix as system;
 use windows as system;
 
 pub(crate) use system::{
-    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_owner, identity, is_open_to_others, password_file,
-    special_kind,
+    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_all, for_owner, identity, is_open_to_others,
+    password_file, special_kind,
 };
 
 /// Which file it is, whatever it is called.

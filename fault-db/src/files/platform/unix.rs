@@ -1,7 +1,7 @@
 //! Linux, and macOS by reading only.
 
 use std::ffi::OsString;
-use std::fs::{FileType, Metadata, OpenOptions};
+use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::os::unix::fs::{
     FileTypeExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _,
 };
@@ -18,6 +18,16 @@ pub(crate) const LOCKS_BIND_ALL: bool = false;
 /// A file that is made is for its owner alone.
 pub(crate) fn for_owner(options: &mut OpenOptions) {
     options.mode(0o600);
+}
+
+/// Lets all read a file, whatever the umask says.
+///
+/// # Errors
+/// Of the file system.
+pub(crate) fn for_all(file: &File) -> std::io::Result<()> {
+    let mut rights = file.metadata()?.permissions();
+    rights.set_mode(rights.mode() | 0o444);
+    file.set_permissions(rights)
 }
 
 /// Which file it is.

@@ -1,7 +1,7 @@
 //! Windows. What is made in a user's folders is closed to other users by the rights of those folders.
 
 use std::ffi::OsString;
-use std::fs::{FileType, Metadata, OpenOptions};
+use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::path::{Path, PathBuf};
 
 use super::Identity;
@@ -14,6 +14,15 @@ pub(crate) const LOCKS_BIND_ALL: bool = true;
 
 /// Leaves it to the folder who may read a file that is made.
 pub(crate) fn for_owner(_: &mut OpenOptions) {}
+
+/// Leaves it to the folder who may read a file.
+///
+/// # Errors
+/// Never.
+#[expect(clippy::unnecessary_wraps, reason = "it can fail elsewhere")]
+pub(crate) fn for_all(_: &File) -> std::io::Result<()> {
+    Ok(())
+}
 
 /// Not told. A file that is open can be neither removed nor replaced here.
 pub(crate) fn identity(_: &Metadata) -> Option<Identity> {
