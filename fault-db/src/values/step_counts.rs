@@ -137,11 +137,13 @@ pub(crate) const COUNTS_OF_RUN: &str = "
     FROM (SELECT max(verdict_rank) AS worst, count(CASE WHEN verdict_rank > 0 THEN 1 END) AS attempts
         FROM (SELECT procedure, CASE verdict WHEN 'skipped' THEN 0 WHEN 'passed' THEN 1 WHEN 'failed' THEN 3 ELSE 2 END
                 AS verdict_rank,
-                CASE WHEN name LIKE '% (%/%)' AND rtrim(name, '0123456789/)') LIKE '% ('
-                    THEN rtrim(name, '0123456789/)') ELSE name END AS base
-            FROM (SELECT procedure, verdict,
-                    CASE WHEN name LIKE '% (repeated)' THEN substr(name, 1, length(name) - 11) ELSE name END AS name
-                FROM step WHERE run = r.seq AND script_line IS NOT NULL) AS result) AS turn
+                CASE WHEN cut LIKE '% (' AND tail LIKE '_%/_%)' AND tail NOT LIKE '%/%/%' AND tail NOT LIKE '%)_%'
+                    THEN substr(cut, 1, length(cut) - 2) ELSE name END AS base
+            FROM (SELECT procedure, verdict, name, rtrim(name, '0123456789/)') AS cut,
+                    substr(name, length(rtrim(name, '0123456789/)')) + 1) AS tail
+                FROM (SELECT procedure, verdict, CASE WHEN substr(name, length(name) - 10) = ' (repeated)'
+                        THEN substr(name, 1, length(name) - 11) ELSE name END AS name
+                    FROM step WHERE run = r.seq AND script_line IS NOT NULL) AS result) AS part) AS turn
         GROUP BY procedure, base) AS step";
 
 /// What [`COUNTS_OF_RUN`] gave.
@@ -160,19 +162,43 @@ pub(crate) fn counts_of_text(text: &str) -> StepCounts {
 
 #[cfg(test)]
 mod tests {
-    use super::base_name;
+    use rusqlite::Connection;
 
+    use super::{COUNTS_OF_RUN, base_name, counts_of_text};
+
+    /// Goal: Rust and SQL cut a name alike. Method: a run with the name and with its base has one step, or two.
     #[test]
     fn a_repetition_has_the_name_of_its_step() {
+        let file = Connection::open_in_memory().expect("opened");
+        let made = file.execute_batch(
+            "CREATE TABLE step (run, procedure, name, verdict, script_line); CREATE TABLE r (seq); INSERT INTO r VALUES (1)",
+        );
+        made.expect("made");
         for (name, base) in [
             ("code 25", "code 25"),
             ("code 25 (2/3)", "code 25"),
             ("code 25 (12/40) (repeated)", "code 25"),
+            ("code 25 (Repeated)", "code 25 (Repeated)"),
             ("code (cab)", "code (cab)"),
             ("code (a/b)", "code (a/b)"),
             ("code (/)", "code (/)"),
+            ("code (1/)", "code (1/)"),
+            ("code (1/2/3)", "code (1/2/3)"),
+            ("code (1/2))", "code (1/2))"),
+            ("code (1) (1/2)", "code (1)"),
         ] {
             assert_eq!(base_name(name), base);
+            for other in [base, "code"] {
+                let insert = "INSERT INTO step VALUES (1, 'p', ?1, 'passed', 1)";
+                file.execute("DELETE FROM step", []).expect("emptied");
+                for name in [name, other] {
+                    file.execute(insert, [name]).expect("inserted");
+                }
+                let count = format!("SELECT ({COUNTS_OF_RUN}) FROM r");
+                let text = file.query_row(&count, [], |row| row.get::<_, String>(0));
+                let planned = counts_of_text(&text.expect("counted")).planned;
+                assert_eq!(planned, 1 + u32::from(base != other), "{name} and {other}");
+            }
         }
     }
 }

@@ -47,7 +47,7 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "step",
         params: &[
-            needs("name", ParamType::Name),
+            needs("name", ParamType::StepName),
             takes("do", ParamType::Actions),
             takes("expect", ParamType::Expectations),
             takes("measure", ParamType::Measures),
