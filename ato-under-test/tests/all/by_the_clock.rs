@@ -4,7 +4,9 @@ use std::io::Write;
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use protocol::message::{ArmRequest, Identify, IoInput, KeepAlive, Message, Taken};
+use protocol::message::{
+    ArmRequest, Identify, IoInput, KeepAlive, Message, ModeSwitch, Taken, TrainLines,
+};
 
 use crate::served::{Client, Unit};
 
@@ -115,4 +117,30 @@ fn a_hang_up_closes_the_socket_like_a_termination() {
         let ended = unit.program.0.wait().expect("the unit's end");
         assert!(!ended.success(), "{signal}");
     }
+}
+
+/// Goal: who heard the challenge of one start cannot answer that of the next in advance. Method: the program is started twice.
+#[test]
+fn the_challenge_of_another_start_is_another() {
+    let challenge = || {
+        let unit = Unit::serve();
+        let mut client = Client::connect(&unit);
+        let lines = TrainLines::DOORS_CLOSED | TrainLines::MAINTENANCE_KEY;
+        let began = Instant::now();
+        loop {
+            client.send(IoInput {
+                lines,
+                mode_switch: ModeSwitch::Manual,
+                ..IoInput::default()
+            });
+            client.send(ArmRequest { session: 7 });
+            for heard in client.hear_for(EVERY) {
+                if let Message::ArmChallenge(challenge) = heard {
+                    return challenge.challenge;
+                }
+            }
+            assert!(began.elapsed() < Duration::from_secs(60), "no challenge");
+        }
+    };
+    assert_ne!(challenge(), challenge());
 }

@@ -273,21 +273,3 @@ fn bytes_and_messages_may_be_anything() {
         });
     }
 }
-
-/// Goal: who heard the challenge of one start cannot answer that of the next in advance.
-#[test]
-fn the_challenge_of_another_start_is_another() {
-    let challenge = |started| {
-        let mut bench = Bench::new(&[]);
-        bench.unit.draw_challenges(started);
-        bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
-        bench.run(0.1);
-        assert_eq!(arm(&mut bench), None);
-        let challenge = bench.answers.iter().find_map(|answer| match answer {
-            Message::ArmChallenge(challenge) => Some(challenge.challenge),
-            _ => None,
-        });
-        challenge.expect("a challenge")
-    };
-    assert_ne!(challenge(1), challenge(2));
-}

@@ -80,6 +80,11 @@ impl UnitAboard {
         self.train.link_mut().set_flash(flash);
     }
 
+    /// Draws arm challenges of the unit from another seed; no scan may have been made yet.
+    pub fn draw_challenges(&mut self, seed: u64) {
+        self.train.link_mut().draw_challenges(seed);
+    }
+
     /// Puts the standing train at the departure station of a section, over its loop and under the section's codes;
     /// no departure is given.
     ///

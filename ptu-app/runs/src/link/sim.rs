@@ -22,6 +22,8 @@ pub struct SimLink {
     unit: Option<Unit>,
     /// Its flash while it is without supply; `None` = a new one.
     flash: Option<Box<dyn BlockDevice>>,
+    /// What arm challenges are drawn from; `None` = the seed.
+    challenges: Option<u64>,
 }
 
 impl SimLink {
@@ -33,6 +35,7 @@ impl SimLink {
             may_power_at: Instant::ZERO,
             unit: None,
             flash: None,
+            challenges: None,
         }
     }
 
@@ -40,6 +43,11 @@ impl SimLink {
     pub(crate) fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
         debug_assert!(self.unit.is_none(), "powered up");
         self.flash = Some(flash);
+    }
+
+    /// Draws arm challenges from another seed, which nobody outside knows.
+    pub(crate) fn draw_challenges(&mut self, seed: u64) {
+        self.challenges = Some(seed);
     }
 
     /// Switches the supply off, or on if it was off: the unit is powered up again then.
@@ -100,10 +108,15 @@ impl UnitLink for SimLink {
         };
         let unit = self.unit.get_or_insert_with(|| {
             let setup = self.setup.clone();
-            match self.flash.take() {
+            let mut unit = match self.flash.take() {
                 Some(flash) => Unit::with_flash(setup, flash),
                 None => Unit::new(setup),
+            };
+            if let Some(seed) = self.challenges {
+                // Another one at each power-up.
+                unit.draw_challenges(seed ^ power_at.as_us());
             }
+            unit
         });
         unit.receive(to_unit);
         unit.step(Instant::ZERO + now.since(power_at), from_unit);

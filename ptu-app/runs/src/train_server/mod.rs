@@ -9,6 +9,7 @@ mod service;
 #[cfg(test)]
 mod tests;
 
+use std::hash::{BuildHasher as _, RandomState};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -55,6 +56,7 @@ pub fn serve(
 ) -> Result<(), Failure> {
     let setup = request.choice.setup(directory)?;
     let mut aboard = setup.aboard(setup.seed, Instant::ZERO);
+    aboard.draw_challenges(RandomState::new().hash_one(setup.seed));
     if let Some(file) = &request.flash {
         let flash = FileFlash::open(file).map_err(Failure::usage)?;
         aboard.set_flash(Box::new(flash));
