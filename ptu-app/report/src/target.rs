@@ -73,6 +73,14 @@ impl Target {
         NewFile::begin(&self.path, self.kind())
     }
 
+    /// Begins the file, or one beside what stands there.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn begin_beside(&self) -> Result<NewFile, Failure> {
+        NewFile::begin_beside(&self.path)
+    }
+
     fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
         data::write(&self.path, self.kind(), content?)
     }

@@ -85,6 +85,21 @@ pub struct NewFile {
 }
 
 impl NewFile {
+    /// Begins a file that is to stand at `place`, or beside what stands there: [`NewFile::finish_beside`].
+    ///
+    /// # Errors
+    /// No file can be made in that folder.
+    pub fn begin_beside(place: &Path) -> Result<Self, Failure> {
+        match place.is_file() {
+            true => Self::begin(&free_beside(place), kind::OWN),
+            false => Self::begin(place, kind::OWN),
+        }
+        .map(|file| Self {
+            place: place.to_path_buf(),
+            ..file
+        })
+    }
+
     /// Begins a file of a kind that is to stand at `place`.
     ///
     /// # Errors
@@ -330,11 +345,16 @@ mod tests {
     fn an_existing_file_is_not_overwritten_if_another_name_is_free() {
         let folder = tempfile::tempdir().expect("folder");
         let wanted = folder.path().join("trace.v2.csv");
+        std::fs::write(&wanted, "of another kind").expect("written");
         let names: Vec<_> = (0..3)
-            .map(|_| written(&wanted, "1").finish_beside().expect("made"))
+            .map(|_| NewFile::begin_beside(&wanted).expect("begun"))
+            .map(|file| file.finish_beside().expect("made"))
             .map(|path| path.file_name().expect("named").to_owned())
             .collect();
-        assert_eq!(names, ["trace.v2.csv", "trace.v2-2.csv", "trace.v2-3.csv"]);
-        assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 3);
+        assert_eq!(
+            names,
+            ["trace.v2-2.csv", "trace.v2-3.csv", "trace.v2-4.csv"]
+        );
+        assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 4);
     }
 }

@@ -42,7 +42,7 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
 /// The file cannot be written, or the database not be read.
 pub(super) fn write(paths: &DataPaths, asked: &Asked, wanted: &Path) -> Result<PathBuf, Failure> {
     let target: Target = wanted.to_string_lossy().parse().map_err(Failure::usage)?;
-    let file = target.begin()?;
+    let file = target.begin_beside()?;
     let (store, scripts) = (paths.read()?, &paths.scripts);
     let language = asked.language;
     let content = match asked.of {

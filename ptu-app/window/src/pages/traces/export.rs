@@ -15,7 +15,7 @@ use crate::query_worker::Pending;
 use ptu_report::trace_view::csv::csv;
 use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
-use ptu_runs::new_file::{NewFile, cannot_write, kind};
+use ptu_runs::new_file::{NewFile, cannot_write};
 
 /// What is to be written, and what is under way.
 #[derive(Default)]
@@ -69,7 +69,7 @@ impl Export {
             let question = move |_: &_| {
                 let part = image.region(&rect, Some(scale));
                 let place = with_ending(&name, "png");
-                let mut file = NewFile::begin(&place, kind::PNG)?;
+                let mut file = NewFile::begin_beside(&place)?;
                 encode(&part, &mut file).map_err(|error| cannot_write(&place, &error))?;
                 file.finish_beside()
             };
@@ -103,7 +103,7 @@ impl Export {
         let question = move |_: &_| {
             let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
             let place = with_ending(&name, "csv");
-            let mut file = NewFile::begin(&place, kind::CSV)?;
+            let mut file = NewFile::begin_beside(&place)?;
             let written = file.write_all(text.as_bytes());
             written.map_err(|error| cannot_write(&place, &error))?;
             file.finish_beside()
