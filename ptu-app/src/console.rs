@@ -354,7 +354,7 @@ fn summary(run: &RunDetail) -> String {
 
 fn verdict_word(run: &RunDetail) -> &'static str {
     let verdict = run.run.verdict;
-    verdict.map_or("interrupted", |verdict| verdict.as_str())
+    verdict.map_or(run.run.state.as_str(), |verdict| verdict.as_str())
 }
 
 /// The first line, where steps were skipped.
