@@ -131,25 +131,44 @@ fn a_signature_signs_what_it_names_and_nothing_else() {
     }
 }
 
-/// Goal: a run whose rows were changed after it was signed is nowhere shown as signed.
+/// Goal: a run or note whose rows were changed after it was signed is nowhere shown as signed.
 #[test]
-fn a_changed_run_is_not_shown_as_signed() {
+fn what_was_changed_is_not_shown_as_signed() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
     store.sign_with(Some(signer()));
     let (id, _) = run(&store, "ATC-7");
-    assert!(store.run(id).expect("read").signature.is_some());
+    let by_of = |store: &Store| {
+        let shown = store.run(id).expect("read");
+        (
+            shown.signature.map(|of| of.who),
+            shown.notes[0].signed_by.clone(),
+        )
+    };
+    let kim = || Some("Kim".to_owned());
+    assert_eq!(by_of(&store), (kim(), kim()));
     store.close().expect("closed");
-    by_hand(&path, "UPDATE run SET verdict = 'passed'");
-    let store = Store::open_read_only(&path).expect("opens");
-    // Its note's signature is left, and goes into no certificate of the run.
-    let left = store.signatures(id).expect("read");
-    assert!(
-        left.len() == 1 && left[0].contains("\"what\":\"note\""),
-        "{left:?}"
-    );
-    assert_eq!(store.run(id).expect("read").signature, None);
+    for (change, left, signed) in [
+        ("UPDATE run SET verdict = 'passed'", "note", (None, kim())),
+        (
+            "UPDATE run_note SET text = 'all good'",
+            "run",
+            (kim(), None),
+        ),
+    ] {
+        let copy = dir.path().join("b.db");
+        std::fs::copy(&path, &copy).expect("copied");
+        by_hand(&copy, change);
+        let store = Store::open_read_only(&copy).expect("opens");
+        // What else is signed is left, and goes into the certificate of the run.
+        let texts = store.signatures(id).expect("read");
+        assert!(
+            texts.len() == 1 && texts[0].contains(&format!("\"what\":\"{left}\"")),
+            "{texts:?}"
+        );
+        assert_eq!(by_of(&store), signed, "{change}");
+    }
 }
 
 /// Goal: a signed document has one form, byte for byte.
