@@ -6,6 +6,7 @@ use super::places::Places;
 use super::signed::Signed;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
+use crate::maintenance::has_its_traces;
 use crate::seal::events_and_notes::{event_digest, note_digest};
 use crate::seal::{hex, run};
 
@@ -108,7 +109,7 @@ pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(Stri
     Ok(held)
 }
 
-/// Whether the run, note or event that a statement names has the content that was signed.
+/// Whether the run, note or event that a statement names has the content that was signed; a run with its traces.
 fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
     type Digest = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
     let (table, digest): (_, Digest) = match &statement.what[..] {
@@ -128,7 +129,7 @@ fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
     })?;
     for (row, payload) in sealed {
         if hex(&digest(backend, row, &payload)?) == statement.digest {
-            return Ok(true);
+            return Ok(statement.what != "run" || has_its_traces(backend, (id, row), &payload)?);
         }
     }
     Ok(false)

@@ -3,12 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use fault_db::{Id, OpenOptions, RunEnd, RunWriter, Signed, Signer, Store, Verdict};
+use fault_db::{
+    FaultState, Id, OpenOptions, PruneRule, RunEnd, RunWriter, Signed, Signer, Store, Verdict,
+};
 use rusqlite::Connection;
 use sha2::{Digest as _, Sha256};
 use tempfile::tempdir;
 
-use crate::common::{T0_US, by_hand, end, fault, ids, open, run_record};
+use crate::common::{T0_US, by_hand, end, fault, ids, open, realistic_trace, run_record};
 
 fn signer() -> Arc<Signer> {
     Arc::new(Signer::new("Kim", "technician", &[3; 32]).expect("a key"))
@@ -18,6 +20,9 @@ fn signer() -> Arc<Signer> {
 fn run(store: &Store, serial: &str) -> (Id, Id) {
     let mut run = RunWriter::begin(store, &run_record(serial)).expect("begun");
     let seen = run.fault(&fault(4, T0_US + 5)).expect("stored");
+    for (seed, of) in [(3, &[seen.occurrence][..]), (4, &[])] {
+        (run.trace(of, &realistic_trace(40, seed))).expect("stored");
+    }
     let id = run.id();
     run.finish(&end(Verdict::Failed)).expect("finished");
     (store.add_run_note(id, "kim", "looked at", T0_US + 6_000_000)).expect("noted");
@@ -131,14 +136,14 @@ fn a_signature_signs_what_it_names_and_nothing_else() {
     }
 }
 
-/// Goal: a run or note whose rows were changed after it was signed is nowhere shown as signed.
+/// Goal: a run or note whose rows were changed after it was signed is nowhere shown as signed; traces are rows of the run.
 #[test]
 fn what_was_changed_is_not_shown_as_signed() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
     store.sign_with(Some(signer()));
-    let (id, _) = run(&store, "ATC-7");
+    let (id, seen) = run(&store, "ATC-7");
     let by_of = |store: &Store| {
         let shown = store.run(id).expect("read");
         (
@@ -156,6 +161,13 @@ fn what_was_changed_is_not_shown_as_signed() {
             "run",
             (kim(), None),
         ),
+        ("DELETE FROM trace", "note", (None, kim())),
+        (
+            "UPDATE trace SET (data, sha256) =
+                (SELECT o.data, o.sha256 FROM trace o WHERE o.seq <> trace.seq LIMIT 1)",
+            "note",
+            (None, kim()),
+        ),
     ] {
         let copy = dir.path().join("b.db");
         std::fs::copy(&path, &copy).expect("copied");
@@ -169,6 +181,17 @@ fn what_was_changed_is_not_shown_as_signed() {
         );
         assert_eq!(by_of(&store), signed, "{change}");
     }
+    let store = open(&path);
+    for state in [
+        FaultState::Repaired,
+        FaultState::Verified,
+        FaultState::Closed,
+    ] {
+        (store.set_state(seen, state, "kim", "", T0_US + 9)).expect("set");
+    }
+    let pruned = store.prune(&PruneRule::default()).expect("pruned");
+    assert!(pruned.traces > 0, "{pruned:?}");
+    assert_eq!(by_of(&store), (kim(), kim()), "after a prune");
 }
 
 /// Goal: a signed document has one form, byte for byte.

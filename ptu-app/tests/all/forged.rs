@@ -256,6 +256,24 @@ fn an_unsigned_note_on_a_signed_run_is_marked() {
     );
 }
 
+/// Goal: no key signs a sheet of a run that was changed.
+#[test]
+fn a_key_signs_no_sheet_that_it_cannot_vouch_for() {
+    let place = with_key();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let report = ["report", "latest", "--out", "sheet.html"];
+    place.ptu(&[&report[..], &SIGN].concat()).exits(0);
+    let conn = rusqlite::Connection::open(place.path("history.db")).expect("opens");
+    conn.execute_batch("UPDATE step SET verdict = 'passed' WHERE verdict = 'failed'")
+        .expect("changed");
+    drop(conn);
+    place
+        .ptu(&[&report[..], &SIGN].concat())
+        .exits(3)
+        .explains(&["was changed", "ptu verify"]);
+}
+
 /// Goal: a key or PIN that others can read is refused, and a PIN of spaces and names that look alike are not taken.
 #[test]
 fn keys_pins_and_names_that_protect_nothing_are_refused() {
