@@ -52,6 +52,8 @@ struct Findings {
     /// `run`, `database`, `sheet` or `certificate`.
     what: &'static str,
     id: String,
+    /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
+    is_covered: bool,
     /// Who signed what, when, and how the key stood then.
     signatures: Vec<Value>,
     /// The same in words.
@@ -96,6 +98,7 @@ impl VerifyArguments {
         let is_same = digest.map(|digest| has_content(&seen, digest));
         let mut found = Findings {
             what: "run",
+            is_covered: true,
             id: id.to_string(),
             ..Findings::default()
         };
@@ -144,6 +147,7 @@ impl VerifyArguments {
         let report = store.check()?;
         let mut found = Findings {
             what: "database",
+            is_covered: true,
             id: path.display().to_string(),
             ..Findings::default()
         };
@@ -200,6 +204,7 @@ impl VerifyArguments {
     fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, String> {
         let mut found = Findings {
             what: "certificate",
+            is_covered: true,
             ..Findings::default()
         };
         let signed: Result<Signed, String> = Signed::read(text.strip_suffix('\n').unwrap_or(text))
@@ -345,7 +350,10 @@ impl Findings {
 
     fn text(&self) -> String {
         let mut lines = self.said.clone();
-        if self.changes.is_empty() {
+        if !self.changes.is_empty() {
+            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
+            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
+        } else if self.is_covered {
             lines.push(format!(
                 "unchanged: the {} is as it was {}",
                 self.what,
@@ -354,9 +362,6 @@ impl Findings {
                     false => "signed",
                 }
             ));
-        } else {
-            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
-            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
         }
         if !self.doubts.is_empty() {
             lines.push("NOT VERIFIED:".to_owned());
