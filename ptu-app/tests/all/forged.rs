@@ -259,12 +259,17 @@ fn an_unsigned_note_on_a_signed_run_is_marked() {
     );
 }
 
-/// Goal: no key signs a sheet of a run that was changed.
+/// Goal: no key signs a sheet of a run that was changed, or a page of a case, which carries no signature.
 #[test]
 fn a_key_signs_no_sheet_that_it_cannot_vouch_for() {
     let place = with_key();
     let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
     place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let case = ["report", "latest", "--case", "--out", "case.html"];
+    place
+        .ptu(&[&case[..], &SIGN].concat())
+        .exits(2)
+        .explains(&["a case", "carries no signature"]);
     let report = ["report", "latest", "--out", "sheet.html"];
     place.ptu(&[&report[..], &SIGN].concat()).exits(0);
     let conn = rusqlite::Connection::open(place.path("history.db")).expect("opens");
