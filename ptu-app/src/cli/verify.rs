@@ -5,7 +5,7 @@ mod sheet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fault_db::{About, Signed, Statement, Store, Verification};
+use fault_db::{About, Id, Signed, Statement, Store, Verification};
 use serde_json::{Value, json};
 
 use super::key::KeysOption;
@@ -165,6 +165,8 @@ impl VerifyArguments {
                 }
             }
         }
+        let signers = report.signed.iter().map(|key| key.who.to_lowercase());
+        found.take_unsigned(&store.unsigned_notes()?, &signers.collect::<Vec<_>>());
         let signed: u32 = report.signed.iter().map(|key| key.runs).sum();
         for key in report.signed {
             let stood = [key.first_at_us, key.last_at_us]
@@ -299,18 +301,23 @@ impl Findings {
                 seal.file.short()
             ));
         }
-        for (id, who) in &seen.unsigned_notes {
-            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
-            let is_of_signer = |one: &Statement| one.who.to_lowercase() == who.to_lowercase();
-            match seen.signatures.iter().any(is_of_signer) {
-                true => self.doubts.push(said),
-                false => self.remarks.push(said),
-            }
-        }
+        let signers = seen.signatures.iter().map(|one| one.who.to_lowercase());
+        self.take_unsigned(&seen.unsigned_notes, &signers.collect::<Vec<_>>());
         self.remarks.extend(seen.remarks);
         let pruned = seen.pruned.iter().map(|what| format!("{what} was pruned"));
         self.remarks.extend(pruned);
         self.changes.extend(seen.changes);
+    }
+
+    /// Notes that nobody signed: a doubt in the name of one of these signers.
+    fn take_unsigned(&mut self, notes: &[(Id, String)], signers: &[String]) {
+        for (id, who) in notes {
+            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
+            match signers.contains(&who.to_lowercase()) {
+                true => self.doubts.push(said),
+                false => self.remarks.push(said),
+            }
+        }
     }
 
     fn take(&mut self, signed: &Statement, keys: &KeyList) {

@@ -251,12 +251,33 @@ fn an_unsigned_note_on_a_signed_run_is_marked() {
     verify(&place, "latest")
         .exits(1)
         .prints(&["NOT VERIFIED", "is not signed"]);
+    verify(&place, "history.db")
+        .exits(1)
+        .prints(&["NOT VERIFIED", "is not signed"]);
     let notes = place.json(&["runs", "show", "latest", "--json"])["notes"].clone();
     let signed_by = [&notes[0]["signed_by"], &notes[1]["signed_by"]];
     assert_eq!(
         signed_by,
         [&serde_json::json!("Kim"), &serde_json::Value::Null]
     );
+}
+
+/// Goal: a note that nobody signed is marked at its trace, too.
+#[test]
+fn an_unsigned_note_on_a_trace_is_marked() {
+    let place = with_key();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let store = fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options())
+        .expect("opens");
+    let trace = store.resolve_trace("latest").expect("a trace");
+    let of_note = fault_db::TracePlace { trace, at_us: 0 };
+    (store.add_trace_note(of_note, "Kim", "late here", ptu_runs::clock::now_us())).expect("noted");
+    store.close().expect("closed");
+    place
+        .ptu(&["trace", "show", "latest"])
+        .exits(0)
+        .prints(&["Kim (unsigned)", "late here"]);
 }
 
 /// Goal: no key signs a sheet of a run that was changed, or a page of a case, which carries no signature.
