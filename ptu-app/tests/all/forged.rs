@@ -340,6 +340,10 @@ fn keys_pins_and_names_that_protect_nothing_are_refused() {
         "Kim\u{200b}",
         "Kim\u{202e}",
         "\u{3000}Kim",
+        "Kim\u{fe0f}",
+        "Kim\u{2800}",
+        "Jose\u{301}",
+        "\u{1100}\u{1161}",
     ] {
         new(name, "pin.txt").exits(2).explains(&["name"]);
         let list = place
@@ -351,7 +355,11 @@ fn keys_pins_and_names_that_protect_nothing_are_refused() {
             .exits(3)
             .explains(&["name"]);
     }
-    new("Kim Lee", "pin.txt").exits(0);
+    for name in ["Kim Lee", "Jos\u{e9}", "김"] {
+        new(name, "pin.txt").exits(0);
+        std::fs::remove_file(place.path("new.key")).expect("made");
+        std::fs::remove_file(place.path("new.pub")).expect("made");
+    }
 }
 
 /// Goal: days of a calibration are days where the bench stands: in Seoul at 8 in the morning of the due day it is over, and
