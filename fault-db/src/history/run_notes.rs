@@ -15,7 +15,7 @@ use crate::values::trace_place::TracePlace;
 /// A note on a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RunNote {
-    /// Its id.
+    /// The note's id.
     pub id: Id,
     /// When it was written.
     pub at_us: i64,
@@ -120,8 +120,7 @@ impl Store {
                 let read = signatures_of(self.backend(), run);
                 signed = (Some(run), read.map_err(|error| self.failed(DOING, error))?);
             }
-            let name = note.to_string();
-            if !(signed.1.iter()).any(|(_, of)| of.what == "note" && of.id == name) {
+            if !signed.1.iter().any(|(_, of)| of.is_about("note", note)) {
                 unsigned.push((note, who));
             }
         }

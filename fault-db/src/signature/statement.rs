@@ -79,6 +79,11 @@ pub struct About {
 }
 
 impl Statement {
+    /// Whether it signs the entry of this kind and id.
+    pub(crate) fn is_about(&self, what: &str, id: Id) -> bool {
+        self.what == what && self.id == id.to_string()
+    }
+
     /// The first digits of the key, as lists and sheets show it.
     pub fn short_key(&self) -> &str {
         self.key.get(..16).unwrap_or(&self.key)

@@ -5,6 +5,7 @@ pub(crate) mod file;
 mod head;
 mod lookup;
 pub(crate) mod open_options;
+mod place;
 mod transaction;
 
 use std::cell::{RefCell, RefMut};
@@ -16,12 +17,12 @@ use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
 use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
 use crate::error::StoreError;
-use crate::files::platform::{Identity, identity};
+use crate::files::platform::Identity;
 use crate::id::{Id, IdSource};
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::signature::{Signer, sign_new_entries};
-use crate::store::atomic_file::{AtomicFile, make_private};
+use crate::store::atomic_file::make_private;
 use crate::store::file::{
     READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
     set_up_to_record,
@@ -174,56 +175,6 @@ impl Store {
     /// Whose signature is put under what is recorded.
     pub fn signer(&self) -> Option<Arc<Signer>> {
         self.signer.borrow().clone()
-    }
-
-    /// Holds the file to be the one that has this store's name still, and to have no other name.
-    ///
-    /// # Errors
-    /// [`StoreError::Misplaced`], and what has happened to it.
-    pub fn check_place(&self) -> Result<(), StoreError> {
-        let now = || {
-            std::fs::metadata(&self.path)
-                .ok()
-                .as_ref()
-                .and_then(identity)
-        };
-        let what = match (self.identity, now()) {
-            (None, _) => return Ok(()),
-            (Some(_), None) => "was removed",
-            (Some(opened), Some(now)) if !opened.is_same(&now) => "was replaced by another file",
-            (Some(_), Some(now)) if now.names > 1 => {
-                // A killed program may have left the second name.
-                drop(AtomicFile::begin(&self.path));
-                match std::fs::metadata(&self.path)
-                    .ok()
-                    .as_ref()
-                    .and_then(identity)
-                {
-                    Some(Identity { names: 2.., .. }) => "has a second name (a hard link)",
-                    _ => return Ok(()),
-                }
-            }
-            _ => return Ok(()),
-        };
-        Err(StoreError::Misplaced {
-            path: self.path.clone(),
-            what,
-        })
-    }
-
-    /// Holds a run that has ended to be in the file that has this store's name, as another program finds it.
-    ///
-    /// # Errors
-    /// It is not there, and why.
-    pub fn check_holds(&self, run: Id) -> Result<(), StoreError> {
-        self.check_place()?;
-        // What waits in a log that was removed is in the file then.
-        self.checkpoint()?;
-        let found = Self::open_read_only(&self.path)?.run(run)?;
-        match found.run.verdict {
-            Some(_) => self.check_place(),
-            None => Err(StoreError::not_found("end of run", run)),
-        }
     }
 
     /// The file's path as it was given; of a server its address without the password.
@@ -461,7 +412,7 @@ impl Store {
             codec: RefCell::new(codec),
             channel_sets: RefCell::default(),
             signer: RefCell::default(),
-            identity: std::fs::metadata(path).ok().as_ref().and_then(identity),
+            identity: Identity::at(path),
         })
     }
 }

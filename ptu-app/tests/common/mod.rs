@@ -29,7 +29,7 @@ pub struct Place {
 
 /// What is typed behind the name of a program.
 pub trait Typed {
-    /// Its words.
+    /// The arguments, one by one.
     fn words(&self) -> Vec<String>;
 }
 
