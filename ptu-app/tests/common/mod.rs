@@ -296,6 +296,17 @@ pub fn program(name: &str) -> PathBuf {
     program
 }
 
+/// Puts `ptu` somewhere else: the same file by another name, or, on another disk, a copy that another process makes. A
+/// program that this process has open to write cannot start, and what another test starts meanwhile has all that is
+/// open here.
+pub fn install(to: &Path) {
+    let built = program("ptu");
+    if std::fs::hard_link(&built, to).is_err() {
+        let copied = Command::new("cp").arg(&built).arg(to).status();
+        assert!(copied.expect("cp starts").success());
+    }
+}
+
 /// Copies a folder with all in it over another.
 pub fn copy_folder(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).expect("a folder");
