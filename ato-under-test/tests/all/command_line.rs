@@ -35,7 +35,13 @@ fn faults_that_are_not_the_units_are_refused_with_who_injects_them() {
 fn the_program_alone_has_its_data_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let program = folder.path().join("ato-under-test");
-    std::fs::copy(env!("CARGO_BIN_EXE_ato-under-test"), &program).expect("copied");
+    // Another process copies: a program that this one has open to write cannot start, and every process that another
+    // test starts in the meantime has what is open here.
+    let copied = Command::new("cp")
+        .arg(env!("CARGO_BIN_EXE_ato-under-test"))
+        .arg(&program)
+        .status();
+    assert!(copied.expect("cp starts").success());
     let output = Command::new(&program)
         .args(["--pty", "--inject", "tra.daed"])
         .current_dir(folder.path())

@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use crate::files::platform::identity;
+use crate::files::platform::Identity;
 use crate::files::regular_file::open_regular_file;
 
 /// What SQLite keeps beside a database, by the ends of the names.
@@ -45,7 +45,7 @@ fn is_database(place: &Path) -> bool {
     read.is_ok() && head == MAGIC
 }
 
-/// The same name with an end.
+/// A path whose name has `end` behind it: `a.db` and `-wal` are `a.db-wal`.
 pub(crate) fn with_end(path: &Path, end: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(end);
@@ -54,9 +54,7 @@ pub(crate) fn with_end(path: &Path, end: &str) -> PathBuf {
 
 /// Whether two names are of one file.
 fn is_same(a: &Path, b: &Path) -> bool {
-    let of = |path: &Path| std::fs::metadata(path).ok().as_ref().and_then(identity);
-    let (here, there) = (of(a), of(b));
-    match (here, there) {
+    match (Identity::at(a), Identity::at(b)) {
         (Some(here), Some(there)) => here.is_same(&there),
         // Where the system does not number files.
         _ => std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b)),

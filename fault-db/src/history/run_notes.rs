@@ -8,13 +8,14 @@ use crate::history::limits;
 use crate::id::Id;
 use crate::schema::derived_columns::note_words;
 use crate::seal;
+use crate::signature::signatures_of;
 use crate::store::Store;
 use crate::values::trace_place::TracePlace;
 
 /// A note on a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RunNote {
-    /// Its id.
+    /// The note's id.
     pub id: Id,
     /// When it was written.
     pub at_us: i64,
@@ -102,25 +103,35 @@ impl Store {
         })
     }
 
-    /// Notes at places in a trace, by their places.
+    /// Notes that nobody has signed, or whose signature does not hold, and in whose name they are.
     ///
     /// # Errors
-    /// There is no such trace, or the notes cannot be read.
-    pub fn trace_notes(&self, trace: Id) -> Result<Vec<RunNote>, StoreError> {
-        let run = self.run_of_trace(trace)?;
-        let sql = format!(
-            "{NOTES} JOIN run r ON r.seq = n.run WHERE r.id = ?1 AND n.trace = ?2
-             ORDER BY n.place_us, n.at_us, n.id"
-        );
-        self.select(
-            "reading the notes on a trace",
-            &sql,
-            &values![run, trace],
-            note,
-        )
+    /// They cannot be read.
+    pub fn unsigned_notes(&self) -> Result<Vec<(Id, String)>, StoreError> {
+        const DOING: &str = "looking for notes that are not signed";
+        let sql = "SELECT r.id, n.id, n.who FROM run_note n JOIN run r ON r.seq = n.run ORDER BY n.run, n.seq";
+        let notes = self.select(DOING, sql, &[], |row| {
+            Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get::<String>(2)?))
+        })?;
+        let mut signed = (None, Vec::new());
+        let mut unsigned = Vec::new();
+        for (run, note, who) in notes {
+            if signed.0 != Some(run) {
+                let read = signatures_of(self.backend(), run);
+                signed = (Some(run), read.map_err(|error| self.failed(DOING, error))?);
+            }
+            if !signed.1.iter().any(|(_, of)| of.is_about("note", note)) {
+                unsigned.push((note, who));
+            }
+        }
+        Ok(unsigned)
     }
 
-    fn run_of_trace(&self, trace: Id) -> Result<Id, StoreError> {
+    /// The run that a trace is of.
+    ///
+    /// # Errors
+    /// There is no such trace.
+    pub fn run_of_trace(&self, trace: Id) -> Result<Id, StoreError> {
         let run = self.first(
             "looking for the run of a trace",
             "SELECT r.id FROM trace t JOIN run r ON r.seq = t.run WHERE t.id = ?1",

@@ -32,6 +32,22 @@ const IN_RUN: &str = "in run ";
 /// As many runs with the fault are evidence of its rate, the last ones.
 const MOST_RUNS: i64 = 8;
 
+/// Runs `r` with their seals `s`; a copy of a file seals a run again.
+macro_rules! sealed_runs {
+    () => {
+        " LEFT JOIN seal s ON s.id = r.id AND s.what = 'run' AND s.origin = (SELECT x.origin FROM seal x
+            WHERE x.id = r.id AND x.what = 'run' ORDER BY x.origin LIMIT 1) "
+    };
+}
+
+/// A time of such a run by which they are in order: within one chain as the chain says, between two by their times.
+macro_rules! time_in_order {
+    () => {
+        "min(r.started_at_us) OVER (PARTITION BY coalesce(s.origin, r.id) ORDER BY s.ordinal
+            ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING)"
+    };
+}
+
 /// Repaired faults of a unit whose last step passed in a run.
 const SHOWN_GONE: &str = concat!(
     "SELECT f.seq, f.id FROM fault f
@@ -44,8 +60,11 @@ const SHOWN_GONE: &str = concat!(
                 ON again.procedure = seen.procedure AND again.name = seen.name
             WHERE again.run = ?2 AND again.verdict = 'passed'
                 AND (seen.run, seen.step_index) = (
-                    SELECT o.run, o.step_index FROM fault_occurrence o
-                    WHERE o.fault = f.seq ORDER BY o.seq DESC LIMIT 1))
+                    SELECT o.run, o.step_index FROM fault_occurrence o JOIN run r ON r.seq = o.run",
+    sealed_runs!(),
+    "WHERE o.fault = f.seq ORDER BY ",
+    time_in_order!(),
+    " DESC, s.ordinal DESC, o.seq DESC LIMIT 1))
     ORDER BY f.seq"
 );
 
@@ -67,21 +86,27 @@ const PROVEN_WITH_IT: &str = "
         AND other.cause = lower(other.lru) AND other.state NOT IN ('verified', 'closed'))
     ORDER BY c.seq";
 
-/// Whether a run was recorded before an event: as their chain says, which no clock changes, or where two files recorded them
-/// by their times.
+/// Whether a run was recorded no later than another run or an event: as their chain says, which no clock changes, or where
+/// two files recorded them by their times.
 macro_rules! before {
     ($run:literal, $at_us:literal, $event:literal) => {
+        before!($run, $at_us, "event", $event, ".at_us")
+    };
+    ($run:literal, $at_us:literal, $what:literal, $other:literal, $of_other:literal) => {
         concat!(
-            "coalesce((SELECT a.ordinal < b.ordinal FROM seal a JOIN seal b ON b.origin = a.origin
+            "coalesce((SELECT a.ordinal <= b.ordinal FROM seal a JOIN seal b ON b.origin = a.origin
                 WHERE a.what = 'run' AND a.id = ",
             $run,
-            ".id AND b.what = 'event' AND b.id = ",
-            $event,
+            ".id AND b.what = '",
+            $what,
+            "' AND b.id = ",
+            $other,
             ".id LIMIT 1), ",
             $at_us,
             " <= ",
-            $event,
-            ".at_us)"
+            $other,
+            $of_other,
+            ")"
         )
     };
 }
@@ -89,17 +114,25 @@ macro_rules! before {
 /// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
 const THERE: &str = concat!(
     "SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
-    WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2
-        AND r.seq >= (SELECT min(o.run) FROM fault_occurrence o JOIN run q ON q.seq = o.run
-            WHERE o.fault = f.seq AND NOT EXISTS (SELECT 1 FROM fault_event x
-                WHERE x.fault = f.seq AND x.state = 'verified' AND ",
-    before!("q", "o.at_us", "x"),
+        JOIN run q ON q.seq = (SELECT o.run FROM fault_occurrence o JOIN run r ON r.seq = o.run",
+    sealed_runs!(),
+    "WHERE o.fault = ?1 AND NOT EXISTS (SELECT 1 FROM fault_event x
+                WHERE x.fault = ?1 AND x.state = 'verified' AND ",
+    before!("r", "o.at_us", "x"),
     standing!("x"),
-    ")) AND EXISTS (SELECT 1 FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND ",
+    ") ORDER BY ",
+    time_in_order!(),
+    ", s.ordinal, o.seq LIMIT 1)",
+    sealed_runs!(),
+    "WHERE f.seq = ?1 AND r.verdict IN ('passed', 'failed') AND r.source NOT LIKE ?2 AND ",
+    before!("q", "q.started_at_us", "run", "r", ".started_at_us"),
+    " AND EXISTS (SELECT 1 FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND ",
     before!("r", "r.started_at_us", "x"),
     standing!("x"),
     ")
-    ORDER BY r.seq DESC LIMIT ?3"
+    ORDER BY ",
+    time_in_order!(),
+    " DESC, s.ordinal DESC, r.seq DESC LIMIT ?3"
 );
 
 /// A repair that a run may have proved.

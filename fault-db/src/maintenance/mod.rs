@@ -4,5 +4,6 @@ mod backup;
 mod check;
 mod prune;
 
+pub(crate) use check::has_its_traces;
 pub use check::{CheckReport, KeyUse, Problem, Verification};
 pub use prune::{PruneCounts, PruneRule};

@@ -103,7 +103,7 @@ pub struct RunSummary {
     pub symptom: Option<String>,
     /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
-    /// What its steps came to, of those that it has a result of; how many were due, its evidence may say.
+    /// Counts of the steps that the run has a result of; how many were due, the evidence of the run may say.
     pub recorded: StepCounts,
     /// Number of distinct faults seen.
     pub faults: u32,
@@ -159,16 +159,6 @@ pub struct RunFault {
     pub trace_id: Option<Id>,
 }
 
-/// Of runs `r`, where [`COUNTS_OF_RUN`] stands for itself.
-const SELECT_RUN: &str = "
-    SELECT r.id, u.serial, u.kind, u.config_name, r.line, r.seed, r.operator, r.source,
-        r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
-        r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
-        (COUNTS_OF_RUN), r.seq,
-        (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
-        r.train, r.continues, r.connection, r.symptom, r.evidence
-    FROM run r JOIN unit u ON u.seq = r.unit";
-
 impl Store {
     /// Lists runs, newest first.
     pub fn runs(&self, filter: &RunFilter) -> Result<Vec<RunSummary>, StoreError> {
@@ -201,10 +191,8 @@ impl Store {
             let signed = signatures_of(self.backend(), id)?;
             let mut notes = self.run_notes(seq)?;
             for note in &mut notes {
-                let of = |one: &&(String, Statement)| {
-                    one.1.what == "note" && one.1.id == note.id.to_string()
-                };
-                note.signed_by = signed.iter().find(of).map(|(_, of)| of.who.clone());
+                let of_note = signed.iter().find(|(_, of)| of.is_about("note", note.id));
+                note.signed_by = of_note.map(|(_, of)| of.who.clone());
             }
             Ok(RunDetail {
                 run,
@@ -215,7 +203,7 @@ impl Store {
                 notes,
                 seal: sealed_as(self.backend(), id)?,
                 signature: (signed.into_iter())
-                    .find_map(|(_, of)| (of.what == "run").then_some(of)),
+                    .find_map(|(_, of)| of.is_about("run", id).then_some(of)),
             })
         };
         rest().map_err(|error| self.failed(DOING, error))
@@ -333,16 +321,14 @@ impl Store {
 
     /// Tells other programs that a run is under way, until what this gives is dropped.
     pub(crate) fn hold_run(&self, run: Id) -> Result<HeldFile, StoreError> {
-        let lock = self.lock_of(run);
-        if let (Some(folder), Some(name)) = (lock.parent(), lock.file_name()) {
-            let name = name.to_string_lossy();
-            let of = name.rsplit_once(".run-").map_or("", |(of, _)| of);
-            let is_lock = |name: &str| {
-                let rest = name.strip_prefix(of);
-                rest.is_some_and(|rest| rest.starts_with(".run-") && rest.ends_with(".lock"))
-            };
-            remove_abandoned(folder, is_lock);
+        let locks = self.locks();
+        if let (Some(folder), Some(begins)) = (locks.parent(), locks.file_name()) {
+            let begins = begins.to_string_lossy();
+            remove_abandoned(folder, |name| {
+                name.starts_with(&*begins) && name.ends_with(".lock")
+            });
         }
+        let lock = self.lock_of(run);
         // It holds nothing, and who shares the history is to see that it is locked.
         let made = HeldFile::make(&lock, false).and_then(|held| for_all(&held.file).map(|()| held));
         made.map_err(|error| StoreError::CannotWrite {
@@ -351,11 +337,15 @@ impl Store {
         })
     }
 
-    /// The file of [`Self::hold_run`], beside the database.
+    /// The file of [`Self::hold_run`].
     fn lock_of(&self, run: Id) -> PathBuf {
+        with_end(&self.locks(), &format!("{}.lock", run.short()))
+    }
+
+    /// What the files of [`Self::hold_run`] begin with, beside the database.
+    fn locks(&self) -> PathBuf {
         let real = std::fs::canonicalize(self.path());
-        let real = real.as_deref().unwrap_or(self.path());
-        with_end(real, &format!(".run-{}.lock", run.short()))
+        with_end(real.as_deref().unwrap_or(self.path()), ".run-")
     }
 
     fn summary(&self, row: Row<'_>) -> SqlResult<RunSummary> {
@@ -395,6 +385,15 @@ impl Store {
     }
 }
 
+/// The rows of [`Store::summary`].
 fn select_runs() -> String {
-    SELECT_RUN.replace("COUNTS_OF_RUN", COUNTS_OF_RUN)
+    format!(
+        "SELECT r.id, u.serial, u.kind, u.config_name, r.line, r.seed, r.operator, r.source,
+            r.started_at_us, r.finished_at_us, r.verdict, r.owner, r.bench_time_us, r.wall_time_us,
+            r.app_version, r.scripts_sha256, r.unit_config_sha256, r.injected,
+            ({COUNTS_OF_RUN}), r.seq,
+            (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq),
+            r.train, r.continues, r.connection, r.symptom, r.evidence
+        FROM run r JOIN unit u ON u.seq = r.unit"
+    )
 }

@@ -6,6 +6,8 @@ use super::places::Places;
 use super::signed::Signed;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
+use crate::maintenance::has_its_traces;
+use crate::seal::events_and_notes::{event_digest, note_digest};
 use crate::seal::{hex, run};
 
 /// The kind of an entry that holds a signature.
@@ -77,6 +79,11 @@ pub struct About {
 }
 
 impl Statement {
+    /// Whether it signs the entry of this kind and id.
+    pub(crate) fn is_about(&self, what: &str, id: Id) -> bool {
+        self.what == what && self.id == id.to_string()
+    }
+
     /// The first digits of the key, as lists and sheets show it.
     pub fn short_key(&self) -> &str {
         self.key.get(..16).unwrap_or(&self.key)
@@ -88,8 +95,8 @@ impl Statement {
     }
 }
 
-/// The signed documents about what belongs to this id that hold, in the order in which they were made: of a run its own, if
-/// it still has the content that was signed, and those of its notes, of a fault those of its events.
+/// The signed documents about what belongs to this id that hold, in the order in which they were made: of a run its own and
+/// those of its notes, of a fault those of its events, each if what it names still has the content that was signed.
 pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(String, Statement)>> {
     let texts = backend.select(
         "SELECT says FROM seal WHERE id = ?1 AND what = 'signature' ORDER BY origin, ordinal",
@@ -99,7 +106,7 @@ pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(Stri
     let mut held = Vec::new();
     for text in texts {
         if let Ok(statement) = read_signature(backend, group, &text)?
-            && (statement.what != "run" || has_content(backend, group, &statement.digest)?)
+            && has_content(backend, &statement)?
         {
             held.push((text, statement));
         }
@@ -107,17 +114,30 @@ pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(Stri
     Ok(held)
 }
 
-/// Whether a run has the content that was sealed with this digest.
-fn has_content(backend: &Backend, id: Id, digest: &str) -> SqlResult<bool> {
-    let sealed = backend.select(
-        "SELECT r.seq, s.says, s.digest FROM seal s JOIN run r ON r.id = s.id WHERE s.id = ?1 AND s.what = 'run'",
-        &values![id],
-        |row| Ok((row.get::<i64>(0)?, row.get::<String>(1)?, hex(row.get(2)?))),
-    )?;
-    match sealed.iter().find(|(_, _, sealed)| sealed == digest) {
-        Some((run, payload, _)) => Ok(hex(&run::digest(backend, *run, payload)?) == digest),
-        None => Ok(false),
+/// Whether the run, note or event that a statement names has the content that was signed; a run with its traces.
+fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
+    type Digest = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
+    let (table, digest): (_, Digest) = match &statement.what[..] {
+        "run" => ("run", run::digest),
+        "note" => ("run_note", note_digest),
+        "event" => ("fault_event", event_digest),
+        _ => return Ok(true),
+    };
+    let Ok(id) = statement.id.parse::<Id>() else {
+        return Ok(false);
+    };
+    let sql = format!(
+        "SELECT t.seq, s.says FROM {table} t JOIN seal s ON s.id = t.id AND s.what = ?2 WHERE t.id = ?1"
+    );
+    let sealed = backend.select(&sql, &values![id, &statement.what], |row| {
+        Ok((row.get::<i64>(0)?, row.get::<String>(1)?))
+    })?;
+    for (row, payload) in sealed {
+        if hex(&digest(backend, row, &payload)?) == statement.digest {
+            return Ok(statement.what != "run" || has_its_traces(backend, (id, row), &payload)?);
+        }
     }
+    Ok(false)
 }
 
 /// Reads a signature that hangs on a run, fault or instrument, and holds it against the seal that it signs and against what

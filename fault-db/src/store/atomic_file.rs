@@ -107,8 +107,13 @@ impl AtomicFile {
         made.map_err(|error| cannot_write(to, error.to_string()))
     }
 
-    fn make(to: &Path, is_private: bool) -> std::io::Result<Self> {
+    /// Removes the unfinished files that killed programs left in the folder of `to`.
+    pub(crate) fn remove_left(to: &Path) {
         remove_abandoned(folder_of(to), is_part);
+    }
+
+    fn make(to: &Path, is_private: bool) -> std::io::Result<Self> {
+        Self::remove_left(to);
         // From the root: SQLite takes `file:x` for something else than a file.
         let from_root = std::path::absolute(to)?;
         let random = RandomState::new().hash_one(to);

@@ -104,7 +104,7 @@ impl Store {
         // What is written to a file with two names is lost to one of them.
         store.check_place()?;
         store.bring_up_to_date(version)?;
-        store.log = place::identity_of(&place::log_of(path));
+        store.log = Identity::at(&place::log_of(path));
         set_up_to_record(store.file()?, max_pages).map_err(failed)?;
         Ok(store)
     }
@@ -419,7 +419,7 @@ impl Store {
             codec: RefCell::new(codec),
             channel_sets: RefCell::default(),
             signer: RefCell::default(),
-            identity: place::identity_of(path),
+            identity: Identity::at(path),
             log: None,
         })
     }

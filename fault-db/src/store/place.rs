@@ -8,7 +8,7 @@ use rusqlite::config::DbConfig;
 use super::Store;
 use crate::error::StoreError;
 use crate::files::databases::with_end;
-use crate::files::platform::{Identity, identity};
+use crate::files::platform::Identity;
 use crate::id::Id;
 use crate::seal::{SealHead, hash_of, hex, sealed_as};
 use crate::store::atomic_file::AtomicFile;
@@ -27,7 +27,7 @@ impl Store {
         let Some(opened) = self.identity else {
             return Ok(());
         };
-        let what = match identity_of(&self.path) {
+        let what = match Identity::at(&self.path) {
             None => "was removed",
             Some(now) if !opened.is_same(&now) => "was replaced by another file",
             Some(now) if now.names > 1 && self.has_second_name() => {
@@ -41,15 +41,15 @@ impl Store {
         Err(self.misplaced(what))
     }
 
+    /// Whether another name is left once the names that killed programs left are removed.
     fn has_second_name(&self) -> bool {
-        // A killed program may have left the second name.
-        drop(AtomicFile::begin(&self.path));
-        identity_of(&self.path).is_some_and(|now| now.names > 1)
+        AtomicFile::remove_left(&self.path);
+        Identity::at(&self.path).is_some_and(|now| now.names > 1)
     }
 
     fn has_lost_its_log(&self) -> bool {
         let is_same = |opened: &Identity| {
-            identity_of(&log_of(&self.path)).is_some_and(|now| opened.is_same(&now))
+            Identity::at(&log_of(&self.path)).is_some_and(|now| opened.is_same(&now))
         };
         self.log.as_ref().is_some_and(|opened| !is_same(opened))
     }
@@ -121,11 +121,6 @@ impl Store {
             said => Ok(said? == "ok"),
         }
     }
-}
-
-/// Which file is there; none where the system does not say.
-pub(super) fn identity_of(path: &Path) -> Option<Identity> {
-    std::fs::metadata(path).ok().as_ref().and_then(identity)
 }
 
 /// The write-ahead log of a file: beside the file itself, whatever links lead to it.

@@ -25,7 +25,7 @@ pub struct StepCounts {
 }
 
 impl StepCounts {
-    /// Those of these records.
+    /// The counts of these recorded results.
     pub fn of<'a>(records: impl IntoIterator<Item = &'a StepRecord>) -> Self {
         let mut counter = StepCounter::default();
         for record in records {

@@ -3,12 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use fault_db::{Id, OpenOptions, RunEnd, RunWriter, Signed, Signer, Store, Verdict};
+use fault_db::{
+    FaultState, Id, OpenOptions, PruneRule, RunEnd, RunWriter, Signed, Signer, Store, Verdict,
+};
 use rusqlite::Connection;
 use sha2::{Digest as _, Sha256};
 use tempfile::tempdir;
 
-use crate::common::{T0_US, by_hand, end, fault, ids, open, run_record};
+use crate::common::{T0_US, by_hand, end, fault, ids, open, realistic_trace, run_record};
 
 fn signer() -> Arc<Signer> {
     Arc::new(Signer::new("Kim", "technician", &[3; 32]).expect("a key"))
@@ -18,6 +20,9 @@ fn signer() -> Arc<Signer> {
 fn run(store: &Store, serial: &str) -> (Id, Id) {
     let mut run = RunWriter::begin(store, &run_record(serial)).expect("begun");
     let seen = run.fault(&fault(4, T0_US + 5)).expect("stored");
+    for (seed, of) in [(3, &[seen.occurrence][..]), (4, &[])] {
+        (run.trace(of, &realistic_trace(40, seed))).expect("stored");
+    }
     let id = run.id();
     run.finish(&end(Verdict::Failed)).expect("finished");
     (store.add_run_note(id, "kim", "looked at", T0_US + 6_000_000)).expect("noted");
@@ -131,25 +136,62 @@ fn a_signature_signs_what_it_names_and_nothing_else() {
     }
 }
 
-/// Goal: a run whose rows were changed after it was signed is nowhere shown as signed.
+/// Goal: a run or note whose rows were changed after it was signed is nowhere shown as signed; traces are rows of the run.
 #[test]
-fn a_changed_run_is_not_shown_as_signed() {
+fn what_was_changed_is_not_shown_as_signed() {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");
     let store = open(&path);
     store.sign_with(Some(signer()));
-    let (id, _) = run(&store, "ATC-7");
-    assert!(store.run(id).expect("read").signature.is_some());
+    let (id, seen) = run(&store, "ATC-7");
+    let by_of = |store: &Store| {
+        let shown = store.run(id).expect("read");
+        (
+            shown.signature.map(|of| of.who),
+            shown.notes[0].signed_by.clone(),
+        )
+    };
+    let kim = || Some("Kim".to_owned());
+    assert_eq!(by_of(&store), (kim(), kim()));
     store.close().expect("closed");
-    by_hand(&path, "UPDATE run SET verdict = 'passed'");
-    let store = Store::open_read_only(&path).expect("opens");
-    // Its note's signature is left, and goes into no certificate of the run.
-    let left = store.signatures(id).expect("read");
-    assert!(
-        left.len() == 1 && left[0].contains("\"what\":\"note\""),
-        "{left:?}"
-    );
-    assert_eq!(store.run(id).expect("read").signature, None);
+    for (change, left, signed) in [
+        ("UPDATE run SET verdict = 'passed'", "note", (None, kim())),
+        (
+            "UPDATE run_note SET text = 'all good'",
+            "run",
+            (kim(), None),
+        ),
+        ("DELETE FROM trace", "note", (None, kim())),
+        (
+            "UPDATE trace SET (data, sha256) =
+                (SELECT o.data, o.sha256 FROM trace o WHERE o.seq <> trace.seq LIMIT 1)",
+            "note",
+            (None, kim()),
+        ),
+    ] {
+        let copy = dir.path().join("b.db");
+        std::fs::copy(&path, &copy).expect("copied");
+        by_hand(&copy, change);
+        let store = Store::open_read_only(&copy).expect("opens");
+        // What else is signed is left, and goes into the certificate of the run.
+        let texts = store.signatures(id).expect("read");
+        assert!(
+            texts.len() == 1 && texts[0].contains(&format!("\"what\":\"{left}\"")),
+            "{texts:?}"
+        );
+        assert_eq!(by_of(&store), signed, "{change}");
+    }
+    let store = open(&path);
+    for state in [
+        FaultState::Repaired,
+        FaultState::Verified,
+        FaultState::Closed,
+    ] {
+        (store.set_state(seen, state, "kim", "", T0_US + 9)).expect("set");
+    }
+    let pruned = store.prune(&PruneRule::default()).expect("pruned");
+    assert!(pruned.traces > 0, "{pruned:?}");
+    assert_eq!(by_of(&store), (kim(), kim()), "after a prune");
 }
 
 /// Goal: a signed document has one form, byte for byte.

@@ -101,8 +101,10 @@ fn a_note_at_a_place_in_a_trace_is_found_there_and_on_its_run() {
     let theirs = Store::open(&dir.path().join("b.db"), OpenOptions::new(ids(2))).expect("opens");
     theirs.merge_from(&ours).expect("merged");
     for store in [&ours, &theirs] {
-        let found = store.trace_notes(trace).expect("read").into_iter();
-        let found: Vec<_> = found.map(|note| (note.place, note.text)).collect();
+        let found = store.run(run).expect("read").notes.into_iter();
+        let found = found.filter(|note| note.place.is_some());
+        let mut found: Vec<_> = found.map(|note| (note.place, note.text)).collect();
+        found.sort_by_key(|(place, _)| place.map(|place| place.at_us));
         let told = [
             (Some(place(-350_000)), "the wheel slips".to_owned()),
             (Some(place(200_000)), "then the brake".to_owned()),

@@ -1,9 +1,9 @@
 //! The life of a fault: a repair is verified by a run that passed what saw the fault, by no other.
 
-use crate::common::{T0_US, end, fault, open, run_record, step};
+use crate::common::{T0_US, end, fault, ids, open, run_record, step};
 use fault_db::{
-    FaultState, Id, RepairRecord, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord, Store,
-    Verdict,
+    FaultState, Id, OpenOptions, RepairRecord, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord,
+    Store, Verdict,
 };
 use tempfile::TempDir;
 
@@ -152,6 +152,44 @@ fn runs_before_and_since_a_repair_are_told_apart() {
     };
     assert_eq!((repair.fault, &repair.passed), (depot.fault, &passed));
     assert_eq!((repair.there.len(), repair.there[0]), (2, first));
+}
+
+/// Goal: where histories meet, the step that saw the fault last is the last one by time, not the one that was imported last.
+#[test]
+fn an_import_does_not_change_which_step_saw_the_fault_last() {
+    let depot = Depot::with_fault();
+    let older = depot._folder.path().join("older.db");
+    let store = Store::open(&older, OpenOptions::new(ids(5))).expect("opens");
+    let record = RunRecord {
+        started_at_us: T0_US - DAY_US,
+        ..run_record("ATC-1")
+    };
+    let another = |verdict| StepRecord {
+        name: "another".into(),
+        verdict,
+        ..step(3)
+    };
+    let mut writer = RunWriter::begin(&store, &record).expect("begun");
+    writer.step(another(Verdict::Failed)).expect("kept");
+    writer.fault(&fault(7, T0_US - DAY_US)).expect("stored");
+    let finished_at_us = end(Verdict::Failed).finished_at_us - DAY_US;
+    let ended = RunEnd {
+        finished_at_us,
+        ..end(Verdict::Failed)
+    };
+    writer.finish(&ended).expect("finished");
+    let first = writer.id();
+    drop(writer);
+    store.close().expect("closed");
+    depot.store.import(&older).expect("merged");
+    depot.repair(T0_US + DAY_US);
+    depot.run("ATC-1", (another(Verdict::Passed), Verdict::Passed));
+    let to_prove = depot.store.repairs_to_prove(depot.last_run());
+    assert_eq!(to_prove.expect("read"), []);
+    depot.run("ATC-1", (step(3), Verdict::Passed));
+    let to_prove = depot.store.repairs_to_prove(depot.last_run());
+    let there = to_prove.expect("read").remove(0).there;
+    assert_eq!((there.len(), there[0]), (2, first));
 }
 
 #[test]

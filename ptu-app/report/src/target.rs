@@ -4,7 +4,7 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use fault_db::{RunDetail, Store};
+use fault_db::{Id, RunDetail, Store};
 use maud::Markup;
 use protocol::display_text;
 
@@ -100,6 +100,11 @@ impl Target {
         &self.path
     }
 
+    /// It is a page, which carries a signature where it is of a run.
+    pub fn is_html(&self) -> bool {
+        self.format == Format::Html
+    }
+
     /// It is a test sheet, for people.
     fn is_sheet(&self) -> bool {
         matches!(self.format, Format::Html | Format::Pdf)
@@ -127,8 +132,11 @@ pub fn write(
     let signer = store.signer();
     let content = |target: &Target| {
         let mut content = content(target, run, sheet.as_ref(), language)?;
-        if target.format == Format::Html {
+        if target.is_html() {
             let page = String::from_utf8_lossy(&content).into_owned();
+            if signer.is_some() {
+                refuse_changed(store, run.run.id)?;
+            }
             let page = attach(page, run, &signatures, signer.as_deref(), now_us());
             content = page.into_bytes();
         }
@@ -140,6 +148,17 @@ pub fn write(
     let written = made.map(|target| target.write(content(target)));
     let written = written.collect::<Vec<_>>();
     Failure::of_all(std::iter::once(gathered).chain(written))
+}
+
+/// Refuses to sign a sheet of a run that is not as it was sealed.
+fn refuse_changed(store: &Store, run: Id) -> Result<(), Failure> {
+    match store.verify_run(run)?.changes.first() {
+        None => Ok(()),
+        Some(change) => Err(Failure::bench(format!(
+            "the run was changed, and no sheet of it is signed: {change}; `ptu verify {}` tells all",
+            run.short()
+        ))),
+    }
 }
 
 /// Writes reports of a case.

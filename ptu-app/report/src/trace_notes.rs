@@ -14,7 +14,7 @@ pub struct TraceNote {
     pub time_us: i64,
     /// When it was written, UTC.
     pub at: String,
-    /// Who wrote it.
+    /// Who wrote it, and on a signed run whether it is signed.
     pub who: String,
     /// What it says.
     pub text: String,
@@ -25,18 +25,20 @@ impl TraceNote {
     ///
     /// # Errors
     /// There is no such trace, or the database fails.
-    pub fn all(store: &Store, trace: Id) -> Result<Vec<Self>, StoreError> {
-        let notes = store.trace_notes(trace)?;
-        Ok(notes.into_iter().filter_map(Self::of).collect())
-    }
-
-    fn of(note: RunNote) -> Option<Self> {
-        Some(Self {
-            time_us: note.place?.at_us,
-            at: rfc3339(note.at_us),
-            who: note.who,
-            text: note.text,
-        })
+    pub fn all(store: &Store, trace: Id, words: &Words) -> Result<Vec<Self>, StoreError> {
+        let run = store.run(store.run_of_trace(trace)?)?;
+        let of_trace = (run.notes.iter()).filter_map(|note| {
+            let place = note.place.filter(|place| place.trace == trace)?;
+            Some(Self {
+                time_us: place.at_us,
+                at: rfc3339(note.at_us),
+                who: noted_by(note, &run, words),
+                text: note.text.clone(),
+            })
+        });
+        let mut notes: Vec<_> = of_trace.collect();
+        notes.sort_by_key(|note| note.time_us);
+        Ok(notes)
     }
 
     /// Its time, as `−0.35 s`.
@@ -61,7 +63,6 @@ pub fn note_text(note: &RunNote, words: &Words) -> String {
     )
 }
 
-/// A note on a run as JSON.
 /// Who wrote a note on a run; on a signed one, whether it is signed by that name, too.
 pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     let who = &note.who;
@@ -74,6 +75,7 @@ pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     }
 }
 
+/// A note on a run as JSON.
 pub(crate) fn note_json(note: &RunNote) -> Value {
     let place = note.place.map(
         |place| json!({ "trace": place.trace.to_string(), "time_s": place.at_us as f64 / 1e6 }),

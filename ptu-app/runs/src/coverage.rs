@@ -20,7 +20,7 @@ pub fn counts_of(run: &RunSummary) -> StepCounts {
 /// Steps of scripts, and why some were not run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// What they came to.
+    /// How many of the steps were due, passed, failed and so on.
     pub steps: StepCounts,
     /// Steps skipped because they need the bench harness.
     pub need_bench: u32,

@@ -69,6 +69,11 @@ impl ReportArguments {
                     "--annex is of a case; the sheet of a run has all of it already",
                 ));
             }
+            Told::Case(_) if self.signing.is_named() && self.out.iter().any(Target::is_html) => {
+                return Err(Failure::usage(
+                    "the page of a case carries no signature: leave --key and PTU_KEY out, and sign the sheet of each run",
+                ));
+            }
             Told::Run(id) => {
                 self.signing.sign(&store)?;
                 let run = store.run(id)?;

@@ -47,16 +47,21 @@ impl SigningOption {
         Ok(())
     }
 
+    fn named(&self) -> Option<&Path> {
+        (self.key.as_deref()).filter(|path| !path.as_os_str().is_empty())
+    }
+
+    /// A key is named.
+    pub fn is_named(&self) -> bool {
+        self.named().is_some()
+    }
+
     /// Opens the key, if one is named.
     ///
     /// # Errors
     /// The key is not there, holds no longer, or its PIN is wrong.
     pub fn signer(&self) -> Result<Option<Arc<Signer>>, Failure> {
-        let Some(path) = self
-            .key
-            .as_deref()
-            .filter(|path| !path.as_os_str().is_empty())
-        else {
+        let Some(path) = self.named() else {
             return Ok(None);
         };
         let file = KeyFile::read(path)?;

@@ -5,7 +5,7 @@ mod sheet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fault_db::{About, Signed, Statement, Store, Verification};
+use fault_db::{About, Id, Signed, Statement, Store, Verification};
 use serde_json::{Value, json};
 
 use super::key::KeysOption;
@@ -52,6 +52,8 @@ struct Findings {
     /// `run`, `database`, `sheet` or `certificate`.
     what: &'static str,
     id: String,
+    /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
+    is_covered: bool,
     /// Who signed what, when, and how the key stood then.
     signatures: Vec<Value>,
     /// The same in words.
@@ -96,6 +98,7 @@ impl VerifyArguments {
         let is_same = digest.map(|digest| has_content(&seen, digest));
         let mut found = Findings {
             what: "run",
+            is_covered: true,
             id: id.to_string(),
             ..Findings::default()
         };
@@ -144,6 +147,7 @@ impl VerifyArguments {
         let report = store.check()?;
         let mut found = Findings {
             what: "database",
+            is_covered: true,
             id: path.display().to_string(),
             ..Findings::default()
         };
@@ -161,6 +165,8 @@ impl VerifyArguments {
                 }
             }
         }
+        let signers = report.signed.iter().map(|key| key.who.to_lowercase());
+        found.take_unsigned(&store.unsigned_notes()?, &signers.collect::<Vec<_>>());
         let signed: u32 = report.signed.iter().map(|key| key.runs).sum();
         for key in report.signed {
             let stood = [key.first_at_us, key.last_at_us]
@@ -200,6 +206,7 @@ impl VerifyArguments {
     fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, String> {
         let mut found = Findings {
             what: "certificate",
+            is_covered: true,
             ..Findings::default()
         };
         let signed: Result<Signed, String> = Signed::read(text.strip_suffix('\n').unwrap_or(text))
@@ -294,18 +301,23 @@ impl Findings {
                 seal.file.short()
             ));
         }
-        for (id, who) in &seen.unsigned_notes {
-            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
-            let is_of_signer = |one: &Statement| one.who.to_lowercase() == who.to_lowercase();
-            match seen.signatures.iter().any(is_of_signer) {
-                true => self.doubts.push(said),
-                false => self.remarks.push(said),
-            }
-        }
+        let signers = seen.signatures.iter().map(|one| one.who.to_lowercase());
+        self.take_unsigned(&seen.unsigned_notes, &signers.collect::<Vec<_>>());
         self.remarks.extend(seen.remarks);
         let pruned = seen.pruned.iter().map(|what| format!("{what} was pruned"));
         self.remarks.extend(pruned);
         self.changes.extend(seen.changes);
+    }
+
+    /// Notes that nobody signed: a doubt in the name of one of these signers.
+    fn take_unsigned(&mut self, notes: &[(Id, String)], signers: &[String]) {
+        for (id, who) in notes {
+            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
+            match signers.contains(&who.to_lowercase()) {
+                true => self.doubts.push(said),
+                false => self.remarks.push(said),
+            }
+        }
     }
 
     fn take(&mut self, signed: &Statement, keys: &KeyList) {
@@ -345,7 +357,10 @@ impl Findings {
 
     fn text(&self) -> String {
         let mut lines = self.said.clone();
-        if self.changes.is_empty() {
+        if !self.changes.is_empty() {
+            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
+            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
+        } else if self.is_covered {
             lines.push(format!(
                 "unchanged: the {} is as it was {}",
                 self.what,
@@ -354,9 +369,6 @@ impl Findings {
                     false => "signed",
                 }
             ));
-        } else {
-            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
-            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
         }
         if !self.doubts.is_empty() {
             lines.push("NOT VERIFIED:".to_owned());

@@ -78,6 +78,9 @@ fn a_sheet_takes_no_other_content() {
             after,
         ]
         .concat(),
+        // Without the signature of the sheet.
+        page.replacen(json, &format!("{}]}}", &json[..end_of_run]), 1)
+            .replace(">Failed<", ">Passed<"),
     ];
     for (number, forged) in forged.iter().enumerate() {
         assert_ne!(*forged, page, "{number}");
@@ -248,12 +251,56 @@ fn an_unsigned_note_on_a_signed_run_is_marked() {
     verify(&place, "latest")
         .exits(1)
         .prints(&["NOT VERIFIED", "is not signed"]);
+    verify(&place, "history.db")
+        .exits(1)
+        .prints(&["NOT VERIFIED", "is not signed"]);
     let notes = place.json(&["runs", "show", "latest", "--json"])["notes"].clone();
     let signed_by = [&notes[0]["signed_by"], &notes[1]["signed_by"]];
     assert_eq!(
         signed_by,
         [&serde_json::json!("Kim"), &serde_json::Value::Null]
     );
+}
+
+/// Goal: a note that nobody signed is marked at its trace, too.
+#[test]
+fn an_unsigned_note_on_a_trace_is_marked() {
+    let place = with_key();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let store = fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options())
+        .expect("opens");
+    let trace = store.resolve_trace("latest").expect("a trace");
+    let of_note = fault_db::TracePlace { trace, at_us: 0 };
+    (store.add_trace_note(of_note, "Kim", "late here", ptu_runs::clock::now_us())).expect("noted");
+    store.close().expect("closed");
+    place
+        .ptu(&["trace", "show", "latest"])
+        .exits(0)
+        .prints(&["Kim (unsigned)", "late here"]);
+}
+
+/// Goal: no key signs a sheet of a run that was changed, or a page of a case, which carries no signature.
+#[test]
+fn a_key_signs_no_sheet_that_it_cannot_vouch_for() {
+    let place = with_key();
+    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
+    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let case = ["report", "latest", "--case", "--out", "case.html"];
+    place
+        .ptu(&[&case[..], &SIGN].concat())
+        .exits(2)
+        .explains(&["a case", "carries no signature"]);
+    let report = ["report", "latest", "--out", "sheet.html"];
+    place.ptu(&[&report[..], &SIGN].concat()).exits(0);
+    let conn = rusqlite::Connection::open(place.path("history.db")).expect("opens");
+    conn.execute_batch("UPDATE step SET verdict = 'passed' WHERE verdict = 'failed'")
+        .expect("changed");
+    drop(conn);
+    place
+        .ptu(&[&report[..], &SIGN].concat())
+        .exits(3)
+        .explains(&["was changed", "ptu verify"]);
 }
 
 /// Goal: a key or PIN that others can read is refused, and a PIN of spaces and names that look alike are not taken.
@@ -293,6 +340,10 @@ fn keys_pins_and_names_that_protect_nothing_are_refused() {
         "Kim\u{200b}",
         "Kim\u{202e}",
         "\u{3000}Kim",
+        "Kim\u{fe0f}",
+        "Kim\u{2800}",
+        "Jose\u{301}",
+        "\u{1100}\u{1161}",
     ] {
         new(name, "pin.txt").exits(2).explains(&["name"]);
         let list = place
@@ -304,7 +355,11 @@ fn keys_pins_and_names_that_protect_nothing_are_refused() {
             .exits(3)
             .explains(&["name"]);
     }
-    new("Kim Lee", "pin.txt").exits(0);
+    for name in ["Kim Lee", "Jos\u{e9}", "김"] {
+        new(name, "pin.txt").exits(0);
+        std::fs::remove_file(place.path("new.key")).expect("made");
+        std::fs::remove_file(place.path("new.pub")).expect("made");
+    }
 }
 
 /// Goal: days of a calibration are days where the bench stands: in Seoul at 8 in the morning of the due day it is over, and

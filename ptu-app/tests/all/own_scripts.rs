@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::common::{Place, Said, has, scripts};
+use crate::common::{Place, Said, has, install, scripts};
 
 /// The program in a folder of its own, with no scripts above it, and what it says to these arguments.
 fn installed(place: &Place, arguments: &[&str]) -> Said {
@@ -10,10 +10,7 @@ fn installed(place: &Place, arguments: &[&str]) -> Said {
     let program = folder.join("ptu");
     if !program.exists() {
         std::fs::create_dir(&folder).expect("a folder");
-        let built = env!("CARGO_BIN_EXE_ptu");
-        std::fs::hard_link(built, &program)
-            .or_else(|_| std::fs::copy(built, &program).map(drop))
-            .expect("the program, elsewhere");
+        install(&program);
     }
     let mut command = Command::new(program);
     command

@@ -29,7 +29,7 @@ pub struct Place {
 
 /// What is typed behind the name of a program.
 pub trait Typed {
-    /// Its words.
+    /// The arguments, one by one.
     fn words(&self) -> Vec<String>;
 }
 
@@ -294,6 +294,17 @@ pub fn program(name: &str) -> PathBuf {
         program.display()
     );
     program
+}
+
+/// Puts `ptu` somewhere else: the same file by another name, or, on another disk, a copy that another process makes. A
+/// program that this process has open to write cannot start, and what another test starts meanwhile has all that is
+/// open here.
+pub fn install(to: &Path) {
+    let built = program("ptu");
+    if std::fs::hard_link(&built, to).is_err() {
+        let copied = Command::new("cp").arg(&built).arg(to).status();
+        assert!(copied.expect("cp starts").success());
+    }
 }
 
 /// Copies a folder with all in it over another.

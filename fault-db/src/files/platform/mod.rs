@@ -1,6 +1,8 @@
 //! What each operating system does in a way of its own, under the same names: who may read a file, what a file is, and
 //! where libpq has its things.
 
+use std::path::Path;
+
 #[cfg(unix)]
 mod unix;
 #[cfg(windows)]
@@ -12,8 +14,8 @@ use unix as system;
 use windows as system;
 
 pub(crate) use system::{
-    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_all, for_owner, identity, is_open_to_others,
-    password_file, special_kind,
+    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_all, for_owner, is_open_to_others, password_file,
+    special_kind,
 };
 
 /// Which file it is, whatever it is called.
@@ -26,6 +28,11 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
+    /// Of the file that a name leads to; none if there is no such file, or the system does not number files.
+    pub(crate) fn at(path: &Path) -> Option<Self> {
+        system::identity(&std::fs::metadata(path).ok()?)
+    }
+
     /// Whether it is the same file, by whichever name.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         (self.device, self.number) == (other.device, other.number)

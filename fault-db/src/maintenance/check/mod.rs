@@ -21,6 +21,7 @@ use crate::seal::SealHead;
 use crate::store::Store;
 pub use signatures::KeyUse;
 pub use verify::Verification;
+pub(crate) use verify::has_its_traces;
 
 /// The result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -42,8 +42,6 @@ impl Verification {
     }
 }
 
-const DOING: &str = "verifying a run";
-
 /// Entries before a run's seal that are followed back to the first event that the run made.
 const MOST_ENTRIES_BACK: i64 = 20_000;
 
@@ -54,28 +52,17 @@ impl Store {
     /// # Errors
     /// There is no such run, or it cannot be read.
     pub fn verify_run(&self, id: Id) -> Result<Verification, StoreError> {
-        let mut look = self.look_at(id)?;
+        const DOING: &str = "verifying a run";
+        let seq: Option<i64> = self.first(
+            DOING,
+            "SELECT seq FROM run WHERE id = ?1",
+            &values![id],
+            |row| row.get(0),
+        )?;
+        let run = seq.ok_or_else(|| StoreError::not_found("run", id))?;
+        let mut look = Look::at(self.backend(), (id, run));
         look.all().map_err(|error| self.failed(DOING, error))?;
         Ok(look.found)
-    }
-
-    fn look_at(&self, id: Id) -> Result<Look<'_>, StoreError> {
-        let sql = "SELECT seq FROM run WHERE id = ?1";
-        let seq = self.first(DOING, sql, &values![id], |row| row.get(0))?;
-        Ok(Look {
-            backend: self.backend(),
-            id,
-            run: seq.ok_or_else(|| StoreError::not_found("run", id))?,
-            found: Verification {
-                run: id,
-                seal: None,
-                signatures: Vec::new(),
-                changes: Vec::new(),
-                pruned: Vec::new(),
-                unsigned_notes: Vec::new(),
-                remarks: Vec::new(),
-            },
-        })
     }
 
     /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.
@@ -87,6 +74,14 @@ impl Store {
         let read = read.map_err(|error| self.failed("reading signatures", error))?;
         Ok(read.into_iter().map(|(text, _)| text).collect())
     }
+}
+
+/// Whether the traces and recordings of a run are those that its seal names, what was pruned aside.
+pub(crate) fn has_its_traces(backend: &Backend, of: (Id, i64), payload: &str) -> SqlResult<bool> {
+    let mut look = Look::at(backend, of);
+    look.traces(&run::RunPayload::of(payload).unwrap_or_default())?;
+    look.samples()?;
+    Ok(look.found.changes.is_empty())
 }
 
 struct Look<'a> {
@@ -105,7 +100,25 @@ struct SealRow {
     hash: Vec<u8>,
 }
 
-impl Look<'_> {
+impl<'a> Look<'a> {
+    fn at(backend: &'a Backend, (id, run): (Id, i64)) -> Self {
+        let found = Verification {
+            run: id,
+            seal: None,
+            signatures: Vec::new(),
+            changes: Vec::new(),
+            pruned: Vec::new(),
+            unsigned_notes: Vec::new(),
+            remarks: Vec::new(),
+        };
+        Self {
+            backend,
+            id,
+            run,
+            found,
+        }
+    }
+
     fn all(&mut self) -> SqlResult<()> {
         self.found.seal = sealed_as(self.backend, self.id)?;
         self.signatures(self.id)?;
@@ -158,19 +171,23 @@ impl Look<'_> {
             if run::digest(self.backend, self.run, &seal.payload)? != seal.digest[..] {
                 self.locate(&seal)?;
             }
-            let payload = run::RunPayload::of(&seal.payload).unwrap_or_default();
-            let mut problems = Vec::new();
-            let mut summary = ChainSummary::default();
-            let mut findings = Findings::new(&mut problems, "seal", ALTERED);
-            let of = (self.id, self.run, false);
-            check_traces_and_recordings(self.backend, of, &payload, &mut summary, &mut findings)?;
-            drop(findings);
-            for problem in problems {
-                self.change(problem.detail);
-            }
-            for (id, recording) in summary.missing() {
-                self.missing(id, recording)?;
-            }
+            self.traces(&run::RunPayload::of(&seal.payload).unwrap_or_default())?;
+        }
+        Ok(())
+    }
+
+    fn traces(&mut self, payload: &run::RunPayload) -> SqlResult<()> {
+        let mut problems = Vec::new();
+        let mut summary = ChainSummary::default();
+        let mut findings = Findings::new(&mut problems, "seal", ALTERED);
+        let of = (self.id, self.run, false);
+        check_traces_and_recordings(self.backend, of, payload, &mut summary, &mut findings)?;
+        drop(findings);
+        for problem in problems {
+            self.change(problem.detail);
+        }
+        for (id, recording) in summary.missing() {
+            self.missing(id, recording)?;
         }
         Ok(())
     }

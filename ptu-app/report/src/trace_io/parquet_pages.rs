@@ -87,7 +87,7 @@ struct Header {
     kind: i64,
     unpacked: i64,
     packed: i64,
-    /// Of a dictionary.
+    /// Values of a dictionary's page.
     values: i64,
     encoding: i64,
 }

@@ -7,6 +7,7 @@ use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
+use crate::words::Language;
 use ptu_runs::failure::Failure;
 
 /// Rows that are in memory at once, of all signals.
@@ -99,7 +100,7 @@ impl<'s> TracePart<'s> {
         let channels = chosen(&head, signals)?;
         let mut about = TraceInfo::part(&head, channels, rows.start, rows.len());
         let times_us = about.time_us(0)..about.time_us(rows.len());
-        about.notes = TraceNote::all(store, id)?;
+        about.notes = TraceNote::all(store, id, Language::English.words())?;
         about.notes.retain(|note| times_us.contains(&note.time_us));
         Ok(Self {
             store,

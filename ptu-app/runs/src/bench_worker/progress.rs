@@ -111,7 +111,7 @@ impl Waiting {
 }
 
 impl Progress {
-    /// What its steps came to so far, of all that are due.
+    /// Counts of the steps so far, of all that are due.
     pub fn counts(&self) -> StepCounts {
         self.counter.counts(self.planned)
     }

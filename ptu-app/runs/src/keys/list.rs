@@ -6,6 +6,7 @@ use chrono::{DateTime, NaiveDate, Utc};
 use fault_db::read_regular_file;
 use protocol::display_text;
 use serde::{Deserialize, Serialize};
+use unicode_normalization::UnicodeNormalization as _;
 
 use crate::failure::Failure;
 
@@ -263,17 +264,20 @@ impl KeyEntry {
     }
 }
 
-/// A name that a key signs by: no two that look alike.
+/// A name that a key signs by: composed (NFC), and without what cannot be seen.
 ///
 /// # Errors
-/// It is empty, or has what cannot be seen.
+/// It is empty or in another form.
 pub fn name_argument(text: &str) -> Result<String, String> {
-    let hidden = |c: char| c != ' ' && c.is_whitespace();
+    let hidden = |c: char| {
+        (c != ' ' && c.is_whitespace()) || matches!(c, '\u{fe00}'..='\u{fe0f}' | '\u{2800}')
+    };
     let is_plain = text.split(' ').all(|word| !word.is_empty()) && !text.contains(hidden);
+    let is_plain = is_plain && text.nfc().eq(text.chars());
     match is_plain && display_text::line(text) == text {
         true => Ok(text.to_owned()),
         false => Err(format!(
-            "{text:?} is no name: write words with one space between them, and nothing that cannot be seen"
+            "{text:?} is no name: write words with one space between them, composed letters (NFC), and nothing that cannot be seen"
         )),
     }
 }

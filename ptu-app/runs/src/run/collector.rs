@@ -49,7 +49,7 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<String>,
-    /// What its steps came to.
+    /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,
 }
 

@@ -9,6 +9,7 @@ use super::plot::{lanes, plot};
 use super::{PartArguments, read};
 use crate::cli::{Json, ScriptsOption, print_json, print_out};
 use ptu_report::trace_notes::TraceNote;
+use ptu_report::words::Language;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::replay::{Explanation, explain};
@@ -32,8 +33,9 @@ pub struct ShowArguments {
 impl ShowArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         let (id, trace) = read(store, &self.id, &self.part.signals, self.part.window)?;
+        let noted = || TraceNote::all(store, id, Language::English.words());
         if self.json.is_asked() {
-            let mut document = trace_json(id, &trace, &TraceNote::all(store, id)?);
+            let mut document = trace_json(id, &trace, &noted()?);
             if self.twin {
                 add(&mut document, explanation_json(&self.explained(store, id)?));
             }
@@ -48,7 +50,7 @@ impl ShowArguments {
             Ok(explanation) => (explanation_text(explanation), Some(explanation)),
             Err(failure) => (format!("what was expected is not known: {failure}"), None),
         };
-        let mut text = plot(id, &trace) + &notes(&TraceNote::all(store, id)?);
+        let mut text = plot(id, &trace) + &notes(&noted()?);
         if let Some(explanation) = twin.filter(|_| self.twin) {
             let came = store.trace(id)?;
             let names: Vec<_> = explanation

@@ -48,6 +48,7 @@ pub(super) fn sheet(page: &str, keys: &KeyList) -> Findings {
         ),
         Some(Err(why)) => found.changes.push(format!("the signature of the sheet: {why}")),
         Some(Ok(sheet)) => {
+            found.is_covered = true;
             if found.id.is_empty() {
                 found.id.clone_from(&sheet.id);
                 found.doubts.push("the run is not signed, only the sheet is".to_owned());

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use super::command_line::CommandLine;
 use super::{Block, Document, RUN, SHOWN, none};
-use crate::common::{Place, Said, program, text};
+use crate::common::{Place, Said, install, text};
 use serde_json::Value;
 
 /// What is read and not run, by what its line has, and why.
@@ -55,11 +55,7 @@ impl Installed {
         for folder in ["bin", "home", "work"] {
             fs::create_dir(place.path(folder)).expect("a folder");
         }
-        let (from, to) = (program("ptu"), place.path("bin/ptu"));
-        // The same bytes; a copy where the folder is on another disk.
-        if fs::hard_link(&from, &to).is_err() {
-            fs::copy(&from, &to).expect("copied");
-        }
+        install(&place.path("bin/ptu"));
         for (name, content) in GIVEN {
             place.write(&format!("work/{name}"), content);
         }

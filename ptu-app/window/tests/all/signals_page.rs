@@ -3,7 +3,7 @@
 use crate::common::window::{Window, settings};
 use crate::common::{Place, scripts};
 use ptu_options::Page;
-use ptu_report::words::Language;
+use ptu_report::words::{Language, fill};
 use ptu_window::Settings;
 
 /// Goal: who has no terminal sees what is in a recording, and makes one. Method: the generator saves bytes with noise, and the
@@ -30,16 +30,18 @@ fn what_the_generator_saves_is_opened_and_heard() {
         window.write_over(said.bytes, "5a c3");
         window.click(said.noise);
         window.click(said.save);
-        window.wait_for_part("made.wav");
-        window.until("the file", |window| window.place.path("made.wav").is_file());
+        // The work has ended once it is told, some frames after the file is there.
+        let saved = |path: &str| fill(words.common.saved, &[("file", &path)]);
+        window.wait_for_part(&saved(&file));
+        assert!(window.place.path("made.wav").is_file());
         window.click(said.open);
         window.wait_for("5a c3");
         window.wait_for(said.waterfall);
         // Never over one that is there.
         window.click(said.save);
-        window.until("another file", |window| {
-            window.place.path("made-2.wav").is_file()
-        });
+        let another = window.place.text_path("made-2.wav");
+        window.wait_for_part(&saved(&another));
+        assert!(window.place.path("made-2.wav").is_file());
         let text = window.place.text_path("text.wav");
         window.write_over(words.common.file, &text);
         window.click(said.open);

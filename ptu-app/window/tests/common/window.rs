@@ -20,6 +20,8 @@ const MOMENT_S: f64 = 0.7;
 /// Height of the messages below every page, points.
 const MESSAGES: f32 = 45.0;
 const STEP: Duration = Duration::from_millis(15);
+/// Longest pause between two frames of one that waits.
+const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 
 /// A window in a place of its own.
 pub struct Window {
@@ -92,7 +94,7 @@ impl Window {
         self.harness.step();
     }
 
-    /// Frames until this holds.
+    /// Frames until this holds, fewer the longer it takes: what is shown for a moment comes soon.
     pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
         let began = Instant::now();
         while !holds(self) {
@@ -101,6 +103,7 @@ impl Window {
                 "waited in vain for {what}; shown: {:#?}",
                 self.shown()
             );
+            std::thread::sleep((began.elapsed() / 50).min(LONGEST_PAUSE));
             self.step();
         }
     }

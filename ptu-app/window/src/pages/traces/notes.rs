@@ -35,9 +35,10 @@ impl TraceNotes {
         let added = self.form.poll(context.words, context.messages).is_some();
         let wanted = (trace, context.data_version());
         if added || self.read != Some(wanted) {
+            let words = context.words;
             let pending = context
                 .queries
-                .run(move |paths| Ok(TraceNote::all(&paths.read()?, trace)?));
+                .run(move |paths| Ok(TraceNote::all(&paths.read()?, trace, words)?));
             match self.read {
                 Some((before, _)) if before == trace => self.notes.request(pending),
                 _ => self.notes.request_other(pending),
