@@ -116,30 +116,34 @@ fn minutes_of_a_unit_that_stops_and_proceeds_show_no_hazard() {
 #[test]
 fn a_protection_that_is_taken_away_shows() {
     use Hazard::*;
-    let taken_away: [(&str, &[Hazard]); 6] = [
-        ("fsb_output.dead", &[OverLimit, MovesUnderStop]),
-        ("eb_relay.welded", &[MovesWithDoorOpen, RolledBack]),
-        (
-            "io_board.door_enable_stuck",
-            &[EnabledMoving, EnabledWrongSide],
-        ),
-        ("speed_sensor_*.missing_teeth", &[OverLimit]),
-        ("atp_receiver.unselective", &[Crosstalk]),
-        ("atp_cpu.wheel_guard_dead", &[WrongWheels]),
-    ];
+    shows("fsb_output.dead", &[OverLimit, MovesUnderStop]);
+    shows("eb_relay.welded", &[MovesWithDoorOpen, RolledBack]);
+    shows(
+        "io_board.door_enable_stuck",
+        &[EnabledMoving, EnabledWrongSide],
+    );
+    shows("atp_receiver.unselective", &[Crosstalk]);
+    shows("atp_cpu.wheel_guard_dead", &[WrongWheels]);
+}
+
+#[test]
+#[ignore = "long suite: shows in one minute of hundreds"]
+fn missing_teeth_show() {
+    shows("speed_sensor_*.missing_teeth", &[Hazard::OverLimit]);
+}
+
+/// Plays 1 500 minutes at most, in blocks so small that few are played after the one that shows the last hazard.
+fn shows(mode: &str, hazards: &[Hazard]) {
     let setup = setup(&[]);
-    for (mode, hazards) in taken_away {
-        let mut not_shown = hazards.to_vec();
-        // 1 500 minutes at most, in blocks so small that few are played after the one that shows the last.
-        for block in 0..100 {
-            let finds = search_on(&setup, block * 15..(block + 1) * 15, mode);
-            not_shown.retain(|hazard| !finds.iter().any(|(_, find)| find.hazard == *hazard));
-            if not_shown.is_empty() {
-                break;
-            }
+    let mut not_shown = hazards.to_vec();
+    for block in 0..100 {
+        let finds = search_on(&setup, block * 15..(block + 1) * 15, mode);
+        not_shown.retain(|hazard| !finds.iter().any(|(_, find)| find.hazard == *hazard));
+        if not_shown.is_empty() {
+            return;
         }
-        assert!(not_shown.is_empty(), "{mode}: no {not_shown:?}");
     }
+    panic!("{mode}: no {not_shown:?}");
 }
 
 /// The hundred thousand minutes of the promise, or those of `HAZARD_SEEDS`; of a single one all that was done.

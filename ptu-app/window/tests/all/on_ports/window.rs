@@ -110,6 +110,7 @@ fn the_whole_way_on_a_train_is_clicked_through() {
 }
 
 #[test]
+#[ignore = "long suite: the check clicks in English, and shows each page in Korean"]
 fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
     the_whole_way(Language::Korean);
 }
