@@ -59,8 +59,7 @@ impl ParamType {
             Self::Text => format!("a text in quotes, at most {LONGEST_TEXT} characters"),
             Self::Name => format!("a name in quotes, at most {LONGEST_NAME} characters"),
             Self::StepName => format!(
-                "a name in quotes, at most {LONGEST_NAME} characters, that does not end as the name of a repetition \
-                 does: (1/2), (repeated)"
+                "a name in quotes, at most {LONGEST_NAME} characters, without (1/2) or (repeated) at its end"
             ),
             Self::Choice(words) => format!("one of \"{}\"", words.join("\", \"")),
             Self::Signal | Self::Subject => "a signal such as eb or speed".into(),
