@@ -6,6 +6,7 @@
 //! transaction would lock out every other run on the file.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 use rusqlite::params;
 
@@ -55,6 +56,8 @@ pub struct RunWriter<'a> {
     ended: bool,
     /// Steps recorded.
     steps: usize,
+    /// Occurrences that have a trace.
+    traced: HashSet<Id>,
     finished: bool,
     /// The end of the file's chain of seals when the run began.
     began: Option<SealHead>,
@@ -99,6 +102,7 @@ impl<'a> RunWriter<'a> {
             is_rest: false,
             ended: false,
             steps: 0,
+            traced: HashSet::new(),
             finished: false,
             began,
             lock: Some(lock),
@@ -256,11 +260,18 @@ impl<'a> RunWriter<'a> {
         Ok(stored)
     }
 
-    /// Commits a trace and links it to occurrences of this store; there may be none.
+    /// Commits a trace and links it to occurrences of this run; there may be none. An occurrence keeps its first trace, which
+    /// is sealed with it.
+    ///
+    /// # Errors
+    /// The run has ended, or the trace cannot be written.
     pub fn trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Result<Id, StoreError> {
         self.check_unfinished()?;
         let id = self.store.mint()?;
-        self.trace_as(id, occurrences, trace)?;
+        let is_new = |occurrence: &Id| !self.traced.contains(occurrence);
+        let new: Vec<_> = occurrences.iter().copied().filter(is_new).collect();
+        self.trace_as(id, &new, trace)?;
+        self.traced.extend(new);
         Ok(id)
     }
 

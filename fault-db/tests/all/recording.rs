@@ -348,6 +348,16 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
         1,
         "rolled back"
     );
+
+    // A second trace of an occurrence leaves the first as it was sealed.
+    let c = writer.fault(&fault(3, T0_US)).expect("stored");
+    let occurrences = [a.occurrence, c.occurrence];
+    let second = writer.trace(&occurrences, &data).expect("stored");
+    let of = |fault| store.fault(fault).expect("known").fault.trace_id;
+    assert_eq!([of(a.fault), of(c.fault)], [Some(id), Some(second)]);
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let verified = store.verify_run(writer.id()).expect("verified");
+    assert!(verified.changes.is_empty(), "{:?}", verified.changes);
 }
 
 /// Goal: one door for every text that people and scripts bring. Method: each a letter too long, and what was

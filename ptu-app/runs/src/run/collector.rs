@@ -11,7 +11,7 @@ use super::event::{RecordedStimuli, SessionEvent};
 use super::fault_watch::FaultSeen;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
-use crate::clock;
+use super::whole_run::RunStart;
 use crate::failure::Exit;
 use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored};
 
@@ -55,6 +55,7 @@ pub struct Outcome {
 
 pub struct Collector<'a> {
     store: RunStore,
+    began: RunStart,
     listener: &'a mut dyn Listener,
     /// What the benches are made of.
     made: BenchContents,
@@ -94,13 +95,14 @@ impl<'a> Collector<'a> {
     /// a fault takes.
     pub fn new(
         store: RunStore,
+        began: RunStart,
         listener: &'a mut dyn Listener,
         made: BenchContents,
-        planned: usize,
-        search: bool,
+        (planned, search): (usize, bool),
     ) -> Self {
         Self {
             store,
+            began,
             listener,
             made,
             ordinal: 0,
@@ -268,7 +270,7 @@ impl<'a> Collector<'a> {
     fn fault(&mut self, fault: FaultSeen) {
         let bench_us = (self.before.as_us() + fault.at.as_us()) as i64;
         // The bench's virtual time runs ahead of the day; a fault is dated when it is found.
-        let at_us = clock::now_us();
+        let (at_us, _) = self.began.elapsed_us();
         self.dates.push((bench_us, at_us));
         let step_index = fault.step.map(|turn| self.steps_before + turn as u32);
         let record = fault_record(fault, at_us, bench_us, step_index);
@@ -286,7 +288,7 @@ impl<'a> Collector<'a> {
         let length_us = trace.period_us * cut.rows.len() as i64;
         trace.t0_us = match date {
             Some((bench_us, at_us)) => at_us - (bench_us - trace.t0_bench_us),
-            None => clock::now_us() - length_us,
+            None => self.began.elapsed_us().0 - length_us,
         };
         self.store.trace(faults, trace);
     }

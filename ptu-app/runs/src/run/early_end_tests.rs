@@ -236,7 +236,7 @@ fn a_stop_after_the_last_procedure_changes_no_verdict() {
 /// one bench and on three, with all processors kept busy and somebody slow who looks on.
 #[test]
 fn a_run_ends_with_its_first_failure_however_busy_the_computer_is() {
-    const TIMES: usize = 100;
+    const TIMES: usize = 25;
     let mut plan = plan_of(&[PASSES, FAILS, FAILS, PASSES]);
     plan.stop_on_fail = true;
     let (_folder, mut store) = store();

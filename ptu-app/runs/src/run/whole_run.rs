@@ -127,7 +127,8 @@ pub fn run_on(
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    let mut collector = Collector::new(run_store, listener, made, planned, plan.adaptive.is_some());
+    let due = (planned, plan.adaptive.is_some());
+    let mut collector = Collector::new(run_store, *began, listener, made, due);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
         std::thread::scope(|scope| match &plan.adaptive {
@@ -254,7 +255,9 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
     }
 }
 
-/// When a run began.
+/// When a run began. All dates of the run follow from this one and the time since, so that a clock that is set meanwhile
+/// changes none of them.
+#[derive(Clone, Copy)]
 pub struct RunStart {
     at_us: i64,
     at: std::time::Instant,
@@ -269,12 +272,17 @@ impl RunStart {
         }
     }
 
+    /// The present time in microseconds since 1970, and since the beginning.
+    pub(super) fn elapsed_us(&self) -> (i64, i64) {
+        let since_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
+        (self.at_us.saturating_add(since_us), since_us)
+    }
+
     fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
-        let wall_time_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
+        let (finished_at_us, wall_time_us) = self.elapsed_us();
         RunEnd {
             verdict,
-            // Of a clock that is set meanwhile, the run's own beginning counts.
-            finished_at_us: self.at_us.saturating_add(wall_time_us),
+            finished_at_us,
             bench_time_us,
             wall_time_us,
         }

@@ -6,6 +6,7 @@ use fault_db::{Channel, ChannelKind, OpenOptions, UnitRecord, Verdict};
 use rusqlite::Connection;
 
 use super::*;
+use crate::clock;
 
 fn record() -> RunRecord {
     RunRecord {

@@ -1,0 +1,130 @@
+//! What becomes of a run that its history does not hold at the end: a file beside, which is named.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::Receiver;
+
+use fault_db::{Id, RunRecord, RunWriter, Store, StoreError};
+
+use super::{Entry, RecordedIds, keep};
+use crate::clock;
+use crate::failure::{Failure, store_message};
+
+/// Records the rest of a run in a file of its own, beside the one that stays busy; none if that fails, too.
+pub(super) fn keep_rest(
+    writer: &mut RunWriter<'_>,
+    mut kept: RecordedIds,
+    record: &RunRecord,
+    at_hand: Option<Box<Entry>>,
+    entries: &Receiver<Entry>,
+) -> Option<PathBuf> {
+    let path = beside(writer.path(), writer.id());
+    let store = Store::open(&path, clock::open_options()).ok()?;
+    let mut rest = writer.continue_in(&store, record).ok()?;
+    for entry in at_hand
+        .map(|entry| *entry)
+        .into_iter()
+        .chain(entries.iter())
+    {
+        // A step that was not written waits with the writer, which brought it here.
+        keep(&mut rest, &mut kept, &entry, false)
+            .or_else(|error| match error {
+                StoreError::StepOrder { .. } => Ok(()),
+                other => Err(other),
+            })
+            .ok()?;
+        if matches!(entry, Entry::Finish(_)) {
+            break;
+        }
+    }
+    rest.flush().ok()?;
+    kept.lines.stored();
+    drop(rest);
+    store.close().ok()?;
+    Some(path)
+}
+
+/// Keeps a run that the history does not hold in a file beside; which, and a sentence that tells where and why.
+///
+/// # Errors
+/// No such file can be made: the run is lost.
+pub(super) fn keep_beside(
+    (store, writer): (&Store, &RunWriter<'_>),
+    record: &RunRecord,
+    mut kept: RecordedIds,
+    error: &StoreError,
+) -> Result<(Store, String), Failure> {
+    let (run, why) = (writer.id(), store_message(error));
+    let beside = beside(store.path(), run);
+    let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
+    let made = [beside, elsewhere].into_iter().find_map(|path| {
+        // What the open file holds is more than the run, if it can be read still.
+        let copied = match error {
+            StoreError::Misplaced { .. } => copy_with_run(store, run, &path),
+            _ => None,
+        };
+        let made = copied.map(|copy| (copy, String::new()));
+        let made = made.or_else(|| write_anew((store, writer), record, &mut kept, &path))?;
+        Some((path, made))
+    });
+    let Some((path, (made, cut))) = made else {
+        return Err(Failure::bench(format!(
+            "run {} is not in the history, and lost: {why}",
+            run.short()
+        )));
+    };
+    kept.lines.stored();
+    let said = format!(
+        "run {} is not in the history: {cut}{why}; it is kept in {path}: bring it in with `ptu db import {path}`",
+        run.short(),
+        path = path.display()
+    );
+    Ok((made, said))
+}
+
+/// A copy of the open file, if it holds the run whole.
+fn copy_with_run(store: &Store, run: Id, path: &Path) -> Option<Store> {
+    store.backup(path).ok()?;
+    let copy = Store::open(path, clock::open_options()).ok();
+    let is_whole = |copy: &Store| {
+        let verified = copy.verify_run(run);
+        verified.is_ok_and(|verified| verified.seal.is_some() && verified.changes.is_empty())
+    };
+    let copy = copy.filter(is_whole);
+    if copy.is_none() {
+        let _ = std::fs::remove_file(path);
+    }
+    copy
+}
+
+/// A new history with the run alone, from its records; with it what is missing there.
+fn write_anew(
+    (store, writer): (&Store, &RunWriter<'_>),
+    record: &RunRecord,
+    kept: &mut RecordedIds,
+    path: &Path,
+) -> Option<(Store, String)> {
+    if path.exists() {
+        return None;
+    }
+    let made = Store::open(path, clock::open_options()).ok()?;
+    made.sign_with(store.signer());
+    let mut anew = writer.begin_again_in(&made, record).ok()?;
+    let mut ids = RecordedIds::default();
+    for entry in &kept.records {
+        keep(&mut anew, &mut ids, entry, false).ok()?;
+    }
+    anew.flush().ok()?;
+    drop(anew);
+    let cut = match kept.left_out {
+        0 => String::new(),
+        n => format!("the last {n} of its traces are lost: "),
+    };
+    Some((made, cut))
+}
+
+/// The file beside a history that takes a run of it.
+fn beside(history: &Path, run: Id) -> PathBuf {
+    let mut name = history.as_os_str().to_owned();
+    name.push(format!(".run-{}.db", run.short()));
+    PathBuf::from(name)
+}
