@@ -171,7 +171,8 @@ impl<'a> Running<'a> {
             if steps.len() >= count {
                 return steps;
             }
-            std::thread::sleep(Duration::from_millis(30));
+            // Each look is a program of its own, and takes as long.
+            std::thread::sleep(Duration::from_millis(100));
         }
         panic!("not {count} steps within {PATIENCE:?}");
     }

@@ -81,6 +81,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
             "no step within {ENDS_WITHIN:?}"
         );
         terminal.read();
+        std::thread::sleep(Duration::from_millis(100));
     }
     drop(terminal);
     assert_eq!(ended(&mut run, || {}), Some(130));
