@@ -231,21 +231,30 @@ impl Store {
         self.name()
     }
 
-    /// Checkpoints the write-ahead log and closes the file. Dropping closes it too, but cannot report an
-    /// error.
+    /// Checkpoints the write-ahead log and closes the file. Dropping closes it too, but cannot report an error.
+    ///
+    /// # Errors
+    /// The log cannot be written back, or the file or its log was removed or replaced, or has a second name: what was
+    /// written is not where others find it.
     pub fn close(self) -> Result<(), StoreError> {
-        // A log that was removed is not written back over what others have written since.
-        let is_ours = !self.is_read_only() && self.check_place().is_ok();
-        if is_ours && matches!(self.backend, Backend::File(_)) {
-            self.checkpoint()?;
+        let place = match self.is_read_only() {
+            true => Ok(()),
+            false => self.check_place(),
+        };
+        if let (Backend::File(_), false) = (&self.backend, self.is_read_only()) {
+            match place {
+                Ok(()) => self.checkpoint()?,
+                Err(_) => self.keep_log_back()?,
+            }
         }
         let path = self.path;
         match self.backend {
             Backend::File(conn) => conn
                 .close()
-                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error)),
-            Backend::Server(_) => Ok(()),
+                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error))?,
+            Backend::Server(_) => {}
         }
+        place
     }
 
     /// Checkpoints the write-ahead log as far as other readers allow.

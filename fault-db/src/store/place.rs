@@ -74,9 +74,17 @@ impl Store {
     ) -> Result<(), StoreError> {
         let holds = self.holds(run, began, steps);
         if holds.is_err() {
-            let _ = (self.file()?).set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+            self.keep_log_back()?;
         }
         holds
+    }
+
+    /// From now on nothing of the log is written back when the file is closed: a log that was removed would go over what others
+    /// have written since.
+    pub(super) fn keep_log_back(&self) -> Result<(), StoreError> {
+        let kept = (self.file()?).set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+        kept.map(drop)
+            .map_err(|error| self.failed("closing", error))
     }
 
     fn holds(

@@ -298,3 +298,36 @@ fn a_file_without_its_write_ahead_log_is_an_earlier_state_or_unreadable() {
     let runs = copy.runs(&RunFilter::default()).expect("listed");
     assert_eq!(runs.len(), 1, "what was in the log is not there");
 }
+
+/// Goal: whoever writes is told that others do not find what was written, and an older log does not go over the file that they
+/// find. Method: the file is replaced, or gets a second name, between a write and the closing.
+#[test]
+#[cfg(unix)]
+fn a_file_that_is_another_one_when_it_is_closed_is_told() {
+    type Deed = fn(&Path);
+    let deeds: [Deed; 3] = [
+        |file| {
+            std::fs::copy(file.with_extension("old"), file.with_extension("new")).expect("copied");
+            std::fs::rename(file.with_extension("new"), file).expect("replaced");
+        },
+        |file| std::fs::hard_link(file, file.with_extension("second")).expect("linked"),
+        |file| std::fs::remove_file(file).expect("removed"),
+    ];
+    for deed in deeds {
+        let dir = tempdir().expect("a directory");
+        let path = dir.path().join("a.db");
+        full_file(&path);
+        let old = path.with_extension("old");
+        std::fs::copy(&path, &old).expect("copied");
+        let store = Store::open(&path, OpenOptions::new(ids(2))).expect("opens");
+        let run = store.runs(&RunFilter::default()).expect("listed")[0].id;
+        let noted = store.add_run_note(run, "Lee", "seen", T0_US);
+        noted.expect("noted");
+        deed(&path);
+        let closed = store.close();
+        assert!(
+            matches!(closed, Err(StoreError::Misplaced { .. })),
+            "{closed:?}"
+        );
+    }
+}
