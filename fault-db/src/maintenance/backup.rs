@@ -10,11 +10,6 @@ use crate::store::file::copy_to;
 impl Store {
     /// Copies the file as it is now, compacted, while others may write to it.
     pub fn backup(&self, to: &Path) -> Result<(), StoreError> {
-        if to.exists() {
-            return Err(StoreError::TargetExists {
-                path: to.to_path_buf(),
-            });
-        }
         let conn = self.file()?;
         AtomicFile::can_be_made(to)?;
         copy_to(conn, to, "backing up")

@@ -87,12 +87,18 @@ impl AtomicFile {
         Ok(part)
     }
 
-    /// Checks that the folder of a file to be created exists and is writable.
+    /// Checks that a file to be created is not there yet, and that its folder exists and is writable.
     ///
     /// # Errors
-    /// [`StoreError::CannotWrite`] with the system's reason, which SQLite does not give.
+    /// [`StoreError::TargetExists`], or [`StoreError::CannotWrite`] with the system's reason, which SQLite does not give.
     pub(crate) fn can_be_made(to: &Path) -> Result<(), StoreError> {
-        if is_of_database(to) {
+        let is_of_database = is_of_database(to);
+        // After that look: a file that another program makes meanwhile is there, whatever it belongs to.
+        if to.exists() {
+            let path = to.to_path_buf();
+            return Err(StoreError::TargetExists { path });
+        }
+        if is_of_database {
             return Err(cannot_write(to, "it belongs to a database".to_owned()));
         }
         let folder = to

@@ -38,8 +38,9 @@ impl Store {
 
     /// Adds all rows of this file to another one, which is created if need be.
     pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
-        if !to.exists() {
-            AtomicFile::can_be_made(to)?;
+        match AtomicFile::can_be_made(to) {
+            Err(StoreError::TargetExists { .. }) => {}
+            made => made?,
         }
         let target = Store::open(to, options)?;
         let counts = target.merge_from(self)?;
