@@ -21,9 +21,12 @@ pub fn lines(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A character that is invisible or controls the display.
+/// A character that is invisible, controls the display, or is none (the last two of each plane, and those between U+FDD0 and
+/// U+FDEF), which XML cannot hold.
 pub fn is_unseen(letter: char) -> bool {
     letter.is_control()
+        || u32::from(letter) & 0xfffe == 0xfffe
+        || matches!(letter, '\u{fdd0}'..='\u{fdef}')
         || matches!(letter,
             // Soft hyphen, joiners, fillers of syllables and of vowels, which have no width.
             '\u{ad}' | '\u{34f}' | '\u{115f}'..='\u{1160}' | '\u{17b4}'..='\u{17b5}'
@@ -72,6 +75,7 @@ mod tests {
                 "SN\u{200b}-1\u{feff}\u{e0041}",
                 "SN\\u{200b}-1\\u{feff}\\u{e0041}",
             ),
+            ("a\u{fffe}b\u{1ffff}", "a\\u{fffe}b\\u{1ffff}"),
             (
                 "비상제동 계전기 – µ ½ e\u{301}",
                 "비상제동 계전기 – µ ½ e\u{301}",
@@ -79,6 +83,17 @@ mod tests {
         ] {
             assert_eq!(line(text), shown);
             assert_eq!(line(&line(text)), shown, "once is enough");
+        }
+    }
+
+    /// Goal: no text makes a report that a reader of XML refuses. Method: each character there is.
+    #[test]
+    fn what_is_shown_is_what_xml_can_hold() {
+        for letter in char::MIN..=char::MAX {
+            let shown = lines(letter.encode_utf8(&mut [0; 4])).into_owned();
+            // Extensible Markup Language (XML) 1.0, production 2.
+            let can_hold = |letter| matches!(letter, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..);
+            assert!(shown.chars().all(can_hold), "{letter:?}");
         }
     }
 

@@ -91,7 +91,7 @@ impl Cell {
     pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,
-            Self::Text(text) => quoted(&display_text::lines(&no_formula(&text))),
+            Self::Text(text) => quoted(&display_text::lines(&no_formula(&text))).into_owned(),
         }
     }
 }
@@ -109,12 +109,11 @@ pub fn no_formula(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// A cell in quotes where its content asks for them.
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
+/// A cell in quotes where its content asks for them: where a comma marks decimals, spreadsheets separate cells at semicolons.
+pub(crate) fn quoted(cell: &str) -> Cow<'_, str> {
+    match cell.contains([',', ';', '\t', '"', '\n', '\r']) {
+        true => Cow::Owned(format!("\"{}\"", cell.replace('"', "\"\""))),
+        false => Cow::Borrowed(cell),
     }
 }
 
@@ -125,6 +124,7 @@ mod tests {
     #[test]
     fn text_with_separators_or_line_breaks_is_quoted() {
         assert_eq!(quoted("plain"), "plain");
+        assert_eq!(quoted("a; b"), "\"a; b\"");
         assert_eq!(quoted("a, \"b\"\nc"), "\"a, \"\"b\"\"\nc\"");
     }
 

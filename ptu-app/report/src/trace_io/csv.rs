@@ -4,7 +4,6 @@
 //! ([`column_name`]); enumerations are words, bits numbers, an unknown sample is empty. `FILE-metadata.json` beside it says what
 //! the signals are, as the W3C's "CSV on the Web" has it.
 
-use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -14,7 +13,7 @@ use serde_json::{Value, json};
 
 use super::about::TraceInfo;
 use super::column::{column_name, word};
-use crate::csv::no_formula;
+use crate::csv::{no_formula, quoted};
 
 /// Heading of the column of times.
 pub const TIME: &str = "time_s";
@@ -61,14 +60,6 @@ pub fn put_sample(out: &mut impl Write, channel: &Channel, sample: f64) -> io::R
         _ if sample.is_nan() => out.write_all(b","),
         Some(word) => write!(out, ",{}", quoted(&display_text::line(&no_formula(word)))),
         None => write!(out, ",{sample}"),
-    }
-}
-
-fn quoted(text: &str) -> Cow<'_, str> {
-    if text.contains([',', ';', '\t', '"', '\n', '\r']) {
-        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
-    } else {
-        Cow::Borrowed(text)
     }
 }
 

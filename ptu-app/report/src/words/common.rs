@@ -23,7 +23,7 @@ wordings! {
         clean_up: "clean-up", "종료 처리";
         safe_outputs: "safe outputs", "출력 안전화";
         unprovoked_event: "unprovoked event", "유발하지 않은 이벤트";
-        self_test: "self-test", "자체 시험";
+        self_test: "self-test", "자체시험";
         unit_log: "unit log", "장치 로그";
         bench: "bench", "시험대";
         stop: "stop", "정지 명령";

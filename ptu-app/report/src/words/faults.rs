@@ -40,7 +40,7 @@ wordings! {
         who_first: "Write your name (operator) first", "먼저 시험자 이름을 적으십시오";
         recorded: "Recorded: {what}", "기록 완료: {what}";
         not_changed: "The fault was not changed", "고장 상태를 바꾸지 못했습니다";
-        withdrawn: "withdrawn {at} by {who}:", "{at} {who} 취소함:";
+        withdrawn: "withdrawn {at} by {who}:", "{at} {who} 되돌림:";
         what_was_done: "what was done", "조치 이력";
         occurrences: "occurrences", "발생 기록";
         freeze_frame: "freeze frame: every signal at the moment", "프리즈 프레임: 발생 순간의 모든 신호";

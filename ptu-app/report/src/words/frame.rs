@@ -47,10 +47,10 @@ wordings! {
         not_done: "Not done: {what}", "실행되지 않음: {what}";
         run_ended: "Run over: {verdict}", "시험 종료: {verdict}";
         run_failed: "The run could not be recorded", "시험을 기록할 수 없습니다";
-        undo: "Undo", "취소";
-        undone: "{what} – undone", "{what} – 취소됨";
-        undo_reason: "undone at once", "기록 직후 취소";
-        not_undone: "It was not undone", "취소하지 못했습니다";
+        undo: "Undo", "되돌리기";
+        undone: "{what} – undone", "{what} – 되돌렸습니다";
+        undo_reason: "undone at once", "기록 직후 되돌림";
+        not_undone: "It was not undone", "되돌리지 못했습니다";
         messages: "Messages", "알림";
         clear: "Clear", "지우기";
         closing: "Stopping the run and making outputs safe …", "시험을 멈추고 출력을 안전하게 하는 중 …";

@@ -1,5 +1,6 @@
 //! Text fields of the unit's identity, written so that different bytes never give the same text.
 
+use protocol::display_text::is_unseen;
 use protocol::message::Identity;
 
 use crate::failure::Failure;
@@ -52,7 +53,7 @@ fn text(field: &[u8]) -> Option<String> {
     let end = field.iter().rposition(|byte| *byte != 0)? + 1;
     let bytes = &field[..end];
     if let Ok(text) = std::str::from_utf8(bytes)
-        && text.chars().all(is_visible)
+        && !text.contains(is_escaped)
         && !text.contains(ESCAPE)
     {
         return Some(text.to_owned());
@@ -60,7 +61,7 @@ fn text(field: &[u8]) -> Option<String> {
     let mut shown = String::new();
     for chunk in bytes.utf8_chunks() {
         for character in chunk.valid().chars() {
-            if is_visible(character) && character != '\\' {
+            if !is_escaped(character) && character != '\\' {
                 shown.push(character);
             } else {
                 let mut utf8 = [0; 4];
@@ -72,20 +73,15 @@ fn text(field: &[u8]) -> Option<String> {
     Some(shown)
 }
 
+/// A character that is not seen, or stands for bytes that are none.
+fn is_escaped(character: char) -> bool {
+    is_unseen(character) || character == char::REPLACEMENT_CHARACTER
+}
+
 fn escape(bytes: &[u8], shown: &mut String) {
     for byte in bytes {
         shown.push_str(&format!("{ESCAPE}{byte:02x}"));
     }
-}
-
-/// Not a control character, nor one that only changes how others stand.
-fn is_visible(character: char) -> bool {
-    !character.is_control()
-        && !matches!(
-            character,
-            '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
-                | '\u{feff}' | '\u{fffd}'
-        )
 }
 
 #[cfg(test)]

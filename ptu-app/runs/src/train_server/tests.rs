@@ -74,21 +74,6 @@ fn what_is_no_order_is_refused_with_what_is_one() {
     }
 }
 
-#[test]
-fn lines_come_whole_and_the_end_of_input_ends_nothing() {
-    let (send, lines) = std::sync::mpsc::sync_channel(16);
-    let long = "x".repeat(450);
-    crate::typed::read(
-        format!("key off\r\n\n  ack\n{long}\nquit").as_bytes(),
-        &send,
-    );
-    drop(send);
-    let lines: Vec<String> = lines.iter().collect();
-    assert_eq!(lines[..2], ["key off", "ack"]);
-    assert_eq!(lines.last().map(String::as_str), Some("quit"));
-    assert!(lines.iter().all(|line| line.len() <= 200));
-}
-
 /// Goal: a service drives its sections, and ends with the first that is not driven. Method: two sections on a good
 /// train, and on one whose TCMS says nothing to the unit.
 #[test]

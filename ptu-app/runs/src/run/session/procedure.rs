@@ -128,8 +128,12 @@ impl<L: UnitLink> Session<L> {
                 sink,
             );
             if self.stop.presses() > 0 {
-                let text = "stopped by the operator".into();
-                let event = rounds.outside(Outside::Stop, Verdict::Aborted, text, self.bench.now());
+                let (verdict, why) = match self.stop.reason() {
+                    Some(why) => (Verdict::Error, why),
+                    None => (Verdict::Aborted, "stopped by the operator"),
+                };
+                let now = self.bench.now();
+                let event = rounds.outside(Outside::Stop, verdict, why.to_owned(), now);
                 sink(SessionEvent::Run(event));
                 break;
             }
