@@ -38,8 +38,10 @@ const BUSY_TIMEOUT: BusyTimeout = BusyTimeout {
     gives_up: Duration::from_secs(180),
 };
 
-/// So many values of traces of a run are held until its end (32 MB), to write it anew if its file is lost.
+/// So many values of traces of a run are held until its end (32 MB), to write the run again if its file is lost.
 const MOST_TRACE_VALUES: usize = 4_000_000;
+/// So many steps are held (about 90 MB); a longer run is kept only as far as its open file can be copied.
+const MOST_STEPS: usize = 100_000;
 
 enum Entry {
     Step(StepRecord),
@@ -220,16 +222,18 @@ struct RecordedIds {
     lines: Lines,
     /// All that was recorded, in order.
     records: Vec<Entry>,
+    steps: usize,
     trace_values: usize,
     /// Traces that are too much to be held.
     left_out: usize,
 }
 
 impl RecordedIds {
-    /// Holds what was recorded until the end of the run, to write it anew if the file is lost.
+    /// Holds what was recorded until the end of the run, to write it again if the file is lost.
     fn hold(&mut self, entry: Entry) {
         match &entry {
             Entry::Say(_) => return,
+            Entry::Step(_) => self.steps += 1,
             Entry::Trace(_, trace) => {
                 self.trace_values += trace.rows() * trace.columns.len();
                 if self.trace_values > MOST_TRACE_VALUES {
@@ -241,7 +245,16 @@ impl RecordedIds {
             Entry::Recording(_) if self.left_out > 0 => return,
             _ => {}
         }
-        self.records.push(entry);
+        if self.is_too_long() {
+            self.records = Vec::new();
+        } else {
+            self.records.push(entry);
+        }
+    }
+
+    /// More was recorded than is held.
+    fn is_too_long(&self) -> bool {
+        self.steps > MOST_STEPS
     }
 
     /// Holds all that comes still, to the end.

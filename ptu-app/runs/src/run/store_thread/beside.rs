@@ -63,7 +63,7 @@ pub(super) fn keep_beside(
             _ => None,
         };
         let made = copied.map(|copy| (copy, String::new()));
-        let made = made.or_else(|| write_anew((store, writer), record, &mut kept, &path))?;
+        let made = made.or_else(|| write_again((store, writer), record, &mut kept, &path))?;
         Some((path, made))
     });
     let Some((path, (made, cut))) = made else {
@@ -97,24 +97,24 @@ fn copy_with_run(store: &Store, run: Id, path: &Path) -> Option<Store> {
 }
 
 /// A new history with the run alone, from its records; with it what is missing there.
-fn write_anew(
+fn write_again(
     (store, writer): (&Store, &RunWriter<'_>),
     record: &RunRecord,
     kept: &mut RecordedIds,
     path: &Path,
 ) -> Option<(Store, String)> {
-    if path.exists() {
+    if path.exists() || kept.is_too_long() {
         return None;
     }
     let made = Store::open(path, clock::open_options()).ok()?;
     made.sign_with(store.signer());
-    let mut anew = writer.begin_again_in(&made, record).ok()?;
+    let mut again = writer.begin_again_in(&made, record).ok()?;
     let mut ids = RecordedIds::default();
     for entry in &kept.records {
-        keep(&mut anew, &mut ids, entry, false).ok()?;
+        keep(&mut again, &mut ids, entry, false).ok()?;
     }
-    anew.flush().ok()?;
-    drop(anew);
+    again.flush().ok()?;
+    drop(again);
     let cut = match kept.left_out {
         0 => String::new(),
         n => format!("the last {n} of its traces are lost: "),

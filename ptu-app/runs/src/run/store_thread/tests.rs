@@ -193,3 +193,19 @@ fn a_finished_step_is_in_the_file_while_its_procedure_goes_on() {
     assert_eq!(steps.expect("counted"), 1);
     run.finish(end(Verdict::Passed)).expect("kept");
 }
+
+/// Goal: a run without end takes no memory without end. Method: one step more than are held.
+#[test]
+fn of_a_run_that_is_too_long_nothing_is_held() {
+    let mut kept = RecordedIds::default();
+    for index in 0..MOST_STEPS as u32 {
+        kept.hold(Entry::Step(step(index)));
+    }
+    assert_eq!(
+        (kept.is_too_long(), kept.records.len()),
+        (false, MOST_STEPS)
+    );
+    kept.hold(Entry::Step(step(MOST_STEPS as u32)));
+    kept.hold(Entry::Step(step(MOST_STEPS as u32 + 1)));
+    assert_eq!((kept.is_too_long(), kept.records.len()), (true, 0));
+}
