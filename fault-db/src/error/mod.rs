@@ -77,7 +77,7 @@ pub enum StoreError {
     Misplaced {
         /// The database file.
         path: PathBuf,
-        /// What has happened to the file.
+        /// What has happened to the database file: "was removed", "was replaced by another file".
         what: &'static str,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.

@@ -52,7 +52,7 @@ pub struct RunWriter<'a> {
     /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
     /// where both are merged.
     is_rest: bool,
-    /// Its end is in the file.
+    /// The verdict of the run is written; whether others find the run in the file is still to be looked at.
     ended: bool,
     /// Steps recorded.
     steps: usize,
@@ -296,7 +296,7 @@ impl<'a> RunWriter<'a> {
     /// an error it can be called again.
     ///
     /// # Errors
-    /// It cannot be written, or the file that has the store's name does not hold the run as another program finds it: it
+    /// The end of the run cannot be written, or the file that has the store's name does not hold the run as another program finds it: it
     /// was removed, replaced or written over meanwhile, or has a second name. Within a transaction that is not looked at.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         if self.finished {

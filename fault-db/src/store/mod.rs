@@ -237,24 +237,24 @@ impl Store {
     /// The log cannot be written back, or the file or its log was removed or replaced, or has a second name: what was
     /// written is not where others find it.
     pub fn close(self) -> Result<(), StoreError> {
-        let place = match self.is_read_only() {
-            true => Ok(()),
-            false => self.check_place(),
-        };
-        if let (Backend::File(_), false) = (&self.backend, self.is_read_only()) {
-            match place {
-                Ok(()) => self.checkpoint()?,
-                Err(_) => self.keep_log_back()?,
-            }
-        }
+        let written_back = self.write_back();
         let path = self.path;
-        match self.backend {
-            Backend::File(conn) => conn
-                .close()
-                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error))?,
-            Backend::Server(_) => {}
+        if let Backend::File(conn) = self.backend {
+            conn.close()
+                .map_err(|(_, error)| StoreError::from_sqlite(&path, "closing", error))?;
         }
-        place
+        written_back
+    }
+
+    /// Writes the log back to the file where others find it.
+    fn write_back(&self) -> Result<(), StoreError> {
+        match self.backend {
+            Backend::File(_) if !self.is_read_only() => {
+                self.or_keep_log_back(self.check_place())?;
+                self.checkpoint()
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checkpoints the write-ahead log as far as other readers allow.

@@ -22,7 +22,7 @@ impl Store {
     /// Holds the file and its log to be those that have this store's name still, and the file to have no other name.
     ///
     /// # Errors
-    /// [`StoreError::Misplaced`], and what has happened to it.
+    /// [`StoreError::Misplaced`], and what has happened to the file or its log.
     pub fn check_place(&self) -> Result<(), StoreError> {
         let Some(opened) = self.identity else {
             return Ok(());
@@ -65,26 +65,25 @@ impl Store {
     /// with it the chain of seals up to where it was when the run began.
     ///
     /// # Errors
-    /// It is not so, and why. From then on nothing of the log is written back to the file when it is closed.
+    /// The run, its steps or that chain are not there, and why. From then on nothing of the log is written back to the file when it is closed.
     pub(crate) fn check_holds(
         &self,
         run: Id,
         began: Option<&SealHead>,
         steps: Option<usize>,
     ) -> Result<(), StoreError> {
-        let holds = self.holds(run, began, steps);
-        if holds.is_err() {
-            self.keep_log_back()?;
-        }
-        holds
+        self.or_keep_log_back(self.holds(run, began, steps))
     }
 
-    /// From now on nothing of the log is written back when the file is closed: a log that was removed would go over what others
-    /// have written since.
-    pub(super) fn keep_log_back(&self) -> Result<(), StoreError> {
-        let kept = (self.file()?).set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
-        kept.map(drop)
-            .map_err(|error| self.failed("closing", error))
+    /// After an error nothing of the log is written back any more when the file is closed: a log that was removed would go over
+    /// what others have written since.
+    pub(super) fn or_keep_log_back(&self, held: Result<(), StoreError>) -> Result<(), StoreError> {
+        if held.is_err() {
+            let no_checkpoint = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;
+            let kept = self.file()?.set_db_config(no_checkpoint, true);
+            kept.map_err(|error| self.failed("closing", error))?;
+        }
+        held
     }
 
     fn holds(

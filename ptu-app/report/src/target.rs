@@ -76,7 +76,7 @@ impl Target {
     /// Begins the file, or one beside what stands there.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// No file can be made in that folder.
     pub fn begin_beside(&self) -> Result<NewFile, Failure> {
         NewFile::begin_beside(&self.path)
     }

@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, OnceLock};
 
+use btu_rig::procedure::Verdict;
+
 use crate::platform::StopSignals;
 
 /// Counts the presses of stop; clones share the count.
@@ -41,6 +43,15 @@ impl Stop {
     /// Why the tester itself ended the run; `None` if the operator did.
     pub fn reason(&self) -> Option<&str> {
         self.0.because.get().map(String::as_str)
+    }
+
+    /// The verdict on what was still due when stop was pressed, and why; `None` if nobody pressed.
+    pub fn left_out(&self) -> Option<(Verdict, &str)> {
+        let left_out = match self.reason() {
+            Some(why) => (Verdict::Error, why),
+            None => (Verdict::Aborted, "stopped by the operator"),
+        };
+        (self.presses() > 0).then_some(left_out)
     }
 
     /// Presses so far.

@@ -23,7 +23,7 @@ pub(crate) fn for_owner(options: &mut OpenOptions) {
 /// Lets all read a file, whatever the umask says.
 ///
 /// # Errors
-/// Of the file system.
+/// The rights of the file cannot be read or changed.
 pub(crate) fn for_all(file: &File) -> std::io::Result<()> {
     let mut rights = file.metadata()?.permissions();
     rights.set_mode(rights.mode() | 0o444);

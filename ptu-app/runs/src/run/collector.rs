@@ -270,7 +270,7 @@ impl<'a> Collector<'a> {
     fn fault(&mut self, fault: FaultSeen) {
         let bench_us = (self.before.as_us() + fault.at.as_us()) as i64;
         // The bench's virtual time runs ahead of the day; a fault is dated when it is found.
-        let (at_us, _) = self.began.elapsed_us();
+        let at_us = self.began.now_us();
         self.dates.push((bench_us, at_us));
         let step_index = fault.step.map(|turn| self.steps_before + turn as u32);
         let record = fault_record(fault, at_us, bench_us, step_index);
@@ -288,7 +288,7 @@ impl<'a> Collector<'a> {
         let length_us = trace.period_us * cut.rows.len() as i64;
         trace.t0_us = match date {
             Some((bench_us, at_us)) => at_us - (bench_us - trace.t0_bench_us),
-            None => self.began.elapsed_us().0 - length_us,
+            None => self.began.now_us() - length_us,
         };
         self.store.trace(faults, trace);
     }

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{self, Outside, OutsideStep};
+use btu_rig::procedure::{Outside, OutsideStep};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 use protocol::Instant;
 
@@ -157,7 +157,8 @@ pub fn run_on(
     if worked.is_err() {
         collector.broken_off("the program failed in this run");
     }
-    let (run_store, mut outcome) = collector.finish(id, left_out(stop));
+    let left_out = stop.left_out().map(|(verdict, _)| verdict);
+    let (run_store, mut outcome) = collector.finish(id, left_out);
     let end = began.end(stored(outcome.verdict), outcome.bench_time.as_us() as i64);
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
@@ -175,15 +176,6 @@ pub fn run_on(
     Ok((store, outcome))
 }
 
-/// The verdict on what was still due when stop was pressed.
-fn left_out(stop: &Stop) -> Option<procedure::Verdict> {
-    let verdict = match stop.reason() {
-        Some(_) => procedure::Verdict::Error,
-        None => procedure::Verdict::Aborted,
-    };
-    (stop.presses() > 0).then_some(verdict)
-}
-
 /// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
 /// what a bench does next. What was `due` and is in none of the streams, because the run was stopped, is recorded as
 /// not begun.
@@ -196,8 +188,7 @@ fn collect(
 ) {
     let mut places = 0;
     let not_begun = |collector: &mut Collector<'_>| {
-        if let Some(verdict) = left_out(stop) {
-            let why = stop.reason().unwrap_or("stopped by the operator");
+        if let Some((verdict, why)) = stop.left_out() {
             collector.not_begun(verdict, &format!("not begun, {why}"));
         }
     };
@@ -272,19 +263,19 @@ impl RunStart {
         }
     }
 
-    /// The present time in microseconds since 1970, and since the beginning.
-    pub(super) fn elapsed_us(&self) -> (i64, i64) {
+    /// The present time, microseconds since 1970.
+    pub(super) fn now_us(&self) -> i64 {
         let since_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
-        (self.at_us.saturating_add(since_us), since_us)
+        self.at_us.saturating_add(since_us)
     }
 
     fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
-        let (finished_at_us, wall_time_us) = self.elapsed_us();
+        let finished_at_us = self.now_us();
         RunEnd {
             verdict,
             finished_at_us,
             bench_time_us,
-            wall_time_us,
+            wall_time_us: finished_at_us - self.at_us,
         }
     }
 }

@@ -127,11 +127,7 @@ impl<L: UnitLink> Session<L> {
                 &mut progress,
                 sink,
             );
-            if self.stop.presses() > 0 {
-                let (verdict, why) = match self.stop.reason() {
-                    Some(why) => (Verdict::Error, why),
-                    None => (Verdict::Aborted, "stopped by the operator"),
-                };
+            if let Some((verdict, why)) = self.stop.left_out() {
                 let now = self.bench.now();
                 let event = rounds.outside(Outside::Stop, verdict, why.to_owned(), now);
                 sink(SessionEvent::Run(event));
