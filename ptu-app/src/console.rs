@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
+use btu_rig::procedure::{Findings, Measurement, Procedure, RunEvent, Verdict};
 use fault_db::{RunDetail, StepCounts, base_name};
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
@@ -167,18 +167,18 @@ impl Listener for Console {
                     true => "repeat",
                     false => result.verdict.label(),
                 };
-                let more = after_colon(&result.message);
+                let more = after_colon(&result.findings);
                 Some(format!(
                     "{verdict:<7} {}: {}{more}",
                     procedure.id, result.name
                 ))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict, message, ..
+                verdict, findings, ..
             }) if self.detail != Detail::Quiet
                 || !matches!(verdict, Verdict::Passed | Verdict::Skipped) =>
             {
-                let more = after_colon(message);
+                let more = after_colon(findings);
                 Some(format!("{:<7} {}{more}", verdict.label(), procedure.id))
             }
             // Quietly the failed step says it.
@@ -186,7 +186,7 @@ impl Listener for Console {
                 "fault   {} → {}: {}",
                 fault.name,
                 lru::stored(fault.lru.as_ref()),
-                fault.message
+                fault.finding
             )),
             _ => None,
         }
@@ -202,10 +202,10 @@ impl Listener for Console {
     }
 }
 
-fn after_colon(message: &str) -> String {
-    match message {
-        "" => String::new(),
-        message => format!(": {message}"),
+fn after_colon(findings: &Findings) -> String {
+    match findings.is_empty() {
+        true => String::new(),
+        false => format!(": {findings}"),
     }
 }
 

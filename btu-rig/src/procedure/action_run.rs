@@ -5,6 +5,7 @@ use protocol::{Duration, Instant};
 
 use super::condition::{Answer, Captured};
 use super::describe::bits_seen;
+use super::finding::Finding;
 use super::plan::Action;
 use super::report::RunEvent;
 use super::runner::PromptPolicy;
@@ -35,13 +36,13 @@ pub(super) struct Operator {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Problem {
     /// The unit did not do its part.
-    Failed(String),
+    Failed(Finding),
     /// Data are missing, so nothing can be said.
-    NoData(String),
+    NoData(Finding),
     /// The unit refused a request of the tester, or did not answer it.
-    Refused(String),
+    Refused(Finding),
     /// The bench, the link or the operator did not do theirs.
-    Bench(String),
+    Bench(Finding),
 }
 
 impl Problem {
@@ -49,11 +50,12 @@ impl Problem {
         matches!(self, Self::Failed(_))
     }
 
-    pub(super) fn message(&self) -> &str {
+    pub(super) fn finding(&self) -> &Finding {
         match self {
-            Self::Failed(text) | Self::NoData(text) | Self::Refused(text) | Self::Bench(text) => {
-                text
-            }
+            Self::Failed(found)
+            | Self::NoData(found)
+            | Self::Refused(found)
+            | Self::Bench(found) => found,
         }
     }
 }
@@ -112,7 +114,9 @@ impl ActionRun {
             let done = match action {
                 Action::Stimulus(stimulus) => {
                     if let Err(refusal) = driver.apply(scan.now, stimulus) {
-                        return Progress::Stuck(Problem::Bench(refusal.0));
+                        return Progress::Stuck(Problem::Bench(Finding::Refused {
+                            why: refusal.0,
+                        }));
                     }
                     self.stimulated = Some(scan.now);
                     true
@@ -120,24 +124,34 @@ impl ActionRun {
                 Action::Wait(span) => waited >= *span,
                 _ if self.sample_is_stale(scan.now) => false,
                 Action::Until { condition, within } => {
-                    match until(
-                        condition.truth(scan.sample, scan.captured),
-                        waited >= *within,
-                    ) {
-                        Ok(done) => done,
-                        Err(make) => {
-                            return Progress::Stuck(make(format!(
-                                "{condition} did not come within {within}{}",
-                                bits_seen(condition, scan.sample)
-                            )));
+                    let truth = condition.truth(scan.sample, scan.captured);
+                    let never = || Finding::NeverBecame {
+                        condition: condition.clone(),
+                        within: *within,
+                        seen: bits_seen(condition, scan.sample),
+                        missing: None,
+                        said: None,
+                    };
+                    match truth {
+                        Answer::Yes => true,
+                        Answer::No if waited >= *within => {
+                            return Progress::Stuck(Problem::Failed(never()));
                         }
+                        Answer::NoData(_) if waited >= *within => {
+                            return Progress::Stuck(Problem::NoData(never()));
+                        }
+                        Answer::No | Answer::NoData(_) => false,
                     }
                 }
                 Action::Settle { within } => match driver.settled() {
-                    Err(refusal) => return Progress::Stuck(Problem::Refused(refusal.0)),
+                    Err(refusal) => {
+                        return Progress::Stuck(Problem::Refused(Finding::Refused {
+                            why: refusal.0,
+                        }));
+                    }
                     Ok(false) if waited >= *within => {
-                        let text = format!("motion or tester request not finished within {within}");
-                        return Progress::Stuck(Problem::Refused(text));
+                        let within = *within;
+                        return Progress::Stuck(Problem::Refused(Finding::NotFinished { within }));
                     }
                     Ok(settled) => settled,
                 },
@@ -188,26 +202,13 @@ impl ActionRun {
     }
 }
 
-/// Whether a wait for a condition is over, or how to make the problem it ended with.
-fn until(truth: Answer, late: bool) -> Result<bool, fn(String) -> Problem> {
-    match truth {
-        Answer::Yes => Ok(true),
-        Answer::No if late => Err(Problem::Failed),
-        Answer::NoData(_) if late => Err(Problem::NoData),
-        Answer::No | Answer::NoData(_) => Ok(false),
-    }
-}
-
-fn prompt(text: &str, operator: &mut Operator, late: bool) -> Result<bool, Problem> {
+fn prompt(question: &str, operator: &mut Operator, late: bool) -> Result<bool, Problem> {
+    let question = question.to_owned();
     match (operator.policy, operator.answer.take()) {
-        (PromptPolicy::Refuse, _) => Err(Problem::Bench(format!("needs an operator: {text}"))),
+        (PromptPolicy::Refuse, _) => Err(Problem::Bench(Finding::NeedsOperator { question })),
         (PromptPolicy::Ask, Some(true)) => Ok(true),
-        (PromptPolicy::Ask, Some(false)) => {
-            Err(Problem::Failed(format!("the operator said no: {text}")))
-        }
-        (PromptPolicy::Ask, None) if late => Err(Problem::Bench(format!(
-            "the operator did not answer: {text}"
-        ))),
+        (PromptPolicy::Ask, Some(false)) => Err(Problem::Failed(Finding::SaidNo { question })),
+        (PromptPolicy::Ask, None) if late => Err(Problem::Bench(Finding::NoAnswer { question })),
         (PromptPolicy::Ask, None) => Ok(false),
     }
 }

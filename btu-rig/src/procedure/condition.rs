@@ -76,8 +76,9 @@ pub enum Condition {
 pub(super) type Captured = [Option<f64>];
 
 /// The data a condition or limit needed and did not get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MissingData {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingData {
     /// A signal is not known.
     Signal(Signal),
     /// An earlier measurement has no value.

@@ -327,17 +327,13 @@ fn force(newtons: f64) -> String {
     format!("{:.1} kN", newtons / 1000.0)
 }
 
-/// What the bits a condition asks for are instead, as the end of a sentence; empty for a signal that is no set.
-pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> String {
-    match condition {
-        Condition::Compare { signal, .. } => sample
-            .get(*signal)
-            .and_then(|bits| bit_names(*signal, bits as u16))
-            .map_or(String::new(), |names| {
-                format!(" ({} = {names})", signal.name())
-            }),
-        _ => String::new(),
-    }
+/// The bits of the signal that a condition asks for, if that is a set.
+pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> Option<u16> {
+    let Condition::Compare { signal, .. } = condition else {
+        return None;
+    };
+    let bits = sample.get(*signal)? as u16;
+    bit_names(*signal, bits).map(|_| bits)
 }
 
 #[cfg(test)]

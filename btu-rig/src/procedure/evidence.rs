@@ -102,22 +102,3 @@ impl Evidence {
             })
     }
 }
-
-/// Texts in the order they first came, each once, with how often it came.
-pub(super) fn counted<'a>(texts: impl IntoIterator<Item = (&'a str, u32)>) -> String {
-    let mut known: Vec<(&str, u32)> = Vec::new();
-    for (text, times) in texts {
-        match known.iter_mut().find(|(before, _)| *before == text) {
-            Some((_, count)) => *count += times,
-            None => known.push((text, times)),
-        }
-    }
-    let said: Vec<_> = known
-        .into_iter()
-        .map(|(text, times)| match times {
-            1 => text.to_owned(),
-            times => format!("{text} ({times} times)"),
-        })
-        .collect();
-    said.join("; ")
-}

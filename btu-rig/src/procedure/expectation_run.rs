@@ -3,12 +3,13 @@
 use protocol::Instant;
 use protocol::event::Event;
 
+use super::Driver;
 use super::action_run::{Problem, Scan};
 use super::condition::{Answer, MissingData};
-use super::describe::{bits_seen, logged_text};
+use super::describe::bits_seen;
 use super::evidence::LogState;
+use super::finding::Finding;
 use super::plan::Expectation;
-use super::{Driver, EventSource};
 
 /// What is known about an expectation so far.
 #[derive(Clone, Debug, Default)]
@@ -38,9 +39,12 @@ impl ExpectationRun {
                 match condition.truth(scan.sample, scan.captured) {
                     Answer::Yes => self.decided = true,
                     truth if waited >= *within => {
-                        self.fail(truth, || {
-                            let seen = bits_seen(condition, scan.sample);
-                            format!("{condition} did not come within {within}{seen}")
+                        self.fail(truth, |missing| Finding::NeverBecame {
+                            condition: condition.clone(),
+                            within: *within,
+                            seen: bits_seen(condition, scan.sample),
+                            missing,
+                            said: None,
                         });
                     }
                     Answer::No | Answer::NoData(_) => {}
@@ -53,11 +57,18 @@ impl ExpectationRun {
                 let Some(waited) = since_end else { return };
                 match condition.truth(scan.sample, scan.captured) {
                     Answer::Yes => self.decided = waited >= *duration,
-                    truth => self.fail(truth, || format!("{condition} held only for {waited}")),
+                    truth => self.fail(truth, |missing| Finding::HeldOnlyFor {
+                        condition: condition.clone(),
+                        held: waited,
+                        missing,
+                    }),
                 }
             }
             Expectation::Never { condition } => match condition.truth(scan.sample, scan.captured) {
-                truth @ Answer::Yes => self.fail(truth, || format!("{condition} came true")),
+                truth @ Answer::Yes => {
+                    let condition = condition.clone();
+                    self.fail(truth, |_| Finding::CameTrue { condition });
+                }
                 Answer::NoData(missing_data) => self.missing_data = Some(missing_data),
                 Answer::No => {}
             },
@@ -75,18 +86,16 @@ impl ExpectationRun {
                     // It may be among those that are not read yet.
                     && log == LogState::Read
                 {
-                    let who = EventSource::of(*event).who();
-                    let entry = logged_text(*event, [*low, *high]);
-                    self.fail(Answer::No, || {
-                        format!("{who} did not log {entry} within {within}")
+                    self.fail(Answer::No, |_| Finding::NotLogged {
+                        event: *event,
+                        parameter: [*low, *high],
+                        within: *within,
                     });
                 }
             }
             Expectation::NeverLogs { event } => {
-                let who = EventSource::of(*event).who();
-                let name = event.definition().name;
                 if logged.iter().any(|(of, _)| of == event) {
-                    self.fail(Answer::Yes, || format!("{who} logged {name}"));
+                    self.fail(Answer::Yes, |_| Finding::Logged { event: *event });
                 }
             }
         }
@@ -97,12 +106,8 @@ impl ExpectationRun {
         let Expectation::Becomes { condition, .. } = expectation else {
             return;
         };
-        if let Some(Problem::Failed(text)) = &mut self.problem
-            && let Some(said) = condition.said(driver)
-            && !text.ends_with(said)
-        {
-            text.push_str(": ");
-            text.push_str(said);
+        if let Some(Problem::Failed(Finding::NeverBecame { said, .. })) = &mut self.problem {
+            *said = condition.said(driver).map(str::to_owned);
         }
     }
 
@@ -120,18 +125,19 @@ impl ExpectationRun {
         match (self.problem, self.missing_data, expectation) {
             (Some(problem), _, _) => Some(problem),
             // A condition that was unknown in a single scan may have been true in it.
-            (None, Some(missing_data), Expectation::Never { condition }) => Some(Problem::NoData(
-                format!("{missing_data}, so never {condition} cannot be told"),
-            )),
+            (None, Some(missing), Expectation::Never { condition }) => {
+                let condition = condition.clone();
+                Some(Problem::NoData(Finding::Unknown { condition, missing }))
+            }
             _ => None,
         }
     }
 
-    fn fail(&mut self, truth: Answer, text: impl FnOnce() -> String) {
+    fn fail(&mut self, truth: Answer, found: impl FnOnce(Option<MissingData>) -> Finding) {
         self.decided = true;
         self.problem = Some(match truth {
-            Answer::NoData(missing_data) => Problem::NoData(format!("{}: {missing_data}", text())),
-            Answer::Yes | Answer::No => Problem::Failed(text()),
+            Answer::NoData(missing) => Problem::NoData(found(Some(missing))),
+            Answer::Yes | Answer::No => Problem::Failed(found(None)),
         });
     }
 }

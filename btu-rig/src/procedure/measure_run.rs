@@ -11,6 +11,7 @@ use super::UnitTime;
 use super::Verdict;
 use super::action_run::Scan;
 use super::condition::{Answer, Captured, MissingData};
+use super::finding::{Finding, WhyNoValue};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
@@ -129,18 +130,22 @@ impl MeasurementRun {
     }
 
     /// Ends the measurement with the step's last scan and judges it.
-    pub(super) fn finish(mut self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+    pub(super) fn finish(
+        mut self,
+        measure: &Measure,
+        scan: Scan<'_>,
+    ) -> (Measurement, Option<Finding>) {
         if self.left_out {
             let measurement = Measurement {
                 verdict: Verdict::Skipped,
                 ..measured(measure, None, None, scan.captured)
             };
-            return (measurement, String::new());
+            return (measurement, None);
         }
         if let Some(item) = self.item {
             let measurement = of_item(measure, &item);
-            let message = self.message(measure, &measurement);
-            return (measurement, message);
+            let found = self.found(measure, &measurement);
+            return (measurement, found);
         }
         match measure.what {
             What::Value(signal) => self.value = self.known(signal, scan),
@@ -154,15 +159,19 @@ impl MeasurementRun {
             _ => {}
         }
         let measurement = measured(measure, self.value, self.uncertainty, scan.captured);
-        let message = self.message(measure, &measurement);
-        (measurement, message)
+        let found = self.found(measure, &measurement);
+        (measurement, found)
     }
 
     /// Ends the measurement without a value.
-    pub(super) fn without_value(self, measure: &Measure, scan: Scan<'_>) -> (Measurement, String) {
+    pub(super) fn without_value(
+        self,
+        measure: &Measure,
+        scan: Scan<'_>,
+    ) -> (Measurement, Option<Finding>) {
         let measurement = measured(measure, None, None, scan.captured);
-        let message = self.message(measure, &measurement);
-        (measurement, message)
+        let found = self.found(measure, &measurement);
+        (measurement, found)
     }
 
     fn time(
@@ -246,33 +255,32 @@ impl MeasurementRun {
         value
     }
 
-    /// Why it did not pass; empty if it did.
-    fn message(&self, measure: &Measure, measurement: &Measurement) -> String {
-        let name = &measure.name;
-        match (measurement.verdict, measurement.value, self.missing_data) {
-            (Verdict::Passed, ..) => String::new(),
-            (Verdict::Failed, Some(value), _) => {
-                let limits = super::describe::limits(measurement.low, measurement.high);
-                let uncertainty = measurement.uncertainty.map_or(String::new(), |off| {
-                    format!(" ± {}", crate::stimulus::text::number(off))
-                });
-                format!(
-                    "{name} = {}{uncertainty}, allowed {limits} {}",
-                    crate::stimulus::text::number(value),
-                    measurement.unit
-                )
-                .trim_end()
-                .into()
-            }
-            (_, Some(_), _) => format!("{name}: a limit refers to a measurement without a value"),
-            (_, None, Some(missing_data)) => format!("{name}: {missing_data}"),
-            (_, None, None) => match &measure.what {
-                What::Time { to: end, .. } | What::At { when: end, .. } => {
-                    format!("{name}: no value, {end} did not come about in time")
-                }
-                _ => format!("{name}: no value"),
+    /// Why it did not pass.
+    fn found(&self, measure: &Measure, measured: &Measurement) -> Option<Finding> {
+        let measurement = measure.name.clone();
+        Some(match (measured.verdict, measured.value) {
+            (Verdict::Passed, _) => return None,
+            (Verdict::Failed, Some(value)) => Finding::LimitMissed {
+                measurement,
+                value,
+                uncertainty: measured.uncertainty,
+                low: measured.low,
+                high: measured.high,
+                unit: measured.unit.to_owned(),
             },
-        }
+            (_, Some(_)) => Finding::LimitUnknown { measurement },
+            (_, None) => Finding::NoValue {
+                measurement,
+                others: 0,
+                why: match (self.missing_data, &measure.what) {
+                    (Some(missing), _) => WhyNoValue::Missing(missing),
+                    (None, What::Time { to: end, .. } | What::At { when: end, .. }) => {
+                        WhyNoValue::NeverEnded(end.clone())
+                    }
+                    (None, _) => WhyNoValue::NotMeasured,
+                },
+            },
+        })
     }
 }
 

@@ -15,6 +15,7 @@ mod event_set;
 pub mod event_text;
 mod evidence;
 mod expectation_run;
+pub mod finding;
 mod limit;
 pub mod loader;
 mod measure_run;
@@ -31,9 +32,11 @@ use protocol::event::Event;
 use protocol::message::{EbCause, LogEntry, Mode, SelfTest, SelfTestItem};
 use protocol::signal::Signal;
 use protocol::{Instant, Speed};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
+pub use finding::{Finding, Findings};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
@@ -89,7 +92,8 @@ pub trait Driver {
 pub struct Refusal(pub String);
 
 /// Whose log an event stands in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EventSource {
     /// The unit under test.
     Unit,
@@ -151,16 +155,6 @@ impl UnitEvent {
     pub fn named(&self) -> Option<String> {
         event_text::named(Event::from_code(self.code)?, self.parameter)
     }
-
-    /// Who logged what, as the beginning of a sentence.
-    pub(crate) fn as_logged(&self) -> String {
-        let event = Event::from_code(self.code);
-        let name = event.map_or("unknown", |event| event.definition().name);
-        let named = self
-            .named()
-            .map_or(String::new(), |named| format!(", {named}"));
-        format!("{} logged {name} ({}{named})", self.source.who(), self.code)
-    }
 }
 
 impl EventSource {
@@ -173,7 +167,7 @@ impl EventSource {
     }
 
     /// Who logs this event.
-    pub(crate) fn of(event: Event) -> Self {
+    pub fn of(event: Event) -> Self {
         if event.by_tcms() {
             Self::Tcms
         } else {

@@ -7,6 +7,7 @@ use protocol::{Duration, LruId};
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
+use super::finding::Finding;
 use super::origin::Origin;
 use crate::stimulus::Stimulus;
 
@@ -22,8 +23,8 @@ pub enum Connection {
 impl Connection {
     /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
     /// maintenance port can.
-    pub fn lacks(self, on: Self) -> Option<&'static str> {
-        (self == Self::Btu && on == Self::Ptu).then_some(NEEDS_HARNESS)
+    pub fn lacks(self, on: Self) -> Option<Finding> {
+        (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
     }
 
     /// What scripts call it.
@@ -34,10 +35,6 @@ impl Connection {
         }
     }
 }
-
-/// Why the steps of a procedure of a bench are skipped on a train.
-pub const NEEDS_HARNESS: &str =
-    "needs the bench harness, and only the maintenance port is connected";
 
 /// One check procedure: one script file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

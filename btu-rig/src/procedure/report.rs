@@ -3,6 +3,7 @@
 use protocol::{Duration, Instant, LruId, Verdict};
 
 use super::UnitEvent;
+use super::finding::{Finding, Findings};
 
 /// A measured value with its limits and verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +40,7 @@ pub struct StepResult {
     /// It was not tested because the tester's computer stood still, and is begun again: another result follows.
     pub repeated: bool,
     /// Why, when it did not pass; may also be a note.
-    pub message: String,
+    pub findings: Findings,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
     pub suspect: Option<LruId>,
     /// Bench time at which it began.
@@ -114,14 +115,14 @@ impl Outside {
 }
 
 /// What failed outside the steps of a procedure.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutsideStep {
     /// Where.
     pub place: Outside,
     /// Failed, error or aborted.
     pub verdict: Verdict,
     /// What.
-    pub message: String,
+    pub finding: Finding,
     /// Bench time.
     pub at: Instant,
 }
@@ -196,7 +197,7 @@ pub enum RunEvent {
         /// Over its steps and what stands beside them.
         verdict: Verdict,
         /// What went wrong outside steps; empty if nothing did.
-        message: String,
+        findings: Findings,
         /// Bench time.
         at: Instant,
     },

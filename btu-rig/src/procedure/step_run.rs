@@ -7,10 +7,11 @@ use protocol::{CYCLE, Duration, Instant, LruId};
 use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
 use super::evidence::{Evidence, LogState};
 use super::expectation_run::ExpectationRun;
+use super::finding::{Finding, Findings, LoggedEvent, WaitedFor};
 use super::measure_run::MeasurementRun;
 use super::plan::{Action, Step, What};
 use super::report::{Measurement, RunEvent};
-use super::step_verdict::{message, verdict};
+use super::step_verdict::{findings, verdict};
 use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
@@ -55,7 +56,7 @@ pub(super) struct StepRun {
 
 pub(super) struct StepEnd {
     pub verdict: Verdict,
-    pub message: String,
+    pub findings: Findings,
     pub bench_time: Duration,
     pub measurements: Vec<Measurement>,
     /// Suspected part of an event that no step provoked.
@@ -105,26 +106,18 @@ impl StepRun {
     pub(super) fn fail_by_event(&mut self, entry: &UnitEvent) {
         let part = || Event::from_code(entry.code)?.suspect(entry.parameter);
         self.named_part = self.named_part.take().or_else(part);
-        self.hold(Problem::Failed(format!(
-            "{}, which no step provoked",
-            entry.as_logged()
-        )));
+        self.hold(Problem::Failed(Finding::Unprovoked(entry.into())));
     }
 
-    /// Something that frames lost between tester and unit may have caused: the step says nothing about
-    /// the unit.
-    pub(super) fn hold_against_line(&mut self, what: &str) {
-        self.hold(Problem::Bench(format!(
-            "{what} while frames between tester and unit did not come through: check the line and run this \
-             again"
-        )));
+    /// An event, or an emergency brake, that frames lost between tester and unit may have caused: the step says nothing
+    /// about the unit.
+    pub(super) fn hold_against_line(&mut self, event: Option<LoggedEvent>) {
+        self.hold(Problem::Bench(Finding::LineDisturbed { event }));
     }
 
     /// Fails the step for an emergency brake that it did not provoke.
     pub(super) fn fail_by_brake(&mut self) {
-        self.hold(Problem::Failed(
-            "the emergency brake was applied, which this step does not ask for".into(),
-        ));
+        self.hold(Problem::Failed(Finding::BrakeApplied));
     }
 
     /// Takes note that the unit has restarted by itself.
@@ -170,14 +163,15 @@ impl StepRun {
         }
     }
 
+    fn hold_if(&mut self, problem: Option<Problem>) {
+        problem.into_iter().for_each(|problem| self.hold(problem));
+    }
+
     /// What it has failed for so far.
-    pub(super) fn failures(&self) -> impl Iterator<Item = &str> {
-        self.problems
-            .iter()
-            .filter_map(|(problem, _)| match problem {
-                Problem::Failed(why) => Some(why.as_str()),
-                _ => None,
-            })
+    pub(super) fn failures(&self) -> impl Iterator<Item = &Finding> {
+        let problems = self.problems.iter().map(|(problem, _)| problem);
+        let failed = problems.filter(|problem| problem.is_failure());
+        failed.map(Problem::finding)
     }
 
     fn has_failed(&self) -> bool {
@@ -206,9 +200,8 @@ impl StepRun {
         if now.since(since) < LOG_WITHIN {
             return true;
         }
-        self.give_up(Problem::Bench(format!(
-            "the unit's log could not be read within {LOG_WITHIN}, so what it logged is not known"
-        )));
+        let within = LOG_WITHIN;
+        self.give_up(Problem::Bench(Finding::LogNotRead { within }));
         false
     }
 
@@ -258,12 +251,10 @@ impl StepRun {
         let late = scan.now.since(self.started) >= step.time_limit;
         // What it waits for may stand in a log that is not answered: its reader reports that.
         if late && !self.waits_for_log(scan.now) && !self.given_up {
-            let what = self.waiting_for(step);
-            let text = format!(
-                "took longer than its time limit of {}{what}",
-                step.time_limit
-            );
-            self.give_up(Problem::Bench(text));
+            self.give_up(Problem::Bench(Finding::TimeLimit {
+                limit: step.time_limit,
+                waiting: self.waiting_for(step),
+            }));
         }
         self.given_up
     }
@@ -304,20 +295,19 @@ impl StepRun {
             .into_iter()
             .zip(&step.measures)
         {
-            let (measurement, message) = match self.broken_off {
+            let (measurement, found) = match self.broken_off {
                 true => run.without_value(measure, scan),
                 false => run.finish(measure, scan),
             };
             match measurement.verdict {
-                Verdict::Passed | Verdict::Skipped => {}
                 Verdict::Failed => {
                     if let What::SelfTest { bit } = measure.what {
                         let part = Event::SelfTestFailed.suspect(1 << bit);
                         self.named_part = self.named_part.take().or(part);
                     }
-                    self.hold(Problem::Failed(message));
+                    self.hold_if(found.map(Problem::Failed));
                 }
-                _ if complete => self.hold(Problem::NoData(message)),
+                _ if complete => self.hold_if(found.map(Problem::NoData)),
                 _ => {}
             }
             measurements.push(measurement);
@@ -331,15 +321,12 @@ impl StepRun {
                 .lost_or_damaged
                 .map_or(0, |(before, now)| now.saturating_sub(before));
             if lost > 0 {
-                self.hold(Problem::Bench(format!(
-                    "{lost} frames between tester and unit did not come through meanwhile: check the line and \
-                     run this again"
-                )));
+                self.hold(Problem::Bench(Finding::FramesLost { frames: lost }));
             }
         }
         StepEnd {
             verdict: verdict(&self.problems, self.restarted, aborted),
-            message: message(&self.problems, step, aborted),
+            findings: findings(&self.problems, step, aborted),
             bench_time,
             measurements,
             named_part: self.named_part,
@@ -365,12 +352,12 @@ impl StepRun {
             && !(self.measurements.iter().zip(&step.measures)).any(|(t, m)| t.is_open(m))
     }
 
-    /// What the step is still waiting for, as the end of a sentence.
-    fn waiting_for(&self, step: &Step) -> String {
+    /// What the step is still waiting for.
+    fn waiting_for(&self, step: &Step) -> Option<WaitedFor> {
         if self.actions_done.is_none() {
-            return " in its actions".into();
+            return Some(WaitedFor::Actions);
         }
         let open = (self.expectations.iter().zip(&step.expectations)).find(|(w, e)| w.is_open(e));
-        open.map_or(String::new(), |(_, e)| format!(" waiting for: {e}"))
+        open.map(|(_, expectation)| WaitedFor::Expectation(expectation.clone()))
     }
 }

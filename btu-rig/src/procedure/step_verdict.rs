@@ -2,7 +2,7 @@
 
 use super::Verdict;
 use super::action_run::Problem;
-use super::evidence::counted;
+use super::finding::{Finding, Findings, WhyNoValue};
 use super::plan::Step;
 
 /// A bench problem outranks all: then the step says nothing about the unit. A request that was refused is one, unless
@@ -24,32 +24,36 @@ pub(super) fn verdict(problems: &[(Problem, u32)], restarted: bool, aborted: boo
 }
 
 /// Each problem once, measurements without a value for the same reason together; without a problem the step's note.
-pub(super) fn message(problems: &[(Problem, u32)], step: &Step, aborted: bool) -> String {
+pub(super) fn findings(problems: &[(Problem, u32)], step: &Step, aborted: bool) -> Findings {
+    let mut all = Findings::default();
     if problems.is_empty() && !aborted {
-        return step.note.clone().unwrap_or_default();
+        all.extend(step.note.clone().map(Finding::Told));
+        return all;
     }
-    let mut texts: Vec<(String, u32)> = Vec::new();
-    texts.extend(aborted.then(|| ("stopped by the operator".to_owned(), 1)));
+    all.extend(aborted.then_some(Finding::Stopped));
     // Measurements wait for the same thing more often than not: it is said once.
-    let mut without_value: Vec<(&str, &str, usize)> = Vec::new();
+    let mut without_value: Vec<(&str, &WhyNoValue, u32)> = Vec::new();
     for (problem, times) in problems {
-        match problem.message().split_once(": ") {
-            Some((name, reason)) if reason.starts_with("no value") => {
-                match without_value.iter_mut().find(|known| known.1 == reason) {
-                    Some(known) => known.2 += 1,
-                    None => without_value.push((name, reason, 0)),
-                }
-            }
-            _ => texts.push((problem.message().to_owned(), *times)),
+        let Finding::NoValue {
+            measurement, why, ..
+        } = problem.finding()
+        else {
+            all.add(problem.finding().clone(), *times);
+            continue;
+        };
+        match without_value.iter_mut().find(|known| known.1 == why) {
+            Some(known) => known.2 += 1,
+            None => without_value.push((measurement, why, 0)),
         }
     }
-    texts.extend(
+    all.extend(
         without_value
             .into_iter()
-            .map(|(name, reason, more)| match more {
-                0 => (format!("{name}: {reason}"), 1),
-                more => (format!("{name} and {more} more: {reason}"), 1),
+            .map(|(name, why, others)| Finding::NoValue {
+                measurement: name.to_owned(),
+                others,
+                why: why.clone(),
             }),
     );
-    counted(texts.iter().map(|(text, times)| (text.as_str(), *times)))
+    all
 }

@@ -3,8 +3,8 @@
 use super::Rig;
 use super::link::{Harness, HarnessWatch, LatestSample, told_by_train_state};
 use super::session::version;
-use crate::procedure::Procedure;
 use crate::procedure::plan::Connection;
+use crate::procedure::{Finding, Procedure};
 
 impl Rig {
     /// Says whether the harness is connected; without this it is. To be said before the first scan.
@@ -29,10 +29,10 @@ impl Rig {
 
     /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not
     /// tell.
-    pub fn cannot_run(&self, procedure: &Procedure) -> Option<String> {
+    pub fn cannot_run(&self, procedure: &Procedure) -> Option<Finding> {
         let connection = self.connection()?;
         if let Some(why) = procedure.needs.lacks(connection) {
-            return Some(why.to_owned());
+            return Some(why);
         }
         if !self.subscription.refused() {
             return None;
@@ -49,5 +49,6 @@ impl Rig {
         });
         (!names.is_empty())
             .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
+            .map(Finding::Told)
     }
 }

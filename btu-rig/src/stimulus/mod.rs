@@ -15,6 +15,7 @@ pub use conditions::{
 pub use orders::OrderData;
 pub use station::StationData;
 pub use table::{Stimulus, Way};
+pub use text::number;
 
 /// Steepest gradient that can be added to the track's, ‰.
 pub const MAX_GRADIENT_PERMILLE: f64 = 100.0;

@@ -109,6 +109,7 @@ pub fn measured(
         verdict,
         started_bench_us: i64::from(index) * 9_000_000,
         bench_time_us: 4_000_000 + chance.below(5_000_000) as i64,
+        findings: None,
         message,
         script_line: Some(12 + index),
         limit_source: None,

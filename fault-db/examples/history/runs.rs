@@ -197,6 +197,7 @@ fn see(
         at_us,
         bench_us: (at_us - visit.at_us).max(0),
         step_index,
+        findings: None,
         message: format!("{} (parameter {})", kind.text, chance.below(400)),
         freeze: freeze(!visit.of_log, chance),
     })?;

@@ -121,7 +121,8 @@ fn integer(column: &str, value: i64) -> Result<(), &'static str> {
 
 fn text(column: &str, text: &str) -> Result<(), String> {
     let most = match column {
-        "json" | "freeze_json" | "bench_json" | "sw_versions" | "says" | "evidence" => JSON_BYTES,
+        "json" | "findings" | "freeze_json" | "bench_json" | "sw_versions" | "says"
+        | "evidence" => JSON_BYTES,
         "message" | "body" | "text" | "injected" | "words" => TEXT_BYTES,
         _ => NAME_BYTES,
     };
@@ -132,7 +133,9 @@ fn text(column: &str, text: &str) -> Result<(), String> {
         ));
     }
     match column {
-        "json" | "freeze_json" | "bench_json" | "sw_versions" | "evidence" => json(column, text),
+        "json" | "findings" | "freeze_json" | "bench_json" | "sw_versions" | "evidence" => {
+            json(column, text)
+        }
         "verdict" => text.parse::<Verdict>().map(drop).map_err(|_| word(column)),
         "state" => text
             .parse::<FaultState>()

@@ -228,7 +228,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         name: "step",
         columns: columns![
             run Run, step_index Integer, procedure Text, name Text, verdict Text,
-            started_bench_us Integer, bench_time_us Integer, message Text, script_line Integer,
+            started_bench_us Integer, bench_time_us Integer, message Text, findings Text, script_line Integer,
             limit_source Text,
         ],
         shown: 1,
@@ -266,7 +266,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         name: "fault_occurrence",
         columns: columns![
             id Bytes, fault Fault, run Run, step_index Integer, at_us Integer, bench_us Integer,
-            message Text, freeze_json Text, code Integer, lru Text, line Text, code_name Text,
+            message Text, findings Text, freeze_json Text, code Integer, lru Text, line Text, code_name Text,
             severity Text,
         ],
         by: "run",

@@ -92,8 +92,8 @@ pub(crate) fn insert_steps(
 ) -> rusqlite::Result<()> {
     let mut insert = conn.prepare_cached(
         "INSERT INTO step(run, step_index, procedure, name, verdict, started_bench_us,
-            bench_time_us, message, script_line, limit_source)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+            bench_time_us, message, findings, script_line, limit_source)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
     )?;
     for step in steps {
         insert.execute(params![
@@ -105,6 +105,7 @@ pub(crate) fn insert_steps(
             step.started_bench_us,
             step.bench_time_us,
             step.message,
+            step.findings,
             step.script_line,
             step.limit_source,
         ])?;
@@ -312,6 +313,7 @@ fn insert_occurrence(
         record.at_us,
         record.bench_us,
         &record.message,
+        record.findings.as_ref(),
         json(&record.freeze)?,
         record.code,
         &record.lru,
@@ -323,9 +325,9 @@ fn insert_occurrence(
     let mut row = Vec::from(payload);
     row.extend(values![fault, place.run, place.unit]);
     backend.execute(
-        "INSERT INTO fault_occurrence(id, step_index, at_us, bench_us, message, freeze_json, code, lru,
-            line, code_name, severity, fault, run, unit)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+        "INSERT INTO fault_occurrence(id, step_index, at_us, bench_us, message, findings, freeze_json, code,
+            lru, line, code_name, severity, fault, run, unit)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
         &row,
     )?;
     Ok(digest)

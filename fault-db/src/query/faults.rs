@@ -41,8 +41,10 @@ pub struct FaultSummary {
     pub occurrences: u32,
     /// Its latest trace.
     pub trace_id: Option<Id>,
-    /// What was seen last.
+    /// What was seen last, in English.
     pub message: String,
+    /// The same as data.
+    pub findings: Option<String>,
 }
 
 impl FaultSummary {
@@ -92,8 +94,10 @@ pub struct Occurrence {
     pub at_us: i64,
     /// When, on the bench's clock.
     pub bench_us: i64,
-    /// Description.
+    /// Description, in English.
     pub message: String,
+    /// The same as data.
+    pub findings: Option<String>,
     /// Its trace, if one was kept.
     pub trace_id: Option<Id>,
     /// Freeze frame: all signals at that moment.
@@ -106,9 +110,10 @@ const SELECT_FAULT: &str = "
         (SELECT t.id FROM fault_occurrence o JOIN trace t ON t.seq = o.trace
          WHERE o.fault = x.seq AND o.trace IS NOT NULL ORDER BY o.at_us DESC, o.seq DESC LIMIT 1),
         x.seq, x.cause,
-        (SELECT o.message FROM fault_occurrence o WHERE o.fault = x.seq
-         ORDER BY o.at_us DESC, o.seq DESC LIMIT 1)
-    FROM fault x JOIN unit u ON u.seq = x.unit";
+        last.message, last.findings
+    FROM fault x JOIN unit u ON u.seq = x.unit LEFT JOIN fault_occurrence last ON last.seq =
+        (SELECT o.seq FROM fault_occurrence o WHERE o.fault = x.seq
+         ORDER BY o.at_us DESC, o.seq DESC LIMIT 1)";
 
 impl Store {
     /// Lists faults, last seen first.
@@ -148,7 +153,7 @@ impl Store {
 
     fn occurrences(&self, fault: i64) -> SqlResult<Vec<Occurrence>> {
         self.backend().select(
-            "SELECT o.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, t.id, o.freeze_json
+            "SELECT o.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, o.findings, t.id, o.freeze_json
              FROM fault_occurrence o JOIN run r ON r.seq = o.run
              LEFT JOIN trace t ON t.seq = o.trace
              WHERE o.fault = ?1 ORDER BY o.at_us DESC, o.seq DESC LIMIT ?2",
@@ -161,8 +166,9 @@ impl Store {
                     at_us: row.get(3)?,
                     bench_us: row.get(4)?,
                     message: row.get(5)?,
-                    trace_id: row.get(6)?,
-                    freeze: json(row, 7)?,
+                    findings: row.get(6)?,
+                    trace_id: row.get(7)?,
+                    freeze: json(row, 8)?,
                 })
             },
         )
@@ -223,6 +229,7 @@ fn summary(row: Row<'_>) -> SqlResult<FaultSummary> {
         occurrences: row.get(9)?,
         trace_id: row.get(10)?,
         message: row.get::<Option<String>>(13)?.unwrap_or_default(),
+        findings: row.get(14)?,
     })
 }
 

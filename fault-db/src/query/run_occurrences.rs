@@ -22,8 +22,10 @@ pub struct RunOccurrence {
     pub bench_us: i64,
     /// Trace that shows it.
     pub trace_id: Option<Id>,
-    /// What was seen.
+    /// What was seen, in English.
     pub message: String,
+    /// The same as data.
+    pub findings: Option<String>,
 }
 
 impl Store {
@@ -31,7 +33,8 @@ impl Store {
     pub fn run_occurrences(&self, run: Id) -> Result<Vec<RunOccurrence>, StoreError> {
         self.select(
             "listing a run's faults",
-            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id, f.id, o.message
+            "SELECT f.code, f.code_name, f.lru, o.step_index, o.bench_us, t.id, f.id, o.message,
+                        o.findings
                      FROM run r JOIN fault_occurrence o ON o.run = r.seq
                      JOIN fault f ON f.seq = o.fault LEFT JOIN trace t ON t.seq = o.trace
                      WHERE r.id = ?1 ORDER BY o.seq",
@@ -46,6 +49,7 @@ impl Store {
                     bench_us: row.get(4)?,
                     trace_id: row.get(5)?,
                     message: row.get(7)?,
+                    findings: row.get(8)?,
                 })
             },
         )

@@ -240,7 +240,7 @@ impl Store {
         let mut measurements = self.measurements(run)?;
         self.backend().select(
             "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
-                message, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
+                message, findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
             |row| {
                 let index = row.get(0)?;
@@ -252,8 +252,9 @@ impl Store {
                     started_bench_us: row.get(4)?,
                     bench_time_us: row.get(5)?,
                     message: row.get(6)?,
-                    script_line: row.get(7)?,
-                    limit_source: row.get(8)?,
+                    findings: row.get(7)?,
+                    script_line: row.get(8)?,
+                    limit_source: row.get(9)?,
                     measurements: measurements.remove(&index).unwrap_or_default(),
                 })
             },

@@ -65,6 +65,7 @@ CREATE TABLE step(
   started_bench_us INTEGER NOT NULL,
   bench_time_us INTEGER NOT NULL,
   message TEXT NOT NULL,
+  findings TEXT,                        -- the same as data, JSON of the program; NULL: nothing
   script_line INTEGER,
   limit_source TEXT,                    -- where the numbers it expected come from; NULL: not stated
   PRIMARY KEY(run, step_index)
@@ -167,6 +168,7 @@ CREATE TABLE fault_occurrence(
   at_us INTEGER NOT NULL,
   bench_us INTEGER NOT NULL,
   message TEXT NOT NULL,
+  findings TEXT,                        -- the same as data, JSON of the program; NULL: nothing
   freeze_json TEXT NOT NULL,
   trace INTEGER REFERENCES trace(seq) ON DELETE SET NULL,
   unit INTEGER NOT NULL,                -- of the fault, as are code and lru

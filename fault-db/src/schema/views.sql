@@ -19,7 +19,7 @@ CREATE VIEW steps AS
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
     u.serial AS unit, s.step_index, s.procedure, s.name, s.verdict,
-    s.message, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
+    s.message, s.findings, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     r.started_at_us
   FROM step s JOIN run r ON r.seq = s.run JOIN unit u ON u.seq = r.unit;
@@ -56,7 +56,7 @@ CREATE VIEW occurrences AS
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
     u.serial AS unit, o.code,
-    f.code_name AS name, o.lru, o.line, r.train, o.step_index, o.message,
+    f.code_name AS name, o.lru, o.line, r.train, o.step_index, o.message, o.findings,
     strftime('%Y-%m-%dT%H:%M:%fZ', o.at_us / 1000 / 1000.0, 'unixepoch') AS seen_at,
     o.at_us
   FROM fault_occurrence o JOIN fault f ON f.seq = o.fault JOIN run r ON r.seq = o.run

@@ -130,6 +130,7 @@ impl RunDigest {
             step.started_bench_us,
             step.bench_time_us,
             &step.message,
+            step.findings.as_ref(),
             step.script_line,
             step.limit_source.as_ref(),
         ]);
@@ -238,14 +239,14 @@ pub(crate) const RUN: &str =
 
 pub(crate) const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
-    "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us, message,
+    "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us, message, findings,
         script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
     "SELECT step_index, ordinal, name, value, unit, low, high, verdict, limit_source FROM measurement
      WHERE run = ?1 ORDER BY step_index, ordinal",
 ];
 
 pub(crate) const OCCURRENCES: &str =
-    "SELECT id, step_index, at_us, bench_us, message, freeze_json, code, lru, line, code_name, severity
+    "SELECT id, step_index, at_us, bench_us, message, findings, freeze_json, code, lru, line, code_name, severity
      FROM fault_occurrence WHERE run = ?1 ORDER BY id";
 
 /// The digest of a stored run with this payload.

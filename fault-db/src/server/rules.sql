@@ -107,7 +107,7 @@ BEGIN
       AND is_json(NEW.sw_versions) AND is_json(NEW.evidence) AND is_id(NEW.continues) AND is_name(NEW.connection) AND is_name(NEW.symptom)'],
     ['run_script', 'INSERT', 'is_name(NEW.path) AND is_name(NEW.sha256)'],
     ['step', 'INSERT', 'is_count(NEW.step_index) AND is_name(NEW.procedure) AND is_name(NEW.name)
-      AND is_span(NEW.started_bench_us) AND is_span(NEW.bench_time_us) AND is_text(NEW.message)
+      AND is_span(NEW.started_bench_us) AND is_span(NEW.bench_time_us) AND is_text(NEW.message) AND is_json(NEW.findings)
       AND is_count(NEW.script_line) AND is_text(NEW.limit_source)'],
     ['measurement', 'INSERT', 'is_count(NEW.step_index) AND is_count(NEW.ordinal) AND is_name(NEW.name)
       AND is_finite(NEW.value) AND is_name(NEW.unit) AND is_finite(NEW.low) AND is_finite(NEW.high)
@@ -125,7 +125,7 @@ BEGIN
       AND is_count(NEW.flags) AND is_count(NEW.encoding) AND is_digest(NEW.sha256) AND is_packed(NEW.data)
       AND is_count(NEW.recording)'],
     ['fault_occurrence', 'INSERT', 'is_id(NEW.id) AND is_count(NEW.step_index) AND is_time(NEW.at_us)
-      AND is_span(NEW.bench_us) AND is_text(NEW.message) AND is_json(NEW.freeze_json) AND is_name(NEW.lru)
+      AND is_span(NEW.bench_us) AND is_text(NEW.message) AND is_json(NEW.findings) AND is_json(NEW.freeze_json) AND is_name(NEW.lru)
       AND is_name(NEW.line) AND is_name(NEW.code_name) AND is_name(NEW.severity)'],
     ['fault_event', 'INSERT', 'is_id(NEW.id) AND is_name(NEW.kind) AND is_time(NEW.at_us)
       AND is_name(NEW.who) AND is_text(NEW.body) AND (NEW.kind NOT IN (''repair'', ''cause'', ''diagnosed'') OR is_json(NEW.body))

@@ -94,6 +94,7 @@ CREATE TABLE step(
   started_bench_us bigint NOT NULL,
   bench_time_us bigint NOT NULL,
   message text COLLATE "C" NOT NULL,
+  findings text COLLATE "C",
   script_line bigint,
   limit_source text COLLATE "C",
   PRIMARY KEY(run, step_index)
@@ -212,6 +213,7 @@ CREATE TABLE fault_occurrence(
   at_us bigint NOT NULL,
   bench_us bigint NOT NULL,
   message text COLLATE "C" NOT NULL,
+  findings text COLLATE "C",
   freeze_json text COLLATE "C" NOT NULL,
   trace bigint REFERENCES trace(seq),
   unit bigint NOT NULL REFERENCES unit(seq),

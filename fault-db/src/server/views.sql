@@ -17,7 +17,7 @@ CREATE VIEW runs AS
 
 CREATE VIEW steps AS
   SELECT id_text(r.id) AS run_id, u.serial AS unit, s.step_index, s.procedure, s.name, s.verdict,
-    s.message, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
+    s.message, s.findings, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
     time_text(r.started_at_us) AS started_at,
     r.started_at_us
   FROM step s JOIN run r ON r.seq = s.run JOIN unit u ON u.seq = r.unit;
@@ -38,7 +38,7 @@ CREATE VIEW faults AS
 
 CREATE VIEW occurrences AS
   SELECT id_text(o.id) AS id, id_text(f.id) AS fault_id, id_text(r.id) AS run_id, u.serial AS unit, o.code,
-    f.code_name AS name, o.lru, o.line, r.train, o.step_index, o.message, time_text(o.at_us) AS seen_at,
+    f.code_name AS name, o.lru, o.line, r.train, o.step_index, o.message, o.findings, time_text(o.at_us) AS seen_at,
     o.at_us
   FROM fault_occurrence o JOIN fault f ON f.seq = o.fault JOIN run r ON r.seq = o.run
   JOIN unit u ON u.seq = o.unit;

@@ -118,8 +118,10 @@ pub struct StepRecord {
     pub started_bench_us: i64,
     /// Bench time it took.
     pub bench_time_us: i64,
-    /// The reason of the verdict; empty if there is nothing to say.
+    /// The reason of the verdict, in English; empty if there is nothing to say.
     pub message: String,
+    /// The same as data: JSON of the caller's own, from which other languages are made.
+    pub findings: Option<String>,
     /// Line of the script it comes from.
     pub script_line: Option<u32>,
     /// Where the numbers of what it expected come from, in the caller's words.
@@ -164,8 +166,10 @@ pub struct FaultRecord {
     pub bench_us: i64,
     /// Step under way, if any; it need not be recorded yet.
     pub step_index: Option<u32>,
-    /// Description.
+    /// Description, in English.
     pub message: String,
+    /// The same as data: JSON of the caller's own.
+    pub findings: Option<String>,
     /// All signals at that moment.
     pub freeze: Vec<FreezeSample>,
 }

@@ -122,6 +122,7 @@ pub fn step(index: u32) -> StepRecord {
         verdict: Verdict::Passed,
         started_bench_us: i64::from(index) * 50_000,
         bench_time_us: 50_000,
+        findings: None,
         message: String::new(),
         script_line: Some(12),
         limit_source: None,
@@ -150,6 +151,7 @@ pub fn fault(code: i64, at_us: i64) -> FaultRecord {
         at_us,
         bench_us: at_us - T0_US,
         step_index: Some(3),
+        findings: None,
         message: "speed code lost".to_owned(),
         freeze: vec![
             FreezeSample {

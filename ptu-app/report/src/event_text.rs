@@ -33,9 +33,9 @@ pub fn repair_text(repair: &RepairRecord, called: impl Fn(&str) -> String) -> St
 /// The note of an event; what a person wrote stays as it is.
 pub fn note_text<'a>(detail: &FaultDetail, event: &'a FaultEvent, words: &Words) -> Cow<'a, str> {
     let mut seen = detail.occurrences.iter();
-    match seen.any(|seen| seen.message == event.note) {
-        true => words.content(&event.note),
-        false => Cow::Borrowed(&event.note),
+    match seen.find(|seen| seen.message == event.note) {
+        Some(seen) => words.found(&seen.findings, &event.note),
+        None => Cow::Borrowed(&event.note),
     }
 }
 

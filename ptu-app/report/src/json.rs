@@ -16,7 +16,7 @@ use ptu_runs::clock::rfc3339;
 use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::failure::Failure;
 use ptu_runs::run::Evidence;
-use ptu_runs::stored::{STEP, outside_of};
+use ptu_runs::stored::{STEP, findings, outside_of};
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
@@ -120,6 +120,7 @@ fn step_json(step: &StepRecord, evidence: Option<&Evidence>) -> Value {
         "bench_time_s": seconds(step.bench_time_us),
         "measurements": step.measurements.iter().map(|one| measurement_json(one, evidence)).collect::<Vec<_>>(),
         "message": step.message,
+        "findings": findings(&step.findings),
         "script_line": step.script_line,
         "limit_source": step.limit_source,
     })

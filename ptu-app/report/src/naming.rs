@@ -1,11 +1,14 @@
 //! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
 
+use btu_rig::procedure::{Finding, Findings};
+use btu_rig::stimulus::number;
 use protocol::event::Event;
 use protocol::injection::Lru;
 use protocol::lru::from_stored;
 
 use crate::words::{Language, Words, fill};
 use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::stored::findings;
 
 /// Between the parts of a name.
 pub const DOT: &str = " · ";
@@ -34,53 +37,78 @@ impl PartNames {
         })
     }
 
-    /// A fault that points at this part, in one line: the part, and what was seen.
-    pub fn fault(&self, part: &str, message: &str, words: &Words) -> String {
+    /// A fault that points at this part, in one line: the part, and what was seen as it is stored.
+    pub fn fault(
+        &self,
+        part: &str,
+        (data, message): (&Option<String>, &str),
+        words: &Words,
+    ) -> String {
         let part = self.name(part, words.language);
-        match what_failed(message, words) {
-            what if what.is_empty() => part.to_owned(),
-            what => format!("{part}{DOT}{what}"),
+        let seen = findings(data);
+        let what = match seen.is_empty() {
+            true => words.content(message).into_owned(),
+            false => what_failed(&seen, words),
+        };
+        match what.is_empty() {
+            true => part.to_owned(),
+            false => format!("{part}{DOT}{what}"),
         }
     }
 }
 
-/// Procedure and step of the message of a failed check, and what stands after them.
-pub fn place(message: &str) -> Option<(&str, &str, &str)> {
-    let (procedure, rest) = message.split_once(", ")?;
-    let (left, value) = rest.split_once(" = ")?;
-    let (step, name) = left.rsplit_once(": ")?;
-    let after = &rest[rest.len() - value.len() - name.len() - " = ".len()..];
-    procedure.contains('/').then_some((procedure, step, after))
+/// Procedure and step of a failed check, and what that found.
+fn place(seen: &Findings) -> Option<(&str, &str, &Findings)> {
+    seen.iter().find_map(|found| match &found.finding {
+        Finding::CheckFailed {
+            procedure,
+            step,
+            findings,
+        } => Some((&**procedure, &**step, findings)),
+        _ => None,
+    })
 }
 
-/// A message in few words: the step, the measured value, and its limit, or why else it failed; as it is where it names no
-/// step.
-pub fn what_failed(message: &str, words: &Words) -> String {
-    let Some((_, step, why)) = place(message) else {
-        return words.content(message).into_owned();
+/// Whether what was seen, as it is stored, is that this step failed.
+pub fn is_of_step(data: &Option<String>, procedure: &str, step: &str) -> bool {
+    let seen = findings(data);
+    place(&seen).is_some_and(|(of, name, _)| of == procedure && name == step)
+}
+
+/// What was seen in few words: the step, the measured value, and its limit, or why else the step failed.
+fn what_failed(seen: &Findings, words: &Words) -> String {
+    let Some((_, step, why)) = place(seen) else {
+        return words.findings(seen);
     };
     let step = words.content(step);
     let step = step.split(": ").next().unwrap_or_default();
-    let why = beyond_limit(why, words).unwrap_or_else(|| words.content(why).into_owned());
+    let first = why.iter().next();
+    let why = first
+        .and_then(|found| beyond_limit(&found.finding, words))
+        .unwrap_or_else(|| words.findings(why));
     format!("{step}: {why}")
 }
 
-/// A measured value with its limit; `None` for a condition.
-fn beyond_limit(measured: &str, words: &Words) -> Option<String> {
-    let (name, value) = measured.split_once(" = ")?;
-    let (value, limits) = value.split_once(", allowed ")?;
-    value.parse::<f64>().ok()?;
-    let limits = limits.split_once("; ").map_or(limits, |(first, _)| first);
-    let (limits, unit) = match limits.rsplit_once(' ') {
-        Some((limits, unit)) if unit.parse::<f64>().is_err() => (limits, unit),
-        _ => (limits, ""),
+/// A measured value with its limit; `None` for any other finding.
+fn beyond_limit(finding: &Finding, words: &Words) -> Option<String> {
+    let Finding::LimitMissed {
+        measurement: name,
+        value,
+        low,
+        high,
+        unit,
+        ..
+    } = finding
+    else {
+        return None;
     };
-    let limit = limits.replace("at most ", "").replace(" to ", "…");
-    let limit = fill(
-        words.common.limit_is,
-        &[("limit", &limit.replace("at least ", "≥ "))],
-    );
-    let value = format!("{value} {unit}");
+    let limit = match (low.map(number), high.map(number)) {
+        (Some(low), Some(high)) => format!("{low}…{high}"),
+        (Some(low), None) => format!("≥ {low}"),
+        (None, high) => high.unwrap_or_default(),
+    };
+    let limit = fill(words.common.limit_is, &[("limit", &limit)]);
+    let value = format!("{} {}", number(*value), words.unit(unit));
     let name = measurement(name, words);
     Some(format!("{name} {}, {limit}", value.trim_end()))
 }
@@ -136,39 +164,81 @@ pub fn code(code: i64, name: &str, words: &Words) -> String {
 
 #[cfg(test)]
 mod tests {
+    use btu_rig::procedure::plan::{Comparison, Condition, Operand};
+    use protocol::signal::Signal;
+
     use super::*;
 
+    fn failed(procedure: &str, step: &str, found: Vec<Finding>) -> Findings {
+        let mut findings = Findings::default();
+        findings.extend(found);
+        Finding::CheckFailed {
+            procedure: procedure.into(),
+            step: step.into(),
+            findings,
+        }
+        .into()
+    }
+
+    fn missed(name: &str, value: f64, limits: [Option<f64>; 2], unit: &str) -> Finding {
+        Finding::LimitMissed {
+            measurement: name.into(),
+            value,
+            uncertainty: None,
+            low: limits[0],
+            high: limits[1],
+            unit: unit.into(),
+        }
+    }
+
     #[test]
-    fn a_failed_check_is_said_in_one_line_and_other_messages_as_they_are() {
-        let words = Language::English.words();
-        let said = |message: &str| what_failed(message, words);
-        let relay =
-            "atp/overspeed, code 25: alarm, FSB, EB: eb_reaction = 640, allowed at most 472 ms";
-        assert_eq!(said(relay), "code 25: EB reaction 640 ms, limit 472");
-        let proof = "atp/overspeed, FSB without effect is followed by EB: proof_time = 3400, allowed 2950 to 3050 ms";
+    fn a_failed_check_is_said_in_one_line_and_other_findings_as_they_are() {
+        let [english, korean] = Language::ALL.map(Language::words);
+        let reaction = missed("eb_reaction", 640.0, [None, Some(472.0)], "ms");
+        let relay = failed("atp/overspeed", "code 25: alarm, FSB, EB", vec![reaction]);
+        let said = what_failed(&relay, english);
+        assert_eq!(said, "code 25: EB reaction 640 ms, limit 472");
+        let said = what_failed(&relay, korean);
+        assert_eq!(said, "속도 코드 25: EB 반응 시간 640 ms, 허용 472");
+        let whole = "atp/overspeed, 속도 코드 25: 경보, FSB, EB 작동: EB 반응 시간 = 640 (허용 472 ms 이하)";
+        assert_eq!(korean.findings(&relay), whole);
+        let proof = missed("proof_time", 3400.0, [Some(2950.0), Some(3050.0)], "ms");
+        let proof = failed(
+            "atp/overspeed",
+            "FSB without effect is followed by EB",
+            vec![proof],
+        );
         let expected = "FSB without effect is followed by EB: proof time 3400 ms, limit 2950…3050";
-        assert_eq!(said(proof), expected);
-        let condition = "twc/exchange, over the loop: twc_ok = off came true; received = 7, allowed 10 to 10 frames";
+        assert_eq!(what_failed(&proof, english), expected);
+        let condition = Condition::Compare {
+            signal: Signal::TwcOk,
+            comparison: Comparison::Equal,
+            operand: Operand::Literal(0.0),
+        };
+        let lost = vec![
+            Finding::CameTrue { condition },
+            missed("received", 7.0, [Some(10.0), Some(10.0)], "frames"),
+        ];
+        let lost = failed("twc/exchange", "over the loop", lost);
         let expected =
             "over the loop: TWC ok = off came true; received = 7, allowed 10 to 10 frames";
-        assert_eq!(said(condition), expected);
-        let korean = what_failed(condition, Language::Korean.words());
-        assert!(korean.contains("TWC 통신 정상 = 꺼짐"), "{korean}");
-        let event = "brake line at 3.0 km/h, limit 25.0 km/h";
-        assert_eq!(said(event), event);
-        let korean = what_failed(relay, Language::Korean.words());
-        assert_eq!(korean, "속도 코드 25: EB 반응 시간 640 ms, 허용 472");
-        let korean = Language::Korean.words().content(relay);
-        let whole = "atp/overspeed, 속도 코드 25: 경보, FSB, EB 작동: EB 반응 시간 = 640 (허용 472 ms 이하)";
-        assert_eq!(korean, whole);
-        let place = place(relay).expect("a step");
-        assert_eq!(
-            (place.0, place.1),
-            ("atp/overspeed", "code 25: alarm, FSB, EB")
+        assert_eq!(what_failed(&lost, english), expected);
+        let said = what_failed(&lost, korean);
+        assert!(
+            said.contains("TWC 통신 정상 = 꺼짐") && said.contains("프레임"),
+            "{said}"
         );
+        let data = relay.to_json();
+        assert!(is_of_step(
+            &data,
+            "atp/overspeed",
+            "code 25: alarm, FSB, EB"
+        ));
+        assert!(!is_of_step(&data, "atp/overspeed", "another"));
+        let none = (&None, "brake line at 3.0 km/h");
         assert_eq!(
-            PartNames::default().fault("eb_relay", "", words),
-            "eb_relay"
+            PartNames::default().fault("x", none, english),
+            "x · brake line at 3.0 km/h"
         );
     }
 

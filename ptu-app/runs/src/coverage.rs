@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use btu_rig::procedure::plan::NEEDS_HARNESS;
+use btu_rig::procedure::Findings;
 use fault_db::{RunDetail, RunSummary, StepCounts, Verdict, base_name};
 
 use crate::run::Evidence;
+use crate::stored::findings;
 
 /// The one count of a stored run: what its steps came to, of all that were due.
 pub fn counts_of(run: &RunSummary) -> StepCounts {
@@ -33,16 +34,17 @@ impl Coverage {
     pub fn of_run(run: &RunDetail) -> Self {
         let steps = run.steps.iter();
         let skipped = steps.filter(|step| step.verdict == Verdict::Skipped);
-        let skipped = skipped.map(|step| (&*step.procedure, &*step.name, &*step.message));
-        Self::of(counts_of(&run.run), skipped)
+        let found = skipped.map(|step| (&*step.procedure, &*step.name, findings(&step.findings)));
+        Self::of(counts_of(&run.run), found)
     }
 
     /// Of these counts; `skipped` = procedure, name and reason of each step that was skipped.
     pub fn of<'a>(
         steps: StepCounts,
-        skipped: impl Iterator<Item = (&'a str, &'a str, &'a str)>,
+        skipped: impl Iterator<Item = (&'a str, &'a str, Findings)>,
     ) -> Self {
-        let on_bench = skipped.filter(|(_, _, why)| why.ends_with(NEEDS_HARNESS));
+        let on_bench =
+            skipped.filter(|(_, _, why)| why.iter().any(|why| why.finding.needs_harness()));
         let on_bench: BTreeSet<_> = on_bench
             .map(|(procedure, name, _)| (procedure, base_name(name)))
             .collect();
@@ -60,6 +62,8 @@ impl Coverage {
 
 #[cfg(test)]
 mod tests {
+    use btu_rig::procedure::Finding;
+
     use super::*;
 
     #[test]
@@ -77,10 +81,11 @@ mod tests {
             counter.note(place, verdict);
         }
         let skipped = [
-            ("atp/overspeed", "a (1/2)", NEEDS_HARNESS),
-            ("atp/overspeed", "a (2/2)", NEEDS_HARNESS),
-            ("ptu/identity", "b", "needs an operator"),
+            ("atp/overspeed", "a (1/2)", Finding::NeedsHarness.not_run()),
+            ("atp/overspeed", "a (2/2)", Finding::NeedsHarness),
+            ("ptu/identity", "b", Finding::NoStepRun),
         ];
+        let skipped = skipped.map(|(procedure, step, why)| (procedure, step, why.into()));
         let coverage = Coverage::of(counter.counts(6), skipped.into_iter());
         let steps = &coverage.steps;
         assert_eq!((steps.planned, steps.run(), steps.attempts), (6, 3, 5));

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, OnceLock};
 
-use btu_rig::procedure::Verdict;
+use btu_rig::procedure::{Finding, Verdict};
 
 use crate::platform::StopSignals;
 
@@ -46,10 +46,10 @@ impl Stop {
     }
 
     /// The verdict on what was still due when stop was pressed, and why; `None` if nobody pressed.
-    pub fn left_out(&self) -> Option<(Verdict, &str)> {
+    pub fn left_out(&self) -> Option<(Verdict, Finding)> {
         let left_out = match self.reason() {
-            Some(why) => (Verdict::Error, why),
-            None => (Verdict::Aborted, "stopped by the operator"),
+            Some(why) => (Verdict::Error, Finding::Told(why.to_owned())),
+            None => (Verdict::Aborted, Finding::Stopped),
         };
         (self.presses() > 0).then_some(left_out)
     }

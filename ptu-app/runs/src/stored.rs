@@ -2,7 +2,7 @@
 //! verdict is a type of its own; parts and severities are text there, since a database may hold those of another
 //! program.
 
-use btu_rig::procedure::{Outside, OutsideStep, Verdict};
+use btu_rig::procedure::{Findings, Outside, OutsideStep, Verdict};
 use fault_db::{FaultRecord, StepRecord};
 use protocol::lru;
 
@@ -47,9 +47,16 @@ pub fn fault_record(
         at_us,
         bench_us,
         step_index,
-        message: fault.message,
+        message: fault.finding.to_string(),
+        findings: Findings::from(fault.finding).to_json(),
         freeze: fault.freeze,
     }
+}
+
+/// What was found, from its column; nothing where that is empty or of another version.
+pub fn findings(stored: &Option<String>) -> Findings {
+    let read = stored.as_deref().and_then(Findings::from_json);
+    read.unwrap_or_default()
 }
 
 /// The procedure of an entry that is of the run as a whole.
@@ -68,7 +75,8 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
         verdict: stored(entry.verdict),
         started_bench_us: bench_us,
         bench_time_us: 0,
-        message: entry.message.clone(),
+        message: entry.finding.to_string(),
+        findings: Findings::from(entry.finding.clone()).to_json(),
         script_line: None,
         limit_source: None,
         measurements: Vec::new(),

@@ -1,7 +1,7 @@
 //! `ptu run --list`: what would be run, in words or as JSON.
 
-use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Finding, Procedure};
 use btu_rig::rig::Harness;
 use serde_json::json;
 
@@ -21,7 +21,7 @@ pub fn show(tasks: &[Task], harness: Harness, json: bool) -> Result<Exit, Failur
 }
 
 /// Why a procedure will be skipped, as far as is known before the unit is reached.
-fn skipped(procedure: &Procedure, harness: Harness) -> Option<&'static str> {
+fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
     match harness {
         Harness::None => procedure.needs.lacks(Connection::Ptu),
         Harness::Auto | Harness::Bench => None,
@@ -70,7 +70,7 @@ fn listed(task: &Task, harness: Harness) -> serde_json::Value {
         .collect();
     json!({
         "procedure": procedure.id, "title": procedure.title, "title_ko": procedure.title_ko,
-        "needs": procedure.needs.word(), "skipped": skipped(procedure, harness),
+        "needs": procedure.needs.word(), "skipped": skipped(procedure, harness).map(|why| why.to_string()),
         "on_request": procedure.on_request, "sha256": procedure.sha256, "worst_case_s": procedure.worst_case().as_secs(),
         "steps": steps,
     })

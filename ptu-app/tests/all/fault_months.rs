@@ -55,6 +55,7 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
         verdict: Verdict::Passed,
         started_bench_us: 0,
         bench_time_us: 1,
+        findings: None,
         message: String::new(),
         script_line: None,
         limit_source: None,

@@ -16,6 +16,7 @@ use crate::procedure::Verdict;
 use crate::procedure::action_run::ActionRun;
 use crate::procedure::event_set::EventSet;
 use crate::procedure::evidence::LogState;
+use crate::procedure::finding::Finding;
 use crate::procedure::plan::Procedure;
 use crate::procedure::report::{RunEvent, StepResult};
 
@@ -132,9 +133,8 @@ impl Runner {
                 let (place, live) = (*next, live.take());
                 // It counts, although the step that it came in is repeated.
                 let before = live.iter().flat_map(|run| run.failures());
-                let before =
-                    before.map(|why| format!("before the tester's computer stood still: {why}"));
-                self.messages.extend(before);
+                let before = before.map(|why| Finding::BeforeStandstill(Box::new(why.clone())));
+                self.findings.extend(before);
                 let wanted = live.is_some() || !self.leaving;
                 if wanted && place < self.schedule.len() {
                     self.spoil(place, live.map_or(now, |run| run.started()), now, by);
@@ -187,7 +187,7 @@ impl Runner {
             if !procedure.steps[turn.index].continues {
                 return Some(next);
             }
-            let why = format!("not run, it continues from \"{name}\", which was not tested");
+            let why = Finding::NotTestedBefore { step: name.clone() }.not_run();
             self.report_not_run(turn, now, Verdict::Skipped, &why);
             next += 1;
         }
@@ -203,27 +203,17 @@ impl Runner {
     ) {
         let step = &self.procedure.steps[turn.index];
         let last = attempt >= ATTEMPTS;
-        let (verdict, then) = match last {
-            true => (
-                Verdict::Error,
-                "end other programs and run this again".to_owned(),
-            ),
-            false => (
-                Verdict::Skipped,
-                format!("the step is repeated ({} of {ATTEMPTS})", attempt + 1),
-            ),
-        };
-        let message = format!(
-            "not tested in attempt {attempt} of {ATTEMPTS}: {}; {then}",
-            stood_still_text(by)
-        );
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
             name: turn.name(step),
             line: step.line,
-            verdict,
+            verdict: if last {
+                Verdict::Error
+            } else {
+                Verdict::Skipped
+            },
             repeated: !last,
-            message,
+            findings: Finding::StoodStill { by, attempt }.into(),
             suspect: None,
             started,
             bench_time: now.since(started),
@@ -234,11 +224,4 @@ impl Runner {
             self.verdict = self.verdict.and(Verdict::Error);
         }
     }
-}
-
-fn stood_still_text(by: Duration) -> String {
-    format!(
-        "the tester's computer stood still for {:.2} s, which says nothing about the unit",
-        by.as_secs()
-    )
 }

@@ -7,7 +7,8 @@ use protocol::{Duration, Instant};
 
 use super::{Phase, Runner, Stop};
 use crate::procedure::action_run::{Progress, Scan};
-use crate::procedure::evidence::{LogState, counted};
+use crate::procedure::evidence::LogState;
+use crate::procedure::finding::Finding;
 use crate::procedure::report::{Outside, RunEvent};
 use crate::procedure::worst_case::{TIME_LIMIT_MARGIN, total_worst_case};
 use crate::procedure::{Driver, Verdict};
@@ -50,21 +51,22 @@ impl Runner {
                 Progress::Waiting => break false,
                 Progress::Done => break true,
                 Progress::Stuck(problem) => {
-                    problems.push(format!("clean-up: {}", problem.message()));
+                    let what = Box::new(problem.finding().clone());
+                    problems.push(Finding::InCleanUp(what));
                     actions.skip();
                 }
             }
         };
         if !over && now.since(*since) >= allowed {
-            problems.push(format!("clean-up took longer than {allowed}"));
+            problems.push(Finding::CleanUpTooLong { within: allowed });
             over = true;
         }
         // Before a repetition the unit may have braked because it was not driven: the next set-up has its say.
         if self.resume.is_some() {
             problems.clear();
         }
-        for text in problems {
-            self.outside(Outside::CleanUp, Verdict::Error, text, now);
+        for finding in problems {
+            self.outside(Outside::CleanUp, Verdict::Error, finding, now);
         }
         if over {
             self.phase = Phase::MakeSafe { since: now };
@@ -77,8 +79,9 @@ impl Runner {
             if now.since(since) < SAFE_WITHIN {
                 return;
             }
-            let text = format!("outputs are not confirmed safe after {SAFE_WITHIN}");
-            self.outside(Outside::SafeOutputs, Verdict::Error, text, now);
+            let within = SAFE_WITHIN;
+            let finding = Finding::NotSafe { within };
+            self.outside(Outside::SafeOutputs, Verdict::Error, finding, now);
         }
         self.phase = Phase::ReadLog { since: now };
     }
@@ -91,15 +94,15 @@ impl Runner {
             if now.since(since) < LOG_WITHIN {
                 return;
             }
-            let text = format!("the unit's log was not read to its end within {LOG_WITHIN}");
-            self.outside(Outside::UnitLog, Verdict::Error, text, now);
+            let within = LOG_WITHIN;
+            let finding = Finding::LogNotReadToEnd { within };
+            self.outside(Outside::UnitLog, Verdict::Error, finding, now);
         }
         self.phase = Phase::Done;
         self.conclude(now);
-        let messages = self.messages.iter().map(|text| (text.as_str(), 1));
         self.out.push(RunEvent::ProcedureFinished {
             verdict: self.overall(),
-            message: counted(messages),
+            findings: self.findings.clone(),
             at: now,
         });
     }

@@ -6,40 +6,42 @@ use protocol::signal::Sample;
 use super::{Phase, Runner, Stop};
 use crate::procedure::Verdict;
 use crate::procedure::action_run::Problem;
+use crate::procedure::finding::Finding;
 use crate::procedure::report::Outside;
 
 impl Runner {
     pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
         self.link_lost = true;
-        let text = format!("link to the unit: {error}");
+        let why = error.to_owned();
+        let finding = Finding::LinkLost { why };
         match self.phase {
             Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::ReadLog { .. } => {
-                self.outside(Outside::Bench, Verdict::Error, text, now);
+                self.outside(Outside::Bench, Verdict::Error, finding, now);
             }
-            _ => self.break_off(now, sample, text),
+            _ => self.break_off(now, sample, finding),
         }
     }
 
     /// Nothing more is judged: the present step ends as an error, the others are skipped.
-    pub(super) fn break_off(&mut self, now: Instant, sample: &Sample, text: String) {
+    pub(super) fn break_off(&mut self, now: Instant, sample: &Sample, why: Finding) {
         match &mut self.phase {
             Phase::Steps { live, .. } => {
                 if let Some(step) = live.as_mut() {
-                    step.break_off(Problem::Bench(text.clone()));
+                    step.break_off(Problem::Bench(why.clone()));
                     self.finish_step(now, sample, false);
-                    self.note(Verdict::Error, text.clone());
+                    self.note(Verdict::Error, why.clone());
                 } else {
-                    self.outside(Outside::Bench, Verdict::Error, text.clone(), now);
+                    self.outside(Outside::Bench, Verdict::Error, why.clone(), now);
                 }
-                self.skip_rest(now, &format!("not run, {text}"));
+                self.skip_rest(now, &why.not_run());
             }
             Phase::Setup(_) => {
-                self.outside(Outside::Bench, Verdict::Error, text.clone(), now);
+                self.outside(Outside::Bench, Verdict::Error, why.clone(), now);
                 self.phase = Phase::Steps {
                     next: 0,
                     live: None,
                 };
-                self.skip_rest(now, &format!("not run, {text}"));
+                self.skip_rest(now, &why.not_run());
             }
             Phase::NotStarted
             | Phase::CleanUp { .. }
@@ -55,10 +57,9 @@ impl Runner {
         }
         match &self.phase {
             Phase::Setup(_) | Phase::Steps { .. } => {
-                let text = "stopped by the operator".to_owned();
                 if matches!(self.phase, Phase::Steps { live: Some(_), .. }) {
                     self.finish_step(now, sample, true);
-                    self.note(Verdict::Aborted, text);
+                    self.note(Verdict::Aborted, Finding::Stopped);
                 } else {
                     if matches!(self.phase, Phase::Setup(_)) {
                         self.phase = Phase::Steps {
@@ -66,13 +67,13 @@ impl Runner {
                             live: None,
                         };
                     }
-                    self.outside(Outside::Stop, Verdict::Aborted, text, now);
+                    self.outside(Outside::Stop, Verdict::Aborted, Finding::Stopped, now);
                 }
-                self.skip_rest(now, "not run, stopped by the operator");
+                self.skip_rest(now, &Finding::Stopped.not_run());
             }
             Phase::CleanUp { .. } if self.stop == Stop::CutShort => {
-                let text = "clean-up cut short by the operator".into();
-                self.outside(Outside::CleanUp, Verdict::Aborted, text, now);
+                let finding = Finding::CleanUpCutShort;
+                self.outside(Outside::CleanUp, Verdict::Aborted, finding, now);
                 self.phase = Phase::MakeSafe { since: now };
             }
             _ => {}

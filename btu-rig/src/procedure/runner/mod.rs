@@ -14,7 +14,7 @@ mod unsolicited;
 
 use std::sync::Arc;
 
-use protocol::event::{Event, LOG_ENTRIES, Severity};
+use protocol::event::{Event, Severity};
 use protocol::message::SelfTest;
 use protocol::signal::Sample;
 use protocol::{Duration, Instant, LruId};
@@ -26,9 +26,9 @@ pub use schedule::{PromptPolicy, RunOptions};
 use schedule::{ScheduledStep, schedule};
 
 use super::action_run::{ActionRun, Operator, Progress, Scan};
-use super::describe::meanings;
 use super::event_set::EventSet;
 use super::evidence::Evidence;
+use super::finding::{Before, Finding, Findings};
 use super::plan::{Procedure, Step};
 use super::report::{Outside, OutsideStep, RunEvent};
 use super::step_run::StepRun;
@@ -89,9 +89,9 @@ pub struct Runner {
     answer: Option<bool>,
     link_lost: bool,
     /// Why nothing since the last scan can be judged.
-    interrupted: Option<String>,
+    interrupted: Option<Finding>,
     /// Why the procedure is not run at all.
-    passed_over: Option<String>,
+    passed_over: Option<Finding>,
     /// How far what is heard can be trusted, as of the present scan.
     evidence: Evidence,
     /// Entries of the unit's log not kept before this procedure.
@@ -119,7 +119,7 @@ pub struct Runner {
     /// Times clean-up was begun.
     clean_ups: u32,
     verdict: Verdict,
-    messages: Vec<String>,
+    findings: Findings,
     out: Vec<RunEvent>,
 }
 
@@ -156,7 +156,7 @@ impl Runner {
             last_pause: None,
             clean_ups: 1,
             verdict: Verdict::Skipped,
-            messages: Vec::new(),
+            findings: Findings::default(),
             out: Vec::new(),
         }
     }
@@ -177,20 +177,23 @@ impl Runner {
 
     /// Somebody else acted on the unit, or the tester cannot go on, so nothing the unit did meanwhile can be judged.
     /// The present step becomes an error with this reason; the remaining steps are not run.
-    pub fn interrupted(&mut self, reason: String) {
+    pub fn interrupted(&mut self, reason: Finding) {
         self.interrupted = Some(reason);
     }
 
     /// The procedure cannot be run on this connection: all its steps are skipped with this reason. To be said before
     /// the first scan.
-    pub fn pass_over_all(&mut self, reason: String) {
+    pub fn pass_over_all(&mut self, reason: Finding) {
         self.passed_over = Some(reason);
     }
 
     /// A fault was found while the unit was brought up, before any step.
     pub fn found_before(&mut self, what: &str, at: Instant) {
-        let text = format!("found before the first step: {what}");
-        self.outside(Outside::BringUp, Verdict::Failed, text, at);
+        let finding = Finding::FoundBefore {
+            fault: what.to_owned(),
+            before: Before::FirstStep,
+        };
+        self.outside(Outside::BringUp, Verdict::Failed, finding, at);
     }
 
     /// What is left of the procedure is not wanted: after the present step, clean-up. The verdict is that
@@ -272,16 +275,16 @@ impl Runner {
             at: now,
         });
         if self.schedule.is_empty() {
-            let text = "no step to run".into();
-            self.outside(Outside::Whole, Verdict::Error, text, now);
+            let finding = Finding::NoStepToRun;
+            self.outside(Outside::Whole, Verdict::Error, finding, now);
             self.phase = Phase::MakeSafe { since: now };
         } else if let Some(reason) = self.passed_over.take() {
             self.phase = Phase::Steps {
                 next: 0,
                 live: None,
             };
-            self.skip_rest(now, &format!("not run, {reason}"));
-            self.messages.push(reason);
+            self.skip_rest(now, &reason.clone().not_run());
+            self.findings.add(reason, 1);
             // Nothing was done, so there is nothing to clean up.
             self.phase = Phase::MakeSafe { since: now };
         } else {
@@ -312,9 +315,9 @@ impl Runner {
             live: None,
         };
         if let Progress::Stuck(problem) = progress {
-            let text = format!("setup: {}", problem.message());
-            self.outside(Outside::SetUp, Verdict::Error, text.clone(), now);
-            self.skip_rest(now, &format!("not run, {text}"));
+            let finding = Finding::InSetUp(Box::new(problem.finding().clone()));
+            self.outside(Outside::SetUp, Verdict::Error, finding.clone(), now);
+            self.skip_rest(now, &finding.not_run());
         }
     }
 
@@ -336,18 +339,15 @@ impl Runner {
     /// What stands at the end beside the steps.
     fn conclude(&mut self, now: Instant) {
         if !self.self_test.is_empty() {
-            let items = meanings(&SelfTest::SPEC, self.self_test.bits());
-            let text = format!("the unit says its self-test failed: {items}");
-            self.outside(Outside::SelfTest, Verdict::Failed, text, now);
+            let items = self.self_test.bits();
+            let finding = Finding::SelfTestFailed { items };
+            self.outside(Outside::SelfTest, Verdict::Failed, finding, now);
         }
         let before = self.not_kept_before.unwrap_or_default();
         let more = self.not_reported + self.evidence.not_kept.saturating_sub(before);
         if more > 0 {
-            let text = format!(
-                "the unit logged more than {LOG_ENTRIES} events that no step provoked, and {more} more \
-                 entries, not stored"
-            );
-            self.outside(Outside::UnitLog, Verdict::Failed, text, now);
+            let finding = Finding::TooManyEvents { more };
+            self.outside(Outside::UnitLog, Verdict::Failed, finding, now);
         }
     }
 
@@ -362,19 +362,19 @@ impl Runner {
     }
 
     /// Reports what failed outside a step.
-    fn outside(&mut self, place: Outside, verdict: Verdict, text: String, at: Instant) {
+    fn outside(&mut self, place: Outside, verdict: Verdict, finding: Finding, at: Instant) {
         self.out.push(RunEvent::OutsideStep(OutsideStep {
             place,
             verdict,
-            message: text.clone(),
+            finding: finding.clone(),
             at,
         }));
-        self.note(verdict, text);
+        self.note(verdict, finding);
     }
 
-    fn note(&mut self, verdict: Verdict, text: String) {
+    fn note(&mut self, verdict: Verdict, finding: Finding) {
         self.verdict = self.verdict.and(verdict);
-        self.messages.push(text);
+        self.findings.add(finding, 1);
     }
 
     /// Part to suspect when a step fails: what TCMS has reported of the train, if anything, stays broken and shows in

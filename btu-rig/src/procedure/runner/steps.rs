@@ -9,6 +9,7 @@ use super::schedule::ScheduledStep;
 use super::{Phase, PromptPolicy, Runner};
 use crate::procedure::action_run::{ActionRun, Scan};
 use crate::procedure::condition::Answer;
+use crate::procedure::finding::Finding;
 use crate::procedure::plan::{Action, OnFail, Step};
 use crate::procedure::report::{RunEvent, StepResult};
 use crate::procedure::step_run::StepRun;
@@ -76,8 +77,9 @@ impl Runner {
             .map_or(Answer::Yes, |when| when.truth(sample, &self.captured));
         match truth {
             Answer::Yes if self.options.prompts == PromptPolicy::Refuse => {
-                if let Some(text) = question(step, driver.has_harness()) {
-                    let why = format!("needs an operator: {text}");
+                if let Some(question) = question(step, driver.has_harness()) {
+                    let question = question.to_owned();
+                    let why = Finding::NeedsOperator { question };
                     self.pass_over(turn, now, Verdict::Skipped, &why);
                     return false;
                 }
@@ -85,17 +87,14 @@ impl Runner {
             Answer::Yes => {}
             Answer::No => {
                 let said = step.when.as_ref().and_then(|when| when.said(driver));
-                let why = said.unwrap_or("its condition does not hold");
-                self.pass_over(turn, now, Verdict::Skipped, why);
+                let said = said.map(str::to_owned);
+                let why = Finding::ConditionFalse { said };
+                self.pass_over(turn, now, Verdict::Skipped, &why);
                 return false;
             }
-            Answer::NoData(missing_data) => {
-                self.pass_over(
-                    turn,
-                    now,
-                    Verdict::Error,
-                    &format!("its condition: {missing_data}"),
-                );
+            Answer::NoData(missing) => {
+                let why = Finding::ConditionUnknown { missing };
+                self.pass_over(turn, now, Verdict::Error, &why);
                 self.stop_unless_passed(turn, Verdict::Error, now);
                 return false;
             }
@@ -167,7 +166,7 @@ impl Runner {
             line: step.line,
             verdict: end.verdict,
             repeated: false,
-            message: end.message,
+            findings: end.findings,
             suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
             bench_time: end.bench_time,
@@ -183,13 +182,13 @@ impl Runner {
         let step = &self.procedure.steps[turn.index];
         let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
         if stops && verdict != Verdict::Passed {
-            let name = turn.name(step);
-            self.skip_rest(now, &format!("not run, \"{name}\" did not pass"));
+            let step = turn.name(step);
+            self.skip_rest(now, &Finding::NotPassed { step }.not_run());
         }
     }
 
     /// Reports all steps still to come as skipped and goes on to clean-up.
-    pub(super) fn skip_rest(&mut self, now: Instant, reason: &str) {
+    pub(super) fn skip_rest(&mut self, now: Instant, reason: &Finding) {
         if let Phase::Steps { next, .. } = &mut self.phase {
             // Those before have their results.
             *next = (*next).max(self.begun_at.target);
@@ -206,7 +205,7 @@ impl Runner {
     }
 
     /// Reports a step that is not run.
-    fn pass_over(&mut self, turn: ScheduledStep, now: Instant, verdict: Verdict, reason: &str) {
+    fn pass_over(&mut self, turn: ScheduledStep, now: Instant, verdict: Verdict, reason: &Finding) {
         let Phase::Steps { next, .. } = &mut self.phase else {
             return;
         };
@@ -221,7 +220,7 @@ impl Runner {
         turn: ScheduledStep,
         now: Instant,
         verdict: Verdict,
-        reason: &str,
+        reason: &Finding,
     ) {
         let step = &self.procedure.steps[turn.index];
         self.out.push(RunEvent::StepFinished(StepResult {
@@ -230,7 +229,7 @@ impl Runner {
             line: step.line,
             verdict,
             repeated: false,
-            message: reason.into(),
+            findings: reason.clone().into(),
             suspect: self.suspect(step),
             started: now,
             bench_time: Duration::ZERO,

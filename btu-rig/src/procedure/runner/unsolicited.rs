@@ -7,8 +7,8 @@ use protocol::signal::{Sample, Signal};
 use super::{Phase, Runner};
 use crate::procedure::UnitEvent;
 use crate::procedure::Verdict;
-use crate::procedure::describe::clock_wrong;
 use crate::procedure::event_set::EventSet;
+use crate::procedure::finding::Finding;
 use crate::procedure::plan::Step;
 use crate::procedure::report::{Outside, RunEvent};
 
@@ -64,7 +64,7 @@ impl Runner {
             });
             if !asked && self.evidence.explains(known, entry.parameter) {
                 if let Some(step) = live.as_mut() {
-                    step.hold_against_line(&entry.as_logged());
+                    step.hold_against_line(Some(entry.into()));
                 }
             } else if let Some(by) = pause.filter(|_| !asked && live.is_some()) {
                 self.stood_still = Some(by);
@@ -93,8 +93,8 @@ impl Runner {
     }
 
     fn outside_event(&mut self, entry: &UnitEvent, now: Instant) {
-        let text = format!("{}, which no step provoked", entry.as_logged());
-        self.outside(Outside::UnprovokedEvent, Verdict::Failed, text, now);
+        let finding = Finding::Unprovoked(entry.into());
+        self.outside(Outside::UnprovokedEvent, Verdict::Failed, finding, now);
     }
 
     /// Looks at what no event tells: an emergency brake, and the unit's clock.
@@ -125,7 +125,7 @@ impl Runner {
                 return;
             }
             if self.evidence.line.lost_or_damaged_lately > 0 {
-                live.hold_against_line("the emergency brake was applied");
+                live.hold_against_line(None);
                 return;
             }
             self.verdict = self.verdict.and(Verdict::Failed);
@@ -144,8 +144,8 @@ impl Runner {
             return;
         }
         self.clock_reported = true;
-        let text = clock_wrong(by_permille);
-        self.outside(Outside::Whole, Verdict::Failed, text, now);
+        let finding = Finding::ClockWrong { by_permille };
+        self.outside(Outside::Whole, Verdict::Failed, finding, now);
         self.out.push(RunEvent::UnitClockWrong {
             by_permille,
             at: now,

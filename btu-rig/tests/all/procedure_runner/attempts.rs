@@ -55,7 +55,7 @@ fn the_step_is_repeated_from_the_set_up_and_those_before_are_not() {
     assert_eq!(attempts(&outcome), expected);
     assert_eq!(outcome.finished(), (PASSED, ""));
     assert_eq!(
-        outcome.steps()[1].message,
+        outcome.steps()[1].findings.to_string(),
         "not tested in attempt 1 of 3: the tester's computer stood still for 0.30 s, which says nothing about the \
          unit; the step is repeated (2 of 3)"
     );
@@ -145,7 +145,7 @@ fn after_three_attempts_the_step_is_an_error_and_the_next_that_can_be_is_tested(
     assert_eq!(attempts(&outcome), expected);
     assert_eq!(overall(&outcome), Verdict::Error);
     assert_eq!(
-        outcome.steps()[3].message,
+        outcome.steps()[3].findings.to_string(),
         "not run, it continues from \"a\", which was not tested"
     );
 }
@@ -247,8 +247,8 @@ fn what_came_before_the_pause_counts_and_is_told() {
     });
     assert_eq!(overall(&outcome), Verdict::Failed);
     let told = outcome.events.iter().any(|event| {
-        matches!(event, RunEvent::ProcedureFinished { message, .. }
-            if message.contains("before the tester's computer stood still: the unit logged inputs_lost"))
+        matches!(event, RunEvent::ProcedureFinished { findings, .. }
+            if findings.to_string().contains("before the tester's computer stood still: the unit logged inputs_lost"))
     });
     assert!(told, "{:#?}", outcome.events);
 }

@@ -259,13 +259,12 @@ fn events_without_end_are_reported_up_to_what_a_log_holds_and_counted_beyond() {
         .filter(|e| matches!(e, RunEvent::UnsolicitedEvent(_)));
     assert_eq!(reported.count(), LOG_ENTRIES);
     let step = outcome.steps()[0];
-    let said = step
-        .message
-        .strip_prefix("the unit logged twc_lost (400), which no step provoked (");
+    let told = step.findings.to_string();
+    let said = told.strip_prefix("the unit logged twc_lost (400), which no step provoked (");
     assert!(
         said.is_some_and(|times| times.ends_with(" times)")),
         "{}",
-        step.message
+        told
     );
     let (verdict, message) = outcome.finished();
     assert_eq!(verdict, Verdict::Failed);

@@ -20,7 +20,7 @@ fn a_time_is_measured_from_change_to_change() {
         world.sample.set_bit(Signal::Eb, world.ms() >= 1000);
     });
     let step = outcome.steps()[0];
-    assert_eq!(step.verdict, Verdict::Passed, "{}", step.message);
+    assert_eq!(step.verdict, Verdict::Passed, "{}", step.findings);
     let values: Vec<_> = (step.measurements.iter())
         .map(|m| format!("{} {:.2} {}", m.name, m.value.unwrap_or(f64::NAN), m.unit))
         .collect();
@@ -175,7 +175,7 @@ fn an_item_of_the_self_test_that_the_unit_does_not_make_is_left_out() {
     let known = SelfTest::from_bits_retain(0xFF);
     let outcome = run(&script, |world| world.fake.self_test = known);
     let step = outcome.steps()[0];
-    assert_eq!(step.verdict, Verdict::Passed, "{}", step.message);
+    assert_eq!(step.verdict, Verdict::Passed, "{}", step.findings);
     for measurement in &step.measurements {
         let new = ["self_test.twc_cpu", "self_test.tcms_link"].contains(&measurement.name.as_str());
         let expected = if new {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{
-    Driver, EventSource, Evidence, Poll, Procedure, Refusal, RunEvent, RunOptions, Runner,
-    StepResult, UnitEvent, Verdict,
+    Driver, EventSource, Evidence, Findings, Poll, Procedure, Refusal, RunEvent, RunOptions,
+    Runner, StepResult, UnitEvent, Verdict,
 };
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
@@ -138,15 +138,15 @@ impl Outcome {
     pub fn summary(&self) -> Vec<(&str, Verdict, &str)> {
         self.steps()
             .into_iter()
-            .map(|r| (r.name.as_str(), r.verdict, r.message.as_str()))
+            .map(|r| (r.name.as_str(), r.verdict, told(&r.findings)))
             .collect()
     }
 
     pub fn finished(&self) -> (Verdict, &str) {
         match self.events.last() {
             Some(RunEvent::ProcedureFinished {
-                verdict, message, ..
-            }) => (*verdict, message),
+                verdict, findings, ..
+            }) => (*verdict, told(findings)),
             other => panic!("{other:?}"),
         }
     }
@@ -210,3 +210,8 @@ pub const HEAD: &str =
     "procedure(title = 'x', setup = [cab.key(True)], cleanup = [cab.key(False)])\n";
 pub const ON: Stimulus = Stimulus::MaintenanceKey { on: true };
 pub const OFF: Stimulus = Stimulus::MaintenanceKey { on: false };
+
+/// As the English text that tests compare.
+fn told(findings: &Findings) -> &'static str {
+    findings.to_string().leak()
+}

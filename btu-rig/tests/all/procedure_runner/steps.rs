@@ -99,7 +99,10 @@ fn a_failed_step_can_stop_the_procedure() {
     let expected = [Verdict::Failed, Verdict::Skipped];
     let verdicts: Vec<_> = outcome.steps().iter().map(|s| s.verdict).collect();
     assert_eq!(verdicts, expected);
-    assert_eq!(outcome.steps()[1].message, "not run, \"a\" did not pass");
+    assert_eq!(
+        outcome.steps()[1].findings.to_string(),
+        "not run, \"a\" did not pass"
+    );
     let script = script.replace(", on_fail = 'stop'", "");
     let options = RunOptions {
         stop_on_fail: true,

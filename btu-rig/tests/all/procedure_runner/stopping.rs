@@ -106,7 +106,7 @@ fn motion_that_does_not_end_is_an_error() {
     let step = outcome.steps()[0];
     assert_eq!(step.verdict, Verdict::Error);
     assert_eq!(
-        step.message,
+        step.findings.to_string(),
         "motion or tester request not finished within 3.111 s"
     );
 }

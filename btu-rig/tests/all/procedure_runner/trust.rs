@@ -1,6 +1,6 @@
 //! What the runner may not judge: a lost link, a stalled tester, an unread log, lost frames.
 
-use btu_rig::procedure::{LogState, RunEvent, Verdict};
+use btu_rig::procedure::{Finding, LogState, RunEvent, Verdict};
 use protocol::Duration;
 use protocol::event::Event;
 use protocol::message::SelfTest;
@@ -37,7 +37,9 @@ fn a_stalled_tester_reports_an_error_and_no_fault() {
     );
     let outcome = run(&script, |world| {
         if world.ms() == 1000 {
-            world.runner.interrupted("held up for 0.50 s".into());
+            world
+                .runner
+                .interrupted(Finding::Told("held up for 0.50 s".into()));
             world.sample.set(Signal::Eb, 1.0);
             world.log(Event::InputsLost);
         }
@@ -92,7 +94,7 @@ fn a_procedure_stalled_in_its_setup_runs_no_step_and_cleans_up() {
         "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nstep('a')";
     let outcome = run(script, |world| {
         if world.ms() == 1000 {
-            world.runner.interrupted("held up".into());
+            world.runner.interrupted(Finding::Told("held up".into()));
         }
     });
     assert_eq!(
@@ -270,8 +272,9 @@ fn what_a_unit_refuses_after_a_restart_of_its_own_is_a_failure_with_the_part_it_
             }
         });
         let steps = outcome.steps();
-        assert_eq!(steps[0].verdict, expected, "{}", steps[0].message);
-        assert!(steps[0].message.contains(text), "{}", steps[0].message);
+        let told = steps[0].findings.to_string();
+        assert_eq!(steps[0].verdict, expected, "{told}");
+        assert!(told.contains(text), "{told}");
         let part = steps[0].suspect.as_ref().map(|part| part.as_str());
         assert_eq!(part, Some(if dips { "power_supply" } else { "test_board" }));
         assert_eq!(outcome.finished().0, expected);

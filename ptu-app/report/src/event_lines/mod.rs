@@ -6,7 +6,9 @@
 
 mod table;
 
-use btu_rig::procedure::{EventSource, Measurement, Procedure, RunEvent, StepResult, UnitEvent};
+use btu_rig::procedure::{
+    EventSource, Findings, Measurement, Procedure, RunEvent, StepResult, UnitEvent,
+};
 use protocol::lru;
 use serde_json::{Map, Value, json};
 
@@ -39,7 +41,8 @@ impl EventLines {
                     "at_us": fault.at.as_us(), "code": fault.code, "name": fault.name,
                     "part": fault.lru.as_ref().map(|part| lru::stored(Some(part))),
                     "severity": fault.severity.label(), "step": fault.step,
-                    "message": fault.message, "freeze": fault.freeze,
+                    "message": fault.finding.to_string(), "findings": Findings::from(fault.finding.clone()),
+                    "freeze": fault.freeze,
                 }),
             ),
             SessionEvent::Trace(trace) => (
@@ -117,16 +120,17 @@ fn of_runner(event: &RunEvent) -> (&'static str, Value) {
             "outside_step",
             json!({
                 "at_us": outside.at.as_us(), "place": outside.place.name(),
-                "verdict": outside.verdict.label(), "message": outside.message,
+                "verdict": outside.verdict.label(), "message": outside.finding.to_string(),
+                "findings": Findings::from(outside.finding.clone()),
             }),
         ),
         RunEvent::ProcedureFinished {
             verdict,
-            message,
+            findings,
             at,
         } => (
             "procedure_finished",
-            json!({ "at_us": at.as_us(), "verdict": verdict.label(), "message": message }),
+            json!({ "at_us": at.as_us(), "verdict": verdict.label(), "message": findings.to_string(), "findings": findings }),
         ),
     }
 }
@@ -142,7 +146,7 @@ fn measured(index: usize, measurement: &Measurement) -> Value {
 fn of_step(result: &StepResult) -> Value {
     json!({
         "index": result.index, "name": result.name, "verdict": result.verdict.label(),
-        "message": result.message, "repeated": result.repeated,
+        "message": result.findings.to_string(), "findings": result.findings, "repeated": result.repeated,
         "suspect": result.suspect.as_ref().map(|part| lru::stored(Some(part))),
         "started_us": result.started.as_us(), "bench_time_us": result.bench_time.as_us(),
         "script_line": result.line,

@@ -43,6 +43,11 @@ const MESSAGE: (&str, Kind, &str) = (
     Text,
     "why, or a note; empty if there is nothing to say",
 );
+const FINDINGS: (&str, Kind, &str) = (
+    "findings",
+    List,
+    "the same as data: a finding each, and how many times it came",
+);
 const VERDICT: (&str, Kind, &str) = (
     "verdict",
     Text,
@@ -154,6 +159,7 @@ pub const EVENTS: &[EventKeys] = &[
             ("name", Text, "its name, with (2/3) where it is repeated"),
             VERDICT,
             MESSAGE,
+            FINDINGS,
             (
                 "repeated",
                 Bit,
@@ -195,12 +201,13 @@ pub const EVENTS: &[EventKeys] = &[
             ("place", Text, "where, such as bring-up or clean-up"),
             VERDICT,
             MESSAGE,
+            FINDINGS,
         ],
     ),
     (
         "procedure_finished",
         "a procedure is over, and outputs are safe, or an error says that they are not",
-        &[AT, VERDICT, MESSAGE],
+        &[AT, VERDICT, MESSAGE, FINDINGS],
     ),
     (
         "fault",
@@ -217,6 +224,7 @@ pub const EVENTS: &[EventKeys] = &[
                 "step under way, by its turn in the procedure",
             ),
             MESSAGE,
+            FINDINGS,
             (
                 "freeze",
                 List,

@@ -66,7 +66,10 @@ fn rows(step: &StepRecord, sources: &Sources<'_>, words: &Words) -> Vec<Row> {
         rows.push(Row {
             kind: RowKind::Detail,
             cells: vec![(
-                Cell::Text(tone, words.content(&step.message).into_owned()),
+                Cell::Text(
+                    tone,
+                    words.found(&step.findings, &step.message).into_owned(),
+                ),
                 5 + MEASURED,
             )],
         });

@@ -122,6 +122,7 @@ fn step(index: u32, failed: bool) -> StepRecord {
         verdict,
         started_bench_us: i64::from(index) * 1_000_000,
         bench_time_us: 1_000_000,
+        findings: None,
         message: if failed {
             HOSTILE.repeat(4)
         } else {
@@ -151,6 +152,7 @@ fn fault(index: u32) -> FaultRecord {
         at_us: 2_000_000,
         bench_us: i64::from(index) * 1_000_000,
         step_index: Some(index),
+        findings: None,
         message: String::new(),
         freeze: Vec::new(),
     }

@@ -56,7 +56,8 @@ pub struct ListedFault {
 impl ListedFault {
     fn of(occurrence: &RunOccurrence, parts: &PartNames) -> Self {
         let said = |language: Language| {
-            parts.fault(&occurrence.lru, &occurrence.message, language.words())
+            let seen = (&occurrence.findings, &*occurrence.message);
+            parts.fault(&occurrence.lru, seen, language.words())
         };
         Self {
             code: fault_name(occurrence),

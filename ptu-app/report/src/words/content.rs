@@ -13,7 +13,8 @@ use std::sync::LazyLock;
 use protocol::event::Event;
 use serde::Deserialize;
 
-use super::{condition, names};
+use super::names;
+use super::say::condition;
 
 /// The texts that are built in, as their file has them.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
@@ -151,8 +152,6 @@ impl Content {
 /// What stands in a place that says what kind of thing it is; `or_same` says what is no name.
 fn in_place(place: &str, part: &str, or_same: &dyn Fn(&str) -> String) -> Option<String> {
     match place {
-        "condition" | "seen" => condition::korean(part),
-        "expectation" => condition::expectation(part),
         "signal" => condition::signal(part),
         "mode" => condition::state("mode", part),
         "event" => {

@@ -7,7 +7,6 @@ mod bench;
 mod care;
 mod case;
 mod common;
-mod condition;
 mod content;
 mod diagnosis;
 mod drive;
@@ -19,6 +18,7 @@ mod memory;
 mod names;
 mod procedures;
 mod report;
+mod say;
 mod signals;
 mod statistics;
 mod traces;
@@ -168,7 +168,7 @@ impl Words {
     pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
         let said = match self.language {
             Language::English => None,
-            Language::Korean => condition::signal(name),
+            Language::Korean => say::condition::signal(name),
         };
         said.map_or(Cow::Borrowed(name), Cow::Owned)
     }
@@ -177,9 +177,20 @@ impl Words {
     pub fn state<'a>(&self, signal: &str, label: &'a str) -> Cow<'a, str> {
         let said = match self.language {
             Language::English => None,
-            Language::Korean => condition::state(signal, label),
+            Language::Korean => say::condition::state(signal, label),
         };
         said.map_or(Cow::Borrowed(label), Cow::Owned)
+    }
+
+    /// Unit of a measured value: SI units as they are, words in this language.
+    pub fn unit<'a>(&self, unit: &'a str) -> &'a str {
+        match unit {
+            "bytes" => self.bench.unit_bytes,
+            "errors" => self.bench.unit_errors,
+            "answers" => self.bench.unit_answers,
+            "frames" => self.bench.unit_frames,
+            same => same,
+        }
     }
 
     /// Name of a measurement, which scripts give, but for those of the unit's self-test.

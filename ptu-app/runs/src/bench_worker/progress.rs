@@ -5,7 +5,7 @@ use std::time;
 
 use btu_rig::procedure::plan::Step;
 use btu_rig::procedure::{
-    Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
+    Findings, Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
 };
 use fault_db::{StepCounter, StepCounts};
 use protocol::Duration;
@@ -62,7 +62,7 @@ pub struct ProcedureProgress {
     /// Its verdict, once it has ended.
     pub verdict: Option<Verdict>,
     /// What went wrong outside its steps.
-    pub message: String,
+    pub findings: Findings,
 }
 
 /// The procedure and step that a run has reached.
@@ -121,7 +121,7 @@ impl Progress {
         let skipped = self.procedures.iter().flat_map(|progress| {
             let results = progress.results.iter();
             let skipped = results.filter(|step| step.verdict == Verdict::Skipped);
-            skipped.map(|step| (&*progress.procedure.id, &*step.name, &*step.message))
+            skipped.map(|step| (&*progress.procedure.id, &*step.name, step.findings.clone()))
         });
         Coverage::of(self.counts(), skipped)
     }
@@ -135,7 +135,7 @@ impl Progress {
                 chosen: task.options.chosen.clone().unwrap_or_else(all),
                 results: Vec::new(),
                 verdict: None,
-                message: String::new(),
+                findings: Findings::default(),
             }
         };
         let procedures: Vec<_> = plan.tasks.iter().map(procedure).collect();
@@ -276,11 +276,11 @@ impl Progress {
             RunEvent::StepFinished(result) => self.step_finished(place, result),
             RunEvent::OutsideStep(entry) => self.outside_step(place, entry),
             RunEvent::ProcedureFinished {
-                verdict, message, ..
+                verdict, findings, ..
             } => {
                 let progress = &mut self.procedures[place];
                 progress.verdict = Some(*verdict);
-                progress.message.clone_from(message);
+                progress.findings.clone_from(findings);
                 self.present = None;
             }
             RunEvent::UnsolicitedEvent(_)
@@ -299,7 +299,7 @@ impl Progress {
                 line: 0,
                 repeated: false,
                 verdict: entry.verdict,
-                message: entry.message.clone(),
+                findings: entry.finding.clone().into(),
                 suspect: None,
                 started: entry.at,
                 bench_time: Duration::ZERO,

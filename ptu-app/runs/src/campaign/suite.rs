@@ -197,11 +197,11 @@ impl<'a> UnitUnderTest<'a> {
             observation.take(&event);
             saw(&event);
             let wrong = match event {
-                SessionEvent::Fault(fault) => fault.message,
+                SessionEvent::Fault(fault) => fault.finding.to_string(),
                 SessionEvent::Run(RunEvent::ProcedureFinished {
-                    verdict, message, ..
+                    verdict, findings, ..
                 }) if !matches!(verdict, Verdict::Passed | Verdict::Skipped) => {
-                    format!("{verdict} {message}")
+                    format!("{verdict} {findings}")
                 }
                 _ => return,
             };

@@ -84,6 +84,7 @@ fn step(index: u32, run: &RecordedRun) -> StepRecord {
         verdict: Verdict::Skipped,
         started_bench_us: i64::from(run.at_ms) * 1000,
         bench_time_us: rows * run.trace.period_us,
+        findings: None,
         message: format!("trace {}: {}", run.id.short(), run.summary()),
         script_line: None,
         limit_source: None,

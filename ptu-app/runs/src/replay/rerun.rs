@@ -275,6 +275,7 @@ fn write(
         started_bench_us: began_us,
         bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
         message: likeness.words().to_owned(),
+        findings: None,
         script_line: None,
         limit_source: None,
         measurements: Vec::new(),

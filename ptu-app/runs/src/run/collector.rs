@@ -1,7 +1,7 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
-use btu_rig::procedure::{Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
+use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
 use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
 use protocol::{Duration, Instant};
@@ -135,21 +135,21 @@ impl<'a> Collector<'a> {
     }
 
     /// The present procedure was due and not begun, because the run was stopped.
-    pub fn not_begun(&mut self, verdict: Verdict, why: &str) {
+    pub fn not_begun(&mut self, verdict: Verdict, why: Finding) {
         let Some(procedure) = self.procedure.clone() else {
             return;
         };
         let entry = OutsideStep {
             place: Outside::NotBegun,
             verdict,
-            message: why.to_owned(),
+            finding: Finding::NotBegun(Box::new(why)),
             at: Instant::ZERO,
         };
         for event in [
             RunEvent::OutsideStep(entry.clone()),
             RunEvent::ProcedureFinished {
                 verdict,
-                message: why.to_owned(),
+                findings: entry.finding.clone().into(),
                 at: entry.at,
             },
         ] {
@@ -161,14 +161,18 @@ impl<'a> Collector<'a> {
     }
 
     /// The run cannot go on; what was said of the present procedure stays.
-    pub fn broken_off(&mut self, why: &str) {
+    pub fn broken_off(&mut self, why: Finding) {
+        self.of_whole(Verdict::Error, why, Instant::ZERO);
+        self.run_says_why = true;
+    }
+
+    fn of_whole(&mut self, verdict: Verdict, finding: Finding, at: Instant) {
         self.outside.push(OutsideStep {
             place: Outside::Whole,
-            verdict: Verdict::Error,
-            message: why.to_owned(),
-            at: Instant::ZERO,
+            verdict,
+            finding,
+            at,
         });
-        self.run_says_why = true;
     }
 
     /// Whether the present procedure ran to its end.
@@ -190,18 +194,15 @@ impl<'a> Collector<'a> {
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict,
-                message,
+                findings,
                 at,
             }) => {
                 self.finished += 1;
                 self.verdict = self.verdict.and(verdict);
                 if !is_passed(verdict) && !self.says_why {
-                    self.outside.push(OutsideStep {
-                        place: Outside::Whole,
-                        verdict,
-                        message,
-                        at,
-                    });
+                    for found in findings.iter() {
+                        self.of_whole(verdict, found.finding.clone(), at);
+                    }
                 }
                 self.store_outside(&procedure.id);
             }
@@ -260,7 +261,8 @@ impl<'a> Collector<'a> {
             started_bench_us: (self.before + Duration::from_us(result.started.as_us())).as_us()
                 as i64,
             bench_time_us: result.bench_time.as_us() as i64,
-            message: result.message,
+            message: result.findings.to_string(),
+            findings: result.findings.to_json(),
             script_line: Some(result.line),
             limit_source: result.limit_source,
             measurements: result.measurements.into_iter().flat_map(records).collect(),
@@ -319,29 +321,17 @@ impl<'a> Collector<'a> {
         let (run, of, left) = (counts.run(), counts.planned, counts.not_run());
         let mut of_whole = None;
         if self.link_lost && left > 0 {
-            of_whole = Some(format!("link lost at step {run} of {of}; {left} not run"));
+            of_whole = Some(Finding::LinkLostAt { run, of, left });
         } else if self.search && left > 0 && is_passed(verdict) {
             verdict = Verdict::Inconclusive;
-            of_whole = Some(format!(
-                "not an acceptance: {run} of {of} steps run, all passed"
-            ));
+            of_whole = Some(Finding::NotAcceptance { run, of });
         }
-        if let Some(message) = of_whole {
-            self.outside.push(OutsideStep {
-                place: Outside::Whole,
-                verdict,
-                message,
-                at: Instant::ZERO,
-            });
+        if let Some(finding) = of_whole {
+            self.of_whole(verdict, finding, Instant::ZERO);
             self.run_says_why = true;
         }
         if !is_passed(verdict) && !self.run_says_why {
-            self.outside.push(OutsideStep {
-                place: Outside::Whole,
-                verdict,
-                message: "no step was run".into(),
-                at: Instant::ZERO,
-            });
+            self.of_whole(verdict, Finding::NoStepRun, Instant::ZERO);
         }
         // Also what a procedure said that the program did not run to its end.
         self.store_outside(WHOLE_RUN);

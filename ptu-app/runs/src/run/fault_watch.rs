@@ -1,8 +1,7 @@
 //! Derives faults from the events of a run: unit events that were not provoked, a brake that was not
 //! asked for, a check that failed.
 
-use btu_rig::procedure::describe::{clock_wrong, meanings};
-use btu_rig::procedure::{Procedure, StepResult, UnitEvent, Verdict};
+use btu_rig::procedure::{Finding, Procedure, StepResult, UnitEvent, Verdict};
 use protocol::event::{Event, Severity};
 use protocol::message::SelfTest;
 use protocol::signal::Sample;
@@ -34,7 +33,7 @@ pub struct FaultSeen {
     /// Step under way, by its turn in the procedure.
     pub step: Option<usize>,
     /// What was seen.
-    pub message: String,
+    pub finding: Finding,
     /// All signals at that moment.
     pub freeze: Vec<fault_db::FreezeSample>,
 }
@@ -48,12 +47,9 @@ pub fn is_fault(entry: &UnitEvent) -> bool {
 /// not have to do with it.
 pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::from_code(entry.code);
-    let (name, severity, text) = match event.map(Event::definition) {
-        Some(known) => (known.name.to_owned(), known.severity, known.text.to_owned()),
-        None => {
-            let text = format!("event {} is not in the dictionary", entry.code);
-            (format!("event_{}", entry.code), Severity::Major, text)
-        }
+    let (name, severity) = match event.map(Event::definition) {
+        Some(known) => (known.name.to_owned(), known.severity),
+        None => (format!("event_{}", entry.code), Severity::Major),
     };
     FaultSeen {
         code: entry.code,
@@ -62,14 +58,12 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
         severity,
         at,
         step: None,
-        message: format!(
-            "{text}{} at {:.1} km/h, limit {:.1} km/h, {} time {:.3} s",
-            said(entry),
-            entry.speed.kmh(),
-            entry.limit.kmh(),
-            entry.source.who().trim_start_matches("the "),
-            f64::from(entry.at_ms) / 1000.0
-        ),
+        finding: Finding::Event {
+            event: entry.into(),
+            speed_kmh: entry.speed.kmh(),
+            limit_kmh: entry.limit.kmh(),
+            time_s: f64::from(entry.at_ms) / 1000.0,
+        },
         freeze: freeze_frame(sample),
     }
 }
@@ -78,7 +72,7 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
 pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::SelfTestFailed;
     let known = event.definition();
-    let items = meanings(&SelfTest::SPEC, failed.bits());
+    let items = failed.bits();
     FaultSeen {
         code: known.code,
         name: known.name.to_owned(),
@@ -86,16 +80,8 @@ pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen
         severity: known.severity,
         at,
         step: None,
-        message: format!("the unit says its self-test failed: {items}"),
+        finding: Finding::SelfTestFailed { items },
         freeze: freeze_frame(sample),
-    }
-}
-
-/// What the parameter of an event says, in brackets behind its text.
-fn said(entry: &UnitEvent) -> String {
-    match entry.said() {
-        said if said.is_empty() => said,
-        said => format!(" ({said})"),
     }
 }
 
@@ -108,7 +94,7 @@ pub fn of_brake(at: Instant, sample: &Sample) -> FaultSeen {
         severity: Severity::Critical,
         at,
         step: None,
-        message: "emergency brake applied in a step that did not ask for it".into(),
+        finding: Finding::BrakeApplied,
         freeze: freeze_frame(sample),
     }
 }
@@ -122,7 +108,7 @@ pub fn of_clock(by_permille: i32, at: Instant, sample: &Sample) -> FaultSeen {
         severity: Severity::Critical,
         at,
         step: None,
-        message: clock_wrong(by_permille),
+        finding: Finding::ClockWrong { by_permille },
         freeze: freeze_frame(sample),
     }
 }
@@ -144,7 +130,11 @@ pub fn of_step(
         severity: Severity::Major,
         at: result.started + result.bench_time,
         step: None,
-        message: format!("{}, {}: {}", procedure.id, result.name, result.message),
+        finding: Finding::CheckFailed {
+            procedure: procedure.id.clone(),
+            step: result.name.clone(),
+            findings: result.findings.clone(),
+        },
         freeze: freeze_frame(sample),
     })
 }

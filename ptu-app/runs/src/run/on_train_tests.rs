@@ -181,13 +181,14 @@ impl Laptop {
                 came.measured.push(measurement);
             }
             SessionEvent::Run(RunEvent::StepFinished(step)) => {
-                came.steps.push((step.name, step.verdict, step.message));
+                came.steps
+                    .push((step.name, step.verdict, step.findings.to_string()));
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict, message, ..
+                verdict, findings, ..
             }) => {
                 came.verdict = Some(verdict);
-                came.message = message;
+                came.message = findings.to_string();
             }
             SessionEvent::Fault(fault) => came.faults.push(fault.name),
             _ => {}

@@ -1,10 +1,10 @@
 //! Repetitions of a procedure, reported as one procedure with the steps of all repetitions.
 
-use btu_rig::procedure::{Outside, OutsideStep, RunEvent, Verdict};
+use btu_rig::procedure::{Finding, Findings, Outside, OutsideStep, RunEvent, Verdict};
 use protocol::Instant;
 
-/// Different messages of repetitions that are kept; what went wrong in thousands is clear from the first few.
-const MESSAGES: usize = 8;
+/// Different results of repetitions that are kept; what went wrong in thousands is clear from the first few.
+const KEPT: usize = 8;
 
 /// How many repetitions of a procedure have ended, and their common verdict.
 pub(super) struct RepetitionTally {
@@ -12,8 +12,8 @@ pub(super) struct RepetitionTally {
     begun: bool,
     over: u32,
     verdict: Verdict,
-    messages: Vec<String>,
-    /// Messages that found no room.
+    findings: Vec<Findings>,
+    /// Those that found no room.
     more: u32,
 }
 
@@ -25,7 +25,7 @@ impl RepetitionTally {
             begun: false,
             over: 0,
             verdict: Verdict::Skipped,
-            messages: Vec::new(),
+            findings: Vec::new(),
             more: 0,
         }
     }
@@ -54,9 +54,9 @@ impl RepetitionTally {
                 first.then_some(RunEvent::ProcedureStarted { steps, at })
             }
             RunEvent::ProcedureFinished {
-                verdict, message, ..
+                verdict, findings, ..
             } => {
-                self.note(verdict, message);
+                self.note(verdict, findings);
                 self.over += u32::from(!goes_on);
                 None
             }
@@ -69,25 +69,25 @@ impl RepetitionTally {
         &mut self,
         place: Outside,
         verdict: Verdict,
-        message: String,
+        finding: Finding,
         at: Instant,
     ) -> RunEvent {
-        self.note(verdict, message.clone());
+        self.note(verdict, finding.clone().into());
         RunEvent::OutsideStep(OutsideStep {
             place,
             verdict,
-            message,
+            finding,
             at,
         })
     }
 
-    fn note(&mut self, verdict: Verdict, message: String) {
+    fn note(&mut self, verdict: Verdict, findings: Findings) {
         self.verdict = self.verdict.and(verdict);
-        if message.is_empty() || self.messages.contains(&message) {
+        if findings.is_empty() || self.findings.contains(&findings) {
             return;
         }
-        if self.messages.len() < MESSAGES {
-            self.messages.push(message);
+        if self.findings.len() < KEPT {
+            self.findings.push(findings);
         } else {
             self.more += 1;
         }
@@ -95,16 +95,19 @@ impl RepetitionTally {
 
     /// The end of the procedure; `link_lost` = nothing could be judged any more, which is what it came to.
     pub(super) fn finished(self, link_lost: bool, at: Instant) -> RunEvent {
-        let mut messages = self.messages;
+        let mut findings = Findings::default();
+        for found in self.findings.iter().flat_map(Findings::iter) {
+            findings.add(found.finding.clone(), found.times);
+        }
         if self.more > 0 {
-            messages.push(format!("and {} more", self.more));
+            findings.add(Finding::More { n: self.more }, 1);
         }
         RunEvent::ProcedureFinished {
             verdict: match self.verdict {
                 Verdict::Failed | Verdict::Passed if link_lost => Verdict::Error,
                 verdict => verdict,
             },
-            message: messages.join("; "),
+            findings,
             at,
         }
     }

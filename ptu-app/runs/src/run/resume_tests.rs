@@ -76,16 +76,17 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
                 {
                     said.push(format!(
                         "line {}, {}: {}",
-                        step.line, step.name, step.message
+                        step.line, step.name, step.findings
                     ));
                 }
-                RunEvent::ProcedureFinished { message, .. } => {
-                    said.extend(Some(message).filter(|message| !message.is_empty()));
+                RunEvent::ProcedureFinished { findings, .. } => {
+                    let told = Some(findings).filter(|findings| !findings.is_empty());
+                    said.extend(told.map(|findings| findings.to_string()));
                 }
                 _ => {}
             }
         }
-        SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.message)),
+        SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.finding)),
         _ => {}
     };
     run_on_fresh(setup, &task, &Stop::default(), &mut sink, &TO_THE_END);

@@ -155,15 +155,17 @@ impl FaultyBench {
         };
         let mut sink = |event| match event {
             SessionEvent::Run(RunEvent::StepFinished(result)) => {
-                came_to.steps.push((result.verdict, result.message));
+                came_to
+                    .steps
+                    .push((result.verdict, result.findings.to_string()));
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict, message, ..
+                verdict, findings, ..
             }) => {
-                (came_to.verdict, came_to.message) = (verdict, message);
+                (came_to.verdict, came_to.message) = (verdict, findings.to_string());
             }
             SessionEvent::Fault(fault) => {
-                let told = format!("{} {:?}: {}", fault.name, fault.lru, fault.message);
+                let told = format!("{} {:?}: {}", fault.name, fault.lru, fault.finding);
                 came_to.faults.push(told);
             }
             _ => {}

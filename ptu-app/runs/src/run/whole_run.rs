@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{Outside, OutsideStep};
+use btu_rig::procedure::{Finding, Outside, OutsideStep};
 use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
 use protocol::Instant;
 
@@ -91,7 +91,7 @@ fn reach(
                 &OutsideStep {
                     place: Outside::Bench,
                     verdict: from_stored(verdict),
-                    message: failure.message.clone(),
+                    finding: Finding::Told(failure.message.clone()),
                     at: Instant::ZERO,
                 },
                 0,
@@ -155,7 +155,7 @@ pub fn run_on(
         });
     }));
     if worked.is_err() {
-        collector.broken_off("the program failed in this run");
+        collector.broken_off(Finding::ProgramFailed);
     }
     let left_out = stop.left_out().map(|(verdict, _)| verdict);
     let (run_store, mut outcome) = collector.finish(id, left_out);
@@ -189,7 +189,7 @@ fn collect(
     let mut places = 0;
     let not_begun = |collector: &mut Collector<'_>| {
         if let Some((verdict, why)) = stop.left_out() {
-            collector.not_begun(verdict, &format!("not begun, {why}"));
+            collector.not_begun(verdict, why);
         }
     };
     for (place, (procedure, stream)) in procedures.into_iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use btu_rig::procedure::finding::Finding as Seen;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{
     Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation, Relations,
@@ -20,6 +21,7 @@ use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
+use crate::stored::findings;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 
@@ -186,11 +188,14 @@ fn tell_messages(candidate: &mut Candidate, run: &RunDetail) {
         };
         let mut steps = run.steps.iter();
         let step = steps.find(|step| step.procedure == check.procedure && step.name == check.step);
-        let parts = step.into_iter().flat_map(|step| step.message.split("; "));
-        let parts: Vec<_> = parts.filter(|part| !part.is_empty()).collect();
-        let measured = parts.iter().find(|part| part.contains(" = "));
-        if let Some(message) = measured.or(parts.first()) {
-            reason.said = format!("{check} — {message}");
+        let found = step
+            .map(|step| findings(&step.findings))
+            .unwrap_or_default();
+        let missed = found
+            .iter()
+            .find(|found| matches!(found.finding, Seen::LimitMissed { .. }));
+        if let Some(found) = missed.or(found.iter().next()) {
+            reason.said = format!("{check} — {}", found.finding);
         }
     }
 }

@@ -108,7 +108,7 @@ fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String 
             local(seen.at_us),
             seen.run_id.short(),
             seen.trace_id.map_or_else(String::new, |id| id.short()),
-            words.content(&seen.message).into_owned(),
+            words.found(&seen.findings, &seen.message).into_owned(),
         ]);
     }
     let earlier =

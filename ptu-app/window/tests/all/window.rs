@@ -214,7 +214,7 @@ fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     let messages = run
         .procedures
         .iter()
-        .map(|procedure| procedure.message.as_str());
+        .map(|procedure| procedure.findings.to_string());
     let messages: String = messages.collect();
     assert!(messages.contains("stopped by the operator"), "{messages}");
     assert!(!messages.contains("cut short"), "{messages}");

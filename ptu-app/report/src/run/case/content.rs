@@ -5,6 +5,7 @@ use fault_db::{FaultEvent, FaultSummary, StepRecord};
 
 use super::CaseSheet;
 use super::first_page::clipped;
+use crate::event_text::note_text;
 use crate::naming;
 use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::run::compare::comparison;
@@ -12,7 +13,7 @@ use crate::run::content::body;
 use crate::run::plots::plots;
 use crate::run::sources::Sources;
 use crate::run::{Sheet, page, steps};
-use crate::words::{Language, Words, fill};
+use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
 /// Pages of what failed, at most.
@@ -182,7 +183,7 @@ impl CaseSheet {
                 let part = self.before.part(&cause.part, words);
                 format!("{part}{} {}", share.unwrap_or_default(), cause.note)
             }
-            _ => self.message(&event.note, words),
+            _ => note_text(&self.fault, event, words).into_owned(),
         };
         let cells = [
             local(event.at_us),
@@ -191,17 +192,6 @@ impl CaseSheet {
             clipped(&note, 300),
         ];
         Row::words(RowKind::Head, cells)
-    }
-
-    /// A message that came with the fault. What a unit says of its own events is told in English only: elsewhere its
-    /// code says it.
-    pub(super) fn message(&self, text: &str, words: &Words) -> String {
-        let said = words.content(text);
-        let is_english = words.language != Language::English && said == text;
-        match is_english {
-            true => naming::event(self.fault.fault.code, &self.fault.fault.code_name, words),
-            false => said.into_owned(),
-        }
     }
 }
 

@@ -172,12 +172,14 @@ impl CaseSheet {
         let failed = self.failed_steps();
         let said = match failed.first() {
             Some(step) => {
-                let message = words.content(&step.message);
+                let message = words.found(&step.findings, &step.message);
                 format!("{}, {}: {message}", step.procedure, name_of(step, words))
             }
             None => {
                 let seen = self.fault.occurrences.first();
-                seen.map_or_else(String::new, |seen| self.message(&seen.message, words))
+                seen.map_or_else(String::new, |seen| {
+                    words.found(&seen.findings, &seen.message).into_owned()
+                })
             }
         };
         match said.trim() {

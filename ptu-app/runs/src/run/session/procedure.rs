@@ -3,8 +3,9 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
+use btu_rig::procedure::finding::Before;
 use btu_rig::procedure::{
-    Outside, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict,
+    Finding, Outside, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict,
 };
 use btu_rig::recorded::{RecordingDriver, StimulusRecord};
 use btu_rig::rig::UnitLink;
@@ -109,8 +110,7 @@ impl<L: UnitLink> Session<L> {
             self.wait_with(false);
             self.finish_window(sink);
             if let Some(rest) = runner.to_be_resumed().cloned() {
-                let repeats = "before the repetition of a step";
-                self.settle_again(repeats, &mut rounds, &mut progress, sink);
+                self.settle_again(Before::RepeatedStep, &mut rounds, &mut progress, sink);
                 runner = Runner::resumed(procedure.clone(), options.clone(), rounds.over(), rest);
                 presses = 0;
                 continue;
@@ -121,15 +121,10 @@ impl<L: UnitLink> Session<L> {
             if !rounds.left() || link_lost || !go_on() || failed(&rounds, &progress) {
                 break;
             }
-            self.settle_again(
-                "before the next repetition",
-                &mut rounds,
-                &mut progress,
-                sink,
-            );
+            self.settle_again(Before::Repetition, &mut rounds, &mut progress, sink);
             if let Some((verdict, why)) = self.stop.left_out() {
                 let now = self.bench.now();
-                let event = rounds.outside(Outside::Stop, verdict, why.to_owned(), now);
+                let event = rounds.outside(Outside::Stop, verdict, why, now);
                 sink(SessionEvent::Run(event));
                 break;
             }
@@ -152,7 +147,7 @@ impl<L: UnitLink> Session<L> {
         let pressed = self.stop.presses();
         for press in *presses..pressed {
             match self.stop.reason().filter(|_| press == 0) {
-                Some(reason) => runner.interrupted(reason.to_owned()),
+                Some(reason) => runner.interrupted(Finding::Told(reason.to_owned())),
                 None => runner.stop(),
             }
         }
@@ -164,7 +159,7 @@ impl<L: UnitLink> Session<L> {
             runner.paused_with_unit(self.bench.now(), pause);
         }
         if let Some(why) = self.bench.rig_mut().take_intervention() {
-            runner.interrupted(why);
+            runner.interrupted(Finding::Told(why));
         }
         runner.behind(self.behind());
     }
@@ -184,11 +179,10 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Before a procedure or a step is repeated the unit settles as between two procedures; `when` is that, in
-    /// messages.
+    /// Before a procedure or a step is repeated the unit settles as between two procedures.
     fn settle_again(
         &mut self,
-        when: &str,
+        before: Before,
         rounds: &mut RepetitionTally,
         progress: &mut Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
@@ -196,7 +190,11 @@ impl<L: UnitLink> Session<L> {
         progress.step = None;
         progress.step_began = self.bench.now();
         for fault in between_procedures(self) {
-            let found = format!("found {when}: {}", fault.name);
+            let name = fault.name.clone();
+            let found = Finding::FoundBefore {
+                fault: name,
+                before,
+            };
             let event = rounds.outside(Outside::BringUp, Verdict::Failed, found, fault.at);
             sink(SessionEvent::Run(event));
             self.report(fault, progress, sink);

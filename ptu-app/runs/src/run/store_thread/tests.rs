@@ -32,6 +32,7 @@ fn step(index: u32) -> StepRecord {
         verdict: Verdict::Passed,
         started_bench_us: 0,
         bench_time_us: 1,
+        findings: None,
         message: String::new(),
         script_line: None,
         limit_source: None,
@@ -48,6 +49,7 @@ fn fault() -> FaultRecord {
         at_us: 1,
         bench_us: 1,
         step_index: Some(1),
+        findings: None,
         message: "late".into(),
         freeze: Vec::new(),
     }

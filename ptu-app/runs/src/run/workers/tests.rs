@@ -69,23 +69,27 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
     let mut not_passed = Vec::new();
     for (place, (procedure, repeat)) in row.enumerate() {
         let found = between_procedures(&mut session);
-        let mut said: Vec<_> = found.into_iter().map(|fault| fault.message).collect();
+        let mut said: Vec<_> = found
+            .into_iter()
+            .map(|fault| fault.finding.to_string())
+            .collect();
         let mut verdict = None;
         let mut sink = |event| match event {
             SessionEvent::Run(RunEvent::StepFinished(result))
                 if result.verdict != Verdict::Passed =>
             {
-                said.push(format!("{}: {}", result.name, result.message));
+                said.push(format!("{}: {}", result.name, result.findings));
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict: v,
-                message,
+                findings,
                 ..
             }) => {
                 verdict = Some(v);
-                said.extend(Some(message).filter(|message| !message.is_empty()));
+                let told = Some(findings).filter(|findings| !findings.is_empty());
+                said.extend(told.map(|findings| findings.to_string()));
             }
-            SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.message)),
+            SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.finding)),
             _ => {}
         };
         let options = RunOptions {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::{Procedure, Verdict};
 use eframe::egui::{RichText, Ui};
-use fault_db::Id;
+use fault_db::{Id, RunOccurrence};
 use protocol::LruId;
 use protocol::signal::Signal;
 
@@ -12,7 +12,7 @@ use super::chain::chain;
 use crate::pages::traces::SmallTrace;
 use crate::request::Request;
 use crate::{DataPaths, PageContext, Palette};
-use ptu_report::naming::{PartNames, place};
+use ptu_report::naming::{PartNames, is_of_step};
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Progress;
@@ -143,15 +143,12 @@ fn read(
         ))
     });
     let store = paths.read()?;
-    let shows = |message: &str| {
-        on_way.as_ref().is_some_and(|(check, ..)| {
-            place(message).is_some_and(|(procedure, step, _)| {
-                procedure == check.procedure.id && step == check.name
-            })
-        })
+    let shows = |seen: &&RunOccurrence| {
+        let check = on_way.as_ref().map(|(check, ..)| check);
+        check.is_some_and(|check| is_of_step(&seen.findings, &check.procedure.id, &check.name))
     };
     let seen = store.run_occurrences(run)?;
-    let of_check = seen.iter().find(|seen| shows(&seen.message));
+    let of_check = seen.iter().find(shows);
     let trace = of_check.and_then(|seen| seen.trace_id).or(trace);
     let names = PartNames::of(&paths.scripts);
     let opened = match trace {

@@ -81,7 +81,9 @@ impl KnownUnit {
         }
         let open = history.open.iter().map(|fault| {
             let at = clock::local(fault.last_at_us);
-            let said = history.parts.fault(fault.cause(), &fault.message, words);
+            let said = history
+                .parts
+                .fault(fault.cause(), (&fault.findings, &fault.message), words);
             format!("{at}  {said}")
         });
         for (place, said) in open.take(SHOWN).enumerate() {

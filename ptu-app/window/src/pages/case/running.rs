@@ -94,7 +94,7 @@ fn failures(ui: &mut Ui, words: &Words, run: &Progress) {
                 Density::Operator => name.into_owned(),
                 Density::Engineer => format!("{procedure}: {name}"),
             });
-            ui.label(&*words.content(&result.message));
+            ui.label(words.findings(&result.findings));
         });
         ui.push_id(("failure", place), |ui| {
             measurements(ui, words, &result.measurements);

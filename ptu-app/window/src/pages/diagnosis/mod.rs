@@ -4,12 +4,12 @@ mod candidates;
 
 use diagnosis::Reason;
 use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
-use fault_db::Id;
+use fault_db::{Id, RunOccurrence};
 
 use crate::parts::{FirstHalf, RunList};
 use crate::request::Request;
 use crate::{DataPaths, Destination, PageContext, Palette};
-use ptu_report::naming::{PartNames, place};
+use ptu_report::naming::{PartNames, is_of_step};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
@@ -34,15 +34,15 @@ pub struct DiagnosisPage {
 pub struct NamedAnswer {
     answer: Answer,
     parts: PartNames,
-    /// Part, message and trace of each fault that has one.
-    traced: Vec<(String, String, Id)>,
+    /// Faults that have a trace.
+    traced: Vec<RunOccurrence>,
 }
 
 impl NamedAnswer {
     fn of(paths: &DataPaths, run: Id) -> Result<Self, Failure> {
         let store = paths.read()?;
         let traced = store.run_occurrences(run)?.into_iter();
-        let traced = traced.filter_map(|seen| Some((seen.lru, seen.message, seen.trace_id?)));
+        let traced = traced.filter(|seen| seen.trace_id.is_some());
         Ok(Self {
             answer: diagnose_run(&store, &paths.scripts, run)?,
             parts: PartNames::of(&paths.scripts),
@@ -52,10 +52,13 @@ impl NamedAnswer {
 
     /// What a trace shows.
     fn shown_by(&self, trace: Id, words: &Words) -> String {
-        let shown = self.traced.iter().find(|(.., id)| *id == trace);
+        let shown = self.traced.iter().find(|seen| seen.trace_id == Some(trace));
         shown.map_or_else(
             || trace.short(),
-            |(part, message, _)| self.parts.fault(part, message, words),
+            |seen| {
+                self.parts
+                    .fault(&seen.lru, (&seen.findings, &seen.message), words)
+            },
         )
     }
 
@@ -63,12 +66,9 @@ impl NamedAnswer {
     fn trace_of(&self, reason: &Reason) -> Option<Id> {
         let check = reason.step.as_ref()?;
         let mut traced = self.traced.iter();
-        let about = |message: &str| {
-            place(message).is_some_and(|(procedure, step, _)| {
-                procedure == check.procedure && step == check.step
-            })
-        };
-        Some(traced.find(|(_, message, _)| about(message))?.2)
+        let about =
+            |seen: &&RunOccurrence| is_of_step(&seen.findings, &check.procedure, &check.step);
+        traced.find(about)?.trace_id
     }
 }
 

@@ -26,7 +26,7 @@ pub fn head(
 ) {
     let fault = &detail.fault;
     ui.horizontal_wrapped(|ui| {
-        let name = parts.fault(&fault.lru, &fault.message, words);
+        let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
         ui.label(RichText::new(name).strong().size(19.0));
         state_chip(ui, words, fault.state);
     });
@@ -123,7 +123,10 @@ pub fn rest(
             if ui.button(words.faults.to_diagnosis).clicked() {
                 go_to.push(Destination::Diagnosis(seen.run_id));
             }
-            ui.label(RichText::new(&*words.content(&seen.message)).color(Palette::of(ui).quiet));
+            ui.label(
+                RichText::new(&*words.found(&seen.findings, &seen.message))
+                    .color(Palette::of(ui).quiet),
+            );
         });
     }
     if let Some(latest) = detail.occurrences.first() {

@@ -131,7 +131,7 @@ fn row(
         let row = ui.selectable_label(chosen, title(fault, parts, words));
         row.on_hover_ui(|ui| {
             ui.label(fault.id.to_string());
-            ui.label(&*words.content(&fault.message));
+            ui.label(&*words.found(&fault.findings, &fault.message));
         })
     });
     said.inner.clicked()
@@ -139,7 +139,7 @@ fn row(
 
 /// The part, what was seen of it last, the unit and when.
 pub fn title(fault: &FaultSummary, parts: &PartNames, words: &Words) -> String {
-    let mut said = parts.fault(&fault.lru, &fault.message, words);
+    let mut said = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
     if fault.cause() != fault.lru {
         let cause = parts.name(fault.cause(), words.language);
         said = format!("{said} ({}: {cause})", words.faults.cause);

@@ -33,7 +33,7 @@ impl ProceduresPage {
         let id = outcome.id;
         self.traced = Request::Pending(context.queries.run(move |paths| {
             let seen = paths.read()?.run_occurrences(id)?.into_iter();
-            let traced = seen.filter_map(|seen| Some((seen.message, seen.trace_id?)));
+            let traced = seen.filter_map(|seen| Some((seen.findings, seen.trace_id?)));
             Ok(traced.collect())
         }));
         self.conclusion = match outcome.exit {

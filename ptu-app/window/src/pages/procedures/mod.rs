@@ -65,7 +65,7 @@ pub struct ProceduresPage {
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
     /// What the faults of that run said, with their traces.
-    traced: Request<Vec<(String, fault_db::Id)>>,
+    traced: Request<Vec<(Option<String>, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
 }

@@ -11,7 +11,7 @@ use protocol::lru;
 use crate::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::query_worker::QueryWorker;
 use crate::{Destination, Palette};
-use ptu_report::naming::{self, PartNames, code, place};
+use ptu_report::naming::{self, PartNames, code, is_of_step};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, outside_place};
@@ -60,7 +60,7 @@ pub fn results(
     run: &Progress,
     shown: &mut ResultsView,
     texts: Option<&BTreeMap<String, String>>,
-    (traced, go_to): (&[(String, fault_db::Id)], &mut Vec<Destination>),
+    (traced, go_to): (&[(Option<String>, fault_db::Id)], &mut Vec<Destination>),
 ) {
     ui.separator();
     ui.horizontal(|ui| {
@@ -109,13 +109,15 @@ fn trace_of(
     run: &Progress,
     procedure: usize,
     result: &StepResult,
-    traced: &[(String, fault_db::Id)],
+    traced: &[(Option<String>, fault_db::Id)],
 ) -> Option<fault_db::Id> {
     let procedure = &run.procedures.get(procedure)?.procedure.id;
-    let of_step = |message: &str| {
-        place(message).is_some_and(|(of, step, _)| of == procedure && step == result.name)
-    };
-    Some(traced.iter().find(|(message, _)| of_step(message))?.1)
+    let mut traced = traced.iter();
+    Some(
+        traced
+            .find(|(seen, _)| is_of_step(seen, procedure, &result.name))?
+            .1,
+    )
 }
 
 /// A result; true when its trace is wanted.
@@ -135,9 +137,9 @@ fn row(
         if ui.selectable_label(on, name).clicked() {
             shown.chosen = (!on).then_some(place);
         }
-        if !result.message.is_empty() {
+        if !result.findings.is_empty() {
             let message =
-                RichText::new(&*words.content(&result.message)).color(Palette::of(ui).quiet);
+                RichText::new(words.findings(&result.findings)).color(Palette::of(ui).quiet);
             ui.add(eframe::egui::Label::new(message).truncate());
         }
         to_trace
@@ -174,8 +176,8 @@ fn details(
     let procedure = &progress.procedure;
     let name = name(result, words);
     ui.label(RichText::new(format!("{}: {name}", procedure.id)).strong());
-    if !result.message.is_empty() {
-        ui.label(&*words.content(&result.message));
+    if !result.findings.is_empty() {
+        ui.label(words.findings(&result.findings));
     }
     if outside_place(result).is_some() {
         return;
@@ -268,7 +270,7 @@ fn faults(ui: &mut Ui, (words, parts): (&Words, &PartNames), run: &Progress) {
             ui.colored_label(bad, code);
             let part = parts.name(lru::shown(fault.lru.as_ref()), words.language);
             ui.label(fill(words.procedures.suspect, &[("part", &part)]));
-            ui.label(&*words.content(&fault.message));
+            ui.label(words.finding(&fault.finding));
         });
     }
 }

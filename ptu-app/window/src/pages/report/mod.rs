@@ -257,7 +257,8 @@ impl Shown {
     ) -> Self {
         let shows = |trace: Id| {
             let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
-            let said = shown.map(|seen| parts.fault(&seen.lru, &seen.message, words));
+            let said =
+                shown.map(|seen| parts.fault(&seen.lru, (&seen.findings, &seen.message), words));
             said.collect::<Vec<_>>().join("; ")
         };
         Self {
