@@ -1,10 +1,13 @@
 //! Landmarks of a run: events with time and position, from its rows and the unit's log.
 
+use std::fmt::{self, Display, Formatter};
+
 use protocol::Instant;
 use protocol::signal::Signal;
 
 use super::log_text::described;
 use super::{DrivePlan, Row};
+use crate::procedure::finding::LoggedEvent;
 use crate::procedure::{EventSource, UnitEvent};
 
 /// Share of the highest target that counts as reached.
@@ -23,12 +26,51 @@ pub struct Landmark {
     pub t_s: f64,
     /// Head of the train in the section, m.
     pub x_m: f64,
-    /// What happened, in English.
-    pub what: String,
+    /// What happened.
+    pub what: Mark,
+}
+
+/// What happened on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A precise-stop marker was passed.
+    Psm(usize),
+    /// This speed was reached, km/h.
+    Reached(f64),
+    /// The limit became this, km/h.
+    Limit(f64),
+    /// The stop curve took over.
+    StopCurve,
+    /// The train stopped.
+    Stop,
+    /// The unit or TCMS logged an event.
+    Logged(LoggedEvent),
+    /// A step of a run by hand was done, as the sequence writes it.
+    Done(String),
+}
+
+impl Display for Mark {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Psm(psm) => write!(f, "PSM{psm} passed"),
+            Self::Reached(kmh) => write!(f, "{kmh:.0} km/h reached"),
+            Self::Limit(kmh) => write!(f, "limit {kmh:.0} km/h"),
+            Self::StopCurve => f.write_str("stop curve takes over"),
+            Self::Stop => f.write_str("stop"),
+            Self::Logged(entry) => {
+                let source = match entry.source {
+                    EventSource::Unit => "unit",
+                    EventSource::Tcms => "TCMS",
+                };
+                write!(f, "{source}: {}", described(entry.code, entry.parameter))
+            }
+            Self::Done(what) => f.write_str(what),
+        }
+    }
 }
 
 impl Landmark {
-    fn at(row: &Row, what: String) -> Self {
+    fn at(row: &Row, what: Mark) -> Self {
         Self {
             t_s: row.t_s,
             x_m: row.x_m,
@@ -42,13 +84,13 @@ pub fn of_rows(rows: &[Row], plan: &DrivePlan) -> Vec<Landmark> {
     let mut found: Vec<_> = changes_of_limit(rows).collect();
     let offsets_m = plan.conditions.marker_offsets_m;
     for (psm, (place, offset)) in (1..).zip(plan.section.markers_m.iter().zip(offsets_m)) {
-        found.extend(passing(rows, place + offset, format!("PSM{psm} passed")));
+        found.extend(passing(rows, place + offset, Mark::Psm(psm)));
     }
     let highest = rows.iter().map(target_kmh).fold(0.0, f64::max);
     let reached = rows
         .iter()
         .find(|row| highest > 0.0 && row.speed_kmh >= REACHED * highest);
-    found.extend(reached.map(|row| Landmark::at(row, format!("{highest:.0} km/h reached"))));
+    found.extend(reached.map(|row| Landmark::at(row, Mark::Reached(highest))));
     found.extend(stop_curve(rows, plan.below_limit_kmh));
     found
 }
@@ -61,12 +103,12 @@ fn changes_of_limit(rows: &[Row]) -> impl Iterator<Item = Landmark> {
     rows.windows(2).filter_map(|pair| {
         let [before_kmh, limit_kmh] = [&pair[0], &pair[1]].map(|row| row.value(Signal::Limit));
         let changed = (limit_kmh - before_kmh).abs() > DIFFERS_KMH;
-        changed.then(|| Landmark::at(&pair[1], format!("limit {limit_kmh:.0} km/h")))
+        changed.then(|| Landmark::at(&pair[1], Mark::Limit(limit_kmh)))
     })
 }
 
 /// When the head passes `x_m`, between two rows.
-fn passing(rows: &[Row], x_m: f64, what: String) -> Option<Landmark> {
+fn passing(rows: &[Row], x_m: f64, what: Mark) -> Option<Landmark> {
     let pair = rows
         .windows(2)
         .find(|pair| pair[0].x_m < x_m && pair[1].x_m >= x_m)?;
@@ -102,7 +144,7 @@ fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
         .rposition(cruises)
         .map_or(held, |at| at.max(held));
     let row = rows.get(last + 1).filter(|row| row.speed_kmh > 0.0)?;
-    Some(Landmark::at(row, "stop curve takes over".into()))
+    Some(Landmark::at(row, Mark::StopCurve))
 }
 
 /// What unit and TCMS logged from the first row on, each at its own time since the run's zero, s. The
@@ -119,9 +161,9 @@ pub(super) fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) ->
     };
     log.iter()
         .map(|(_, event)| {
-            let (source, clock_s) = match event.source {
-                EventSource::Unit => ("unit", ahead_s),
-                EventSource::Tcms => ("TCMS", 0.0),
+            let clock_s = match event.source {
+                EventSource::Unit => ahead_s,
+                EventSource::Tcms => 0.0,
             };
             let t_s = own_s(event) + clock_s - zero_s;
             let row = &rows[rows
@@ -130,7 +172,7 @@ pub(super) fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) ->
             Landmark {
                 t_s,
                 x_m: row.x_m,
-                what: format!("{source}: {}", described(event.code, event.parameter)),
+                what: Mark::Logged(event.into()),
             }
         })
         .filter(|landmark| landmark.t_s >= first.t_s)
@@ -145,11 +187,11 @@ mod tests {
     #[test]
     fn places_are_found_between_rows() {
         let rows = triangle();
-        let half = passing(&rows, 50.0, "half".into()).unwrap();
+        let half = passing(&rows, 50.0, Mark::Stop).unwrap();
         assert!((half.t_s - 10.0).abs() < 1e-9, "{half:?}");
-        let late = passing(&rows, 99.92, "late".into()).unwrap();
+        let late = passing(&rows, 99.92, Mark::Stop).unwrap();
         assert!((late.t_s - 19.6).abs() < 1e-6, "{late:?}");
-        assert_eq!(passing(&rows, 100.5, "beyond".into()), None);
+        assert_eq!(passing(&rows, 100.5, Mark::Stop), None);
     }
 
     /// The target is the limit less 5 km/h until braking begins at 10 s.

@@ -35,7 +35,7 @@ use crate::rig::{Rig, TrueMotion};
 use crate::stimulus::Stimulus;
 
 pub use figure::Figure;
-pub use landmarks::Landmark;
+pub use landmarks::{Landmark, Mark};
 pub use metrics::Metrics;
 pub use plan::{Codes, DrivePlan, Load, PlanError, code_in_antenna};
 pub use row::{PAIRS, Row};
@@ -387,7 +387,7 @@ impl Drive {
         let stop = stop.map(|(at, left_m)| Landmark {
             t_s: at.since(zero).as_secs(),
             x_m: stop_m - left_m,
-            what: "stop".into(),
+            what: Mark::Stop,
         });
         let mut landmarks = landmarks::of_rows(&recording.rows, &self.plan);
         landmarks.extend(recording.logged(zero_s));

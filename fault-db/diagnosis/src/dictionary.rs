@@ -62,6 +62,11 @@ pub struct ModeName {
     pub weight: f64,
 }
 
+impl ModeName {
+    /// Kind of a mode that stands for the confirmed repairs of a part; its text names their units.
+    pub const CONFIRMED: &str = "confirmed";
+}
+
 /// Counts of a fault mode at one level.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Column {

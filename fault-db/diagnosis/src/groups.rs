@@ -11,11 +11,20 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
-use super::conclusion::Sentence;
+use super::conclusion::Conclusion;
 use super::explained::named_beside;
 use super::model::{Hypothesis, Model};
 use super::observation::Sign;
 use super::weights::Weights;
+
+/// What to measure, and where, as the file of relations has it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Measure {
+    /// In English.
+    pub english: String,
+    /// In Korean.
+    pub korean: String,
+}
 
 /// Parts that are not always told apart, and what tells which has failed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -23,7 +32,7 @@ pub struct Group {
     /// The parts.
     pub parts: Vec<LruId>,
     /// What to measure, and where.
-    pub measure: Sentence,
+    pub measure: Measure,
 }
 
 /// What several parts share: a supply, a ground, a link or an air pipe.
@@ -34,7 +43,7 @@ pub struct Shared {
     /// Parts that it reaches.
     pub reaches: Vec<LruId>,
     /// What to measure, and where.
-    pub measure: Sentence,
+    pub measure: Measure,
 }
 
 /// How parts depend on each other.
@@ -71,31 +80,8 @@ impl Group {
     }
 }
 
-/// An answer that names no part for certain.
-pub struct Answer {
-    /// Parts, of which at least one has failed or what they share, and what tells which; none where it is not certain that one
-    /// has.
-    pub group: Option<Group>,
-    /// In words, without what to run next.
-    pub said: Sentence,
-}
-
-impl Answer {
-    /// Two parts, or what they share.
-    fn of_shared(shared: &Shared, parts: [&LruId; 2], said: Sentence) -> Self {
-        let all = [&shared.part].into_iter().chain(parts);
-        Self {
-            group: Some(Group {
-                parts: all.cloned().collect(),
-                measure: shared.measure.clone(),
-            }),
-            said,
-        }
-    }
-}
-
 /// Several parts that are the answer; `None` if they can be told apart, or if it is not certain that one of them has failed.
-pub fn answer(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
+pub fn answer(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     common_cause(belief.model, weights)
         .or_else(|| group(belief, weights))
         .or_else(|| not_alone(belief, weights))
@@ -103,7 +89,7 @@ pub fn answer(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
 
 /// A part that is found, where a sign names another part and no fault of the first shows that sign: something that both
 /// share may be the cause; and if they share nothing, it is not certain.
-fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
+fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     let model = belief.model;
     let failed = weights.failed(model.settings.found_at);
     let [(one, probability)] = failed[..] else {
@@ -115,19 +101,25 @@ fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
         let shared = model.relations.shared_by([one, other])?;
         Some((other, shared))
     });
-    let Some((other, shared)) = sharing else {
-        return Some(Answer {
-            group: None,
-            said: Sentence::not_alone((one, probability), other, model.names),
-        });
-    };
-    let said = Sentence::one_or_common(shared, (one, probability), other, model.names);
-    Some(Answer::of_shared(shared, [one, other], said))
+    let part = one.clone();
+    Some(match sharing {
+        Some((other, cause)) => Conclusion::OneOrCommon {
+            cause: cause.clone(),
+            part,
+            probability,
+            other: other.clone(),
+        },
+        None => Conclusion::NotAlone {
+            part,
+            probability,
+            other: other.clone(),
+        },
+    })
 }
 
 /// Two parts that are found to have failed and share something: one cause of both is likelier than two faults, and nothing
 /// on the bench parts the two.
-fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Answer> {
+fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Conclusion> {
     let found = weights.failed(model.settings.found_at).into_iter();
     let mut found: Vec<&LruId> = found.map(|(part, _)| part).collect();
     found.sort();
@@ -135,13 +127,15 @@ fn common_cause(model: &Model<'_>, weights: &Weights) -> Option<Answer> {
         return None;
     };
     let shared = model.relations.shared_by([one, other])?;
-    let both = weights.both_failed(one, other);
-    let said = Sentence::common(shared, [one, other], both, model.names);
-    Some(Answer::of_shared(shared, [one, other], said))
+    Some(Conclusion::Common {
+        cause: shared.clone(),
+        parts: [one.clone(), other.clone()],
+        probability: weights.both_failed(one, other),
+    })
 }
 
 /// A group of which one part has failed for certain, unless something tells which.
-fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
+fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     let model = belief.model;
     let found_at = model.settings.found_at;
     let found: Vec<&LruId> = weights
@@ -160,9 +154,9 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Answer> {
         false => best,
     })?;
     let is_one = found.len() == 1 && tells_apart(belief, first, group);
-    (probability >= found_at && !is_one).then(|| Answer {
-        said: Sentence::one_of(group, probability, model.names),
-        group: Some(group.clone()),
+    (probability >= found_at && !is_one).then(|| Conclusion::OneOf {
+        group: group.clone(),
+        probability,
     })
 }
 

@@ -8,7 +8,6 @@ mod again;
 
 use std::collections::BTreeMap;
 
-use protocol::injection::Lru;
 use protocol::{LruId, Verdict};
 
 use super::cell::{Cell, StepOutcome};
@@ -72,8 +71,6 @@ pub struct Model<'a> {
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
-    /// What people call the parts; conclusions use the identifier of a part that is not among them.
-    pub names: &'a [Lru],
     /// How parts depend on each other.
     pub relations: &'a Relations,
     /// The parts.
@@ -146,7 +143,6 @@ impl<'a> Model<'a> {
             suspects: Suspects::new(dictionary, &parts),
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
-            names: &[],
             relations: &NO_RELATIONS,
             parts,
             false_alarms: false_alarms(dictionary),
@@ -154,11 +150,6 @@ impl<'a> Model<'a> {
             scales: scales(dictionary),
             empty: Cell::default(),
         }
-    }
-
-    /// With what people call the parts.
-    pub fn with_names(self, names: &'a [Lru]) -> Self {
-        Self { names, ..self }
     }
 
     /// With how parts depend on each other.

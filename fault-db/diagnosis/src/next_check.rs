@@ -12,7 +12,6 @@ use protocol::{LruId, Verdict};
 use serde::Serialize;
 
 use super::belief::{Belief, normalised};
-use super::conclusion::Sentence;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
 
@@ -35,8 +34,6 @@ pub struct NextCheck {
     pub passes_with: Vec<LruId>,
     /// Likely parts with whose fault it does not.
     pub fails_with: Vec<LruId>,
-    /// The same in words.
-    pub tells: Sentence,
 }
 
 fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::Error> {
@@ -91,7 +88,6 @@ impl Belief<'_, '_> {
             gain_bits,
             cost_s,
             again,
-            tells: Sentence::tells(&passes_with, &fails_with, self.model.names),
             passes_with,
             fails_with,
         })

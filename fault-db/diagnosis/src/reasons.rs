@@ -19,22 +19,91 @@ const CONFLICTING_EVENTS: usize = 5;
 
 /// What speaks for a fault, or against it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reason {
-    /// In short: what was seen.
-    pub said: String,
-    /// Held against the dictionary; none of what it does not have.
-    pub detail: Option<String>,
-    /// The step that showed it.
-    pub step: Option<CheckName>,
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// What a step showed.
+    Step(StepReason),
+    /// A sign in the unit's log.
+    Logged(Sign),
+    /// What is known of a part from elsewhere.
+    Known(Known),
+}
+
+/// What a step showed, held against the dictionary: under the fault, and on a healthy unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepReason {
+    /// The step.
+    pub check: CheckName,
+    /// How it ended.
+    pub result: Verdict,
+    /// Shares of runs in which it ends so.
+    pub shares: [f64; 2],
+    /// Signs that showed in it.
+    pub signs: Vec<Sign>,
+    /// Values that tell the two apart, or were not measured.
+    pub values: Vec<ValueReason>,
+}
+
+/// A measured value, to four significant figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ValueReason {
+    /// What it is called.
+    pub name: String,
+    /// The value, if there is one.
+    pub value: Option<f64>,
+    /// Least and greatest value in the runs that have one.
+    pub ranges: [Option<[f64; 2]>; 2],
+}
+
+/// What the history knows of a part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Known {
+    /// Faults of earlier runs named it.
+    Recurred {
+        /// So many runs.
+        runs: u32,
+        /// Since this repair, if there was one.
+        since: Option<Repaired>,
+    },
+    /// It was repaired, and the fault came back.
+    CameBack(Repaired),
+    /// Who brought the unit said so.
+    BroughtWith {
+        /// What was said.
+        symptom: String,
+    },
+    /// Diagnoses named it before confirmed repairs.
+    WasRight {
+        /// Repairs in which it was the part.
+        right: u32,
+        /// All of these repairs.
+        named: u32,
+    },
+    /// It was repaired before.
+    OftenRepaired {
+        /// Confirmed repairs of it.
+        of_part: u32,
+        /// Confirmed repairs of any part.
+        all: u32,
+    },
+}
+
+/// A repair of a part.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Repaired {
+    /// The part was replaced, not only worked on.
+    pub replaced: bool,
+    /// When, µs UTC.
+    pub at_us: i64,
 }
 
 impl Reason {
-    /// What is known of a part from elsewhere.
-    pub fn told(said: String) -> Self {
-        Self {
-            said,
-            detail: None,
-            step: None,
+    /// The step that showed it.
+    pub fn step(&self) -> Option<&CheckName> {
+        match self {
+            Self::Step(step) => Some(&step.check),
+            Self::Logged(_) | Self::Known(_) => None,
         }
     }
 }
@@ -63,10 +132,13 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         let rival = rivals.iter().map(|rival| weighed.ln.effects[*rival]);
         let best_rival = rival.fold(healthy, f64::max);
         let step = &seen.steps[weighed.seen];
-        let reason = || Reason {
-            said: format!("{} — {}", step.check, step.result.label()),
-            detail: Some(text(model, model.effects()[own], weighed.place, step)),
-            step: Some(step.check.clone()),
+        let reason = || {
+            Reason::Step(held_against(
+                model,
+                model.effects()[own],
+                weighed.place,
+                step,
+            ))
         };
         // What a healthy unit hardly ever shows is likelier under any fault: what another part's explains better speaks
         // against this one.
@@ -80,7 +152,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut procedures = BTreeSet::new();
         let is_first = |reason: &Reason| {
-            let step = reason.step.as_ref();
+            let step = reason.step();
             step.is_none_or(|step| procedures.insert(step.procedure.clone()))
         };
         let all = all.into_iter().map(|(_, reason)| reason);
@@ -105,11 +177,10 @@ impl Reasons {
                 ..SignsSeen::default()
             };
             let gain = alone.ln(model, hypothesis) - alone.ln(model, Hypothesis::NoFault);
-            let text = format!("the unit's log has {}{}", sign.fault, points_at(sign));
             if gain > SPEAKS_AT {
-                self.for_it.push(Reason::told(text));
+                self.for_it.push(Reason::Logged(sign.clone()));
             } else if gain < -SPEAKS_AT {
-                self.against.push(Reason::told(text));
+                self.against.push(Reason::Logged(sign.clone()));
             }
         }
     }
@@ -130,67 +201,46 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<usize> {
     rivals
 }
 
-/// The part that a fault is a sign of.
-fn points_at(sign: &Sign) -> String {
-    match &sign.lru {
-        Some(part) => format!(", which points at the {part}"),
-        None => ", which points at no part".to_owned(),
-    }
-}
-
 /// A step, its result, and its expected result under the mode and on a healthy unit.
-fn text(model: &Model<'_>, hypothesis: Hypothesis, place: usize, step: &ObservedStep) -> String {
-    let own = model.expected(hypothesis, place);
-    let healthy = model.expected(Hypothesis::NoFault, place);
-    let share = |expected: super::likelihood::Expected<'_>| {
-        let runs = expected.cell.runs().max(1);
-        format!(
-            "{:.0} %",
-            100.0 * f64::from(expected.cell.count(step.result)) / f64::from(runs)
-        )
-    };
-    let mut text = format!(
-        "{} {} (under this fault {}, healthy {})",
-        step.check,
-        step.result.label(),
-        share(own),
-        share(healthy)
-    );
-    for sign in &step.signs {
-        text += &format!(", with {}{}", sign.fault, points_at(sign));
+fn held_against(
+    model: &Model<'_>,
+    hypothesis: Hypothesis,
+    place: usize,
+    step: &ObservedStep,
+) -> StepReason {
+    let expected = [hypothesis, Hypothesis::NoFault].map(|of| model.expected(of, place).cell);
+    let shares = expected.map(|cell| {
+        let runs = cell.runs().max(1);
+        f64::from(cell.count(step.result)) / f64::from(runs)
+    });
+    let values = step.values.iter().filter_map(|(name, value)| {
+        let [own, healthy] = expected.map(|cell| cell.values.get(name));
+        let ranges = [own?, healthy?].map(|values| {
+            let range = || [values.low, values.high].map(rounded);
+            (values.n > 0).then(range)
+        });
+        let tells = ranges[0] != ranges[1] || (step.result != Verdict::Passed && value.is_none());
+        tells.then(|| ValueReason {
+            name: name.clone(),
+            value: value.map(rounded),
+            ranges,
+        })
+    });
+    StepReason {
+        check: step.check.clone(),
+        result: step.result,
+        shares,
+        values: values.collect(),
+        signs: step.signs.iter().cloned().collect(),
     }
-    for (name, value) in &step.values {
-        let (Some(of_own), Some(of_healthy)) =
-            (own.cell.values.get(name), healthy.cell.values.get(name))
-        else {
-            continue;
-        };
-        let range = |v: &super::cell::Values| match v.n {
-            0 => "none".to_owned(),
-            _ => format!("{} to {}", rounded(v.low), rounded(v.high)),
-        };
-        let differs = range(of_own) != range(of_healthy);
-        if differs || (step.result != Verdict::Passed && value.is_none()) {
-            let value = value.map_or_else(|| "none".to_owned(), rounded);
-            text += &format!(
-                "; {name} = {value} (under this fault {}, healthy {})",
-                range(of_own),
-                range(of_healthy)
-            );
-        }
-    }
-    text
 }
 
-/// Four significant figures.
-fn rounded(value: f64) -> String {
+/// To four significant figures.
+fn rounded(value: f64) -> f64 {
     if value == 0.0 {
-        return "0".into();
+        return 0.0;
     }
     let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 6);
-    let text = format!("{value:.*}", digits as usize);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
+    let scale = 10f64.powi(digits);
+    (value * scale).round() / scale
 }

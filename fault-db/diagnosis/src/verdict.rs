@@ -7,16 +7,16 @@ use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
-use super::conclusion::Sentence;
+use super::conclusion::Conclusion;
 use super::explained::{Cause, causes};
-use super::groups::{self, Answer, Group};
+use super::groups;
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
 use super::pairs::{Pair, pairs};
 use super::reasons::{Reason, reasons};
 use super::settings::ConclusionSettings;
-use super::weights::{Fault, Weights, name};
+use super::weights::{Fault, FaultText, Weights, name};
 
 /// A fault mode that may be the one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,8 +25,8 @@ pub struct Candidate {
     pub lru: LruId,
     /// Fault mode.
     pub fault: String,
-    /// What is wrong, for people.
-    pub text: String,
+    /// What is wrong.
+    pub text: FaultText,
     /// Probability of the mode, alone or beside another.
     pub probability: f64,
     /// What speaks for it.
@@ -72,6 +72,20 @@ pub enum Finding {
     NotEnough,
 }
 
+impl Finding {
+    /// The word.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::TwoFound => "two found",
+            Self::OneOf => "one of a group",
+            Self::NoFault => "no fault",
+            Self::CannotTell => "cannot tell",
+            Self::NotEnough => "not enough was run",
+        }
+    }
+}
+
 /// A diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
@@ -79,12 +93,8 @@ pub struct Diagnosis {
     pub candidates: Vec<Candidate>,
     /// The check to make next; none when the question is settled or nothing would tell.
     pub next_check: Option<NextCheck>,
-    /// In words.
-    pub conclusion: Sentence,
-    /// In a word.
-    pub finding: Finding,
-    /// The parts that were not told apart, and what tells which has failed, if that is the finding.
-    pub group: Option<Group>,
+    /// What it comes to.
+    pub conclusion: Conclusion,
     /// Parts, the likeliest first.
     pub lrus: Vec<PartProbability>,
     /// Two faults at once, the likeliest first.
@@ -100,7 +110,7 @@ pub struct Assessment<'m, 'd, 's> {
     weights: Weights,
     pairs: Vec<Pair>,
     /// The answer, where it names no part for certain.
-    answer: Option<Answer>,
+    answer: Option<Conclusion>,
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
@@ -122,29 +132,14 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let (finding, conclusion) = match &self.answer {
-            Some(answer) => {
-                let said = answer.said.clone();
-                let said = match next_check.as_ref() {
-                    None => said,
-                    next => said.then(next),
-                };
-                let finding = match answer.group {
-                    Some(_) => Finding::OneOf,
-                    None => Finding::CannotTell,
-                };
-                (finding, said)
-            }
-            None => weights.conclusion(belief.model, self.seen, next_check.as_ref()),
-        };
+        let own = || weights.conclusion(belief.model, self.seen);
+        let conclusion = self.answer.clone().unwrap_or_else(own);
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
         let shown = self.pairs.iter().filter(is_shown);
         Diagnosis {
             candidates: weights.candidates(belief, self.seen),
             next_check,
             conclusion,
-            finding,
-            group: self.answer.as_ref().and_then(|answer| answer.group.clone()),
             two_faults: shown
                 .map(|pair| TwoFaults {
                     faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
@@ -254,36 +249,36 @@ impl Weights {
         fresh.or_else(|| belief.next_check_again(&done))
     }
 
-    fn conclusion(
-        &self,
-        model: &Model<'_>,
-        seen: &Observation,
-        next: Option<&NextCheck>,
-    ) -> (Finding, Sentence) {
+    fn conclusion(&self, model: &Model<'_>, seen: &Observation) -> Conclusion {
         let settings = model.settings;
         match self.failed(settings.found_at)[..] {
             [] => {}
-            [(one, probability)] => {
-                let said = Sentence::found(one, probability, model.names);
-                return (Finding::Found, said);
+            [(part, probability)] => {
+                let part = part.clone();
+                return Conclusion::Found { part, probability };
             }
             [(one, _), (other, _), ..] => {
-                let both = self.both_failed(one, other);
-                let said = Sentence::two_found([one, other], both, model.names);
-                return (Finding::TwoFound, said);
+                return Conclusion::TwoFound {
+                    parts: [one.clone(), other.clone()],
+                    probability: self.both_failed(one, other),
+                };
             }
         }
         if self.no_fault >= settings.healthy_at {
-            return (Finding::NoFault, Sentence::no_fault(self.no_fault));
+            let probability = self.no_fault;
+            return Conclusion::NoFault { probability };
         }
         if !seen.shows_a_fault() {
-            let checks = [seen.steps.len(), model.dictionary.checks.len()];
-            return (Finding::NotEnough, Sentence::nothing_seen(checks, next));
+            return Conclusion::NothingSeen {
+                made: seen.steps.len(),
+                of: model.dictionary.checks.len(),
+            };
         }
         let named_at = settings.conclusion.named_at;
         let parts = self.lrus.iter();
-        let likely: Vec<_> = parts.filter(|part| part.probability >= named_at).collect();
-        let said = Sentence::cannot_tell(&likely, next, model.names);
-        (Finding::CannotTell, said)
+        let likely = parts.filter(|part| part.probability >= named_at);
+        Conclusion::CannotTell {
+            likely: likely.cloned().collect(),
+        }
     }
 }

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use protocol::LruId;
+use serde::Serialize;
 
 use super::belief::Belief;
+use super::dictionary::ModeName;
 use super::model::{Hypothesis, Model};
 use super::pairs::Pair;
 use super::verdict::PartProbability;
@@ -23,27 +25,49 @@ pub struct Fault {
     pub of_level: f64,
 }
 
+/// What is wrong under a fault.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FaultText {
+    /// As the catalogue of faults has it.
+    Mode(String),
+    /// What confirmed repairs of a depot have settled.
+    Confirmed {
+        /// How many.
+        cases: u32,
+        /// Of which units.
+        units: String,
+    },
+    /// In a way that is not in the dictionary.
+    Unseen {
+        /// The mode that it acts like, and what is wrong under that.
+        like: Option<(String, Box<FaultText>)>,
+    },
+}
+
 /// Name of the fault of a part, and what is wrong.
-pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, String) {
+pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, FaultText) {
     let model = belief.model;
     match hypothesis {
         Hypothesis::Mode { mode, .. } => {
-            let name = &model.dictionary.modes[mode].name;
-            (name.id.clone(), name.text.clone())
+            let mode = &model.dictionary.modes[mode];
+            let (id, text) = (mode.name.id.clone(), mode.name.text.clone());
+            match mode.name.kind == ModeName::CONFIRMED {
+                false => (id, FaultText::Mode(text)),
+                true => {
+                    let cases = mode.columns.iter().map(|column| column.runs).sum();
+                    (id, FaultText::Confirmed { cases, units: text })
+                }
+            }
         }
         Hypothesis::Unseen { part } => {
-            let like = belief
-                .acts_like(hypothesis)
-                .map(|effect| name(belief, model.effects()[effect]));
-            let like = like.map_or_else(String::new, |(id, text)| {
-                format!(", which acts like {id}: {text}")
-            });
-            (
-                format!("{}.{UNSEEN}", model.parts()[part]),
-                format!("in a way that is not in the dictionary{like}"),
-            )
+            let like = belief.acts_like(hypothesis);
+            let like = like.map(|effect| name(belief, model.effects()[effect]));
+            let like = like.map(|(id, text)| (id, Box::new(text)));
+            let id = format!("{}.{UNSEEN}", model.parts()[part]);
+            (id, FaultText::Unseen { like })
         }
-        Hypothesis::NoFault => (String::new(), String::new()),
+        Hypothesis::NoFault => (String::new(), FaultText::Mode(String::new())),
     }
 }
 

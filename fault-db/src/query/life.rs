@@ -81,7 +81,7 @@ pub enum LifeWhat {
     /// A run, an imported log or a pulled record.
     Run(LifeRun),
     /// What happened to a fault, or to several of one case at once.
-    Fault(LifeFault),
+    Fault(Box<LifeFault>),
 }
 
 /// A run.
@@ -110,6 +110,8 @@ pub struct LifeFault {
     pub who: String,
     /// The text; empty for a repair and for a cause.
     pub note: String,
+    /// The same as data, if it is what was seen.
+    pub findings: Option<String>,
     /// The repair, if it is one.
     pub repair: Option<RepairRecord>,
     /// The part it comes from, if it says that.
@@ -365,7 +367,9 @@ impl Store {
         let mut together: BTreeMap<(i64, String, String, String), LifeFault> = BTreeMap::new();
         self.backend().each(
             concat!(
-                "SELECT e.at_us, e.kind, e.who, e.body, f.id, f.code, f.code_name, coalesce(f.cause, f.lru)
+                "SELECT e.at_us, e.kind, e.who, e.body, f.id, f.code, f.code_name, coalesce(f.cause, f.lru),
+                    (SELECT o.findings FROM fault_occurrence o
+                     WHERE o.fault = f.seq AND o.at_us = e.at_us AND o.message = e.body LIMIT 1)
                  FROM fault f JOIN fault_event e ON e.fault = f.seq
                  WHERE f.unit = ?1 AND e.at_us >= ?2 AND e.at_us <= ?3 AND e.kind <> 'withdrawn'",
                 standing!("e"),
@@ -389,12 +393,14 @@ impl Store {
                     return Ok(());
                 }
                 let (at_us, who): (i64, String) = (row.get(0)?, row.get(2)?);
+                let findings = row.get(8)?;
                 let key = (at_us, kind.clone(), who.clone(), body.clone());
                 let of_case = together.entry(key).or_insert_with(|| LifeFault {
                     note: match repair.is_some() || is_cause {
                         true => String::new(),
                         false => body,
                     },
+                    findings,
                     kind,
                     who,
                     repair,
@@ -410,7 +416,7 @@ impl Store {
         let events = together.into_iter().map(|((at_us, ..), fault)| LifeEvent {
             at_us,
             unit: span.serial.clone(),
-            what: LifeWhat::Fault(fault),
+            what: LifeWhat::Fault(Box::new(fault)),
         });
         Ok(events.collect())
     }

@@ -9,7 +9,7 @@ use protocol::display_text;
 use serde_json::{Value, json};
 
 use crate::coverage::count_short;
-use crate::words::Language;
+use crate::words::{Language, Words};
 use ptu_runs::coverage::counts_of;
 use ptu_runs::run_diagnosis::Answer;
 
@@ -21,6 +21,7 @@ pub const MOST_REASONS: usize = 3;
 /// The contract's keys first.
 pub fn diagnosis_json(answer: &Answer) -> Value {
     let d = &answer.diagnosis;
+    let words = Language::English.words();
     let traces = |lru: &str| -> Vec<String> {
         let of_part = answer.traces.get(lru).into_iter().flatten();
         of_part.map(Id::to_string).collect()
@@ -28,9 +29,12 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     let candidate = |c: &Candidate| {
         json!({
             "part": c.lru, "fault": c.fault, "probability": c.probability,
-            "for": shown_reasons(&c.for_it), "against": shown_reasons(&c.against),
-            "details": { "for": details(&c.for_it), "against": details(&c.against) },
-            "text": c.text, "traces": traces(c.lru.as_str()),
+            "for": shown_reasons(answer, &c.for_it, words),
+            "against": shown_reasons(answer, &c.against, words),
+            "details": {
+                "for": details(answer, &c.for_it, words), "against": details(answer, &c.against, words),
+            },
+            "text": words.fault_text(&c.text), "traces": traces(c.lru.as_str()),
         })
     };
     let share =
@@ -39,32 +43,35 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "candidates": d.candidates.iter().map(candidate).collect::<Vec<_>>(),
         "why_not": answer.why_not.as_ref().map(candidate),
         "next_check": d.next_check,
-        "conclusion": d.conclusion.english,
-        "conclusion_ko": Language::Korean.words().sentence(&d.conclusion),
-        "finding": d.finding,
-        "group": d.group.as_ref().map(|group| json!({
+        "conclusion": words.concluded(answer),
+        "conclusion_ko": Language::Korean.words().concluded(answer),
+        "finding": d.conclusion.finding(),
+        "group": d.conclusion.group().map(|group| json!({
             "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
         })),
         "parts": d.lrus.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,
-        "warnings": answer.warnings,
-        "dictionary": Language::English.words().report.origin(answer.dictionary_from),
+        "warnings": answer.warnings.iter().map(|warning| words.warning(warning)).collect::<Vec<_>>(),
+        "dictionary": words.report.origin(answer.dictionary_from),
         "run": answer.run.run.id.to_string(),
     })
 }
 
 /// The first reasons, which differ.
-pub fn shown_reasons(reasons: &[Reason]) -> Vec<&str> {
+pub fn shown_reasons(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     let said = reasons.iter().take(MOST_REASONS);
-    said.map(|reason| &*reason.said).collect()
+    said.map(|reason| words.reason(reason, &answer.run))
+        .collect()
 }
 
 /// All of them, held against the dictionary.
-fn details(reasons: &[Reason]) -> Vec<&str> {
-    let all = reasons.iter();
-    all.map(|reason| reason.detail.as_ref().unwrap_or(&reason.said).as_str())
-        .collect()
+fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
+    let detail = |reason: &Reason| {
+        let said = || words.reason(reason, &answer.run);
+        words.reason_detail(reason).unwrap_or_else(said)
+    };
+    reasons.iter().map(detail).collect()
 }
 
 /// For people. Three parts at most, each by its likeliest fault and the reasons that convince most, or all of them with
@@ -73,6 +80,7 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
     let counts = counts_of(run);
+    let words = Language::English.words();
     let mut text = format!(
         "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
         run.id.short(),
@@ -80,19 +88,19 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
         count_short(&counts),
         counts.not_passed(),
         run.faults,
-        d.conclusion.english
+        words.concluded(answer)
     );
     if let Some(c) = &answer.why_not {
         let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
-        candidate_text(&mut text, c, all);
+        candidate_text(&mut text, (answer, c), all);
         return text.trim_end().to_owned();
     }
     if all {
         d.candidates
             .iter()
-            .for_each(|c| candidate_text(&mut text, c, true));
+            .for_each(|c| candidate_text(&mut text, (answer, c), true));
     } else {
-        first_of_parts(&d.candidates).for_each(|c| candidate_text(&mut text, c, false));
+        first_of_parts(&d.candidates).for_each(|c| candidate_text(&mut text, (answer, c), false));
     }
     for two in d
         .two_faults
@@ -133,23 +141,23 @@ pub fn first_of_parts(candidates: &[Candidate]) -> impl Iterator<Item = &Candida
     first.take(MOST_PARTS)
 }
 
-fn candidate_text(text: &mut String, c: &Candidate, all: bool) {
+fn candidate_text(text: &mut String, (answer, c): (&Answer, &Candidate), all: bool) {
+    let words = Language::English.words();
     let _ = writeln!(
         text,
         "\n{:5.1} %  {}  ({}: {})",
         100.0 * c.probability,
         c.lru,
         c.fault,
-        c.text
+        words.fault_text(&c.text)
     );
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
         let reasons = if all {
-            details(reasons)
+            details(answer, reasons, words)
         } else {
-            shown_reasons(reasons)
+            shown_reasons(answer, reasons, words)
         };
         for reason in reasons {
-            let reason = Language::English.words().content(reason);
             let _ = writeln!(text, "         {sign} {reason}");
         }
     }

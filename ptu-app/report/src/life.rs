@@ -72,7 +72,7 @@ fn of_fault(entry: &LifeFault, words: &Words, parts: &PartNames) -> String {
         (None, Some(cause)) => cause_text(cause, called),
         // Of what runs prove the program notes the run, which is an entry of its own.
         (None, None) if matches!(&*entry.kind, "passed" | "confirmed") => String::new(),
-        (None, None) => words.content(&entry.note).into_owned(),
+        (None, None) => words.found(&entry.findings, &entry.note).into_owned(),
     };
     let fault = entry.faults.first().map_or_else(String::new, |fault| {
         let code = event(fault.code, &fault.code_name, words);

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::{Connection, Expectation, Step};
-use diagnosis::{Cell, CheckName, Dictionary, Group, Mode, Relations, Sentence, Shared};
+use diagnosis::{Cell, CheckName, Dictionary, Group, Measure, Mode, Relations, Shared};
 use protocol::event::Event;
 use protocol::injection::FaultCatalogue;
 use protocol::signal::{Origin, Signal};
@@ -253,7 +253,7 @@ impl From<WrittenGroup> for Group {
     fn from(written: WrittenGroup) -> Self {
         Self {
             parts: written.parts,
-            measure: Sentence {
+            measure: Measure {
                 english: written.measure,
                 korean: written.measure_ko,
             },
@@ -266,7 +266,7 @@ impl From<WrittenShared> for Shared {
         Self {
             part: written.part,
             reaches: written.reaches,
-            measure: Sentence {
+            measure: Measure {
                 english: written.measure,
                 korean: written.measure_ko,
             },

@@ -114,7 +114,7 @@ impl CatalogArguments {
         let directory = self.scripts.find()?;
         let chosen = choose(None, &directory, Connection::Btu)?;
         for warning in &chosen.warnings {
-            stdio::note(warning);
+            stdio::note(&warning.to_string());
         }
         let matrix = clauses::matrix(&clauses::load(&directory)?, &chosen.dictionary);
         let is_whole =

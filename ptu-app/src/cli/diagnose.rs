@@ -57,7 +57,7 @@ impl DiagnoseArguments {
         };
         let answer = diagnose(&store, &directory, &question)?;
         for warning in &answer.warnings {
-            stdio::note(warning);
+            stdio::note(&warning.to_string());
         }
         let text = || diagnosis_text(&answer, self.all);
         self.json.answer(|| diagnosis_json(&answer), text)

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::player::{LONGEST, REACHED_WITHIN};
 use super::{Figures, Sequence, Step, When, words};
-use crate::drive::{Landmark, Row};
+use crate::drive::{Landmark, Mark, Row};
 use crate::stimulus::Stimulus;
 
 /// How a run ended.
@@ -104,7 +104,7 @@ impl From<&StepDone> for Landmark {
         Self {
             t_s: done.t_s,
             x_m: done.x_m,
-            what: done.what(),
+            what: Mark::Done(done.what()),
         }
     }
 }

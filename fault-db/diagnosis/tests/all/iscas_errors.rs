@@ -225,7 +225,7 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
                 true => bands.add(answer.no_fault, state == 0),
                 false => bands.add(likeliest.probability, is_it),
             }
-            if answer.finding == Finding::Found {
+            if answer.conclusion.finding() == Finding::Found {
                 found += 1;
                 wrong += usize::from(!is_it);
             }

@@ -106,7 +106,8 @@ fn figures_json<F>(table: &[Figure<F>], of: Option<&F>) -> Value {
 }
 
 fn events_json(landmarks: &[Landmark]) -> Value {
-    let event = |mark: &Landmark| json!({"t_s": mark.t_s, "x_m": mark.x_m, "what": mark.what});
+    let event =
+        |mark: &Landmark| json!({"t_s": mark.t_s, "x_m": mark.x_m, "what": mark.what.to_string()});
     json!({"events": landmarks.iter().map(event).collect::<Vec<_>>()})
 }
 

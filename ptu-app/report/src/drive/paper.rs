@@ -83,7 +83,7 @@ fn of_section(runs: &[Driven], words: &Words) -> Vec<Block> {
             let name = run.case.controller.name();
             blocks.push(Block::Subheading(name.into(), String::new()));
         }
-        let events = tables::events(&run.outcome.landmarks);
+        let events = tables::events(&run.outcome.landmarks, words);
         blocks.push(Block::Table(events.printed(words)));
     }
     blocks
@@ -91,8 +91,7 @@ fn of_section(runs: &[Driven], words: &Words) -> Vec<Block> {
 
 /// How a run ended, and where the train stands.
 fn verdict(run: &Driven, alone: bool, words: &Words) -> Block {
-    let ending = run.outcome.ending.to_string();
-    let mut ending = sentence(&words.content(&ending));
+    let mut ending = sentence(&words.ending(&run.outcome.ending));
     if !alone {
         ending = format!("{}: {ending}", run.case.controller.name());
     }
@@ -156,7 +155,11 @@ fn of_run_by_hand(run: &ManualRun, words: &Words) -> Vec<Block> {
     known.extend(made_of(&case.bench, case.seed));
     let mut blocks = vec![
         Block::Heading(case.plan.sequence.title.clone()),
-        Block::Verdict(tone, sentence(&outcome.ending.to_string()), String::new()),
+        Block::Verdict(
+            tone,
+            sentence(&words.ended_by_hand(&outcome.ending)),
+            String::new(),
+        ),
         Block::Facts(in_language(known, words)),
     ];
     let figures = tables::of_run_by_hand(run);
@@ -169,7 +172,7 @@ fn of_run_by_hand(run: &ManualRun, words: &Words) -> Vec<Block> {
             "Efforts are those of MT pair 1, 3 s later or before the next step.".into(),
         ),
         Block::Heading(words.drive.on_the_way.into()),
-        Block::Table(tables::events(&outcome.landmarks).printed(words)),
+        Block::Table(tables::events(&outcome.landmarks, words).printed(words)),
     ]);
     blocks
 }
@@ -224,6 +227,9 @@ fn in_words(mut plot: Plot, words: &Words) -> Plot {
     let named = named.chain([&mut plot.title, &mut plot.x_label, &mut plot.y_label]);
     for text in named {
         *text = words.content(text).into_owned();
+    }
+    if !plot.shaded.is_empty() {
+        plot.title = fill(words.drive.shaded, &[("plot", &plot.title)]);
     }
     plot
 }

@@ -1,6 +1,6 @@
 //! The plots of automatic runs as the papers have them, of runs by hand as S3's figures 5 to 7, and of many runs.
 
-use btu_rig::drive::{Row, ScatterDraw};
+use btu_rig::drive::{Mark, Row, ScatterDraw};
 use btu_rig::rig::PAIR_DEMANDS;
 use protocol::signal::Signal;
 
@@ -201,10 +201,13 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<Place> {
     };
     if by_time {
         let marks = run.outcome.landmarks.iter().filter(|_| runs.len() == 1);
-        let marks = marks.filter(|mark| mark.what.starts_with("PSM") || mark.what == "stop");
+        let marks = marks.filter(|mark| matches!(mark.what, Mark::Psm(_) | Mark::Stop));
         let place = |mark: &btu_rig::drive::Landmark| Place {
             x: mark.t_s,
-            name: mark.what.trim_end_matches(" passed").to_owned(),
+            name: match mark.what {
+                Mark::Psm(psm) => format!("PSM{psm}"),
+                _ => mark.what.to_string(),
+            },
         };
         return marks.map(place).collect();
     }

@@ -188,7 +188,7 @@ pub fn worst(many: &MonteCarlo) -> Table {
 }
 
 /// What happened on the way.
-pub fn events(landmarks: &[Landmark]) -> Table {
+pub fn events(landmarks: &[Landmark], words: &Words) -> Table {
     let headings = [
         ("TIME s", "Time s"),
         ("PLACE m", "Place m"),
@@ -198,7 +198,7 @@ pub fn events(landmarks: &[Landmark]) -> Table {
         vec![
             format!("{:.2}", mark.t_s),
             format!("{:.2}", mark.x_m),
-            mark.what.clone(),
+            words.mark(&mark.what),
         ]
     };
     Table {

@@ -4,6 +4,7 @@ use btu_rig::drive::Metrics;
 
 use super::facts::{Fact, by_hand, conditions, ending, off, title};
 use super::{Outcomes, Results, tables};
+use crate::words::Language;
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
@@ -43,7 +44,7 @@ fn one(run: &Driven) -> String {
     if run.outcome.metrics.is_some() {
         blocks.push(tables::of_runs(std::slice::from_ref(run)).text());
     }
-    blocks.push(tables::events(&run.outcome.landmarks).text());
+    blocks.push(tables::events(&run.outcome.landmarks, Language::English.words()).text());
     blocks.join("\n\n")
 }
 
@@ -53,7 +54,7 @@ fn one_by_hand(run: &ManualRun) -> String {
         heading(&run.case.name, &outcome.ending.to_string(), by_hand(run)),
         tables::of_run_by_hand(run).text(),
         tables::steps(run).text() + "\n(efforts of MT pair 1, 3 s later)",
-        tables::events(&outcome.landmarks).text(),
+        tables::events(&outcome.landmarks, Language::English.words()).text(),
     ]
     .join("\n\n")
 }

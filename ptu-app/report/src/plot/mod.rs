@@ -121,7 +121,7 @@ struct Edges {
 }
 
 impl Plot {
-    /// Shades where cars slip or slide, and says so.
+    /// Shades where cars slip or slide.
     pub fn shade_slides<R>(
         &mut self,
         rows: &[R],
@@ -133,9 +133,6 @@ impl Plot {
             .filter(|stretch| sliding(&stretch[0]))
             .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
             .collect();
-        if !self.shaded.is_empty() {
-            self.title += " (shaded: a car slips or slides)";
-        }
     }
 
     /// The drawing for a page.

@@ -31,30 +31,20 @@ pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
 
 fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
     let (report, diagnosis) = (&words.report, &answer.diagnosis);
-    let conclusion = words.sentence(&diagnosis.conclusion);
     let age = if answer.dictionary_current {
         report.current
     } else {
         report.stale
     };
-    let mut facts = vec![(report.conclusion.to_owned(), conclusion.into_owned())];
+    let mut facts = vec![(report.conclusion.to_owned(), words.concluded(answer))];
     if let Some(next) = &diagnosis.next_check {
-        let next = format!(
-            "{} ({:.0} s)",
-            words.content(&next.check.to_string()),
-            next.cost_s
-        );
+        let next = format!("{} ({:.0} s)", words.check(&next.check), next.cost_s);
         facts.push((report.next_check.to_owned(), next));
     }
     let dictionary = format!("{}, {age}", report.origin(answer.dictionary_from));
     facts.push((report.dictionary.to_owned(), dictionary));
     let warnings = answer.warnings.iter();
-    facts.extend(warnings.map(|warning| {
-        (
-            sentence(words.common.note),
-            words.content(warning).into_owned(),
-        )
-    }));
+    facts.extend(warnings.map(|warning| (sentence(words.common.note), words.warning(warning))));
     facts
 }
 
@@ -66,11 +56,8 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
         let cells = [
             format!("{:.1} %", 100.0 * candidate.probability),
             sheet.part(candidate.lru.as_str(), words),
-            format!("{}: {}", candidate.fault, words.content(&candidate.text)),
-            (shown_reasons(&candidate.for_it).into_iter())
-                .map(|reason| words.content(reason))
-                .collect::<Vec<_>>()
-                .join("\n"),
+            format!("{}: {}", candidate.fault, words.fault_text(&candidate.text)),
+            shown_reasons(answer, &candidate.for_it, words).join("\n"),
         ];
         Row::words(RowKind::Head, cells)
     });

@@ -1,10 +1,6 @@
 //! Parts to replace.
 
-use std::borrow::Cow;
-
-use diagnosis::Sentence;
-
-use super::{Language, Words, wordings};
+use super::wordings;
 
 wordings! {
     /// Parts to replace.
@@ -26,16 +22,5 @@ wordings! {
         report: "Report", "성적서";
         reasons: "reasons", "이유";
         more: "more ({n})", "더 보기 ({n})";
-    }
-}
-
-impl Words {
-    /// What a diagnosis comes to, in this language.
-    pub fn sentence<'a>(&self, sentence: &'a Sentence) -> Cow<'a, str> {
-        match self.language {
-            Language::English => Cow::Borrowed(&sentence.english),
-            // The check it names is called as its script calls it.
-            Language::Korean => self.content(&sentence.korean),
-        }
     }
 }

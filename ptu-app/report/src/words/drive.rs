@@ -40,6 +40,7 @@ wordings! {
         did_not_stop: "no stop", "정차하지 않음";
         figures: "Figures", "측정값";
         plots: "Plots", "그래프";
+        shaded: "{plot} (shaded: a car slips or slides)", "{plot} (음영: 차륜 공전 또는 활주)";
         on_the_way: "On the way", "주행 중 이벤트";
     }
 }

@@ -21,6 +21,11 @@ fn part(id: &str) -> Option<&'static Lru> {
     PARTS.iter().find(|part| part.id == id)
 }
 
+/// What a part is called in English.
+pub(super) fn english_part(id: &str) -> &str {
+    part(id).map_or(id, |part| &part.name)
+}
+
 /// What a part is called in Korean.
 pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
@@ -75,7 +80,7 @@ fn english_name(name: &str, after: &str, is_state: bool) -> Option<String> {
 }
 
 /// A text without the capital it begins with, unless that is of a word in capitals.
-fn within_a_sentence(text: &str) -> String {
+pub(super) fn within_a_sentence(text: &str) -> String {
     let mut letters = text.chars();
     match (letters.next(), letters.clone().next()) {
         (Some(first), Some(second)) if second.is_lowercase() => {

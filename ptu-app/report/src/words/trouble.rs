@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::content::Pattern;
 use super::{Language, Words};
 
 static TROUBLE: LazyLock<Vec<Said>> =
@@ -29,6 +28,50 @@ struct File {
 struct Said {
     stored: Pattern,
     english: String,
+}
+
+/// A message with places for what differs.
+struct Pattern {
+    /// What stands before, between and after the places; one more than there are places.
+    between: Vec<String>,
+    places: Vec<String>,
+    korean: String,
+}
+
+impl Pattern {
+    fn new(english: &str, korean: String) -> Self {
+        let (mut between, mut places) = (Vec::new(), Vec::new());
+        let mut rest = english;
+        while let Some((before, after)) = rest.split_once('{') {
+            let (place, after) = after.split_once('}').unwrap_or((after, ""));
+            between.push(before.to_owned());
+            places.push(place.to_owned());
+            rest = after;
+        }
+        between.push(rest.to_owned());
+        Self {
+            between,
+            places,
+            korean,
+        }
+    }
+
+    /// What stands in the places of a text of this pattern; `None` for another text, or one that leaves a place empty. A
+    /// place ends where what comes after it begins first.
+    fn places_in<'a>(&self, text: &'a str) -> Option<Vec<&'a str>> {
+        let (first, between) = self.between.split_first()?;
+        let mut rest = text.strip_prefix(first.as_str())?;
+        let mut found = Vec::with_capacity(self.places.len());
+        for (place, literal) in (1..).zip(between) {
+            let end = match place == between.len() {
+                true => rest.strip_suffix(literal.as_str())?.len(),
+                false => rest.find(literal.as_str())?,
+            };
+            found.push(rest.get(..end).filter(|part| !part.is_empty())?);
+            rest = &rest[end + literal.len()..];
+        }
+        rest.is_empty().then_some(found)
+    }
 }
 
 fn read(text: &str) -> Result<Vec<Said>, toml::de::Error> {
@@ -58,7 +101,7 @@ impl Words {
     fn told(&self, text: &str, deepest: usize) -> Option<String> {
         let deeper = deepest.checked_sub(1)?;
         let fits = |said: &Said| {
-            let found = said.stored.places_in(text, |_| false)?;
+            let found = said.stored.places_in(text)?;
             let mut told = match self.language {
                 Language::English => said.english.clone(),
                 Language::Korean => said.stored.korean.clone(),

@@ -38,8 +38,6 @@ pub struct Assessment {
     pub parts: Vec<LruId>,
     /// What diagnosis says.
     pub finding: Finding,
-    /// In words.
-    pub conclusion: String,
     /// All parts, the likeliest first.
     pub ranked: Vec<PartProbability>,
 }
@@ -88,11 +86,6 @@ impl Assessment {
     pub fn rank(&self) -> Option<usize> {
         self.ranked.iter().position(|part| part.lru == self.lru)
     }
-
-    /// What diagnosis says, without the next check.
-    pub fn answer(&self) -> &str {
-        self.conclusion.split(';').next().unwrap_or_default()
-    }
 }
 
 /// Diagnoses these runs with a fault.
@@ -126,16 +119,13 @@ pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> 
     let mode = sample.faults.first()?;
     let assessed = diagnosis::Assessment::of(model, &run.seen);
     let diagnosis = assessed.diagnosis();
-    let parts: Vec<_> = match diagnosis.finding {
+    let group = diagnosis.conclusion.group();
+    let parts: Vec<_> = match diagnosis.conclusion.finding() {
         Finding::TwoFound => {
             let found = diagnosis.lrus.iter().take(2);
             found.map(|part| &part.lru).collect()
         }
-        Finding::OneOf => diagnosis
-            .group
-            .iter()
-            .flat_map(|group| &group.parts)
-            .collect(),
+        Finding::OneOf => group.iter().flat_map(|group| &group.parts).collect(),
         _ => assessed.credible_parts(SURE),
     };
     Some(Assessment {
@@ -148,8 +138,7 @@ pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> 
         seed: sample.seed,
         detected: !run.passed,
         parts: parts.into_iter().cloned().collect(),
-        finding: diagnosis.finding,
-        conclusion: diagnosis.conclusion.english,
+        finding: diagnosis.conclusion.finding(),
         ranked: diagnosis.lrus,
     })
 }
@@ -291,7 +280,7 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
             Finding::Found | Finding::TwoFound | Finding::OneOf | Finding::CannotTell => {
                 joined(&run.parts)
             }
-            _ => run.answer().to_owned(),
+            _ => run.finding.label().to_owned(),
         };
         *taken_for.entry(what).or_default() += 1;
     }

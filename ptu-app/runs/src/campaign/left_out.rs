@@ -176,7 +176,7 @@ impl UnseenFigures {
             wrong_answers: runs
                 .iter()
                 .filter(|run| run.is_wrong())
-                .map(|run| (run.fault.clone(), run.answer().to_owned()))
+                .map(|run| (run.fault.clone(), run.finding.label().to_owned()))
                 .collect(),
         }
     }

@@ -39,11 +39,12 @@ impl PairFigures {
             let is_bad = |part: &LruId| sample.faults.iter().any(|fault| fault.lru == *part);
             let first = diagnosis.lrus.iter().take(AMONG);
             let found = first.filter(|part| is_bad(&part.lru)).count();
-            let sound = match diagnosis.finding {
+            let sound = match diagnosis.conclusion.finding() {
                 Finding::Found => !is_bad(&diagnosis.lrus[0].lru),
                 Finding::TwoFound => diagnosis.lrus.iter().take(2).any(|part| !is_bad(&part.lru)),
                 Finding::OneOf => !diagnosis
-                    .group
+                    .conclusion
+                    .group()
                     .iter()
                     .flat_map(|group| &group.parts)
                     .any(is_bad),
@@ -53,8 +54,8 @@ impl PairFigures {
             figures.one.count(found > 0);
             figures.wrong.count(sound);
             if found < 2 {
-                let answer = diagnosis.conclusion.english;
-                figures.not_both.push((sample.modes(), answer));
+                let answer = diagnosis.conclusion.finding().label();
+                figures.not_both.push((sample.modes(), answer.to_owned()));
             }
         }
         figures

@@ -2,26 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use btu_rig::procedure::finding::Finding as Seen;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{
-    Assessment, Candidate, Cause, Diagnosis, Dictionary, Finding, Model, Observation, Relations,
-    Sentence,
+    Assessment, Candidate, Cause, Conclusion, Diagnosis, Dictionary, Model, Observation, Relations,
 };
 use fault_db::{Id, RepairsOf, RunDetail, Store, Verdict};
 use protocol::LruId;
+use protocol::injection::Lru;
 
 use super::attribution::with_faults;
 use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
+use super::warning::Warning;
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, did_you_mean};
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
-use crate::stored::findings;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 
@@ -53,7 +52,9 @@ pub struct Answer {
     /// Traces that show a part's faults, by part.
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
+    /// What people call the parts; none where the catalogue cannot be read.
+    pub names: Vec<Lru>,
     /// Where the dictionary is from.
     pub dictionary_from: Origin,
     /// The dictionary was made of what the scripts directory holds now.
@@ -120,7 +121,7 @@ pub fn diagnose(
         seen.signs.extend(more.signs);
     }
     if seen.is_empty() {
-        warnings.push("the run has no step and no fault that could be diagnosed".into());
+        warnings.push(Warning::NothingToDiagnose);
     }
     let mut history = OwnHistory::before(&run, &occurrences, store, &settings)?;
     let of = RepairsOf {
@@ -129,16 +130,14 @@ pub fn diagnose(
         practice: run.run.is_practice(),
     };
     take_confirmed((&mut history, &mut dictionary), store, of, &settings)?;
-    // Without a catalogue that can be read, parts go by their identifiers.
     let catalogue = directory.faults();
     let relations = match &catalogue {
         Ok(catalogue) => Structure::load(directory, catalogue).map(|structure| structure.relations),
         Err(_) => Ok(Relations::default()),
     };
     let relations = relations.unwrap_or_else(|failure| {
-        warnings.push(format!(
-            "parts that are hard to tell apart are not known: {failure}"
-        ));
+        let why = failure.to_string();
+        warnings.push(Warning::NoRelations { why });
         Relations::default()
     });
     let names = catalogue.map(|all| all.lrus).unwrap_or_default();
@@ -147,9 +146,7 @@ pub fn diagnose(
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
         history.add_symptom(&symptom, &settings);
     }
-    let model = Model::new(&dictionary, &settings, &history.factors)
-        .with_names(&names)
-        .with_relations(&relations);
+    let model = Model::new(&dictionary, &settings, &history.factors).with_relations(&relations);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
     let causes = assessed.causes();
@@ -158,9 +155,7 @@ pub fn diagnose(
         fault.ok_or_else(|| no_such_part(part, &model))
     });
     history.explain(&mut diagnosis);
-    let mut why_not = why_not.transpose()?;
-    let candidates = diagnosis.candidates.iter_mut().chain(&mut why_not);
-    candidates.for_each(|candidate| tell_messages(candidate, &run));
+    let why_not = why_not.transpose()?;
     cannot_tell_unless_passed(&run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
     for occurrence in &occurrences {
@@ -174,30 +169,10 @@ pub fn diagnose(
         why_not,
         traces,
         warnings,
+        names,
         dictionary_from: from,
         dictionary_current: current,
     })
-}
-
-/// Has the reasons of a candidate say what its steps measured against which limit: their messages, the first that tells a
-/// value.
-fn tell_messages(candidate: &mut Candidate, run: &RunDetail) {
-    for reason in candidate.for_it.iter_mut().chain(&mut candidate.against) {
-        let Some(check) = &reason.step else {
-            continue;
-        };
-        let mut steps = run.steps.iter();
-        let step = steps.find(|step| step.procedure == check.procedure && step.name == check.step);
-        let found = step
-            .map(|step| findings(&step.findings))
-            .unwrap_or_default();
-        let missed = found
-            .iter()
-            .find(|found| matches!(found.finding, Seen::LimitMissed { .. }));
-        if let Some(found) = missed.or(found.iter().next()) {
-            reason.said = format!("{check} — {}", found.finding);
-        }
-    }
 }
 
 /// A stored run and what was seen in it, as far as it can be compared with this dictionary.
@@ -255,12 +230,14 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
         run.run.verdict,
         Some(Verdict::Passed | Verdict::Skipped | Verdict::Inconclusive) | None
     );
-    let nothing_wrong = matches!(diagnosis.finding, Finding::NoFault | Finding::NotEnough);
+    let nothing_wrong = matches!(
+        diagnosis.conclusion,
+        Conclusion::NoFault { .. } | Conclusion::NothingSeen { .. }
+    );
     if !passed && !run.steps.is_empty() && nothing_wrong {
-        diagnosis.finding = Finding::CannotTell;
         diagnosis.conclusion = match (run.run.verdict, &diagnosis.next_check) {
-            (Some(Verdict::Aborted), Some(next)) => Sentence::broken_off(next),
-            _ => Sentence::not_weighed(),
+            (Some(Verdict::Aborted), Some(_)) => Conclusion::BrokenOff,
+            _ => Conclusion::NotWeighed,
         };
     }
 }
@@ -278,7 +255,8 @@ pub fn adaptive(
     let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
-        return Err(Failure::usage(chosen.warnings.join("; ")));
+        let why: Vec<_> = chosen.warnings.iter().map(Warning::to_string).collect();
+        return Err(Failure::usage(why.join("; ")));
     }
     let basis = &chosen.dictionary.basis;
     let made_on = Bench {
@@ -295,7 +273,7 @@ pub fn adaptive(
         )));
     }
     for warning in &chosen.warnings {
-        stdio::note(warning);
+        stdio::note(&warning.to_string());
     }
     let settings = settings(directory)?;
     let mut history = OwnHistory::up_to_now(serial, store, &settings)?;
@@ -322,20 +300,18 @@ fn comparable(
     run: &RunDetail,
     mut seen: Observation,
     dictionary: &Dictionary,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Observation {
     let basis = &dictionary.basis;
     if run.run.unit_config_sha256 != basis.unit_config_sha256 {
-        warnings.push(format!(
-            "the run's unit configuration, {}, is not the one the dictionary was made with",
-            run.run.unit_config_name
-        ));
+        let name = run.run.unit_config_name.clone();
+        warnings.push(Warning::OtherConfiguration { name });
     }
     if !run.steps.is_empty() && run.run.line != basis.line {
-        warnings.push(format!(
-            "the run is on {}, the dictionary was made on {}",
-            run.run.line, basis.line
-        ));
+        warnings.push(Warning::OtherLine {
+            line: run.run.line.clone(),
+            of_dictionary: basis.line.clone(),
+        });
     }
     let others = run.scripts.iter().filter(|script| {
         let name = script.path.trim_end_matches(".star");
@@ -346,21 +322,17 @@ fn comparable(
         .map(|script| script.path.trim_end_matches(".star").to_owned())
         .collect();
     if !others.is_empty() {
-        warnings.push(format!(
-            "scripts of the run differ from those the dictionary was made with; their steps are left out: {}",
-            others.join(", ")
-        ));
+        let scripts = others.join(", ");
+        warnings.push(Warning::OtherScripts { scripts });
         seen.steps
             .retain(|step| !others.contains(&step.check.procedure));
     }
     let before = seen.steps.len();
     seen.steps
         .retain(|step| dictionary.place(&step.check).is_some());
-    let unknown = before - seen.steps.len();
-    if unknown > 0 {
-        warnings.push(format!(
-            "{unknown} steps are not in the dictionary and say nothing"
-        ));
+    let steps = before - seen.steps.len();
+    if steps > 0 {
+        warnings.push(Warning::UnknownSteps { steps });
     }
     seen
 }

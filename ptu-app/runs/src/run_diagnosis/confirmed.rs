@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Dictionary, ModeName, Observation, Settings};
-use fault_db::{ConfirmedRepairs, RepairsOf, Store};
+use diagnosis::{Dictionary, Known, ModeName, Observation, Settings};
+use fault_db::{RepairsOf, Store};
 use protocol::LruId;
 use protocol::lru::from_stored;
 
@@ -14,8 +14,6 @@ use crate::failure::Failure;
 
 /// A diagnosis holds a run against so many confirmed cases at most, the last ones: each has to be read.
 const MOST_CASES: u32 = 20;
-/// Word for what confirmed cases of a part look like, in place of a mode's.
-const CONFIRMED: &str = "confirmed";
 
 /// Takes what was confirmed in other units into a unit's history and, for one diagnosis, into the dictionary: the depot's
 /// own cases stand there beside the simulated ones, as a mode of their own for each part.
@@ -39,7 +37,8 @@ pub(super) fn take_confirmed(
     history.take_repairs(&repairs, dictionary, settings);
     for (part, counts) in repairs.iter().filter(|(_, counts)| counts.named > 0) {
         if let Some(part) = from_stored(part) {
-            history.add_for(&part, was_right(*counts));
+            let (right, named) = (counts.right, counts.named);
+            history.add_for(&part, Known::WasRight { right, named });
         }
     }
     let mut cases: BTreeMap<LruId, Cases> = BTreeMap::new();
@@ -63,13 +62,10 @@ pub(super) fn take_confirmed(
         let (helped, in_vain) = (runs.len() as f64, f64::from(in_vain));
         let units: Vec<_> = units.into_iter().collect();
         let name = ModeName {
-            id: format!("{part}.{CONFIRMED}"),
-            text: match runs.len() {
-                1 => format!("as in 1 confirmed case, of {}", units.join(", ")),
-                n => format!("as in {n} confirmed cases, of {}", units.join(", ")),
-            },
+            id: format!("{part}.{}", ModeName::CONFIRMED),
+            text: units.join(", "),
             lru: part,
-            kind: CONFIRMED.into(),
+            kind: ModeName::CONFIRMED.into(),
             unsafe_: false,
             weight: usual * helped / (helped + in_vain + settings.repairs_like_prior),
         };
@@ -83,9 +79,4 @@ pub(super) fn take_confirmed(
 struct Cases {
     runs: Vec<Observation>,
     units: BTreeSet<String>,
-}
-
-fn was_right(of: ConfirmedRepairs) -> String {
-    let ConfirmedRepairs { named, right, .. } = of;
-    format!("repaired in {right} of the {named} confirmed repairs for which a diagnosis found it")
 }

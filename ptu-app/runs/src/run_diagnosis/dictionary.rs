@@ -6,6 +6,7 @@ use diagnosis::{Basis, Dictionary};
 use fault_db::Store;
 
 use super::basis::Contents;
+use super::warning::Warning;
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 
@@ -34,7 +35,7 @@ pub struct Chosen {
     /// It was made of what the scripts directory holds now.
     pub current: bool,
     /// What it was made of is not what there is now, or it does not know all.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// The best dictionary there is: made on this connection, of what the scripts directory holds now, on this machine or
@@ -97,21 +98,17 @@ pub fn choose(
         Connection::Btu => "",
     };
     if !same_connection {
-        warnings.push(format!(
-            "the fault dictionary was made on another connection: make one with `ptu campaign{how}`"
-        ));
+        warnings.push(Warning::OtherConnection { how });
     } else if !current {
-        warnings.push(format!(
-            "the fault dictionary is stale, {}: make a new one with `ptu campaign{how}`",
-            differences(&dictionary.basis, &now)
-        ));
+        let differs = differences(&dictionary.basis, &now);
+        warnings.push(Warning::Stale { differs, how });
     }
     let known = directory.faults()?.faults.len();
     if dictionary.modes.len() < known {
-        warnings.push(format!(
-            "the fault dictionary knows {} of {known} fault modes only",
-            dictionary.modes.len()
-        ));
+        warnings.push(Warning::KnowsPart {
+            modes: dictionary.modes.len(),
+            of: known,
+        });
     }
     Ok(Chosen {
         dictionary,

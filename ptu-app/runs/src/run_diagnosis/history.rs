@@ -1,13 +1,13 @@
-//! Prior probabilities of parts from the history of their unit, with the reasons as text.
+//! Prior probabilities of parts from the history of their unit, with the reasons.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Diagnosis, Reason, Settings};
+use diagnosis::{Diagnosis, Known, Reason, Repaired, Settings};
 use fault_db::{PartHistory, PartRepair, RunDetail, RunOccurrence, Store};
 
 use protocol::lru::{LruId, from_stored};
 
-use crate::clock::{local_day, now_us};
+use crate::clock::now_us;
 use crate::failure::Failure;
 use crate::symptoms::Symptom;
 
@@ -22,8 +22,8 @@ const AFTER: usize = 1;
 pub struct OwnHistory {
     /// Factor on the prior of a part.
     pub factors: BTreeMap<LruId, f64>,
-    for_it: BTreeMap<LruId, Vec<String>>,
-    against: BTreeMap<LruId, String>,
+    for_it: BTreeMap<LruId, Vec<Known>>,
+    against: BTreeMap<LruId, Known>,
 }
 
 impl OwnHistory {
@@ -69,11 +69,13 @@ impl OwnHistory {
             });
             let factor = if let Some(repair) = in_vain {
                 // Faults that name a part in vain do not speak for it, however often.
-                let words = format!("{}, and the fault came back", repaired(repair));
-                history.against.insert(part.clone(), words);
+                let known = Known::CameBack(repaired(repair));
+                history.against.insert(part.clone(), known);
                 settings.replaced_in_vain_factor
             } else if known.runs > 0 {
-                history.add_for(&part, recurred(known));
+                let since = known.repair.as_ref().map(repaired);
+                let runs = known.runs;
+                history.add_for(&part, Known::Recurred { runs, since });
                 let runs = known.runs.min(MOST_RUNS);
                 settings.recurrence_factor.powi(runs as i32)
             } else {
@@ -87,17 +89,18 @@ impl OwnHistory {
     /// Adds what who brought the unit said is wrong with it.
     pub(super) fn add_symptom(&mut self, symptom: &Symptom, settings: &Settings) {
         for part in &symptom.parts {
-            self.add_for(part, format!("brought with: {}", symptom.name));
+            let symptom = symptom.name.clone();
+            self.add_for(part, Known::BroughtWith { symptom });
             *self.factors.entry(part.clone()).or_insert(1.0) *= settings.symptom_factor;
         }
     }
 
     /// Adds what speaks for a part.
-    pub(super) fn add_for(&mut self, part: &LruId, words: String) {
-        self.for_it.entry(part.clone()).or_default().push(words);
+    pub(super) fn add_for(&mut self, part: &LruId, known: Known) {
+        self.for_it.entry(part.clone()).or_default().push(known);
     }
 
-    /// Adds the words to the reasons of a diagnosis.
+    /// Adds what is known to the reasons of a diagnosis.
     pub fn explain(&self, diagnosis: &mut Diagnosis) {
         for candidate in &mut diagnosis.candidates {
             let for_it = self.for_it.get(&candidate.lru).into_iter().flatten();
@@ -108,10 +111,10 @@ impl OwnHistory {
     }
 }
 
-/// Adds words to reasons, after the strongest of them: they differ from what the steps show, and are read with these.
-fn add<'a>(reasons: &mut Vec<Reason>, words: impl Iterator<Item = &'a String>) {
+/// Adds what is known to reasons, after the strongest of them: it differs from what the steps show, and is read with these.
+fn add<'a>(reasons: &mut Vec<Reason>, known: impl Iterator<Item = &'a Known>) {
     let place = reasons.len().min(AFTER);
-    reasons.splice(place..place, words.cloned().map(Reason::told));
+    reasons.splice(place..place, known.cloned().map(Reason::Known));
 }
 
 /// How far a history goes back from a time, µs UTC.
@@ -122,25 +125,11 @@ fn span(until_us: i64, settings: &Settings) -> (i64, i64) {
     )
 }
 
-fn recurred(known: &PartHistory) -> String {
-    let runs = match known.runs {
-        1 => "1 earlier run".to_owned(),
-        runs => format!("{runs} earlier runs"),
-    };
-    let since = known
-        .repair
-        .as_ref()
-        .map(|repair| format!(" since it was {}", repaired(repair)));
-    format!("named by faults in {runs}{}", since.unwrap_or_default())
-}
-
-fn repaired(repair: &PartRepair) -> String {
-    let what = if repair.replaced {
-        "replaced"
-    } else {
-        "worked on"
-    };
-    format!("{what} on {}", local_day(repair.at_us))
+fn repaired(repair: &PartRepair) -> Repaired {
+    Repaired {
+        replaced: repair.replaced,
+        at_us: repair.at_us,
+    }
 }
 
 #[cfg(test)]
@@ -209,23 +198,36 @@ mod tests {
         (history, diagnosis, probability)
     }
 
-    fn reasons(diagnosis: &Diagnosis, lru: &str) -> (Vec<String>, Vec<String>) {
+    /// What the history says for a part and against it.
+    fn told(diagnosis: &Diagnosis, lru: &str) -> [Vec<Known>; 2] {
         let candidate = diagnosis.candidates.iter().find(|c| c.lru == lru);
         let candidate = candidate.expect("a candidate");
-        let said = |reasons: &[Reason]| reasons.iter().map(|reason| reason.said.clone()).collect();
-        (said(&candidate.for_it), said(&candidate.against))
+        [&candidate.for_it, &candidate.against].map(|reasons| {
+            let known = reasons.iter().filter_map(|reason| match reason {
+                Reason::Known(known) => Some(known.clone()),
+                _ => None,
+            });
+            known.collect()
+        })
+    }
+
+    fn replaced() -> Repaired {
+        Repaired {
+            replaced: true,
+            at_us: REPAIRED_US,
+        }
     }
 
     #[test]
     fn a_recurrence_raises_a_part_and_says_so() {
         let (_, none, without) = diagnosed(known(0, None), &[]);
-        assert!(reasons(&none, "eb_relay").1.is_empty());
+        assert!(told(&none, "eb_relay")[1].is_empty());
         let (_, diagnosis, with) = diagnosed(known(3, None), &[]);
         assert!(with > 1.4 * without, "{with} against {without}");
-        let (for_it, _) = reasons(&diagnosis, "eb_relay");
-        assert!(for_it.contains(&"named by faults in 3 earlier runs".to_owned()));
-        let (other, _) = reasons(&diagnosis, "io_board");
-        assert!(other.iter().all(|reason| !reason.contains("earlier")));
+        let [for_it, _] = told(&diagnosis, "eb_relay");
+        let (runs, since) = (3, None);
+        assert_eq!(for_it, [Known::Recurred { runs, since }]);
+        assert!(told(&diagnosis, "io_board")[0].is_empty());
         assert_eq!(
             diagnosed(known(40, None), &[]).2,
             diagnosed(known(4, None), &[]).2
@@ -237,9 +239,8 @@ mod tests {
         let (_, _, without) = diagnosed(known(0, None), &[]);
         let (_, diagnosis, with) = diagnosed(known(4, Some(true)), &[]);
         assert!(with < 0.8 * without, "{with} against {without}");
-        let (_, against) = reasons(&diagnosis, "eb_relay");
-        let words = "replaced on 2026-11-02, and the fault came back";
-        assert!(against.contains(&words.to_owned()), "{against:?}");
+        let [_, against] = told(&diagnosis, "eb_relay");
+        assert_eq!(against, [Known::CameBack(replaced())]);
     }
 
     #[test]
@@ -250,11 +251,8 @@ mod tests {
         assert!(other.factors.is_empty(), "{other:?}");
         let (since, diagnosis, _) = diagnosed(known(2, Some(false)), &[]);
         assert_eq!(since.factors["eb_relay"], 1.5 * 1.5);
-        let words = "named by faults in 2 earlier runs since it was replaced on 2026-11-02";
-        assert!(
-            reasons(&diagnosis, "eb_relay")
-                .0
-                .contains(&words.to_owned())
-        );
+        let (runs, since) = (2, Some(replaced()));
+        let [for_it, _] = told(&diagnosis, "eb_relay");
+        assert_eq!(for_it, [Known::Recurred { runs, since }]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnosis::{Dictionary, Settings};
+use diagnosis::{Dictionary, Known, Settings};
 use fault_db::ConfirmedRepairs;
 use protocol::LruId;
 
@@ -43,11 +43,8 @@ impl OwnHistory {
             let share = (count(part) + like * expected) / (all + like);
             *self.factors.entry(part.clone()).or_insert(1.0) *= share / expected;
             if count(part) > 0.0 {
-                let words = format!(
-                    "{} of {all} confirmed repairs were of this part",
-                    count(part)
-                );
-                self.add_for(part, words);
+                let [of_part, all] = [count(part), all].map(|repairs| repairs as u32);
+                self.add_for(part, Known::OftenRepaired { of_part, all });
             }
         }
     }

@@ -33,13 +33,13 @@ impl RunArguments {
             answer
                 .warnings
                 .iter()
-                .for_each(|warning| stdio::note(warning));
+                .for_each(|warning| stdio::note(&warning.to_string()));
             print_out(&format!("\n{}", diagnosis_text(&answer, false)))?;
         } else if let Ok(answer) = answer
             && answer.warnings.is_empty()
         {
             let id = answer.run.run.id.short();
-            let conclusion = &answer.diagnosis.conclusion.english;
+            let conclusion = Language::English.words().concluded(&answer);
             print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
         }
         Ok(())

@@ -78,7 +78,7 @@ fn a_check_that_alone_shows_an_unsafe_mode_is_made_on_a_good_unit() {
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());
         let (_, seen) = replayed(&model, &run(&[], Some(240.0)));
         let found = Assessment::of(&model, &seen).diagnosis();
-        assert_eq!(found.finding, Finding::NoFault);
+        assert_eq!(found.conclusion.finding(), Finding::NoFault);
         seen
     };
     let made = |seen: &diagnosis::Observation| {

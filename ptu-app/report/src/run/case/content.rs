@@ -94,10 +94,10 @@ impl CaseSheet {
         let Ok(answer) = &self.before.diagnosis else {
             return Vec::new();
         };
-        let said = words.sentence(&answer.diagnosis.conclusion);
+        let said = words.concluded(answer);
         vec![
             Block::Heading(report.diagnosis.into()),
-            Block::Facts(vec![(report.conclusion.into(), said.into_owned())]),
+            Block::Facts(vec![(report.conclusion.into(), said)]),
         ]
     }
 

@@ -52,7 +52,7 @@ pub fn case_json(case: &CaseSheet) -> Value {
             "verdict_after": one.verdict_after().map(|verdict| verdict.as_str()),
         })).collect::<Vec<_>>(),
         "conclusion": case.before.diagnosis.as_ref().ok()
-            .map(|answer| answer.diagnosis.conclusion.english.clone()),
+            .map(|answer| Language::English.words().concluded(answer)),
         "faults": all.map(fault_json).collect::<Vec<_>>(),
     })
 }

@@ -1,6 +1,8 @@
 //! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
 
 pub(super) mod condition;
+mod diagnosis;
+mod drive;
 mod finding;
 
 use std::borrow::Cow;

@@ -1,9 +1,9 @@
 //! What a run found: the part, the values that show it, three reasons, and what to do next.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use btu_rig::procedure::{Measurement, Verdict};
-use diagnosis::NextCheck;
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
 
@@ -12,11 +12,12 @@ use super::{CasePage, Stage, large};
 use crate::pages::procedures::{Concluded, measurements};
 use crate::parts::ActionPlace;
 use crate::{Density, Destination, PageContext, Palette, Sizes};
-use ptu_report::diagnosis::shown_reasons;
+use ptu_report::diagnosis::MOST_REASONS;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::failure::Exit;
 use ptu_runs::run::Outcome;
+use ptu_runs::run_diagnosis::Answer;
 
 /// What was found in a run.
 pub struct Found {
@@ -27,11 +28,10 @@ pub struct Found {
     headline: String,
     /// Parts in the order of their probability.
     pub parts: Vec<String>,
-    reasons: Vec<String>,
+    answer: Option<Arc<Answer>>,
     /// The first measured values that were out of their limits, with their step.
     shown_by: Option<(String, Vec<Measurement>)>,
     trace: Option<Id>,
-    next: Option<NextCheck>,
     evidence: Option<Evidence>,
     /// Procedures that did not pass.
     pub procedures: BTreeSet<String>,
@@ -54,7 +54,6 @@ impl Found {
                 parts.push(part);
             }
         }
-        let first = candidates().next();
         let traces = answer.and_then(|answer| answer.traces.get(parts.first()?));
         let any = answer.and_then(|answer| answer.traces.values().flatten().next());
         let trace = traces.and_then(|traces| traces.first()).or(any).copied();
@@ -65,16 +64,10 @@ impl Found {
             exit: outcome.exit,
             verdict: outcome.verdict,
             headline: said.map(|said| said.text.clone()).unwrap_or_default(),
-            reasons: first
-                .map(|first| shown_reasons(&first.for_it))
-                .unwrap_or_default()
-                .into_iter()
-                .map(str::to_owned)
-                .collect(),
+            answer: said.and_then(|said| said.answer.clone()),
             shown_by: shown_by(run),
             evidence: part.map(shown),
             trace,
-            next: diagnosis.and_then(|said| said.next_check.clone()),
             procedures: not_passed(run),
             parts,
         }
@@ -168,7 +161,10 @@ impl CasePage {
 /// What would tell more, and how long it takes.
 fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut PageContext<'_>) {
     let words = context.words;
-    let (Some(next), Some(unit)) = (&found.next, unit) else {
+    let (Some(answer), Some(unit)) = (&found.answer, unit) else {
+        return;
+    };
+    let Some(next) = &answer.diagnosis.next_check else {
         return;
     };
     ui.horizontal_wrapped(|ui| {
@@ -176,7 +172,7 @@ fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut Page
         let time = format!("{:.0} s", next.cost_s.ceil());
         let said = [("check", &step as &dyn std::fmt::Display), ("time", &time)];
         let mut said = fill(words.case.next_check, &said);
-        let tells = words.sentence(&next.tells);
+        let tells = words.tells(next, &answer.names);
         if !tells.is_empty() {
             said = format!("{said}: {tells}");
         }
@@ -197,43 +193,19 @@ fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut Page
 }
 
 fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
-    if found.reasons.is_empty() {
+    let Some(answer) = &found.answer else {
         return;
-    }
+    };
+    let Some(first) = answer.diagnosis.candidates.first() else {
+        return;
+    };
     let quiet = Palette::of(ui).quiet;
     ui.label(RichText::new(words.case.because).color(quiet));
-    for reason in &found.reasons {
-        let reason = words.content(reason);
+    for reason in first.for_it.iter().take(MOST_REASONS) {
         let said = match Sizes::of(ui).density {
-            Density::Operator => without_path(&reason),
-            Density::Engineer => &reason,
+            Density::Operator => words.reason_in_procedure(reason, &answer.run),
+            Density::Engineer => words.reason(reason, &answer.run),
         };
         ui.label(format!("+ {said}"));
-    }
-}
-
-/// A reason without the path of the script that it begins with.
-fn without_path(reason: &str) -> &str {
-    let is_path = |text: &str| text.contains('/') && !text.contains(' ');
-    match reason.split_once(": ") {
-        Some((path, rest)) if is_path(path) => rest,
-        _ => reason,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_reason_loses_the_path_of_its_script_and_nothing_else() {
-        let reason = "atp/overspeed: code 55: alarm, FSB, EB — eb_reaction = 640";
-        assert_eq!(
-            without_path(reason),
-            "code 55: alarm, FSB, EB — eb_reaction = 640"
-        );
-        for other in ["a brake and/or door: late", "logged: eb/fsb", "no path"] {
-            assert_eq!(without_path(other), other);
-        }
     }
 }

@@ -70,7 +70,7 @@ fn show(
         let (part, language) = (candidate.lru.as_str(), context.words.language);
         let name = RichText::new(named.parts.name(part, language));
         ui.label(name.strong().size(17.0));
-        ui.label(&*context.words.content(&candidate.text));
+        ui.label(context.words.fault_text(&candidate.text));
         // As it is typed.
         let typed = RichText::new(&candidate.fault).small();
         ui.label(typed.color(Palette::of(ui).quiet));
@@ -125,9 +125,9 @@ fn reasons(
         for text in texts {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).strong().color(colour));
-                let said = ui.label(&*words.content(&text.said));
-                if let Some(detail) = &text.detail {
-                    said.on_hover_text(&*words.content(detail));
+                let said = ui.label(words.reason(text, &named.answer.run));
+                if let Some(detail) = words.reason_detail(text) {
+                    said.on_hover_text(detail);
                 }
                 if let Some(trace) = named.trace_of(text)
                     && link(ui, words.faults.to_trace).clicked()

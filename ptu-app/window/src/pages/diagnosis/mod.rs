@@ -64,7 +64,7 @@ impl NamedAnswer {
 
     /// The trace of the step that a reason is about.
     fn trace_of(&self, reason: &Reason) -> Option<Id> {
-        let check = reason.step.as_ref()?;
+        let check = reason.step()?;
         let mut traced = self.traced.iter();
         let about =
             |seen: &&RunOccurrence| is_of_step(&seen.findings, &check.procedure, &check.step);
@@ -126,7 +126,9 @@ impl DiagnosisPage {
         let answer = &named.answer;
         self.head(ui, context, answer);
         for warning in &answer.warnings {
-            ui.label(RichText::new(format!("⚠ {warning}")).color(palette.warn));
+            ui.label(
+                RichText::new(format!("⚠ {}", context.words.warning(warning))).color(palette.warn),
+            );
         }
         ui.separator();
         candidates::ranked(ui, context, named);
@@ -145,7 +147,7 @@ impl DiagnosisPage {
         );
         let of_run = ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
         of_run.on_hover_text(run.id.to_string());
-        let conclusion = words.sentence(&answer.diagnosis.conclusion);
+        let conclusion = words.concluded(answer);
         ui.label(RichText::new(conclusion).strong().size(HEADLINE));
         next_check(ui, context, answer);
         if ui.button(words.diagnosis.report).clicked() {
@@ -162,8 +164,7 @@ fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(words.next_check);
-        let check = next.check.to_string();
-        ui.label(RichText::new(context.words.content(&check)).strong());
+        ui.label(RichText::new(context.words.check(&next.check)).strong());
         let gains = fill(
             words.gains,
             &[

@@ -1,5 +1,7 @@
 //! What is said of a run that has ended: its diagnosis, or what it proves of repairs.
 
+use std::sync::Arc;
+
 use super::ProceduresPage;
 use crate::PageContext;
 use crate::request::Request;
@@ -12,7 +14,7 @@ pub struct Concluded {
     /// The conclusion, or what the run says of repairs before it.
     pub text: String,
     /// The diagnosis of a run that failed.
-    pub answer: Option<Box<Answer>>,
+    pub answer: Option<Arc<Answer>>,
     /// Of a run that passed.
     pub proofs: Vec<RepairProof>,
 }
@@ -42,15 +44,15 @@ impl ProceduresPage {
                 Request::Pending(context.queries.run(move |paths| {
                     let store = paths.open()?;
                     let answer = diagnose_run(&store, &paths.scripts, id)?;
-                    let conclusion = words.sentence(&answer.diagnosis.conclusion);
+                    let conclusion = words.concluded(&answer);
                     let text = match answer.attribute(&store) {
-                        Ok(()) => conclusion.into_owned(),
+                        Ok(()) => conclusion,
                         // The part is known all the same.
                         Err(failure) => format!("{conclusion} ({failure})"),
                     };
                     Ok(Concluded {
                         text,
-                        answer: Some(Box::new(answer)),
+                        answer: Some(Arc::new(answer)),
                         proofs: Vec::new(),
                     })
                 }))
