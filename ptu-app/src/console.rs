@@ -136,7 +136,7 @@ impl Listener for Console {
         };
         let shown = match event {
             SessionEvent::Run(RunEvent::StepStarted { name, .. }) => present(name.clone()),
-            SessionEvent::Run(RunEvent::Waiting { what, left }) => {
+            SessionEvent::Run(RunEvent::Waiting { action: what, left }) => {
                 present(format!("{what}, {:.0} s left", left.as_secs()))
             }
             SessionEvent::Run(RunEvent::StepFinished(result)) if !result.repeated => {

@@ -196,8 +196,8 @@ impl ActionRun {
         }
         if now.since(*self.reported.get_or_insert(now)) >= WAITING_EVERY {
             self.reported = Some(now);
-            let what = action.to_string();
-            out.push(RunEvent::Waiting { what, left });
+            let action = action.clone();
+            out.push(RunEvent::Waiting { action, left });
         }
     }
 }

@@ -4,6 +4,7 @@ use protocol::{Duration, Instant, LruId, Verdict};
 
 use super::UnitEvent;
 use super::finding::{Finding, Findings};
+use super::plan::Action;
 
 /// A measured value with its limits and verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,8 +156,8 @@ pub enum RunEvent {
     },
     /// Something is being waited for; repeated twice a second.
     Waiting {
-        /// Condition, request or event that is waited for, in English.
-        what: String,
+        /// The action that takes its time.
+        action: Action,
         /// How long it may still take.
         left: Duration,
     },

@@ -186,12 +186,12 @@ fn waits_are_reported_twice_a_second() {
         .events
         .iter()
         .filter_map(|event| match event {
-            RunEvent::Waiting { what, left } => Some((what.as_str(), left.as_ms())),
+            RunEvent::Waiting { action, left } => Some((action.to_string(), left.as_ms())),
             _ => None,
         })
         .collect();
-    let what = "until eb = applied within 2.000 s";
-    assert_eq!(left, [(what, 1500), (what, 1000), (what, 500)]);
+    let what = "until eb = applied within 2.000 s".to_owned();
+    assert_eq!(left, [1500, 1000, 500].map(|left| (what.clone(), left)));
     let message = "eb = applied did not come within 2.000 s";
     assert_eq!(outcome.summary(), [("a", Verdict::Failed, message)]);
 }

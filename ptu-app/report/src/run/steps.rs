@@ -113,7 +113,7 @@ fn measured(
         cells: vec![
             soft(naming::measurement(name, words)),
             (Cell::Text(tone, value_text), 1),
-            soft(unit.clone()),
+            soft(words.unit(unit).to_owned()),
             limit(low),
             limit(high),
             soft(source),

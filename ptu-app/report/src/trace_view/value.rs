@@ -4,23 +4,25 @@ use btu_rig::procedure::describe::bit_names;
 use fault_db::{Channel, ChannelKind};
 use protocol::signal::Signal;
 
-use crate::words::Traces;
+use crate::words::Words;
 
 /// A value as text: label, names of the set bits, or number and unit.
-pub fn named(channel: &Channel, value: f64, words: &Traces) -> String {
+pub fn named(channel: &Channel, value: f64, words: &Words) -> String {
+    let traces = &words.traces;
     if value.is_nan() {
-        return words.not_known.to_owned();
+        return traces.not_known.to_owned();
     }
+    let state = |label: &str| words.state(&channel.name, label).into_owned();
     match &channel.kind {
         ChannelKind::Enum { labels } => labels
             .get(&(value as i64))
-            .cloned()
-            .unwrap_or_else(|| value.to_string()),
-        ChannelKind::Bit => if value == 0.0 { words.off } else { words.on }.to_owned(),
+            .map_or_else(|| value.to_string(), |label| state(label)),
+        ChannelKind::Bit => if value == 0.0 { traces.off } else { traces.on }.to_owned(),
         ChannelKind::Number { .. } => {
             let bits =
                 Signal::from_name(&channel.name).and_then(|signal| bit_names(signal, value as u16));
-            bits.unwrap_or_else(|| number(value, &channel.unit))
+            let unit = words.unit(&channel.unit);
+            bits.map_or_else(|| number(value, unit), |bits| state(&bits))
         }
     }
 }
@@ -41,7 +43,7 @@ mod tests {
 
     #[test]
     fn values_are_labels_bit_names_or_numbers_with_units() {
-        let words = &Language::English.words().traces;
+        let words = Language::English.words();
         let of = |name: &str, unit: &str, kind, value| {
             let channel = Channel {
                 name: name.into(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time;
 
-use btu_rig::procedure::plan::Step;
+use btu_rig::procedure::plan::{Action, Step};
 use btu_rig::procedure::{
     Findings, Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
 };
@@ -75,9 +75,9 @@ pub struct RunPosition {
     /// The step's name, with its repetition.
     pub name: String,
     /// What is waited for, and until when.
-    pub waiting: Option<Waiting>,
+    pub waiting: Option<Waiting<Action>>,
     /// What the operator is asked, and until when.
-    pub prompt: Option<Waiting>,
+    pub prompt: Option<Waiting<String>>,
     /// Paused, before this step.
     pub paused: Option<String>,
     /// Measurements of the step so far.
@@ -86,19 +86,19 @@ pub struct RunPosition {
 
 /// Something that may take until a moment on the wall clock.
 #[derive(Clone, Debug)]
-pub struct Waiting {
+pub struct Waiting<T> {
     /// What.
-    pub what: String,
+    pub what: T,
     /// How long it might still take when it was said.
     pub left: Duration,
     /// When it was said.
     pub said: time::Instant,
 }
 
-impl Waiting {
-    fn new(what: &str, left: Duration) -> Self {
+impl<T> Waiting<T> {
+    fn new(what: T, left: Duration) -> Self {
         Self {
-            what: what.into(),
+            what,
             left,
             said: time::Instant::now(),
         }
@@ -258,14 +258,14 @@ impl Progress {
                 present.waiting = None;
                 present.paused = Some(next.clone());
             }
-            RunEvent::Waiting { what, left } => {
+            RunEvent::Waiting { action, left } => {
                 if let Some(present) = &mut self.present {
-                    present.waiting = Some(Waiting::new(what, *left));
+                    present.waiting = Some(Waiting::new(action.clone(), *left));
                 }
             }
             RunEvent::Prompt { text, left } => {
                 if let Some(present) = &mut self.present {
-                    present.prompt = Some(Waiting::new(text, *left));
+                    present.prompt = Some(Waiting::new(text.clone(), *left));
                 }
             }
             RunEvent::Measured { measurement, .. } => {

@@ -7,7 +7,7 @@ use ptu_report::words::Language;
 
 /// A value as text: label, names of the set bits, or number and unit.
 pub fn named(channel: &Channel, value: f64) -> String {
-    value::named(channel, value, &Language::English.words().traces)
+    value::named(channel, value, Language::English.words())
 }
 
 /// The same, where it may not be known.

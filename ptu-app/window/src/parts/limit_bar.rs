@@ -5,28 +5,30 @@ use eframe::egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo,
 
 use crate::Palette;
 use ptu_report::limits::{places, short};
+use ptu_report::words::Words;
 
 /// Size of the bar, points.
 const SIZE: [f32; 2] = [150.0, 14.0];
 
 /// Value, unit and limits in words: `0.42 s (0.19 … 0.34)`.
-pub fn value_text(measurement: &Measurement) -> String {
+pub fn value_text(measurement: &Measurement, words: &Words) -> String {
+    let unit = words.unit(measurement.unit);
     let value = measurement.value.map_or_else(|| "?".to_owned(), short);
     let limits = match (measurement.low, measurement.high) {
-        (None, None) => return format!("{value} {}", measurement.unit),
+        (None, None) => return format!("{value} {unit}"),
         (low, high) => {
             let limit = |limit: Option<f64>| limit.map_or_else(String::new, short);
             format!("({} … {})", limit(low), limit(high))
         }
     };
-    format!("{value} {} {limits}", measurement.unit)
+    format!("{value} {unit} {limits}")
 }
 
 /// The bar: the band between the limits, a mark at the value.
-pub fn limit_bar(ui: &mut Ui, name: &str, measurement: &Measurement) -> Response {
+pub fn limit_bar(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Measurement)) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(SIZE[0], SIZE[1]), Sense::hover());
-    let label = format!("{name} {}", value_text(measurement));
+    let label = format!("{name} {}", value_text(measurement, words));
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &label));
     let Some((value, low, high)) = places(measurement.value, measurement.low, measurement.high)
     else {

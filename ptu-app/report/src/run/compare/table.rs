@@ -138,7 +138,7 @@ pub(super) fn change(one: &Compared<'_>) -> Option<String> {
 /// A value with its unit.
 pub(super) fn value(measured: &MeasurementRecord, words: &Words) -> String {
     match measured.value {
-        Some(value) => format!("{} {}", short(value), measured.unit),
+        Some(value) => format!("{} {}", short(value), words.unit(&measured.unit)),
         None => words.report.no_value.to_owned(),
     }
 }
@@ -154,7 +154,7 @@ fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
 /// What is allowed, in words.
 fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     let report = &words.report;
-    let unit = &measured.unit;
+    let unit = &words.unit(&measured.unit);
     match (measured.low.map(short), measured.high.map(short)) {
         (Some(low), Some(high)) => fill(
             report.from_to,

@@ -8,6 +8,7 @@ mod finding;
 use std::borrow::Cow;
 
 use btu_rig::procedure::finding::{Finding, Findings};
+use btu_rig::procedure::plan::Action;
 use ptu_runs::stored;
 
 use super::{Language, Words, names};
@@ -26,6 +27,20 @@ impl Words {
         match self.language {
             Language::English => names::english(&one.to_string()).into_owned(),
             Language::Korean => finding::korean(one),
+        }
+    }
+
+    /// What an action waits for.
+    pub fn awaited(&self, action: &Action) -> String {
+        match (action, self.language) {
+            (Action::Until { condition, .. }, Language::English) => {
+                names::english(&condition.to_string()).into_owned()
+            }
+            (Action::Until { condition, .. }, Language::Korean) => condition::korean(condition),
+            (Action::Settle { .. }, Language::Korean) => "동작 또는 요청의 완료".to_owned(),
+            (Action::Settle { .. }, Language::English) => "the motion or request to end".to_owned(),
+            (Action::Wait(span), Language::Korean) => format!("{span} 경과"),
+            (other, _) => other.to_string(),
         }
     }
 

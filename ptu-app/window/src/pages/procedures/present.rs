@@ -35,7 +35,7 @@ pub fn present(
     let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
     let name = match with_path {
-        true => format!("{}: {}", procedure.id, present.name),
+        true => format!("{}: {}", procedure.id, words.content(&present.name)),
         false => words.content(&present.name).into_owned(),
     };
     ui.label(RichText::new(name).strong().size(17.0));
@@ -46,7 +46,7 @@ pub fn present(
         return answer;
     };
     if let Some(note) = &step.note {
-        ui.label(format!("{}: {note}", words.common.note));
+        ui.label(format!("{}: {}", words.common.note, words.content(note)));
     }
     source(ui, texts, &procedure.path, step.line, AROUND);
     measurements(ui, words, &present.measured);
@@ -98,7 +98,7 @@ fn waits(ui: &mut Ui, words: &Words, present: &RunPosition) {
         let left = format!("{:.1}", waiting.left_s());
         let said = fill(
             words.procedures.waiting,
-            &[("what", &waiting.what), ("left", &left)],
+            &[("what", &words.awaited(&waiting.what)), ("left", &left)],
         );
         ui.label(RichText::new(said).color(palette.quiet));
     }

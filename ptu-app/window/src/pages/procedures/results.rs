@@ -209,12 +209,12 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
         for measurement in measured {
             let name = naming::measurement(&measurement.name, words);
             ui.label(&name);
-            let bar = limit_bar(ui, &name, measurement);
+            let bar = limit_bar(ui, words, (&name, measurement));
             if let Some(source) = &measurement.limit_source {
                 bar.on_hover_text(source_in_words(source, words));
             }
             let colour = Palette::of(ui).verdict(measurement.verdict);
-            ui.colored_label(colour, value_text(measurement));
+            ui.colored_label(colour, value_text(measurement, words));
             ui.end_row();
         }
     });

@@ -254,7 +254,7 @@ impl Sheet<'_> {
         match source.view.summary(source.place) {
             Summary::Choice(runs) => {
                 runs.spans(source.axis, window, edges, spans);
-                let label = |value| named(channel, value, &self.words.traces);
+                let label = |value| named(channel, value, self.words);
                 lane::choice(ui.painter(), rect, spans, colour, self.palette, label);
             }
             Summary::Bit(runs) => {
@@ -297,7 +297,7 @@ impl Sheet<'_> {
         let view = self.scene.view();
         let rows = self.rows.into_iter().flatten();
         let known = rows.filter_map(|row| view.samples(place).get(row));
-        let said = known.map(|value| named(view.channel(place), *value, &self.words.traces));
+        let said = known.map(|value| named(view.channel(place), *value, self.words));
         let mut shown: Vec<String> = said.collect();
         if shown.len() == 2 {
             shown.push(table::difference(self.scene, place));

@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, scene: &TracePlot, place: usize, statistics: &Statistics, wo
     let channel = scene.view().channel(place);
     for cursor in [Cursor::A, Cursor::B] {
         let value = scene.value(place, cursor);
-        ui.label(value.map_or_else(String::new, |v| named(channel, v, &words.traces)));
+        ui.label(value.map_or_else(String::new, |v| named(channel, v, words)));
     }
     ui.label(difference(scene, place));
     match statistics {
@@ -85,7 +85,7 @@ fn row(ui: &mut Ui, scene: &TracePlot, place: usize, statistics: &Statistics, wo
             let told = shares.iter().take(STATES).map(|(value, share)| {
                 format!(
                     "{} {:.1} %",
-                    named(channel, *value, &words.traces),
+                    named(channel, *value, words),
                     share * 100.0
                 )
             });

@@ -2,7 +2,7 @@
 
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Grid, RichText, Role, Ui, WidgetInfo};
-use protocol::message::{MeasureUnit, SelfTestItem};
+use protocol::message::SelfTestItem;
 use protocol::signal::Signal;
 
 use super::buttons::{StimulusPanel, row};
@@ -50,14 +50,7 @@ fn name(item: &SelfTestItem, words: &Words) -> String {
 
 /// Value, limits and verdict.
 fn told(item: &SelfTestItem, words: &Words) -> [String; 3] {
-    let bench = &words.bench;
-    let unit = match item.unit {
-        MeasureUnit::Bytes => bench.unit_bytes,
-        MeasureUnit::Errors => bench.unit_errors,
-        MeasureUnit::Answers => bench.unit_answers,
-        MeasureUnit::Frames => bench.unit_frames,
-        other => other.label(),
-    };
+    let unit = words.unit(item.unit.label());
     let limits = match item.low == item.high {
         true => item.low.to_string(),
         false => format!("{} … {}", item.low, item.high),
