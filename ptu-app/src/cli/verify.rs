@@ -5,7 +5,7 @@ mod sheet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fault_db::{About, Id, Signed, Statement, Store, Verification};
+use fault_db::{About, Id, SignatureError, Signed, Statement, Store, Verification};
 use serde_json::{Value, json};
 
 use super::key::KeysOption;
@@ -209,10 +209,8 @@ impl VerifyArguments {
             is_covered: true,
             ..Findings::default()
         };
-        let signed: Result<Signed, String> = Signed::read(text.strip_suffix('\n').unwrap_or(text))
-            .map_err(|error| error.to_string());
-        match signed {
-            Err(why) if why.starts_with("it is no signed") => return Err(why),
+        match Signed::read(text.strip_suffix('\n').unwrap_or(text)) {
+            Err(why @ SignatureError::Unreadable(_)) => return Err(why.to_string()),
             Err(why) => found.changes.push(format!("the certificate: {why}")),
             Ok(signed) => {
                 let statement = Statement::of(&signed).ok_or("it is no statement about a run")?;

@@ -102,9 +102,10 @@ fn of_runner(event: &RunEvent) -> (&'static str, Value) {
             json!({ "at_us": at.as_us(), "index": index, "name": name }),
         ),
         RunEvent::Paused { next, at } => ("paused", json!({ "at_us": at.as_us(), "next": next })),
-        RunEvent::Waiting { action, left } => {
-            ("waiting", json!({ "what": action.to_string(), "left_us": left.as_us() }))
-        }
+        RunEvent::Waiting { action, left } => (
+            "waiting",
+            json!({ "what": action.to_string(), "left_us": left.as_us() }),
+        ),
         RunEvent::Prompt { text, left } => {
             ("prompt", json!({ "text": text, "left_us": left.as_us() }))
         }

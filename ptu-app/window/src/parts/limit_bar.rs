@@ -25,7 +25,11 @@ pub fn value_text(measurement: &Measurement, words: &Words) -> String {
 }
 
 /// The bar: the band between the limits, a mark at the value.
-pub fn limit_bar(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Measurement)) -> Response {
+pub fn limit_bar(
+    ui: &mut Ui,
+    words: &Words,
+    (name, measurement): (&str, &Measurement),
+) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(SIZE[0], SIZE[1]), Sense::hover());
     let label = format!("{name} {}", value_text(measurement, words));

@@ -363,7 +363,7 @@ mod tests {
         };
         assert_eq!(
             korean(&never),
-            "5 s 이내에 성립하지 않음: 비상제동(EB) = 체결"
+            "5.000 s 이내에 성립하지 않음: 비상제동(EB) = 체결"
         );
         let condition = Condition::Any(vec![
             compare(Signal::Fsb, Comparison::Equal, 1.0),

@@ -83,11 +83,7 @@ fn row(ui: &mut Ui, scene: &TracePlot, place: usize, statistics: &Statistics, wo
             }
             ui.label(changes.to_string());
             let told = shares.iter().take(STATES).map(|(value, share)| {
-                format!(
-                    "{} {:.1} %",
-                    named(channel, *value, words),
-                    share * 100.0
-                )
+                format!("{} {:.1} %", named(channel, *value, words), share * 100.0)
             });
             let mut told: Vec<_> = told.collect();
             if shares.len() > STATES {
