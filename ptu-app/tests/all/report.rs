@@ -197,7 +197,7 @@ fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
     let (_, report) = place.run(&["atp/overspeed", "--report", &csv]);
     let table = place.read("run.csv");
     let mut lines = table.lines();
-    let head = "run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
+    let head = "\u{feff}run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
                 measurement,value,unit,low,high,measurement_verdict,limit_source";
     assert_eq!(lines.next(), Some(head));
     let steps = report["steps"].as_array().expect("steps");
