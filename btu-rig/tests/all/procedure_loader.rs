@@ -197,6 +197,16 @@ fn the_scripts_that_ship_load() {
         .flat_map(|procedure| procedure.without_source())
         .collect();
     assert_eq!(found, [""; 0], "each limit names its source");
+    // A fault and a line of a table have the name alone.
+    let steps = loaded.procedures.iter().flat_map(|p| &p.steps);
+    let leans = |name: &str| {
+        let first = |part: &str| part.split([' ', ',', ':']).next().unwrap_or("").to_owned();
+        let with_subject = ["it", "its", "so"].contains(&&*first(name));
+        let mut parts = name.split(": ");
+        with_subject || parts.any(|part| ["and", "again", "then", "nor"].contains(&&*first(part)))
+    };
+    let leaning: Vec<_> = steps.map(|step| &*step.name).filter(|n| leans(n)).collect();
+    assert_eq!(leaning, [""; 0], "the name of a step stands alone");
 }
 
 #[test]
