@@ -1,7 +1,7 @@
 //! How fast a bench runs: `cargo bench -p ptu-app`.
 //!
 //! Items per second of `acceptance_suite` are seconds of bench time per second of wall time, loading
-//! of scripts and all SQLite commits included; items of `empty_steps` are persisted steps.
+//! of scripts and all SQLite commits included; items of `short_steps` are persisted steps.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -80,12 +80,12 @@ fn acceptance_suite(bencher: Bencher<'_, '_>) {
 }
 
 #[divan::bench(sample_count = 20)]
-fn empty_steps(bencher: Bencher<'_, '_>) {
+fn short_steps(bencher: Bencher<'_, '_>) {
     let (_, setup) = setup();
     let script = format!(
-        "procedure(title = \"Empty steps\")\nfor i in range({STEPS}):\n    step(\"step %d\" % i, do = [])\n"
+        "procedure(title = \"Short steps\")\nfor i in range({STEPS}):\n    step(\"step %d\" % i, expect = never(speed, above = kmh(300)))\n"
     );
-    let texts = BTreeMap::from([("empty.star".to_owned(), script)]);
+    let texts = BTreeMap::from([("short.star".to_owned(), script)]);
     let folder = tempfile::tempdir().expect("folder");
     bencher
         .counter(ItemsCount::new(STEPS))

@@ -103,7 +103,8 @@ fn a_plan_is_the_same_after_it_was_written_down() {
 #[test]
 fn a_step_suspects_the_procedures_part_unless_it_says_otherwise() {
     let suspects = |head: &str, step: &str| {
-        let script = format!("procedure(title = 'x'{head})\nstep('a', do = wait(s(1)){step})");
+        let script =
+            format!("procedure(title = 'x'{head})\nstep('a', measure = value('v', speed){step})");
         let loaded = load_all(&Scripts::from([("a.star".to_owned(), script)]));
         let errors: Vec<_> = loaded.errors.iter().map(ToString::to_string).collect();
         assert_eq!(errors, [""; 0]);
@@ -196,6 +197,16 @@ fn the_scripts_that_ship_load() {
         .flat_map(|procedure| procedure.without_source())
         .collect();
     assert_eq!(found, [""; 0], "each limit names its source");
+    // A fault and a line of a table have the name alone.
+    let steps = loaded.procedures.iter().flat_map(|p| &p.steps);
+    let leans = |name: &str| {
+        let first = |part: &str| part.split([' ', ',', ':']).next().unwrap_or("").to_owned();
+        let with_subject = ["it", "its", "so"].contains(&&*first(name));
+        let mut parts = name.split(": ");
+        with_subject || parts.any(|part| ["and", "again", "then", "nor"].contains(&&*first(part)))
+    };
+    let leaning: Vec<_> = steps.map(|step| &*step.name).filter(|n| leans(n)).collect();
+    assert_eq!(leaning, [""; 0], "the name of a step stands alone");
 }
 
 #[test]
@@ -220,7 +231,7 @@ fn a_limit_without_a_source_is_named_with_its_place() {
 
 #[test]
 fn print_is_kept_and_bounded() {
-    let text = "procedure(title = 'x')\nstep('a')\nfor i in range(5000):\n    print(i)\n";
+    let text = "procedure(title = 'x')\nstep('a', measure = value('v', speed))\nfor i in range(5000):\n    print(i)\n";
     let loaded = load_all(&Scripts::from([("a.star".into(), text.into())]));
     assert_eq!(loaded.errors, []);
     assert_eq!(loaded.printed.len(), 1001);
@@ -254,7 +265,9 @@ fn deep_nesting_is_refused() {
                 + "pass\n",
         ];
         for deep in kinds {
-            let text = format!("procedure(title = 'x')\nstep('a')\nx = {deep}\n");
+            let text = format!(
+                "procedure(title = 'x')\nstep('a', measure = value('v', speed))\nx = {deep}\n"
+            );
             let loaded = load_all(&Scripts::from([("a.star".into(), text)]));
             assert_eq!(
                 loaded.errors.len() + loaded.procedures.len(),
@@ -321,7 +334,7 @@ proptest! {
 
     #[test]
     fn no_text_makes_the_loader_panic(words in prop::collection::vec(prop::sample::select(&WORDS[..]), 0..40)) {
-        let text = format!("procedure(title = 'x')\nstep('s')\n{}", words.concat());
+        let text = format!("procedure(title = 'x')\nstep('s', measure = value('v', speed))\n{}", words.concat());
         load_all(&Scripts::from([("a.star".into(), text)]));
     }
 

@@ -43,7 +43,7 @@ checks! {
     "atp/overspeed" "code 55: FSB" "fsb_reaction" "s" 0.61 +- 0.02 None, Some(0.9), "fsb_output" 0.02 Any;
     "atp/overspeed" "code 55: alarm, FSB, EB" "eb_reaction" "s" 0.42 +- 0.008 None, Some(0.58), "eb_relay" 0.016 Any;
     "door/interlocks" "open doors inhibit departure" "inhibit_reaction" "s" 0.21 +- 0.015 None, Some(0.5), "door_contact" 0.02 Winter;
-    "door/interlocks" "closed doors free it" "door_closing_time" "s" 2.9 +- 0.08 None, Some(3.6), "door_contact" 0.06 Winter;
+    "door/interlocks" "closed doors free departure" "door_closing_time" "s" 2.9 +- 0.08 None, Some(3.6), "door_contact" 0.06 Winter;
     "ato/markers" "PSM2 is detected" "detection_time" "s" 0.08 +- 0.01 None, Some(0.2), "marker_antenna" 0.006 Winter;
     "twc/exchange" "the unit answers" "answer_time" "s" 0.18 +- 0.02 None, Some(0.5), "fsk_board" 0.015 Summer;
     "tcms/link" "silence is noticed at both ends" "loss_time" "s" 1.02 +- 0.03 None, Some(1.5), "rs485_link" 0.02 Any;

@@ -31,6 +31,9 @@ const COLUMNS: [&str; 17] = [
     "limit_source",
 ];
 
+/// What a file of a table begins with: without it, spreadsheets read its UTF-8 in the code page of the system.
+pub const MARK: &str = "\u{feff}";
+
 /// A cell of a table: text must not act, a number must stay one.
 pub enum Cell {
     /// What people and scripts wrote.
@@ -41,7 +44,7 @@ pub enum Cell {
 
 /// The table.
 pub fn csv(run: &RunDetail) -> String {
-    let mut text = COLUMNS.join(",") + "\n";
+    let mut text = format!("{MARK}{}\n", COLUMNS.join(","));
     for step in &run.steps {
         let none = step.measurements.is_empty().then_some(None);
         for measured in step.measurements.iter().map(Some).chain(none) {

@@ -10,13 +10,14 @@ use protocol::display_text;
 
 use crate::certificate::attach;
 use crate::json::{json_text, run_json};
-use crate::run::{self, CaseSheet, RunComparison, Sheet};
-use crate::words::Language;
+use crate::run::{self, CaseSheet, Printed, RunComparison, Sheet};
+use crate::words::{Language, Words};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
 use ptu_runs::data::{self, ScriptsDirectory};
 use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
+use ptu_runs::stdio;
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,6 +84,18 @@ impl Target {
 
     fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
         data::write(&self.path, self.kind(), content?)
+    }
+
+    /// A sheet of paper. Letters that it has as codes are told.
+    fn on_paper(&self, sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
+        let (document, coded) = run::pdf(sheet, words)?;
+        if !coded.is_empty() {
+            let (file, letters) = (self.path.display(), String::from_iter(coded));
+            stdio::note(&format!(
+                "{file}: the font of sheets lacks \"{letters}\", so codes such as [U+4E2D] stand there; pages (.html) have the letters"
+            ));
+        }
+        Ok(document)
     }
 
     fn kind(&self) -> Kind<'static> {
@@ -182,7 +195,7 @@ pub fn case_content(
     let words = language.words();
     match target.format {
         Format::Html => Ok(run::html(case, words).into_bytes()),
-        Format::Pdf => run::pdf(case, words),
+        Format::Pdf => target.on_paper(case, words),
         Format::Json => Ok(json_text(&run::case_json(case))?.into_bytes()),
         Format::Csv | Format::Junit => content(target, &case.last().run, None, language),
     }
@@ -200,7 +213,7 @@ pub fn comparison_content(
     let words = language.words();
     match target.format {
         Format::Html => Ok(run::html(of, words).into_bytes()),
-        Format::Pdf => run::pdf(of, words),
+        Format::Pdf => target.on_paper(of, words),
         Format::Json => Ok(json_text(&run::comparison_json(of))?.into_bytes()),
         Format::Csv | Format::Junit => content(target, &of.b, None, language),
     }
@@ -263,7 +276,7 @@ fn content(
     let words = language.words();
     let text = match (target.format, sheet) {
         (Format::Html, Some(sheet)) => run::html(sheet, words),
-        (Format::Pdf, Some(sheet)) => return run::pdf(sheet, words),
+        (Format::Pdf, Some(sheet)) => return target.on_paper(sheet, words),
         // Whoever asks for a sheet has gathered it.
         (Format::Html | Format::Pdf, None) => String::new(),
         (Format::Csv, _) => csv::csv(run),

@@ -67,9 +67,10 @@ pub mod kind {
     pub const OWN: Kind<'_> = &[""];
 }
 
-/// What a text begins with, as far as it tells what it is.
+/// What a text begins with, as far as it tells what it is: a mark of UTF-8 does not.
 pub fn head(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(HEAD as usize)]);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     text.split_whitespace().collect()
 }
 

@@ -8,6 +8,7 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use protocol::display_text;
 
 use crate::failure::Failure;
+use crate::platform;
 use crate::table::cut;
 
 /// Longest line, in columns.
@@ -33,6 +34,12 @@ pub fn document(text: &str) -> Result<(), Failure> {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Standard output is a file that begins with what is answered, not a pipe or a terminal.
+pub fn begins_file() -> bool {
+    let about = platform::same_file(&stdout()).and_then(|file| file.metadata());
+    about.is_ok_and(|about| about.is_file() && about.len() == 0)
 }
 
 /// Prints a note on stderr; an output error is ignored.

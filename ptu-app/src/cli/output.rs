@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{print_json, print_out};
-use ptu_report::csv::Cell;
+use ptu_report::csv::{Cell, MARK};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 
@@ -88,7 +88,8 @@ impl Output {
 
 /// Prints rows as CSV. The columns are the keys of each row, in their order.
 pub fn print_csv(columns: &[&str], rows: &[Value]) -> Result<Exit, Failure> {
-    stdio::document(&csv(columns, rows))?;
+    let mark = if stdio::begins_file() { MARK } else { "" };
+    stdio::document(&format!("{mark}{}", csv(columns, rows)))?;
     Ok(Exit::Passed)
 }
 

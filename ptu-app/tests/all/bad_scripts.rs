@@ -74,8 +74,8 @@ fn a_step_that_runs_too_long_is_an_error_and_clean_up_runs() {
     place.write(
         "long.star",
         "procedure(title = \"Test\", title_ko = \"시험\", cleanup = until(mode, \"yard\", within = s(1)))\n\
-         step(\"too long\", do = wait(s(60)), limit = s(2))\n\
-         step(\"short\", do = wait(s(1)))\n",
+         step(\"too long\", do = wait(s(60)), measure = value(\"v\", speed), limit = s(2))\n\
+         step(\"short\", do = wait(s(1)), measure = value(\"v\", speed))\n",
     );
     let (said, report) = place.run("long.star");
     let said = said
@@ -97,7 +97,7 @@ fn a_clean_up_that_fails_is_in_every_report() {
     place.write(
         "unclean.star",
         "procedure(title = \"Test\", title_ko = \"시험\", cleanup = until(mode, \"yard\", within = s(1)))\n\
-         step(\"short\", do = wait(s(1)))\n",
+         step(\"short\", do = wait(s(1)), measure = value(\"v\", speed))\n",
     );
     let files = ["r.junit.xml", "r.csv", "r.html"];
     let reports = files.map(|file| ["--report", file]).concat();

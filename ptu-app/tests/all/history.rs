@@ -79,7 +79,7 @@ fn a_trace_is_shown_and_exported() {
     let csv = place.read("trace.csv");
     let mut lines = csv.lines();
     let headings: Vec<_> = lines.next().expect("headings").split(',').collect();
-    assert_eq!(headings[0], "time_s");
+    assert_eq!(headings[0], "\u{feff}time_s");
     assert_eq!(headings.len(), list(&trace["signals"]).len() + 1);
     assert!(headings.contains(&"limit_kmh"), "{headings:?}");
     let times: Vec<f64> = lines

@@ -66,6 +66,27 @@ fn a_cell_of_any_length_is_answered() {
     assert_eq!(csv.lines().nth(1), Some(format!("{all},1,{all}").as_str()));
 }
 
+/// Goal: Excel reads Korean in a file, and a program reads an answer without a mark. Method: one answer to a pipe, to a new file,
+/// and appended to that.
+#[test]
+fn csv_in_a_file_begins_with_the_mark_of_utf_8_and_in_a_pipe_it_does_not() {
+    let place = Place::with_database();
+    let question = ["db", "query", "SELECT '제동' AS name", "--csv"];
+    let answer = "name\n제동\n";
+    assert_eq!(place.ptu(&question).exits(0).out, answer);
+    for expected in [
+        format!("\u{feff}{answer}"),
+        format!("\u{feff}{answer}{answer}"),
+    ] {
+        let mut file = std::fs::File::options();
+        let file = file.create(true).append(true).open(place.path("a.csv"));
+        let mut command = place.command(&question);
+        let ended = command.stdout(file.expect("a file")).status();
+        assert!(ended.is_ok_and(|ended| ended.success()));
+        assert_eq!(place.read("a.csv"), expected);
+    }
+}
+
 #[test]
 fn the_views_answer_and_the_page_tells_of_them() {
     let place = mended();

@@ -81,6 +81,23 @@ fn a_passing_run_has_a_korean_sheet() {
     assert!(!page.contains("미합격 항목"), "nothing failed");
 }
 
+/// What the font of paper lacks is told by the command and stands on the HTML page; a run without it is told nothing.
+#[test]
+fn letters_that_a_pdf_has_as_codes_are_told() {
+    let place = Place::new();
+    let names = "procedure(title = \"門\", suspect = \"tcms\")\nstep(\"扉 가\", measure = value(\"v\", speed))\n";
+    place.write("names.star", names);
+    let run = "run names.star --report a.pdf --report a.html";
+    place
+        .ptu(run)
+        .exits(0)
+        .explains(&["a.pdf", "\"扉\"", "[U+4E2D]"]);
+    assert!(place.read("a.html").contains("扉 가"));
+    place.ptu("run tcms/link").exits(0);
+    let said = place.ptu("report latest --out b.pdf").exits(0);
+    assert!(!said.err.contains("U+"), "{}", said.all());
+}
+
 /// Goal: a sheet in Korean is Korean: steps, messages, sources, fault modes and reasons. Method: runs that fail in
 /// different ways; no text of their sheets has three plain English words in a row.
 #[test]
@@ -197,7 +214,7 @@ fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
     let (_, report) = place.run(&["atp/overspeed", "--report", &csv]);
     let table = place.read("run.csv");
     let mut lines = table.lines();
-    let head = "run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
+    let head = "\u{feff}run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
                 measurement,value,unit,low,high,measurement_verdict,limit_source";
     assert_eq!(lines.next(), Some(head));
     let steps = report["steps"].as_array().expect("steps");

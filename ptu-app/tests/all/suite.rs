@@ -67,7 +67,7 @@ fn a_unit_of_another_type_passes_every_step_by_its_configuration() {
         "code Y25 gives 0 km/h",
         "code 100 gives 100 km/h",
         "a brake notch under way acknowledges nothing",
-        "the warning comes again and again",
+        "the warning of stop and proceed comes again and again",
         "far beyond the limit, a brake that slows the train too little",
         "code YC ends the yard",
     ] {

@@ -25,7 +25,7 @@ def number(channel, cell):
 def read_csv(path):
     with open(path + "-metadata.json", encoding="utf-8") as beside:
         description = json.load(beside)
-    with open(path, newline="", encoding="utf-8") as table:
+    with open(path, newline="", encoding="utf-8-sig") as table:
         rows = list(csv.reader(table))
     headings = [column["titles"] for column in description["tableSchema"]["columns"]]
     assert rows[0] == headings, (rows[0], headings)

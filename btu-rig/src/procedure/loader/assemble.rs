@@ -156,6 +156,12 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
     if tests_unit_itself(&step.actions) {
         step.measures.extend(of_self_test());
     }
+    if !step.judges() {
+        return Err(format!(
+            "step \"{}\" checks nothing; give it an `expect` or a `measure`, or an until() or a prompt() in `do`",
+            step.name
+        ));
+    }
     resolve_step(&mut step, known)?;
     for measure in &mut step.measures {
         measure.slot = known.len();

@@ -44,7 +44,7 @@ const AGAIN: Verdict = Verdict::Skipped;
 /// the second step; brake and event come in with the scan after it.
 #[test]
 fn the_step_is_repeated_from_the_set_up_and_those_before_are_not() {
-    let script = format!("{HEAD}step('a')\nstep('b', do = wait(s(2)))\nstep('c')");
+    let script = format!("{HEAD}look('a')\nlook('b', do = wait(s(2)))\nlook('c')");
     let outcome = run(&script, standing_still(&[1000]));
     let expected = [
         ("a", PASSED, false),
@@ -73,8 +73,8 @@ fn the_step_is_repeated_from_the_set_up_and_those_before_are_not() {
 #[test]
 fn a_step_that_continues_is_repeated_with_those_it_continues_from() {
     let script = format!(
-        "{HEAD}step('a', do = wait(s(1)))\nstep('b', do = cab.key(False))\n\
-         step('c', do = wait(s(2)), continues = True)"
+        "{HEAD}look('a', do = wait(s(1)))\nlook('b', do = cab.key(False))\n\
+         look('c', do = wait(s(2)), continues = True)"
     );
     let outcome = run(&script, standing_still(&[2000]));
     let expected = [
@@ -91,7 +91,7 @@ fn a_step_that_continues_is_repeated_with_those_it_continues_from() {
 #[test]
 fn a_step_that_fails_when_it_is_run_again_is_told() {
     let script = format!(
-        "{HEAD}step('b', expect = becomes(speed, kmh(0)))\nstep('c', do = wait(s(2)), continues = True)"
+        "{HEAD}step('b', expect = becomes(speed, kmh(0)))\nlook('c', do = wait(s(2)), continues = True)"
     );
     let outcome = run(&script, |world| {
         if world.ms() == 1000 {
@@ -112,7 +112,7 @@ fn a_step_that_fails_when_it_is_run_again_is_told() {
 #[test]
 fn a_failed_step_is_not_repeated() {
     let script = format!(
-        "{HEAD}step('a', expect = becomes(eb, 'applied', within = s(1)))\nstep('b', do = wait(s(1)))"
+        "{HEAD}step('a', expect = becomes(eb, 'applied', within = s(1)))\nlook('b', do = wait(s(1)))"
     );
     let outcome = run(&script, |world| {
         if world.ms() == 1500 {
@@ -132,7 +132,7 @@ fn a_failed_step_is_not_repeated() {
 #[test]
 fn after_three_attempts_the_step_is_an_error_and_the_next_that_can_be_is_tested() {
     let script = format!(
-        "{HEAD}step('a', do = wait(s(5)))\nstep('b', continues = True)\nstep('c', do = wait(s(1)))"
+        "{HEAD}look('a', do = wait(s(5)))\nlook('b', continues = True)\nlook('c', do = wait(s(1)))"
     );
     let outcome = run(&script, standing_still(&[1000, 2000, 3000]));
     let expected = [
@@ -153,7 +153,7 @@ fn after_three_attempts_the_step_is_an_error_and_the_next_that_can_be_is_tested(
 #[test]
 fn a_standstill_in_the_set_up_costs_the_first_step_an_attempt() {
     let script =
-        "procedure(title = 'x', setup = [wait(s(2))], cleanup = [cab.key(False)])\nstep('a')";
+        "procedure(title = 'x', setup = [wait(s(2))], cleanup = [cab.key(False)])\nlook('a')";
     let outcome = run(script, standing_still(&[1000]));
     assert_eq!(
         attempts(&outcome),
@@ -166,7 +166,7 @@ fn a_standstill_in_the_set_up_costs_the_first_step_an_attempt() {
 /// is begun again.
 #[test]
 fn clean_up_is_begun_again() {
-    let script = "procedure(title = 'x', cleanup = [cab.key(False), wait(s(1)), until(eb, 'released', within = s(2))])\nstep('a', do = wait(s(1)))";
+    let script = "procedure(title = 'x', cleanup = [cab.key(False), wait(s(1)), until(eb, 'released', within = s(2))])\nlook('a', do = wait(s(1)))";
     let outcome = run(script, |world| {
         let braked = (1100..4500).contains(&world.ms());
         world.sample.set(Signal::Eb, f64::from(u8::from(braked)));
@@ -182,7 +182,7 @@ fn clean_up_is_begun_again() {
 /// Goal: a stop is obeyed at any time, and what is left is reported as not run.
 #[test]
 fn a_stop_ends_the_repetition() {
-    let script = format!("{HEAD}step('a')\nstep('b', do = wait(s(2)))\nstep('c')");
+    let script = format!("{HEAD}look('a')\nlook('b', do = wait(s(2)))\nlook('c')");
     let outcome = run(&script, |world| match world.ms() {
         1000 => world.runner.stood_still(Duration::from_ms(300)),
         2500 => world.runner.stop(),
@@ -204,7 +204,7 @@ fn a_stop_ends_the_repetition() {
 #[test]
 fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
     let script = format!(
-        "{HEAD}step('a', do = wait(s(1)))\nstep('b', do = wait(s(2)))\n\
+        "{HEAD}look('a', do = wait(s(1)))\nlook('b', do = wait(s(2)))\n\
          step('c', expect = becomes(speed, kmh(9), within = s(2)))"
     );
     let mut done = false;
@@ -234,7 +234,7 @@ fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
 /// What the unit did before the computer stood still fails the procedure, and is reported, although the step is repeated.
 #[test]
 fn what_came_before_the_pause_counts_and_is_told() {
-    let script = format!("{HEAD}step('b', do = wait(s(2)))");
+    let script = format!("{HEAD}look('b', do = wait(s(2)))");
     let mut done = false;
     let outcome = run(&script, |world| {
         if world.ms() == 900 && !done {

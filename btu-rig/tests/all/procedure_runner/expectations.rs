@@ -136,7 +136,7 @@ fn an_entry_counts_whose_parameter_is_within_its_limits() {
 
 #[test]
 fn an_event_nobody_asked_for_fails_the_step() {
-    let script = |more: &str| format!("{HEAD}step('a', do = wait(s(1)){more})");
+    let script = |more: &str| format!("{HEAD}look('a', do = wait(s(1)){more})");
     let log = |world: &mut World<'_>| {
         if world.ms() == 500 {
             world.log(Event::TwcLost);
@@ -167,7 +167,7 @@ fn an_event_nobody_asked_for_fails_the_step() {
         );
     }
     // Provoked by an earlier step, it may still arrive in a later one.
-    let two = format!("{HEAD}step('z', provokes = ['twc_lost'])\nstep('a', do = wait(s(1)))");
+    let two = format!("{HEAD}look('z', provokes = ['twc_lost'])\nlook('a', do = wait(s(1)))");
     assert_eq!(run(&two, log).finished().0, Verdict::Passed);
 }
 
@@ -230,7 +230,7 @@ fn an_event_nobody_asked_for_names_the_part() {
 fn an_emergency_brake_nobody_asked_for_fails_the_step() {
     let brake = |world: &mut World<'_>| world.sample.set_bit(Signal::Eb, world.ms() >= 500);
     let outcome = run(
-        &format!("{HEAD}step('a', do = wait(s(1)))\nstep('b')"),
+        &format!("{HEAD}look('a', do = wait(s(1)))\nlook('b')"),
         brake,
     );
     let message = "the emergency brake was applied, which this step does not ask for";
@@ -240,16 +240,16 @@ fn an_emergency_brake_nobody_asked_for_fails_the_step() {
     assert_eq!(outcome.events.iter().filter(reported).count(), 1);
 
     for asked in ["expect = becomes(eb, 'applied')", "provokes = 'rollback'"] {
-        let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)), {asked})"), brake);
+        let outcome = run(&format!("{HEAD}look('a', do = wait(s(1)), {asked})"), brake);
         assert_eq!(outcome.finished().0, Verdict::Passed, "{asked}");
     }
-    let in_setup = "procedure(title = 'x', setup = wait(s(1)))\nstep('a', do = wait(s(1)))";
+    let in_setup = "procedure(title = 'x', setup = wait(s(1)))\nlook('a', do = wait(s(1)))";
     assert_eq!(run(in_setup, brake).finished().0, Verdict::Passed);
 }
 
 #[test]
 fn events_without_end_are_reported_up_to_what_a_log_holds_and_counted_beyond() {
-    let outcome = run(&format!("{HEAD}step('a', do = wait(s(10)))"), |world| {
+    let outcome = run(&format!("{HEAD}look('a', do = wait(s(10)))"), |world| {
         world.log(Event::TwcLost);
         world.fake.evidence.not_kept = 1_000 + u64::from(world.scan);
     });

@@ -10,7 +10,7 @@ use super::stand_in::{HEAD, OFF, ON, run, run_round, run_with};
 #[test]
 fn setup_steps_and_clean_up_run_in_order_and_outputs_end_safe() {
     let outcome = run(
-        &format!("{HEAD}step('a', do = door.open())\nstep('b')"),
+        &format!("{HEAD}look('a', do = door.open())\nlook('b')"),
         |_| {},
     );
     let applied = [ON, Stimulus::Doors { closed: false }, OFF];
@@ -29,7 +29,7 @@ fn setup_steps_and_clean_up_run_in_order_and_outputs_end_safe() {
 #[test]
 fn when_skips_a_step_and_missing_data_do_not() {
     let script =
-        format!("{HEAD}step('a', when = is_(eb, 'applied'))\nstep('b', when = is_(alarm, True))");
+        format!("{HEAD}look('a', when = is_(eb, 'applied'))\nlook('b', when = is_(alarm, True))");
     let outcome = run(&script, |_| {});
     let expected = [
         ("a", Verdict::Skipped, "its condition does not hold"),
@@ -37,7 +37,7 @@ fn when_skips_a_step_and_missing_data_do_not() {
     ];
     assert_eq!(outcome.summary(), expected);
     let only_skipped = run(
-        &format!("{HEAD}step('a', when = is_(eb, 'applied'))"),
+        &format!("{HEAD}look('a', when = is_(eb, 'applied'))"),
         |_| {},
     );
     assert_eq!(only_skipped.finished().0, Verdict::Skipped);
@@ -80,7 +80,7 @@ fn every_repetition_must_pass() {
 /// Goal: a step that could not be judged for want of data did not pass either.
 #[test]
 fn a_step_whose_condition_has_no_data_can_stop_the_procedure() {
-    let script = format!("{HEAD}step('a', when = is_(limit, above = kmh(3)))\nstep('b')");
+    let script = format!("{HEAD}look('a', when = is_(limit, above = kmh(3)))\nlook('b')");
     let options = RunOptions {
         stop_on_fail: true,
         ..RunOptions::default()
@@ -93,7 +93,7 @@ fn a_step_whose_condition_has_no_data_can_stop_the_procedure() {
 #[test]
 fn a_failed_step_can_stop_the_procedure() {
     let script = format!(
-        "{HEAD}step('a', expect = becomes(eb, 'applied', within = ms(20)), on_fail = 'stop')\nstep('b')"
+        "{HEAD}step('a', expect = becomes(eb, 'applied', within = ms(20)), on_fail = 'stop')\nlook('b')"
     );
     let outcome = run(&script, |_| {});
     let expected = [Verdict::Failed, Verdict::Skipped];
@@ -119,7 +119,7 @@ fn nothing_chosen_is_an_error() {
             chosen: Some(chosen),
             ..RunOptions::default()
         };
-        let outcome = run_with(&format!("{HEAD}step('a')"), options, |_| {});
+        let outcome = run_with(&format!("{HEAD}look('a')"), options, |_| {});
         assert_eq!(outcome.finished(), (Verdict::Error, "no step to run"));
         assert_eq!(outcome.fake.made_safe, 1);
         assert!(outcome.fake.applied.is_empty());
@@ -219,7 +219,7 @@ fn a_failed_check_outranks_one_that_could_not_be_made() {
 #[test]
 fn a_repeated_reason_is_reported_once_with_its_count() {
     let until = "until(eb, 'applied', within = s(1))";
-    let script = format!("procedure(title = 'x', cleanup = [{until}, {until}])\nstep('a')");
+    let script = format!("procedure(title = 'x', cleanup = [{until}, {until}])\nlook('a')");
     let message = "clean-up: eb = applied did not come within 1.000 s (2 times)";
     assert_eq!(run(&script, |_| {}).finished(), (Verdict::Error, message));
 }

@@ -7,7 +7,7 @@ use super::stand_in::{HEAD, OFF, ON, run, run_with};
 #[test]
 fn a_step_that_runs_too_long_ends_as_an_error_before_clean_up() {
     let script = format!(
-        "{HEAD}step('a', do = until(eb, 'applied', within = s(60)), limit = s(1))\nstep('b')"
+        "{HEAD}step('a', do = until(eb, 'applied', within = s(60)), limit = s(1))\nlook('b')"
     );
     let outcome = run(&script, |world| {
         if world.ms() <= 1000 {
@@ -24,7 +24,7 @@ fn a_step_that_runs_too_long_ends_as_an_error_before_clean_up() {
 #[test]
 fn stop_in_each_phase_still_cleans_up_and_makes_safe() {
     let script = "procedure(title = 'x', setup = [wait(s(1)), cab.key(True)],
-        cleanup = [wait(s(1)), cab.key(False)])\nstep('a', do = wait(s(1)))\nstep('b')";
+        cleanup = [wait(s(1)), cab.key(False)])\nlook('a', do = wait(s(1)))\nlook('b')";
     let aborted = (Verdict::Aborted, "stopped by the operator");
     let skipped = ("b", Verdict::Skipped, "not run, stopped by the operator");
     for at_ms in [0, 500, 1500, 2500] {
@@ -54,7 +54,7 @@ fn stop_in_each_phase_still_cleans_up_and_makes_safe() {
 
 #[test]
 fn a_second_stop_shortens_clean_up_but_not_making_safe() {
-    let script = "procedure(title = 'x', cleanup = [wait(s(50)), cab.key(False)])\nstep('a', do = wait(s(9)))";
+    let script = "procedure(title = 'x', cleanup = [wait(s(50)), cab.key(False)])\nlook('a', do = wait(s(9)))";
     let outcome = run(script, |world| {
         if [100, 300].contains(&world.ms()) {
             world.runner.stop();
@@ -69,7 +69,7 @@ fn a_second_stop_shortens_clean_up_but_not_making_safe() {
 
 #[test]
 fn outputs_that_do_not_become_safe_are_an_error() {
-    let outcome = run(&format!("{HEAD}step('a')"), |world| {
+    let outcome = run(&format!("{HEAD}look('a')"), |world| {
         world.fake.never_safe = true
     });
     assert!(outcome.fake.made_safe > 100);
@@ -79,7 +79,7 @@ fn outputs_that_do_not_become_safe_are_an_error() {
 
 #[test]
 fn a_refused_setup_skips_the_steps_and_still_cleans_up() {
-    let outcome = run(&format!("{HEAD}step('a')"), |world| {
+    let outcome = run(&format!("{HEAD}look('a')"), |world| {
         world.fake.refuse = world.scan == 0;
     });
     let reason = "not run, setup: unit refused arming: key_off";
@@ -92,7 +92,7 @@ fn a_refused_setup_skips_the_steps_and_still_cleans_up() {
 
 #[test]
 fn a_problem_in_clean_up_does_not_keep_the_rest_from_running() {
-    let script = "procedure(title = 'x', cleanup = [until(eb, 'applied', within = s(1)), cab.key(False)])\nstep('a')";
+    let script = "procedure(title = 'x', cleanup = [until(eb, 'applied', within = s(1)), cab.key(False)])\nlook('a')";
     let outcome = run(script, |_| {});
     assert_eq!(outcome.fake.applied, [OFF]);
     let message = "clean-up: eb = applied did not come within 1.000 s";
@@ -101,7 +101,7 @@ fn a_problem_in_clean_up_does_not_keep_the_rest_from_running() {
 
 #[test]
 fn motion_that_does_not_end_is_an_error() {
-    let script = format!("{HEAD}step('a', do = tacho.speed(kmh(10), accel = mps2(30)))");
+    let script = format!("{HEAD}look('a', do = tacho.speed(kmh(10), accel = mps2(30)))");
     let outcome = run(&script, |world| world.fake.unsettled = true);
     let step = outcome.steps()[0];
     assert_eq!(step.verdict, Verdict::Error);
@@ -115,7 +115,7 @@ fn motion_that_does_not_end_is_an_error() {
 #[test]
 fn a_procedure_can_be_left_between_two_steps() {
     let script = format!(
-        "{HEAD}step('a', expect = holds(eb, 'released', for_ = ms(50)))\nstep('b')\nstep('c')"
+        "{HEAD}step('a', expect = holds(eb, 'released', for_ = ms(50)))\nlook('b')\nlook('c')"
     );
     let options = RunOptions {
         one_by_one: true,
@@ -138,7 +138,7 @@ fn a_procedure_can_be_left_between_two_steps() {
 /// The step under way is finished, the next waits, one at a time may go, and going on needs no more.
 #[test]
 fn a_paused_procedure_goes_step_by_step_and_on() {
-    let script = format!("{HEAD}step('a')\nstep('b')\nstep('c')\nstep('d')");
+    let script = format!("{HEAD}look('a')\nlook('b')\nlook('c')\nlook('d')");
     let mut waits = Vec::new();
     let outcome = run(&script, |world| {
         match world.ms() {
@@ -176,7 +176,7 @@ fn a_paused_procedure_goes_step_by_step_and_on() {
 /// A pause keeps neither stop nor a lost link from clean-up and safe outputs.
 #[test]
 fn a_pause_does_not_delay_a_stop() {
-    let script = format!("{HEAD}step('a')\nstep('b')");
+    let script = format!("{HEAD}look('a')\nlook('b')");
     let outcome = run(&script, |world| match world.ms() {
         0 => world.runner.pause(),
         1_000 => world.runner.stop(),

@@ -10,7 +10,7 @@ use super::stand_in::{HEAD, OFF, ON, World, run};
 
 #[test]
 fn a_lost_link_ends_the_step_as_an_error_and_skips_the_rest() {
-    let script = format!("{HEAD}step('a', do = wait(s(5)))\nstep('b')");
+    let script = format!("{HEAD}look('a', do = wait(s(5)))\nlook('b')");
     let outcome = run(&script, |world| {
         if world.ms() >= 1000 {
             world.link_error = Some("unit silent for 1.0 s");
@@ -33,7 +33,7 @@ fn a_lost_link_ends_the_step_as_an_error_and_skips_the_rest() {
 #[test]
 fn a_stalled_tester_reports_an_error_and_no_fault() {
     let script = format!(
-        "{HEAD}step('a')\nstep('b', do = wait(s(5)), measure = value('v', speed, low = kmh(5)))\nstep('c')"
+        "{HEAD}look('a')\nstep('b', do = wait(s(5)), measure = value('v', speed, low = kmh(5)))\nlook('c')"
     );
     let outcome = run(&script, |world| {
         if world.ms() == 1000 {
@@ -91,7 +91,7 @@ fn a_failure_while_the_bench_is_behind_is_not_tested_unless_the_unit_logged_it()
 #[test]
 fn a_procedure_stalled_in_its_setup_runs_no_step_and_cleans_up() {
     let script =
-        "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nstep('a')";
+        "procedure(title = 'x', setup = [wait(s(5))], cleanup = [cab.key(False)])\nlook('a')";
     let outcome = run(script, |world| {
         if world.ms() == 1000 {
             world.runner.interrupted(Finding::Told("held up".into()));
@@ -164,7 +164,7 @@ fn an_awaited_event_is_not_missing_while_the_log_is_not_read() {
 
 #[test]
 fn a_procedure_ends_with_its_log_read() {
-    let script = format!("{HEAD}step('a', do = wait(s(1)))");
+    let script = format!("{HEAD}look('a', do = wait(s(1)))");
     let behind_until = |until_ms: u32| {
         run(&script, |world| {
             world.fake.evidence.log = match world.ms() {
@@ -196,7 +196,7 @@ fn a_procedure_ends_with_its_log_read() {
 /// same events, brake and missing reaction, with and without frames that did not come through.
 #[test]
 fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
-    let script = format!("{HEAD}step('a', do = wait(s(2)))");
+    let script = format!("{HEAD}look('a', do = wait(s(2)))");
     let expects =
         format!("{HEAD}step('a', do = wait(s(2)), expect = becomes(alarm, True, within = s(1)))");
     let came_to = |script: &str, lost_or_damaged: u64, event: Option<Event>, brake: bool| {
@@ -250,7 +250,7 @@ fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
 
 #[test]
 fn a_failed_self_test_is_reported_item_by_item_and_is_no_pass() {
-    let outcome = run(&format!("{HEAD}step('a', do = wait(s(1)))"), |world| {
+    let outcome = run(&format!("{HEAD}look('a', do = wait(s(1)))"), |world| {
         world.fake.evidence.self_test = SelfTest::MEMORY | SelfTest::from_bits_retain(1 << 12);
     });
     let message = "the unit says its self-test failed: Memory pattern test; bit 12";
@@ -262,7 +262,7 @@ fn a_failed_self_test_is_reported_item_by_item_and_is_no_pass() {
 /// otherwise is none. Method: a refused request, and the unit's log read a moment later, with the restart in it or without.
 #[test]
 fn what_a_unit_refuses_after_a_restart_of_its_own_is_a_failure_with_the_part_it_names() {
-    let script = format!("{HEAD}step('a', do = ptu.code('75'), suspect = 'test_board')\nstep('b')");
+    let script = format!("{HEAD}look('a', do = ptu.code('75'), suspect = 'test_board')\nlook('b')");
     let text = "unit refused the test code: not_armed";
     for (dips, expected) in [(true, Verdict::Failed), (false, Verdict::Error)] {
         let outcome = run(&script, |world| {
@@ -283,7 +283,7 @@ fn what_a_unit_refuses_after_a_restart_of_its_own_is_a_failure_with_the_part_it_
 
 #[test]
 fn a_restart_of_the_units_own_counts_beside_the_steps_too() {
-    let script = "procedure(title = 'x', setup = wait(s(1)), cleanup = wait(s(1)))\nstep('a')";
+    let script = "procedure(title = 'x', setup = wait(s(1)), cleanup = wait(s(1)))\nlook('a')";
     for at_ms in [500, 1500] {
         let outcome = run(script, |world| {
             if world.ms() == at_ms {
@@ -306,7 +306,7 @@ fn a_restart_of_the_units_own_counts_beside_the_steps_too() {
 /// Goal: a clock of the unit that goes wrong fails the procedure, once, and says by how much; no step is about it.
 #[test]
 fn a_clock_that_goes_wrong_fails_the_procedure_beside_its_steps() {
-    let script = format!("{HEAD}step('a', do = wait(s(2)))\nstep('b', do = wait(s(2)))");
+    let script = format!("{HEAD}look('a', do = wait(s(2)))\nlook('b', do = wait(s(2)))");
     let outcome = run(&script, |world| {
         if world.ms() >= 500 {
             world.fake.evidence.clock_wrong_by_permille = Some(-31);

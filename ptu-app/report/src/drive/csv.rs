@@ -7,7 +7,7 @@ use btu_rig::rig::PAIR_DEMANDS;
 use protocol::signal::Signal;
 
 use super::{Outcomes, Results};
-use crate::csv::Cell;
+use crate::csv::{Cell, MARK};
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 
 /// A column of a cycle: its name and its value.
@@ -64,7 +64,7 @@ const OF_PAIR: [PairColumn; 7] = [
 ];
 
 pub fn csv(results: &Results) -> String {
-    let mut text = String::new();
+    let mut text = MARK.to_owned();
     match &results.outcomes {
         Outcomes::Single(runs) => {
             text += &format!("section,controller,{}\n", names(&AUTOMATIC));
@@ -74,7 +74,7 @@ pub fn csv(results: &Results) -> String {
                 cycles(&mut text, &before, &run.outcome.rows, &AUTOMATIC, &[]);
             }
         }
-        Outcomes::Many(many) => text = trials(many),
+        Outcomes::Many(many) => text += &trials(many),
         Outcomes::ByHand(run) => {
             let name = |pair| {
                 OF_PAIR

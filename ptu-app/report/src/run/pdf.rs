@@ -1,5 +1,7 @@
 //! A test sheet as PDF. The same run gives the same bytes.
 
+use std::collections::BTreeSet;
+
 use krilla::Document;
 use krilla::color::rgb::Color;
 use krilla::geom::{Path, PathBuilder, Point, Rect, Transform};
@@ -23,13 +25,13 @@ const WEIGHT: f32 = 0.035;
 /// Part of a radius at which the curve of a quarter circle is pulled.
 const QUARTER: f32 = 0.5523;
 
-/// The document.
+/// The document, and the letters that stand in it as codes because the shipped font lacks them.
 ///
 /// # Errors
 /// The shipped font does not serve, or the document cannot be made of it.
-pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
+pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<(Vec<u8>, BTreeSet<char>), Failure> {
     let paper = sheet.paper(words);
-    let pages = page::pages_of(&paper, words)?;
+    let (pages, coded) = page::pages_of(&paper, words)?;
     let letters = FontMetrics::new()?;
     let failed = |what: &str| Failure::bench(format!("cannot make the PDF: {what}"));
     let font = Font::new(PRETENDARD.into(), 0).ok_or_else(|| failed("the shipped font"))?;
@@ -45,9 +47,9 @@ pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
         surface.finish();
         page.finish();
     }
-    document
-        .finish()
-        .map_err(|error| failed(&format!("{error:?}")))
+    let document = document.finish();
+    let document = document.map_err(|error| failed(&format!("{error:?}")))?;
+    Ok((document, coded))
 }
 
 /// Times and number of what is told, so that the document is the same each time it is made.

@@ -1,5 +1,7 @@
 //! Test sheets of stored runs without a trace, with incomplete or unusual content.
 
+use std::collections::BTreeSet;
+
 use fault_db::{
     Channel, ChannelKind, FaultRecord, Id, IdSource, MeasurementRecord, OpenOptions, RunEnd,
     RunRecord, RunWriter, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
@@ -266,11 +268,47 @@ fn two_hundred_steps_stand_on_pages_with_headings() {
     assert!(said.contains("more traces are in the database"));
 }
 
+/// Goal: no letter is lost on paper. Method: letters that the font lacks in names of who tested, of a step and of a fault over
+/// its plot: each stands on the PDF's pages as its code, all that stands there has a glyph, and the pages with codes say what
+/// they are; the HTML page has the letters.
+#[test]
+fn letters_that_the_font_lacks_stand_on_paper_as_codes() {
+    let (store, id) = stored(4, true);
+    let mut sheet = sheet(&store, id);
+    sheet.run.run.operator = "田中 かず".into();
+    sheet.run.steps[1].name = "門 開 🚪".into();
+    sheet.traces[0].faults = vec!["電車".into()];
+    let letters = FontMetrics::new().expect("the font");
+    for words in Language::ALL.map(Language::words) {
+        let pages = laid_out(&sheet, words);
+        let pages: Vec<_> = pages.iter().map(|page| words_of(page)).collect();
+        for page in &pages {
+            assert!(!page.contains(|letter| letters.lacks(letter)), "{page}");
+            let rest = page.replace(words.report.codes, "");
+            assert_eq!(rest.contains("[U+"), rest != *page, "{page}");
+        }
+        let said = pages.concat();
+        let lacking: BTreeSet<char> = "田中門開🚪電車".chars().collect();
+        for letter in &lacking {
+            let code = format!("[U+{:04X}]", u32::from(*letter));
+            assert!(said.contains(&code), "no {letter} in {said}");
+        }
+        assert_eq!(pdf(&sheet, words).expect("a document").1, lacking);
+        let page = html(&sheet, words);
+        for name in ["田中 かず", "門 開 🚪", "電車"] {
+            assert!(page.contains(name), "{name}");
+        }
+    }
+}
+
 #[test]
 fn a_document_is_the_same_each_time_and_in_both_languages_a_pdf() {
     let (store, id) = stored(30, true);
     for language in Language::ALL {
-        let make = || pdf(&sheet(&store, id), language.words()).expect("a document");
+        let make = || {
+            let made = pdf(&sheet(&store, id), language.words());
+            made.expect("a document").0
+        };
         let document = make();
         assert!(document.starts_with(b"%PDF-"));
         assert_eq!(document, make());

@@ -13,12 +13,12 @@ use serde_json::{Value, json};
 
 use super::about::TraceInfo;
 use super::column::{column_name, word};
-use crate::csv::{no_formula, quoted};
+use crate::csv::{MARK, no_formula, quoted};
 
 /// Heading of the column of times.
 pub const TIME: &str = "time_s";
 
-/// Writes the line of headings.
+/// Begins a file with the line of headings.
 ///
 /// # Errors
 /// `out` fails.
@@ -27,7 +27,7 @@ pub fn put_headings<'a>(
     before: &[&str],
     channels: impl Iterator<Item = &'a Channel>,
 ) -> io::Result<()> {
-    out.write_all(TIME.as_bytes())?;
+    write!(out, "{MARK}{TIME}")?;
     for heading in before {
         write!(out, ",{heading}")?;
     }

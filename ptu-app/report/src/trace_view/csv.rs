@@ -73,10 +73,10 @@ mod tests {
         data.trigger_row = Some(2);
         data.channels[0].unit = "km/h".into();
         let axis = Axis::distance(&data, 2);
-        let expected = "time_s,speed_kmh\n-0.050,2.5\n0.000,\n";
+        let expected = "\u{feff}time_s,speed_kmh\n-0.050,2.5\n0.000,\n";
         assert_eq!(csv(&data, &[0], 1..3, None), expected);
-        let expected = "time_s,distance_m,train_position,speed_kmh\n0.050,1.00,3,4\n";
+        let expected = "\u{feff}time_s,distance_m,train_position,speed_kmh\n0.050,1.00,3,4\n";
         assert_eq!(csv(&data, &[1, 0], 3..9, axis.as_ref()), expected);
-        assert_eq!(csv(&data, &[], 0..0, None), "time_s\n");
+        assert_eq!(csv(&data, &[], 0..0, None), "\u{feff}time_s\n");
     }
 }

@@ -211,6 +211,7 @@ wordings! {
         event_proved: "proved by run", "시험으로 입증";
         annex: "Annex: run {when} the repair, {run}", "부록: {when} 시험, {run}";
         page: "page {n} of {of}", "{of}쪽 중 {n}쪽";
+        codes: "[U+…]: a character that the font of this sheet does not have, by its Unicode number", "[U+…]: 이 문서의 글꼴에 없는 글자를 유니코드 번호로 적음";
     }
 }
 

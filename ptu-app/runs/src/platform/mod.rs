@@ -23,7 +23,7 @@ pub(crate) fn this_process() -> String {
     format!("{}:{}", computer_name(), std::process::id())
 }
 
-pub(crate) use system::files::{keep_to_owner, make_folder, real_path};
+pub(crate) use system::files::{keep_to_owner, make_folder, real_path, same_file};
 pub(crate) use system::limits::{ended_by_time, limit_memory, limit_time, without_window};
 pub(crate) use system::pipes::shorten_pipe;
 pub(crate) use system::ports::{holder, open_alone};

@@ -25,8 +25,7 @@ use crate::run_diagnosis;
 use crate::stop::Stop;
 use crate::test_support::{scripts, setup};
 
-const PASSES: &str =
-    "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms(200))])\n";
+const PASSES: &str = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms(200))], measure = value(\"v\", speed))\n";
 const FAILS: &str = "procedure(title = \"Alarm\", suspect = \"-\")\n\
      step(\"sounds\", expect = [becomes(alarm, True, within = ms(200))])\n";
 
@@ -304,8 +303,8 @@ impl Listener for SlowListener {
 fn a_full_disk_stops_the_bench_and_is_no_pass() {
     const LONG: u64 = 60_000;
     let steps = "procedure(title = \"Long\", suspect = \"-\")\n\
-        for n in range(2000):\n    step(\"%d: a name that takes some room on the disk\" % n)\n\
-        step(\"waits\", do = [wait(s(600))])\n";
+        for n in range(2000):\n    step(\"%d: a name that takes some room on the disk\" % n, measure = value(\"v\", speed))\n\
+        step(\"waits\", do = [wait(s(600))], measure = value(\"v\", speed))\n";
     let mut plan = plan_of(&[steps]);
     let (folder, first) = store();
     first.close().expect("closed");

@@ -8,8 +8,7 @@ use crate::common::{Place, number, scripts, text};
 use protocol::message::{Channel, LogEntry, Message};
 
 /// A procedure of a second.
-const SHORT: &str =
-    "procedure(title = \"Short\", suspect = \"tcms\")\nstep(\"lasts\", do = wait(s(1)))\n";
+const SHORT: &str = "procedure(title = \"Short\", suspect = \"tcms\")\nstep(\"lasts\", do = wait(s(1)), measure = value(\"v\", speed))\n";
 /// What a run may take beside its bench time.
 const BESIDE_S: f64 = 2.0;
 

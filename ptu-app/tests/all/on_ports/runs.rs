@@ -26,8 +26,8 @@ fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
      procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\", setup = train_at_rest(),\n\
      \x20   cleanup = [until(mode, \"yard\", within = s(1)), train_as_found()])\n\
      step(\"first\", do = [ptu.code(\"25\"), wait(s(1))], expect = becomes(armed, True))\n\
-     step(\"long\", do = wait(s(60)))\n\
-     step(\"never\", do = wait(s(1)))\n",
+     step(\"long\", do = wait(s(60)), measure = value(\"v\", speed))\n\
+     step(\"never\", do = wait(s(1)), measure = value(\"v\", speed))\n",
     );
     let mut run = Running::start(&place, &unit, &[&script, "--report", "report.json"]);
     run.recorded_steps(1);

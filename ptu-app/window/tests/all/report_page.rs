@@ -78,7 +78,7 @@ fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
     let apart = Place::new();
     let own = own_scripts(
         &apart,
-        "procedure(title = \"Alarm\", suspect = \"tra\")\nstep(\"quiet\", do = [wait(s(1))])\n",
+        "procedure(title = \"Alarm\", suspect = \"tra\")\nstep(\"quiet\", do = [wait(s(1))], measure = value(\"v\", speed))\n",
     );
     let mut settings = settings(Page::Report);
     settings.unit.serial = "ABC-1".into();

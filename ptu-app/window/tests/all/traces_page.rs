@@ -35,6 +35,7 @@ fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<St
     window.wait_for(&format!("saved: {}", file.display()));
     let text = std::fs::read_to_string(&file).expect("written");
     std::fs::remove_file(&file).expect("there");
+    let text = text.strip_prefix('\u{feff}').expect("a mark of UTF-8");
     let mut lines = text
         .lines()
         .map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());

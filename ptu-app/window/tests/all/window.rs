@@ -296,7 +296,7 @@ fn a_script_asks_and_the_answer_decides() {
 #[test]
 fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     let place = Place::new();
-    let good = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(s(1))])\n";
+    let good = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(s(1))], measure = value(\"v\", speed))\n";
     let folder = own_scripts(&place, good);
     let mut window = Window::with(Place::new(), &folder, settings(Page::Procedures));
     window.click("Connect");

@@ -44,7 +44,7 @@ impl FontMetrics {
         self.em(text) * size
     }
 
-    /// The text as glyphs side by side; what the font lacks is an empty box, what cannot be seen a space.
+    /// The text as glyphs side by side; what cannot be seen is a space.
     pub fn glyphs(&self, text: &str) -> Vec<KrillaGlyph> {
         let glyph = |(at, letter): (usize, char)| {
             let (id, advance) = self.letter(letter);
@@ -54,7 +54,22 @@ impl FontMetrics {
         text.char_indices().map(glyph).collect()
     }
 
-    /// Number and width of a letter's glyph.
+    /// The text with its letters that the font lacks as codes, if there are any.
+    pub fn coded(&self, text: &str) -> Option<String> {
+        let written = |letter: char| match self.lacks(letter) {
+            true => code(letter),
+            false => letter.to_string(),
+        };
+        let any = text.contains(|letter| self.lacks(letter));
+        any.then(|| text.chars().map(written).collect())
+    }
+
+    /// The font has no such letter.
+    pub fn lacks(&self, letter: char) -> bool {
+        self.letter(letter).0 == 0
+    }
+
+    /// Number and width of a letter's glyph; of a letter that the font lacks 0, and the width of its code.
     fn letter(&self, letter: char) -> (u32, f32) {
         match self.ascii.get(letter as usize) {
             Some(known) => *known,
@@ -64,7 +79,9 @@ impl FontMetrics {
 
     fn look_up(&self, letter: char) -> (u32, f32) {
         let letter = if letter.is_control() { ' ' } else { letter };
-        let id = self.face.glyph_index(letter).unwrap_or_default();
+        let Some(id) = self.face.glyph_index(letter) else {
+            return (0, self.em(&code(letter)));
+        };
         let advance = self.face.glyph_hor_advance(id).unwrap_or_default();
         (u32::from(id.0), f32::from(advance) / self.per_em)
     }
@@ -100,9 +117,24 @@ impl FontMetrics {
     }
 }
 
+/// What is written for a letter that the font lacks: Chinese, Japanese, pictures.
+fn code(letter: char) -> String {
+    format!("[U+{:04X}]", u32::from(letter))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_the_font_lacks_has_the_width_of_its_code_and_is_written_so() {
+        let letters = FontMetrics::new().expect("the font");
+        assert_eq!(letters.coded("가 A\n–"), None);
+        let coded = letters.coded("가中b").expect("a code");
+        assert_eq!(coded, "가[U+4E2D]b");
+        assert!((letters.width("가中b", 8.0) - letters.width(&coded, 8.0)).abs() < 1e-3);
+        assert_eq!(letters.coded(&coded), None);
+    }
 
     #[test]
     fn lines_are_no_wider_than_asked_for_and_nothing_is_lost() {

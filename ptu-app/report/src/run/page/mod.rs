@@ -8,6 +8,8 @@ mod item;
 mod plot;
 mod table;
 
+use std::collections::BTreeSet;
+
 use font::FontMetrics;
 pub use item::{DASH, HEIGHT, Ink, Item, Text, WIDTH};
 use item::{INSIDE, MARGIN};
@@ -20,6 +22,7 @@ use ptu_runs::failure::Failure;
 /// Base lines of header and footer, and the size of their words.
 const HEADER: f32 = 32.0;
 const FOOTER: f32 = HEIGHT - 26.0;
+const BELOW_FOOTER: f32 = FOOTER + 9.0;
 const SIZE: f32 = 7.4;
 
 /// What is on a page, in the order in which it is drawn.
@@ -33,14 +36,17 @@ const ACROSS: (f32, f32) = (110.0, 0.96);
 /// # Errors
 /// The shipped font does not serve.
 pub fn pages(sheet: &impl Printed, words: &Words) -> Result<Vec<Page>, Failure> {
-    pages_of(&sheet.paper(words), words)
+    pages_of(&sheet.paper(words), words).map(|(pages, _)| pages)
 }
 
-/// The same of what was made for printing.
-pub(super) fn pages_of(paper: &Paper, words: &Words) -> Result<Vec<Page>, Failure> {
+/// The same of what was made for printing, and the letters that are written as codes.
+pub(super) fn pages_of(
+    paper: &Paper,
+    words: &Words,
+) -> Result<(Vec<Page>, BTreeSet<char>), Failure> {
     let letters = FontMetrics::new()?;
     let mut pages = flow::pages(&blocks::pieces(&paper.blocks, &letters));
-    let of = pages.len();
+    let (of, mut coded) = (pages.len(), BTreeSet::new());
     let right = |text: &str, y| Item::text(MARGIN + INSIDE, y, SIZE, Ink::Soft, text).ending();
     for (number, page) in (1..).zip(&mut pages) {
         if let Some(text) = &paper.across {
@@ -56,8 +62,29 @@ pub(super) fn pages_of(paper: &Paper, words: &Words) -> Result<Vec<Page>, Failur
         page.push(Item::rule(MARGIN, FOOTER - 11.0, INSIDE, Ink::Grid));
         page.push(Item::text(MARGIN, FOOTER, SIZE, Ink::Soft, &paper.number));
         page.push(right(&numbered, FOOTER));
+        let of_page = write_codes(page, &letters);
+        if !of_page.is_empty() {
+            let note = words.report.codes;
+            page.push(Item::text(MARGIN, BELOW_FOOTER, SIZE, Ink::Soft, note));
+        }
+        coded.extend(of_page);
     }
-    Ok(pages)
+    Ok((pages, coded))
+}
+
+/// Writes letters that the font lacks as their codes; which these are.
+fn write_codes(page: &mut Page, letters: &FontMetrics) -> BTreeSet<char> {
+    let mut lacking = BTreeSet::new();
+    for item in page {
+        let Item::Text(text) = item else { continue };
+        for (_, line) in &mut text.lines {
+            if let Some(coded) = letters.coded(line) {
+                lacking.extend(line.chars().filter(|letter| letters.lacks(*letter)));
+                *line = coded;
+            }
+        }
+    }
+    lacking
 }
 
 /// How many pages blocks take; none where the shipped font does not serve.

@@ -2,6 +2,7 @@
 
 use std::fs::{DirBuilder, File, Metadata, Permissions};
 use std::io::Result;
+use std::os::fd::AsFd;
 use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,11 @@ pub fn readable_by_others(file: &Path) -> Option<(String, String)> {
 /// Tells a file from another one put in its place.
 pub fn identity(file: &Metadata) -> u64 {
     file.ino()
+}
+
+/// What a stream of the process reads or writes, as a file.
+pub fn same_file(stream: &impl AsFd) -> Result<File> {
+    stream.as_fd().try_clone_to_owned().map(File::from)
 }
 
 /// Where a path leads, links followed.

@@ -3,6 +3,7 @@
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io::Result;
+use std::os::windows::io::AsHandle;
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::time::SystemTime;
 
@@ -27,6 +28,11 @@ pub fn identity(file: &Metadata) -> u64 {
     let made = file.created().ok();
     let since = made.and_then(|made| made.duration_since(SystemTime::UNIX_EPOCH).ok());
     since.map_or(0, |since| since.as_micros() as u64)
+}
+
+/// What a stream of the process reads or writes, as a file.
+pub fn same_file(stream: &impl AsHandle) -> Result<File> {
+    stream.as_handle().try_clone_to_owned().map(File::from)
 }
 
 /// Where a path leads, links followed; as people write it (`C:\…`), where the system tells it as `\\?\C:\…`.

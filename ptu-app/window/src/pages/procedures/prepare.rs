@@ -145,7 +145,7 @@ mod tests {
 
     fn write_procedure(folder: &Path, wait_ms: u32) {
         let text = format!(
-            "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms({wait_ms}))])\n"
+            "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(ms({wait_ms}))], measure = value(\"v\", speed))\n"
         );
         fs::write(folder.join("waiting.star"), text).expect("written");
     }
