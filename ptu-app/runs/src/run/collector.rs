@@ -13,7 +13,7 @@ use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use super::whole_run::RunStart;
 use crate::failure::Exit;
-use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored};
+use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -53,6 +53,7 @@ pub struct Outcome {
     pub counts: StepCounts,
 }
 
+/// Takes what the benches of a run say, and has it stored and shown.
 pub struct Collector<'a> {
     store: RunStore,
     began: RunStart,
@@ -162,12 +163,20 @@ impl<'a> Collector<'a> {
 
     /// The run cannot go on; what was said of the present procedure stays.
     pub fn broken_off(&mut self, why: &str) {
-        self.outside.push(OutsideStep {
+        self.say_of_whole(Verdict::Error, why.to_owned());
+    }
+
+    /// What the run as a whole came to, told to whoever listens as it is stored.
+    fn say_of_whole(&mut self, verdict: Verdict, message: String) {
+        let entry = OutsideStep {
             place: Outside::Whole,
-            verdict: Verdict::Error,
-            message: why.to_owned(),
+            verdict,
+            message,
             at: Instant::ZERO,
-        });
+        };
+        let event = SessionEvent::Run(RunEvent::OutsideStep(entry.clone()));
+        self.listener.on_event(&whole_run(), &event);
+        self.outside.push(entry);
         self.run_says_why = true;
     }
 
@@ -176,10 +185,26 @@ impl<'a> Collector<'a> {
         self.finished == self.ordinal
     }
 
+    /// The next event of the present procedure.
     pub fn take(&mut self, event: SessionEvent) {
         let Some(procedure) = self.procedure.clone() else {
             return;
         };
+        if let SessionEvent::Run(RunEvent::ProcedureFinished {
+            verdict,
+            message,
+            at,
+        }) = &event
+            && !is_passed(*verdict)
+            && !self.says_why
+        {
+            self.take(SessionEvent::Run(RunEvent::OutsideStep(OutsideStep {
+                place: Outside::Whole,
+                verdict: *verdict,
+                message: message.clone(),
+                at: *at,
+            })));
+        }
         self.listener.on_event(&procedure, &event);
         let line = self.listener.line(&procedure, &event);
         match event {
@@ -188,21 +213,9 @@ impl<'a> Collector<'a> {
                 self.says_why = true;
                 self.outside.push(entry);
             }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict,
-                message,
-                at,
-            }) => {
+            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
                 self.finished += 1;
                 self.verdict = self.verdict.and(verdict);
-                if !is_passed(verdict) && !self.says_why {
-                    self.outside.push(OutsideStep {
-                        place: Outside::Whole,
-                        verdict,
-                        message,
-                        at,
-                    });
-                }
                 self.store_outside(&procedure.id);
             }
             SessionEvent::Run(_) | SessionEvent::Rows(_) => {}
@@ -317,31 +330,16 @@ impl<'a> Collector<'a> {
         let mut verdict = self.overall();
         let counts = self.counter.counts(self.planned);
         let (run, of, left) = (counts.run(), counts.planned, counts.not_run());
-        let mut of_whole = None;
         if self.link_lost && left > 0 {
-            of_whole = Some(format!("link lost at step {run} of {of}; {left} not run"));
+            let at = format!("link lost at step {run} of {of}; {left} not run");
+            self.say_of_whole(verdict, at);
         } else if self.search && left > 0 && is_passed(verdict) {
             verdict = Verdict::Inconclusive;
-            of_whole = Some(format!(
-                "not an acceptance: {run} of {of} steps run, all passed"
-            ));
-        }
-        if let Some(message) = of_whole {
-            self.outside.push(OutsideStep {
-                place: Outside::Whole,
-                verdict,
-                message,
-                at: Instant::ZERO,
-            });
-            self.run_says_why = true;
+            let part = format!("not an acceptance: {run} of {of} steps run, all passed");
+            self.say_of_whole(verdict, part);
         }
         if !is_passed(verdict) && !self.run_says_why {
-            self.outside.push(OutsideStep {
-                place: Outside::Whole,
-                verdict,
-                message: "no step was run".into(),
-                at: Instant::ZERO,
-            });
+            self.say_of_whole(verdict, "no step was run".into());
         }
         // Also what a procedure said that the program did not run to its end.
         self.store_outside(WHOLE_RUN);
