@@ -41,7 +41,7 @@ pub struct Candidate {
 pub struct PartProbability {
     /// The part.
     pub lru: LruId,
-    /// Probability that it has failed.
+    /// Its share, or the probability that it has failed.
     pub probability: f64,
 }
 
@@ -85,8 +85,12 @@ pub struct Diagnosis {
     pub finding: Finding,
     /// The parts that were not told apart, and what tells which has failed, if that is the finding.
     pub group: Option<Group>,
-    /// Parts, the likeliest first.
+    /// Parts, the likeliest first, with their shares, which are 1 together with that of no fault: of two at once each has
+    /// half.
     pub lrus: Vec<PartProbability>,
+    /// Parts with the probability that each has failed, alone or beside another, the likeliest first: what people are told.
+    /// The probabilities of its faults add up to it.
+    pub parts: Vec<PartProbability>,
     /// Two faults at once, the likeliest first.
     pub two_faults: Vec<TwoFaults>,
     /// Probability that nothing is wrong.
@@ -153,6 +157,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
                 .collect(),
             no_fault: weights.no_fault,
             lrus: weights.lrus.clone(),
+            parts: weights.told(),
         }
     }
 
@@ -223,9 +228,10 @@ impl Weights {
             most_shown,
             ..
         } = model.settings.conclusion;
+        let parts = self.told();
         let rank = |fault: &Fault| {
             let lru = model.lru(fault.hypothesis);
-            self.lrus.iter().position(|part| Some(&part.lru) == lru)
+            parts.iter().position(|part| Some(&part.lru) == lru)
         };
         let mut faults: Vec<&Fault> = self.faults.iter().collect();
         faults.sort_by(|a, b| {
@@ -281,8 +287,9 @@ impl Weights {
             return (Finding::NotEnough, Sentence::nothing_seen(checks, next));
         }
         let named_at = settings.conclusion.named_at;
-        let parts = self.lrus.iter();
-        let likely: Vec<_> = parts.filter(|part| part.probability >= named_at).collect();
+        let parts = self.told();
+        let likely = parts.iter().filter(|part| part.probability >= named_at);
+        let likely: Vec<_> = likely.collect();
         let said = Sentence::cannot_tell(&likely, next, model.names);
         (Finding::CannotTell, said)
     }
