@@ -575,15 +575,13 @@ impl<'a> Making<'a> {
             ("verdict".into(), verdict.into()),
             ("id".into(), id.short()),
         ]);
-        if says_left {
-            known.insert(
-                "link en".into(),
-                format!("link lost at step {run} of {planned}; {left} not run"),
-            );
-            known.insert(
-                "link ko".into(),
-                format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행"),
-            );
+        let lost = [
+            format!("link lost at step {run} of {planned}; {left} not run"),
+            format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행"),
+        ];
+        for (name, said) in ["link en", "link ko"].into_iter().zip(lost) {
+            let said = if says_left { said } else { String::new() };
+            known.insert(name.into(), said);
         }
         Facts {
             of: format!("seed {} ({:?})", self.seed, self.kind),

@@ -78,13 +78,12 @@ pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>)
         }
         link = link.or(Some(why).filter(|why| why.starts_with("link lost at step ")));
     }
-    let mut told = vec![
+    vec![
         fact("attempts", attempts),
         fact("outside", outside),
         sorted("steps that did not pass", bad),
-    ];
-    told.extend(link.map(|why| fact("link en", why)));
-    told
+        fact("link en", link.unwrap_or_default()),
+    ]
 }
 
 /// Of each measurement its value and its limits; an uncertainty follows the value it is of.
@@ -240,7 +239,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     let (mut told, mut here) = (Vec::new(), "");
     let (mut counted, mut bad, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let (mut values, mut limits, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-    let mut passed = None;
+    let (mut passed, mut lost) = (None, "");
     let at = |place: usize| texts.get(place).map_or("", |text| text.as_str());
     for (place, text) in texts.iter().enumerate() {
         here = section(text).unwrap_or(here);
@@ -249,10 +248,11 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
             told.push(fact("verdict", said));
             told.extend(counts);
         }
-        for link in ["link lost at step ", "번째에서 연결 끊김"] {
-            if text.contains(link) && here == "What did not pass" {
-                told.push(fact(format!("link {}", language.code()), text));
-            }
+        let is_link = ["link lost at step ", "번째에서 연결 끊김"]
+            .iter()
+            .any(|link| text.contains(link));
+        if is_link && here == "What did not pass" {
+            lost = text;
         }
         let row = || {
             texts[place + 1..]
@@ -308,6 +308,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     told.extend(numbers("passed|failed|error|not run", counted));
     told.extend(passed.map(|passed| fact("passed", passed)));
     told.extend(candidates(rows));
+    told.push(fact(format!("link {}", language.code()), lost));
     told.push(sorted("steps that did not pass", bad));
     told.extend([
         sorted("values", values),

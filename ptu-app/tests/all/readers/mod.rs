@@ -123,11 +123,8 @@ fn every_reader_tells_the_same_of_runs_on_a_unit() {
             scripts: &scripts,
         };
         of_run(&mut monitor, &mut facts, &of, true);
-        assert!(
-            how != "link lost" || facts.known.contains_key("link en"),
-            "{:?}",
-            facts.known
-        );
+        let lost = &facts.known["link en"];
+        assert_eq!(lost.is_empty(), how != "link lost", "{how}: {lost}");
     }
     monitor.finish(500);
 }

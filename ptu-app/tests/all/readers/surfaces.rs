@@ -29,9 +29,12 @@ pub fn short(text: &str) -> Told {
     vec![fact("run", run), fact("planned", planned)]
 }
 
+/// What the row of a lost link begins with.
+const LOST: &str = "link lost at step ";
+
 /// The table at the end of a run.
 pub fn console(table: &str) -> Told {
-    let (mut told, mut here) = (Vec::new(), "");
+    let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
     for line in table.lines() {
         let cells = columns(line);
@@ -58,10 +61,8 @@ pub fn console(table: &str) -> Told {
                 .iter()
                 .any(|place| place.name() == name);
             outside += usize::from(known);
-            let why = cells
-                .get(2)
-                .filter(|why| why.starts_with("link lost at step "));
-            told.extend(why.map(|why| fact("link en", why)));
+            let why = cells.get(2).filter(|why| why.starts_with(LOST));
+            lost = why.cloned().unwrap_or(lost);
         } else if here == "FAULT" {
             parts.push(format!("{}={}", cells[2], cells[4]));
         } else if let Some(said) = line.strip_prefix("run ") {
@@ -78,6 +79,7 @@ pub fn console(table: &str) -> Told {
         }
     }
     told.extend(passed.map(|passed| fact("passed", passed)));
+    told.push(fact("link en", lost));
     // The quiet one names no fault.
     if passed.is_some() {
         told.push(sorted("parts", parts));
@@ -211,6 +213,7 @@ pub fn junit(xml: &str) -> Told {
         .expect("a run");
     let mut told = count(said, Language::English).unwrap_or_else(|| panic!("no count: {said}"));
     let (mut outside, mut counts, mut bad, mut values) = (0, [0; 3], Vec::new(), Vec::new());
+    let mut lost = "";
     for case in report
         .test_suites
         .iter()
@@ -231,8 +234,7 @@ pub fn junit(xml: &str) -> Told {
                 ..
             } => {
                 let message = message.as_ref().map(|message| message.as_str());
-                let link = message.filter(|why| why.starts_with("link lost at step "));
-                told.extend(link.map(|why| fact("link en", why)));
+                lost = message.filter(|why| why.starts_with(LOST)).unwrap_or(lost);
                 assert!(message.is_some(), "{:?} says not why", case.name);
                 let failed = *kind == NonSuccessKind::Failure;
                 (Some(if failed { 1 } else { 2 }), reruns.runs.clone())
@@ -274,6 +276,7 @@ pub fn junit(xml: &str) -> Told {
     told.extend([
         id(run),
         fact("outside", outside),
+        fact("link en", lost),
         sorted("steps that did not pass", bad),
     ]);
     told
