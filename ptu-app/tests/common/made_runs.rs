@@ -571,18 +571,22 @@ impl<'a> Making<'a> {
             all.sort();
             known.insert(name.into(), all.join(" "));
         }
-        known.extend([
-            ("verdict".into(), verdict.into()),
-            ("id".into(), id.short()),
-        ]);
-        let lost = [
-            format!("link lost at step {run} of {planned}; {left} not run"),
-            format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행"),
+        let only = |is_so: bool, text: String| if is_so { text } else { String::new() };
+        let lost = format!("link lost at step {run} of {planned}; {left} not run");
+        let lost_ko = format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행");
+        let more = [
+            ("verdict", verdict.into()),
+            ("id", id.short()),
+            ("with a result", self.worst.len().to_string()),
+            ("0", "0".into()),
+            (
+                "folders on the bench",
+                only(self.on_bench > 0, "made".into()),
+            ),
+            ("link en", only(says_left, lost)),
+            ("link ko", only(says_left, lost_ko)),
         ];
-        for (name, said) in ["link en", "link ko"].into_iter().zip(lost) {
-            let said = if says_left { said } else { String::new() };
-            known.insert(name.into(), said);
-        }
+        known.extend(more.map(|(name, text)| (name.to_owned(), text)));
         Facts {
             of: format!("seed {} ({:?})", self.seed, self.kind),
             known,

@@ -239,7 +239,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     let (mut told, mut here) = (Vec::new(), "");
     let (mut counted, mut bad, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let (mut values, mut limits, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut passed, mut lost) = (None, "");
+    let (mut passed, mut recorded, mut lost) = (None, 0, "");
     let at = |place: usize| texts.get(place).map_or("", |text| text.as_str());
     for (place, text) in texts.iter().enumerate() {
         here = section(text).unwrap_or(here);
@@ -285,9 +285,11 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
                 };
                 let counted =
                     counted.and_then(|of| of.split_once([" of ", "개 중 "][language as usize]));
-                let counted = counted.map(|(one, other)| [one, other][language as usize]);
-                if let Some(number) = counted {
-                    *passed.get_or_insert(0) += number.parse::<u32>().unwrap_or_default();
+                let counted = counted.map(|pair| <[&str; 2]>::from(pair).map(str::parse::<u32>));
+                if let Some([Ok(one), Ok(other)]) = counted {
+                    let of = [one, other];
+                    *passed.get_or_insert(0) += of[language as usize];
+                    recorded += of[1 - language as usize];
                 }
                 for mark in marks(text, 'm') {
                     let value = match ["no value", "값 없음"].contains(&next) {
@@ -307,6 +309,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     }
     told.extend(numbers("passed|failed|error|not run", counted));
     told.extend(passed.map(|passed| fact("passed", passed)));
+    told.extend(passed.map(|_| fact("with a result", recorded)));
     told.extend(candidates(rows));
     told.push(fact(format!("link {}", language.code()), lost));
     told.push(sorted("steps that did not pass", bad));

@@ -8,7 +8,7 @@ use fault_db::{RunDetail, Signed, SqlValue, Statement, Store};
 use ptu_app::console::{failures, verdict_table};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 use ptu_report::run::page::pages;
-use ptu_report::run::{Sheet, html};
+use ptu_report::run::{RunComparison, Sheet, html};
 use ptu_report::words::Language;
 use ptu_report::{Target, csv, read_certificate, run_content, run_json, run_summary_json};
 use ptu_runs::data::ScriptsDirectory;
@@ -20,8 +20,11 @@ use self::surfaces::{
 };
 use crate::common::made_runs::{Facts, Made, Maker, PARTS};
 use crate::common::served::{Running, Unit};
-use crate::common::told::{Monitor, fact, id, live, measured, results, sheet, sorted};
+use crate::common::told::{Monitor, fact, id, live, measured, numbers, results, sheet, sorted};
 use crate::common::{Place, list, scripts, text};
+
+/// Seed of a run without steps.
+const NO_STEPS: usize = 12;
 
 /// A run in its store, and the scripts by which it is diagnosed.
 struct Stored<'a> {
@@ -41,6 +44,7 @@ fn every_reader_tells_the_same_of_every_run() {
     let with_dictionary = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
     let none = place.no_scripts();
     let mut monitor = Monitor::default();
+    let nothing = store.run(made[NO_STEPS].id).expect("recorded");
     for run in &mut made {
         let of = Stored {
             store: &store,
@@ -52,6 +56,7 @@ fn every_reader_tells_the_same_of_every_run() {
             },
         };
         of_run(&mut monitor, &mut run.facts, &of, run.seed % 6 == 0);
+        compared(&mut monitor, &mut run.facts, &of.run, &nothing);
         monitor.hold(&mut run.facts, "stream", stream(&run.lines));
         for language in Language::ALL {
             let told = live(&run.live, language);
@@ -180,6 +185,22 @@ fn of_run(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, is_printed:
     }
 }
 
+/// A run beside one without steps: all that it has a result of is its own.
+fn compared(monitor: &mut Monitor, facts: &mut Facts, run: &RunDetail, nothing: &RunDetail) {
+    let (a, b) = (run.clone(), nothing.clone());
+    let tally = RunComparison { a, b, all: true }.tally();
+    let told = numbers(
+        "with a result|0|0|0",
+        [
+            tally.only_a,
+            tally.only_b,
+            tally.pass_now,
+            tally.passed_before,
+        ],
+    );
+    monitor.hold(facts, "comparison", told);
+}
+
 /// The signed documents: of the run in the store, and in a sheet.
 fn certificate(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, place: &Place) {
     let target = place.text_path("signed.html").parse().expect("a target");
@@ -196,10 +217,16 @@ fn certificate(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, place:
         .map(|signed| signed.expect("signed"));
     for signed in stored.chain(in_page) {
         let of = Statement::of(&signed).expect("of a run");
+        let about = of.about.expect("of a run");
+        let told = [
+            fact("digest", of.digest),
+            fact("run", about.steps),
+            fact("verdict", about.verdict),
+        ];
         monitor.hold(
             facts,
             "certificate",
-            vec![id(&of.id), fact("digest", of.digest)],
+            [vec![id(&of.id)], told.into()].concat(),
         );
     }
     let seal = of.run.seal.as_ref().expect("sealed");

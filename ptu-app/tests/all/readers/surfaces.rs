@@ -34,6 +34,7 @@ const LOST: &str = "link lost at step ";
 
 /// The table at the end of a run.
 pub fn console(table: &str) -> Told {
+    let mut recorded = 0;
     let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
     for line in table.lines() {
@@ -53,7 +54,9 @@ pub fn console(table: &str) -> Told {
         } else if cells.is_empty() {
             here = "";
         } else if here == "PROCEDURE" {
-            *passed.get_or_insert(0) += cells[3].parse::<u32>().expect("a number");
+            let count = |place: usize| cells[place].parse::<u32>().expect("a number");
+            recorded += count(2);
+            *passed.get_or_insert(0) += count(3);
         } else if here == "VERDICT" {
             let name = cells[1].split_once(": ").map_or("", |(_, name)| name);
             bad.extend(marks(name, 's'));
@@ -79,6 +82,7 @@ pub fn console(table: &str) -> Told {
         }
     }
     told.extend(passed.map(|passed| fact("passed", passed)));
+    told.extend(passed.map(|_| fact("with a result", recorded)));
     told.push(fact("link en", lost));
     // The quiet one names no fault.
     if passed.is_some() {
