@@ -41,7 +41,7 @@ pub struct Candidate {
 pub struct PartProbability {
     /// The part.
     pub lru: LruId,
-    /// Probability that it has failed.
+    /// Its share, or the probability that it has failed.
     pub probability: f64,
 }
 
@@ -95,8 +95,12 @@ pub struct Diagnosis {
     pub next_check: Option<NextCheck>,
     /// What it comes to.
     pub conclusion: Conclusion,
-    /// Parts, the likeliest first.
+    /// Parts, the likeliest first, with their shares, which are 1 together with that of no fault: of two at once each has
+    /// half.
     pub lrus: Vec<PartProbability>,
+    /// Parts with the probability that each has failed, alone or beside another, the likeliest first: what people are told.
+    /// The probabilities of its faults add up to it.
+    pub parts: Vec<PartProbability>,
     /// Two faults at once, the likeliest first.
     pub two_faults: Vec<TwoFaults>,
     /// Probability that nothing is wrong.
@@ -148,6 +152,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
                 .collect(),
             no_fault: weights.no_fault,
             lrus: weights.lrus.clone(),
+            parts: weights.told(),
         }
     }
 
@@ -218,9 +223,10 @@ impl Weights {
             most_shown,
             ..
         } = model.settings.conclusion;
+        let parts = self.told();
         let rank = |fault: &Fault| {
             let lru = model.lru(fault.hypothesis);
-            self.lrus.iter().position(|part| Some(&part.lru) == lru)
+            parts.iter().position(|part| Some(&part.lru) == lru)
         };
         let mut faults: Vec<&Fault> = self.faults.iter().collect();
         faults.sort_by(|a, b| {
@@ -275,10 +281,10 @@ impl Weights {
             };
         }
         let named_at = settings.conclusion.named_at;
-        let parts = self.lrus.iter();
+        let parts = self.told().into_iter();
         let likely = parts.filter(|part| part.probability >= named_at);
         Conclusion::CannotTell {
-            likely: likely.cloned().collect(),
+            likely: likely.collect(),
         }
     }
 }

@@ -182,6 +182,18 @@ impl Weights {
         failed.filter(|(_, p)| *p >= sure).collect()
     }
 
+    /// The same of all parts, the likeliest first.
+    pub fn told(&self) -> Vec<PartProbability> {
+        let all = self.failed(0.0).into_iter();
+        let told = all.map(|(lru, probability)| PartProbability {
+            lru: lru.clone(),
+            probability,
+        });
+        let mut told: Vec<_> = told.collect();
+        told.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        told
+    }
+
     /// Probability that both of two parts have failed.
     pub fn both_failed(&self, one: &LruId, other: &LruId) -> f64 {
         let of_pair = self.pairs_of(one).filter(|(beside, _)| *beside == other);

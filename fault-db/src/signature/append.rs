@@ -7,6 +7,7 @@ use super::statement::{About, SIGNATURE, Statement};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::{self, hex};
+use crate::values::step_counts::{COUNTS_OF_RUN, counts_of_text};
 
 /// A new entry of the file's own chain.
 struct Entry {
@@ -95,29 +96,27 @@ fn complete(backend: &Backend, entry: &Entry, statement: &mut Statement) -> SqlR
 }
 
 fn about(backend: &Backend, id: Id, statement: &mut Statement) -> SqlResult<()> {
-    let found = backend.first(
+    let select = format!(
         "SELECT r.seq, r.finished_at_us, u.serial, r.verdict, r.operator, r.source, r.line, r.train, r.started_at_us,
-            r.app_version, r.injected, (SELECT count(*) FROM step s WHERE s.run = r.seq),
-            (SELECT count(*) FROM measurement m WHERE m.run = r.seq)
-         FROM run r JOIN unit u ON u.seq = r.unit WHERE r.id = ?1",
-        &values![id],
-        |row| {
-            let about = About {
-                unit: row.get(2)?,
-                verdict: row.get(3)?,
-                operator: row.get(4)?,
-                source: row.get(5)?,
-                line: row.get(6)?,
-                train: row.get(7)?,
-                started_at_us: row.get(8)?,
-                app_version: row.get(9)?,
-                injected: row.get(10)?,
-                steps: row.get(11)?,
-                measurements: row.get(12)?,
-            };
-            Ok((row.get::<i64>(0)?, row.get::<i64>(1)?, about))
-        },
-    )?;
+            r.app_version, r.injected, ({COUNTS_OF_RUN}), (SELECT count(*) FROM measurement m WHERE m.run = r.seq)
+         FROM run r JOIN unit u ON u.seq = r.unit WHERE r.id = ?1"
+    );
+    let found = backend.first(&select, &values![id], |row| {
+        let about = About {
+            unit: row.get(2)?,
+            verdict: row.get(3)?,
+            operator: row.get(4)?,
+            source: row.get(5)?,
+            line: row.get(6)?,
+            train: row.get(7)?,
+            started_at_us: row.get(8)?,
+            app_version: row.get(9)?,
+            injected: row.get(10)?,
+            steps: counts_of_text(row.get(11)?).run().into(),
+            measurements: row.get(12)?,
+        };
+        Ok((row.get::<i64>(0)?, row.get::<i64>(1)?, about))
+    })?;
     if let Some((run, at_us, about)) = found {
         statement.at_us = at_us;
         statement.about = Some(about);

@@ -67,7 +67,7 @@ pub struct About {
     pub train: String,
     /// When it began.
     pub started_at_us: i64,
-    /// Steps, and measured values.
+    /// Different steps that were run.
     pub steps: i64,
     /// Measured values.
     pub measurements: i64,

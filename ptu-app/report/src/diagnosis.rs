@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use diagnosis::{Candidate, PartProbability, Reason};
+use diagnosis::{Candidate, Diagnosis, PartProbability, Reason, TwoFaults};
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
@@ -49,7 +49,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "group": d.conclusion.group().map(|group| json!({
             "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
         })),
-        "parts": d.lrus.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
+        "parts": d.parts.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,
         "warnings": answer.warnings.iter().map(|warning| words.warning(warning)).collect::<Vec<_>>(),
@@ -92,35 +92,38 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     );
     if let Some(c) = &answer.why_not {
         let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
-        candidate_text(&mut text, (answer, c), all);
+        part_text(&mut text, d, c);
+        reasons_text(&mut text, (answer, c), all);
         return text.trim_end().to_owned();
     }
-    if all {
-        d.candidates
-            .iter()
-            .for_each(|c| candidate_text(&mut text, (answer, c), true));
-    } else {
-        first_of_parts(&d.candidates).for_each(|c| candidate_text(&mut text, (answer, c), false));
+    for (probability, possible) in ranked(d, if all { usize::MAX } else { MOST_PARTS }) {
+        let percent = 100.0 * probability;
+        let _ = match possible {
+            Possible::Both(two) => {
+                writeln!(text, "\n{percent:5.1} %  both {}", two.faults.join(" and "))
+            }
+            Possible::NoFault => writeln!(text, "\n{percent:5.1} %  no fault"),
+            Possible::Part(c) if all => {
+                let _ = writeln!(text, "\n{percent:5.1} %  {}", c.lru);
+                faults_text(&mut text, answer, c, probability);
+                Ok(())
+            }
+            Possible::Part(c) => {
+                part_text(&mut text, d, c);
+                reasons_text(&mut text, (answer, c), false);
+                Ok(())
+            }
+        };
     }
-    for two in d
-        .two_faults
-        .iter()
-        .take(if all { usize::MAX } else { MOST_PARTS })
-    {
-        let _ = writeln!(
-            text,
-            "\n{:5.1} %  both {}",
-            100.0 * two.probability,
-            two.faults.join(" and ")
-        );
-    }
-    let _ = writeln!(text, "\n{:5.1} %  no fault", 100.0 * d.no_fault);
-    let likely: Vec<_> = first_of_parts(&d.candidates)
-        .map(|c| c.lru.as_str())
-        .collect();
+    let shown = ranked(d, MOST_PARTS);
+    let likely = |lru: &String| {
+        let is_it =
+            |possible: &Possible<'_>| matches!(possible, Possible::Part(c) if c.lru == **lru);
+        shown.iter().any(|(_, possible)| is_it(possible))
+    };
     for (lru, ids) in &answer.traces {
         let ids: Vec<_> = ids.iter().map(Id::short).collect();
-        if !ids.is_empty() && (all || likely.contains(&lru.as_str())) {
+        if !ids.is_empty() && (all || likely(lru)) {
             let _ = writeln!(text, "traces of faults that name {lru}: {}", ids.join(", "));
         }
     }
@@ -134,23 +137,71 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     text.trim_end().to_owned()
 }
 
-/// The likeliest fault of each of the likeliest parts.
-pub fn first_of_parts(candidates: &[Candidate]) -> impl Iterator<Item = &Candidate> {
-    let mut parts = BTreeSet::new();
-    let first = candidates.iter().filter(move |c| parts.insert(&c.lru));
-    first.take(MOST_PARTS)
+/// What may be the cause.
+#[derive(Clone, Copy, Debug)]
+pub enum Possible<'a> {
+    /// A part, by its likeliest fault.
+    Part(&'a Candidate),
+    /// Two faults at once.
+    Both(&'a TwoFaults),
+    /// Nothing is wrong.
+    NoFault,
 }
 
-fn candidate_text(text: &mut String, (answer, c): (&Answer, &Candidate), all: bool) {
+/// Less likely than this reads 0.0 %, and is not told.
+const LEAST_TOLD: f64 = 0.0005;
+
+/// What may be the cause, `most` parts and `most` pairs of faults, each with its probability, the likeliest first. The
+/// probability of a part is the one that the conclusion tells.
+pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
+    let mut parts = BTreeSet::new();
+    let first = of.candidates.iter().filter(|c| parts.insert(&c.lru));
+    let parts = first
+        .take(most)
+        .map(|c| (probability_of(of, c), Possible::Part(c)));
+    let pairs = of.two_faults.iter().take(most);
+    let pairs = pairs.map(|two| (two.probability, Possible::Both(two)));
+    let none = (of.no_fault, Possible::NoFault);
+    let mut all: Vec<_> = parts.chain(pairs).chain([none]).collect();
+    all.retain(|(probability, _)| *probability >= LEAST_TOLD);
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all
+}
+
+/// Probability that the part of a candidate has failed.
+pub fn probability_of(of: &Diagnosis, c: &Candidate) -> f64 {
+    let part = of.parts.iter().find(|part| part.lru == c.lru);
+    part.map_or(c.probability, |part| part.probability)
+}
+
+/// A part by its likeliest fault.
+fn part_text(text: &mut String, d: &Diagnosis, c: &Candidate) {
+    let percent = 100.0 * probability_of(d, c);
+    let what = Language::English.words().fault_text(&c.text);
+    let _ = writeln!(text, "\n{percent:5.1} %  {}  ({}: {what})", c.lru, c.fault);
+}
+
+/// All faults of a part, which add up to its probability.
+fn faults_text(text: &mut String, answer: &Answer, part: &Candidate, mut rest: f64) {
+    for c in answer
+        .diagnosis
+        .candidates
+        .iter()
+        .filter(|c| c.lru == part.lru)
+    {
+        rest -= c.probability;
+        let percent = 100.0 * c.probability;
+        let what = Language::English.words().fault_text(&c.text);
+        let _ = writeln!(text, " of these {percent:5.1} %  {}: {what}", c.fault);
+        reasons_text(text, (answer, c), true);
+    }
+    if rest >= LEAST_TOLD {
+        let _ = writeln!(text, " of these {:5.1} %  other faults", 100.0 * rest);
+    }
+}
+
+fn reasons_text(text: &mut String, (answer, c): (&Answer, &Candidate), all: bool) {
     let words = Language::English.words();
-    let _ = writeln!(
-        text,
-        "\n{:5.1} %  {}  ({}: {})",
-        100.0 * c.probability,
-        c.lru,
-        c.fault,
-        words.fault_text(&c.text)
-    );
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
         let reasons = if all {
             details(answer, reasons, words)

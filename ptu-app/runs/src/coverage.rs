@@ -59,38 +59,3 @@ impl Coverage {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use btu_rig::procedure::Finding;
-
-    use super::*;
-
-    #[test]
-    fn what_was_skipped_is_no_part_of_what_was_run() {
-        let mut counter = fault_db::StepCounter::default();
-        for (place, verdict) in [
-            (1, Verdict::Passed),
-            (1, Verdict::Failed),
-            (1, Verdict::Passed),
-            (2, Verdict::Passed),
-            (3, Verdict::Skipped),
-            (4, Verdict::Skipped),
-            (5, Verdict::Error),
-        ] {
-            counter.note(place, verdict);
-        }
-        let skipped = [
-            ("atp/overspeed", "a (1/2)", Finding::NeedsHarness.not_run()),
-            ("atp/overspeed", "a (2/2)", Finding::NeedsHarness),
-            ("ptu/identity", "b", Finding::NoStepRun),
-        ];
-        let skipped = skipped.map(|(procedure, step, why)| (procedure, step, why.into()));
-        let coverage = Coverage::of(counter.counts(6), skipped.into_iter());
-        let steps = &coverage.steps;
-        assert_eq!((steps.planned, steps.run(), steps.attempts), (6, 3, 5));
-        assert_eq!((steps.passed, steps.failed, steps.error), (1, 1, 1));
-        assert_eq!((steps.not_run(), coverage.need_bench), (3, 1));
-        assert_eq!(coverage.on_bench, BTreeSet::from(["atp".to_owned()]));
-    }
-}

@@ -2,7 +2,8 @@
 //! verdict is a type of its own; parts and severities are text there, since a database may hold those of another
 //! program.
 
-use btu_rig::procedure::{Findings, Outside, OutsideStep, Verdict};
+use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, Verdict};
 use fault_db::{FaultRecord, StepRecord};
 use protocol::lru;
 
@@ -61,6 +62,24 @@ pub fn findings(stored: &Option<String>) -> Findings {
 
 /// The procedure of an entry that is of the run as a whole.
 pub const WHOLE_RUN: &str = "run";
+
+/// What stands for the run as a whole among its procedures: it has no steps.
+pub fn whole_run() -> Procedure {
+    Procedure {
+        id: WHOLE_RUN.to_owned(),
+        title: String::new(),
+        title_ko: None,
+        needs: Connection::Ptu,
+        on_request: false,
+        suspect: None,
+        path: String::new(),
+        sha256: String::new(),
+        setup: Vec::new(),
+        cleanup: Vec::new(),
+        steps: Vec::new(),
+        slots: 0,
+    }
+}
 
 /// The kind of a record that is a step of a script.
 pub const STEP: &str = "step";

@@ -384,7 +384,7 @@ fn about(about: &About) -> String {
         None => String::new(),
     };
     format!(
-        "\n  unit {}: {}, {} steps, {} measured values, by {}, on {}, begun {}{injected}",
+        "\n  unit {}: {}, {} steps run, {} measured values, by {}, on {}, begun {}{injected}",
         about.unit,
         about.verdict,
         about.steps,

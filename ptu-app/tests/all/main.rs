@@ -12,7 +12,6 @@ mod by_the_clock;
 mod campaigns;
 mod care;
 mod cases;
-mod counts;
 mod diagnose;
 
 mod documents;
@@ -36,6 +35,7 @@ mod outputs;
 mod own_scripts;
 mod package;
 mod questions;
+mod readers;
 mod repair_sheet;
 mod report;
 mod resume;

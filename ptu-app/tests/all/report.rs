@@ -260,26 +260,3 @@ fn a_sheet_without_a_dictionary_says_why_it_has_no_diagnosis() {
     let page = html(&sheet, Language::English.words());
     assert!(page.contains("No diagnosis: cannot read "));
 }
-
-/// Goal: the verdict of a part of the suite says first what it stands for, the same in every report. Method: a laptop
-/// that passes what it can reach.
-#[test]
-fn a_part_of_the_suite_says_so_first_in_every_report() {
-    let place = Place::new();
-    let names = ["a.html", "a.junit.xml"].map(|name| place.text_path(name));
-    let [html, junit] = names.each_ref().map(String::as_str);
-    let run = ["ptu/markers", "atp/power_up", "--harness", "none"];
-    let reports = ["--report", html, "--report", junit];
-    let (said, report) = place.run(&[&run[..], &reports].concat());
-    let said = said.exits(0);
-    let coverage = &report["coverage"];
-    let [run, of, left] = ["run", "steps", "need_bench"].map(|key| coverage[key].to_string());
-    let part = format!(
-        "{run} of {of} steps run, all passed; {left} not run; {left} need the bench harness: atp"
-    );
-    assert_eq!(said.out.lines().next(), Some(&*format!("passed: {part}")));
-    assert!(place.read("a.html").contains(&part));
-    let junit = place.read("a.junit.xml");
-    let first = junit.lines().find(|line| line.contains("<testsuites"));
-    assert!(first.is_some_and(|line| line.contains(&part)), "{junit}");
-}

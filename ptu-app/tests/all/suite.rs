@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crate::common::{Place, has_shape, list, normalised, number, text};
-use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
 use serde_json::Value;
 
 const VERDICTS: [&str; 5] = ["passed", "failed", "error", "skipped", "aborted"];
@@ -16,7 +15,7 @@ fn whole_suite() -> &'static (Place, Value) {
     static SUITE: OnceLock<(Place, Value)> = OnceLock::new();
     SUITE.get_or_init(|| {
         let place = Place::new();
-        let (said, report) = place.run("--report report.junit.xml");
+        let (said, report) = place.run("");
         said.exits(0);
         (place, report)
     })
@@ -188,60 +187,6 @@ fn every_listed_step_is_reported_with_its_measurements() {
     }
     assert!(planned > 0);
     assert_eq!(count, planned);
-}
-
-#[test]
-fn a_recorded_run_is_shown_as_it_was_reported() {
-    let (place, report) = whole_suite();
-    assert_eq!(&place.json("runs show latest --json"), report);
-    let id = text(&report["run"]["id"]);
-    assert_eq!(&place.json(&["runs", "show", id, "--json"]), report);
-    let table = place.ptu(&["runs", "show", &id[id.len() - 8..]]).exits(0);
-    assert!(table.out.contains("atp/overspeed"), "{}", table.all());
-}
-
-#[test]
-fn the_junit_report_is_well_formed_and_counts_the_same() {
-    let (place, report) = whole_suite();
-    let steps = list(&report["steps"]);
-    let junit = Report::deserialize_from_str(&place.read("report.junit.xml")).expect("JUnit XML");
-    assert_eq!(
-        (junit.tests, junit.failures, junit.errors),
-        (steps.len(), 0, 0)
-    );
-    let cases: Vec<_> = junit
-        .test_suites
-        .iter()
-        .flat_map(|suite| &suite.test_cases)
-        .map(|case| case.name.as_str().to_owned())
-        .collect();
-    let names: Vec<_> = steps.iter().map(|s| text(&s["name"]).to_owned()).collect();
-    assert_eq!(cases, names);
-}
-
-#[test]
-fn the_junit_report_of_a_broken_unit_tells_failures_from_errors() {
-    let place = Place::new();
-    let (said, report) = place.run("--inject test_board.dead --report r.junit.xml");
-    said.exits(1);
-    let count = |verdict: &str| {
-        list(&report["steps"])
-            .iter()
-            .filter(|step| step["verdict"] == verdict)
-            .count()
-    };
-    let junit = Report::deserialize_from_str(&place.read("r.junit.xml")).expect("JUnit XML");
-    assert!(count("failed") > 0 && count("error") > 0);
-    assert_eq!(junit.failures, count("failed"));
-    assert_eq!(junit.errors, count("error"));
-    let said_why = |status: &TestCaseStatus| match status {
-        TestCaseStatus::NonSuccess { kind, message, .. } => {
-            matches!(kind, NonSuccessKind::Failure | NonSuccessKind::Error) && message.is_some()
-        }
-        _ => true,
-    };
-    let mut cases = junit.test_suites.iter().flat_map(|s| &s.test_cases);
-    assert!(cases.all(|case| said_why(&case.status)));
 }
 
 #[test]

@@ -2,9 +2,12 @@
 
 #![allow(dead_code, reason = "each of the test programs uses its part")]
 
+pub mod made_plans;
+pub mod made_runs;
 pub mod proxy;
 pub mod served;
 pub mod terminal;
+pub mod told;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

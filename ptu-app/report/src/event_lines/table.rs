@@ -76,7 +76,7 @@ pub const COMMON: &[(&str, Kind, &str)] = &[
     (
         "procedure",
         TextOrNull,
-        "procedure that it belongs to, as atp/overspeed; null of the run",
+        "procedure that it belongs to, as atp/overspeed; run of what is said of the run as a whole, and null of the run's own lines",
     ),
 ];
 

@@ -2,11 +2,11 @@
 
 use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
-use crate::diagnosis::{first_of_parts, shown_reasons};
+use crate::diagnosis::{MOST_PARTS, Possible, ranked, shown_reasons};
 use crate::words::{Language, Words, fill};
 use ptu_runs::run_diagnosis::Answer;
 
-/// Fault modes less likely than this are not named.
+/// Parts less likely than this are not named.
 const LEAST_NAMED: f64 = 0.01;
 
 /// The blocks of the diagnosis, or why there is none.
@@ -50,11 +50,14 @@ fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
 
 fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
     let report = &words.report;
-    let first = first_of_parts(&answer.diagnosis.candidates);
-    let likely = first.filter(|candidate| candidate.probability >= LEAST_NAMED);
-    let rows = likely.map(|candidate| {
+    let likely = ranked(&answer.diagnosis, MOST_PARTS).into_iter();
+    let likely = likely.filter_map(|(probability, possible)| match possible {
+        Possible::Part(candidate) if probability >= LEAST_NAMED => Some((probability, candidate)),
+        _ => None,
+    });
+    let rows = likely.map(|(probability, candidate)| {
         let cells = [
-            format!("{:.1} %", 100.0 * candidate.probability),
+            format!("{:.1} %", 100.0 * probability),
             sheet.part(candidate.lru.as_str(), words),
             format!("{}: {}", candidate.fault, words.fault_text(&candidate.text)),
             shown_reasons(answer, &candidate.for_it, words).join("\n"),

@@ -316,17 +316,6 @@ fn a_document_is_the_same_each_time_and_in_both_languages_a_pdf() {
 }
 
 #[test]
-fn runs_without_steps_or_end_have_a_sheet() {
-    for (steps, ended, said) in [(0, true, "No steps were run."), (3, false, "Interrupted")] {
-        let (store, id) = stored(steps, ended);
-        let sheet = sheet(&store, id);
-        let words = Language::English.words();
-        assert!(html(&sheet, words).contains(said), "{said}");
-        assert!(pdf(&sheet, words).is_ok());
-    }
-}
-
-#[test]
 fn a_trace_that_cannot_be_read_is_named_and_the_sheet_goes_on() {
     let (store, id) = stored(4, true);
     let mut sheet = sheet(&store, id);

@@ -12,7 +12,7 @@ use protocol::Duration;
 
 use crate::coverage::Coverage;
 use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, different_steps, steps_of};
-use crate::stored::stored;
+use crate::stored::{WHOLE_RUN, stored, whole_run};
 
 /// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
 /// database.
@@ -25,7 +25,7 @@ pub struct Progress {
     pub unit: String,
     /// SHA-256 over the scripts it is of.
     pub scripts_sha256: String,
-    /// Procedures in order.
+    /// Procedures in order, and last what was said of the run as a whole.
     pub procedures: Vec<ProcedureProgress>,
     /// Steps in all, repetitions counted: how long it takes.
     steps: usize,
@@ -129,14 +129,7 @@ impl Progress {
     /// Of a plan that has not begun, on this unit.
     pub fn new(plan: &RunPlan, unit: String) -> Self {
         let procedure = |task: &crate::run::Task| {
-            let all = || (0..task.procedure.steps.len()).collect();
-            ProcedureProgress {
-                procedure: task.procedure.clone(),
-                chosen: task.options.chosen.clone().unwrap_or_else(all),
-                results: Vec::new(),
-                verdict: None,
-                findings: Findings::default(),
-            }
+            ProcedureProgress::of(task.procedure.clone(), task.options.chosen.clone())
         };
         let procedures: Vec<_> = plan.tasks.iter().map(procedure).collect();
         let worst = procedures
@@ -172,6 +165,10 @@ impl Progress {
 
     /// Takes an event of the procedure called `id`.
     pub fn on_event(&mut self, id: &str, event: &SessionEvent) {
+        if id == WHOLE_RUN && self.place(id).is_none() {
+            self.procedures
+                .push(ProcedureProgress::of(Arc::new(whole_run()), None));
+        }
         let Some(place) = self.place(id) else { return };
         match event {
             SessionEvent::Run(event) => self.event(place, event),
@@ -343,6 +340,19 @@ pub fn outside_place(result: &StepResult) -> Option<Outside> {
 
 /// The place in the procedure of what is no step of it.
 const OUTSIDE: usize = usize::MAX;
+
+impl ProcedureProgress {
+    /// Of a procedure that has not begun, with these of its steps or all.
+    fn of(procedure: Arc<Procedure>, chosen: Option<Vec<usize>>) -> Self {
+        Self {
+            chosen: chosen.unwrap_or_else(|| (0..procedure.steps.len()).collect()),
+            procedure,
+            results: Vec::new(),
+            verdict: None,
+            findings: Findings::default(),
+        }
+    }
+}
 
 impl RunPosition {
     fn of(procedure: usize) -> Self {

@@ -13,7 +13,7 @@ use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use super::whole_run::RunStart;
 use crate::failure::Exit;
-use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored};
+use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -53,6 +53,7 @@ pub struct Outcome {
     pub counts: StepCounts,
 }
 
+/// Takes what the benches of a run say, and has it stored and shown.
 pub struct Collector<'a> {
     store: RunStore,
     began: RunStart,
@@ -162,17 +163,21 @@ impl<'a> Collector<'a> {
 
     /// The run cannot go on; what was said of the present procedure stays.
     pub fn broken_off(&mut self, why: Finding) {
-        self.of_whole(Verdict::Error, why, Instant::ZERO);
-        self.run_says_why = true;
+        self.say_of_whole(Verdict::Error, why);
     }
 
-    fn of_whole(&mut self, verdict: Verdict, finding: Finding, at: Instant) {
-        self.outside.push(OutsideStep {
+    /// What the run as a whole came to, told to whoever listens as it is stored.
+    fn say_of_whole(&mut self, verdict: Verdict, finding: Finding) {
+        let entry = OutsideStep {
             place: Outside::Whole,
             verdict,
             finding,
-            at,
-        });
+            at: Instant::ZERO,
+        };
+        let event = SessionEvent::Run(RunEvent::OutsideStep(entry.clone()));
+        self.listener.on_event(&whole_run(), &event);
+        self.outside.push(entry);
+        self.run_says_why = true;
     }
 
     /// Whether the present procedure ran to its end.
@@ -180,10 +185,28 @@ impl<'a> Collector<'a> {
         self.finished == self.ordinal
     }
 
+    /// The next event of the present procedure.
     pub fn take(&mut self, event: SessionEvent) {
         let Some(procedure) = self.procedure.clone() else {
             return;
         };
+        if let SessionEvent::Run(RunEvent::ProcedureFinished {
+            verdict,
+            findings,
+            at,
+        }) = &event
+            && !is_passed(*verdict)
+            && !self.says_why
+        {
+            for found in findings.iter() {
+                self.take(SessionEvent::Run(RunEvent::OutsideStep(OutsideStep {
+                    place: Outside::Whole,
+                    verdict: *verdict,
+                    finding: found.finding.clone(),
+                    at: *at,
+                })));
+            }
+        }
         self.listener.on_event(&procedure, &event);
         let line = self.listener.line(&procedure, &event);
         match event {
@@ -192,18 +215,9 @@ impl<'a> Collector<'a> {
                 self.says_why = true;
                 self.outside.push(entry);
             }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict,
-                findings,
-                at,
-            }) => {
+            SessionEvent::Run(RunEvent::ProcedureFinished { verdict, .. }) => {
                 self.finished += 1;
                 self.verdict = self.verdict.and(verdict);
-                if !is_passed(verdict) && !self.says_why {
-                    for found in findings.iter() {
-                        self.of_whole(verdict, found.finding.clone(), at);
-                    }
-                }
                 self.store_outside(&procedure.id);
             }
             SessionEvent::Run(_) | SessionEvent::Rows(_) => {}
@@ -319,19 +333,14 @@ impl<'a> Collector<'a> {
         let mut verdict = self.overall();
         let counts = self.counter.counts(self.planned);
         let (run, of, left) = (counts.run(), counts.planned, counts.not_run());
-        let mut of_whole = None;
         if self.link_lost && left > 0 {
-            of_whole = Some(Finding::LinkLostAt { run, of, left });
+            self.say_of_whole(verdict, Finding::LinkLostAt { run, of, left });
         } else if self.search && left > 0 && is_passed(verdict) {
             verdict = Verdict::Inconclusive;
-            of_whole = Some(Finding::NotAcceptance { run, of });
-        }
-        if let Some(finding) = of_whole {
-            self.of_whole(verdict, finding, Instant::ZERO);
-            self.run_says_why = true;
+            self.say_of_whole(verdict, Finding::NotAcceptance { run, of });
         }
         if !is_passed(verdict) && !self.run_says_why {
-            self.of_whole(verdict, Finding::NoStepRun, Instant::ZERO);
+            self.say_of_whole(verdict, Finding::NoStepRun);
         }
         // Also what a procedure said that the program did not run to its end.
         self.store_outside(WHOLE_RUN);

@@ -133,6 +133,7 @@ impl RunStore {
         }
     }
 
+    /// Records a step.
     pub fn step(&self, step: StepRecord) {
         self.send(Entry::Step(step));
     }

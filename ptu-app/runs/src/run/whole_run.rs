@@ -269,7 +269,8 @@ impl RunStart {
         self.at_us.saturating_add(since_us)
     }
 
-    fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
+    /// The end of the run, now.
+    pub fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
         let finished_at_us = self.now_us();
         RunEnd {
             verdict,

@@ -15,12 +15,11 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Mutex;
 
-use crate::common::{Place, has_shape, list, normalised, number, text};
+use crate::common::{Place, has_shape, list, normalised, text};
 use glob::Pattern;
 use protocol::Random;
 use protocol::injection::{FaultKind, FaultMode};
 use protocol::signal::Signal;
-use quick_junit::Report;
 use runs::{FaultRun, TestBench, run_program};
 
 /// Trace rows are this far apart.
@@ -334,7 +333,6 @@ fn problems_of_procedures(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     if list(&run.report["faults"]).is_empty() {
         problems.push("no fault stored".into());
     }
-    problems.extend(check_junit(run));
     problems.extend(check_steps(mode, run));
     problems.extend(check_side(mode, run));
     problems.extend(check_traces(run));
@@ -348,7 +346,6 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     if run.exit != 1 {
         problems.push(format!("exit {}", run.exit));
     }
-    problems.extend(check_junit(run));
     problems.extend(check_steps(mode, run));
     problems.extend(check_parts(mode, run));
     problems.extend(check_side(mode, run));
@@ -356,16 +353,6 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     problems.extend(check_diagnosis(mode, run));
     let named = |problem| format!("{}: {problem}", mode.id);
     problems.into_iter().map(named).collect()
-}
-
-/// Who reads nothing but JUnit sees that the run did not pass, and as many cases as JSON says.
-fn check_junit(run: &FaultRun) -> Option<String> {
-    let junit = Report::deserialize_from_str(&run.junit).expect("JUnit XML");
-    let not_passed = junit.failures + junit.errors;
-    let counted = ["steps_not_passed", "outside_steps"].map(|key| number(&run.report["run"][key]));
-    let json = counted.iter().sum::<f64>() as usize;
-    let wrong = || format!("exit {}: {not_passed} in JUnit, {json} in JSON", run.exit);
-    ((run.exit == 0) != (not_passed == 0) || json != not_passed).then(wrong)
 }
 
 /// Diagnosis puts the broken part first, whatever the stored faults name.

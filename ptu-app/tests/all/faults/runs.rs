@@ -7,7 +7,6 @@ use btu_rig::procedure::{Procedure, RunOptions};
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_report::run_json;
-use ptu_report::words::Language;
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
@@ -21,8 +20,6 @@ pub struct FaultRun {
     pub exit: u8,
     /// The report as JSON.
     pub report: Value,
-    /// The same as JUnit XML.
-    pub junit: String,
     /// The part that diagnosis names first.
     pub first_candidate: String,
     /// The trace of each stored fault that has one.
@@ -128,19 +125,8 @@ impl TestBench {
         }
         let detail = store.run(outcome.id).expect("the run");
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
-        let junit = place.text_path("r.junit.xml");
-        let target = junit.parse().expect("a report");
-        ptu_report::write(
-            &[target],
-            &store,
-            &self.directory,
-            &detail,
-            Language::English,
-        )
-        .expect("written");
         FaultRun {
             exit: outcome.exit.code(),
-            junit: place.read("r.junit.xml"),
             report: run_json(&detail),
             first_candidate,
             traces: ids
@@ -153,7 +139,7 @@ impl TestBench {
 /// The same through the program: these procedures, or the whole suite if none is named.
 pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     let place = Place::new();
-    let faulty = ["--inject", id, "--report", "r.junit.xml"].into_iter();
+    let faulty = ["--inject", id].into_iter();
     let arguments: Vec<_> = faulty.chain(procedures.iter().copied()).collect();
     let (said, report) = place.run(&arguments);
     assert!(!said.err.contains("panicked"), "{}", said.all());
@@ -172,7 +158,6 @@ pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
         exit: said.code.expect("an exit code") as u8,
         first_candidate: first.as_str().unwrap_or_default().to_owned(),
         traces: traces.collect(),
-        junit: place.read("r.junit.xml"),
         report,
     }
 }

@@ -17,6 +17,7 @@ mod internal_names;
 mod layout;
 mod locked_window;
 mod on_ports;
+mod readers;
 mod report_page;
 mod server;
 mod signals_page;

@@ -12,10 +12,11 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict};
+use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, base_name, rank};
 
 use super::steps::passed;
 use ptu_runs::failure::Failure;
+use ptu_runs::stored::outside_of;
 
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};
@@ -154,10 +155,12 @@ impl RunComparison {
         pairs
     }
 
-    /// How many steps changed, and how; what was skipped counts in neither direction.
+    /// How many steps changed, and how; what was skipped counts in neither direction, and what is outside steps is none.
     pub fn tally(&self) -> Tally {
         let mut tally = Tally::default();
-        for pair in self.steps() {
+        let is_step =
+            |pair: &StepPair<'_>| pair.step.step().is_some_and(|of| outside_of(of).is_none());
+        for pair in self.steps().into_iter().filter(is_step) {
             match pair.verdicts() {
                 [Some(_), None] => tally.only_a += 1,
                 [None, Some(_)] => tally.only_b += 1,
@@ -217,10 +220,12 @@ impl RunComparison {
     }
 }
 
-type Key<'a> = (&'a str, &'a str);
+/// Procedure and name of a step, or of an entry outside steps.
+type Key<'a> = (&'a str, &'a str, bool);
 
 fn key(step: &StepRecord) -> Key<'_> {
-    (&step.procedure, &step.name)
+    let is_step = outside_of(step).is_none();
+    (&step.procedure, base_name(&step.name), is_step)
 }
 
 /// The names of the steps in their order, each once.
@@ -240,11 +245,11 @@ fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     all
 }
 
-/// Of the same step twice the one that speaks most against the unit, the earlier of two alike.
+/// Of the same step twice the one that stands, the earlier of two alike.
 fn telling<'a>(one: &'a StepRecord, other: &'a StepRecord) -> &'a StepRecord {
-    match (one.verdict, other.verdict) {
-        (Verdict::Passed, verdict) if verdict != Verdict::Passed => other,
-        _ => one,
+    match rank(other.verdict) > rank(one.verdict) {
+        true => other,
+        false => one,
     }
 }
 

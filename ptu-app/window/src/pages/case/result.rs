@@ -85,7 +85,8 @@ impl Found {
 /// Procedures of a run that did not pass.
 fn not_passed(run: &Progress) -> BTreeSet<String> {
     let bad = |verdict: Verdict| !matches!(verdict, Verdict::Passed | Verdict::Skipped);
-    let procedures = run.procedures.iter();
+    // The run as a whole is none.
+    let procedures = (run.procedures.iter()).filter(|of| !of.procedure.steps.is_empty());
     let failed = procedures.filter(|procedure| {
         procedure.verdict.is_some_and(bad) || procedure.results.iter().any(|step| bad(step.verdict))
     });

@@ -86,6 +86,7 @@ fn failures(ui: &mut Ui, words: &Words, run: &Progress) {
         results.map(move |result| (&progress.procedure.id, result))
     });
     let failed = results.filter(|(_, result)| result.verdict == Verdict::Failed);
+    let count = failed.clone().count();
     for (place, (procedure, result)) in failed.take(FAILURES).enumerate() {
         ui.horizontal_wrapped(|ui| {
             verdict_chip(ui, result.verdict, words);
@@ -100,8 +101,8 @@ fn failures(ui: &mut Ui, words: &Words, run: &Progress) {
             measurements(ui, words, &result.measurements);
         });
     }
-    if run.not_passed > FAILURES {
-        let more = fill(words.diagnosis.more, &[("n", &(run.not_passed - FAILURES))]);
+    if count > FAILURES {
+        let more = fill(words.diagnosis.more, &[("n", &(count - FAILURES))]);
         ui.label(more);
     }
 }

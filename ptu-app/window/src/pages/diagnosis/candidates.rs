@@ -1,34 +1,51 @@
 //! The ranked parts and fault modes, with the reasons.
 
+use std::collections::BTreeSet;
+
 use diagnosis::{Candidate, Reason};
 use eframe::egui::{CollapsingHeader, Color32, RichText, Ui};
 
 use super::NamedAnswer;
 use crate::parts::{link, share_bar};
 use crate::{Destination, PageContext, Palette};
-use ptu_report::diagnosis::{MOST_PARTS, MOST_REASONS, first_of_parts};
+use ptu_report::diagnosis::{MOST_PARTS, MOST_REASONS, Possible, probability_of};
 use ptu_report::words::{Diagnosis, fill};
 
-/// Candidates, two faults at once, and the rest.
+/// What may be the cause, the likeliest first, and behind it the other faults.
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
-    let first: Vec<_> = first_of_parts(&diagnosis.candidates).collect();
-    let more = diagnosis.candidates.iter();
-    let more: Vec<_> = more.filter(|one| !first.contains(one)).collect();
-    for (place, candidate) in first.into_iter().enumerate() {
-        show(ui, context, named, candidate, place == 0);
+    let possible = ptu_report::diagnosis::ranked(diagnosis, MOST_PARTS);
+    let (mut shown, mut parts) = (Vec::new(), BTreeSet::new());
+    for (probability, possible) in possible {
+        match possible {
+            Possible::Part(candidate) => {
+                show(
+                    ui,
+                    context,
+                    named,
+                    (candidate, Some(probability)),
+                    shown.is_empty(),
+                );
+                shown.push(candidate);
+                parts.insert(&candidate.lru);
+            }
+            Possible::Both(two) => {
+                let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
+                likely(ui, probability, &said);
+            }
+            Possible::NoFault => likely(ui, probability, words.no_fault),
+        }
     }
+    let more = diagnosis.candidates.iter();
+    let more: Vec<_> = more.filter(|one| !shown.contains(one)).collect();
     behind_more(ui, words, "candidates", more.len(), |ui| {
         for candidate in more {
-            show(ui, context, named, candidate, false);
+            let is_first = parts.insert(&candidate.lru);
+            let of_part = is_first.then(|| probability_of(diagnosis, candidate));
+            show(ui, context, named, (candidate, of_part), false);
         }
     });
-    for two in diagnosis.two_faults.iter().take(MOST_PARTS) {
-        let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
-        likely(ui, two.probability, &said);
-    }
-    likely(ui, diagnosis.no_fault, words.no_fault);
 }
 
 fn at_once<T>(all: &[T]) -> (&[T], &[T]) {
@@ -57,19 +74,24 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
     });
 }
 
+/// A part by its likeliest fault, with the probability of the part; or one of the other faults.
 fn show(
     ui: &mut Ui,
     context: &mut PageContext<'_>,
     named: &NamedAnswer,
-    candidate: &Candidate,
+    (candidate, of_part): (&Candidate, Option<f64>),
     open: bool,
 ) {
     let words = &context.words.diagnosis;
     ui.horizontal_wrapped(|ui| {
-        share_bar(ui, candidate.probability, Palette::of(ui).accent);
-        let (part, language) = (candidate.lru.as_str(), context.words.language);
-        let name = RichText::new(named.parts.name(part, language));
-        ui.label(name.strong().size(17.0));
+        let probability = of_part.unwrap_or(candidate.probability);
+        share_bar(ui, probability, Palette::of(ui).accent);
+        // A share of its own beside the part's name would be a second probability of the part.
+        if of_part.is_some() {
+            let (part, language) = (candidate.lru.as_str(), context.words.language);
+            let name = RichText::new(named.parts.name(part, language));
+            ui.label(name.strong().size(17.0));
+        }
         ui.label(context.words.fault_text(&candidate.text));
         // As it is typed.
         let typed = RichText::new(&candidate.fault).small();

@@ -1,0 +1,404 @@
+//! A small reader for each surface.
+
+use std::collections::BTreeMap;
+
+use ptu_report::run::page::{Item, Page};
+use ptu_report::words::Language;
+use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
+use serde_json::Value;
+
+use super::seen;
+use crate::common::made_runs::marks;
+use crate::common::told::{
+    Told, candidates, conclusion, count, fact, id, measured, numbers, results, sorted,
+};
+use crate::common::{list, number, text};
+
+/// Cells of a row, which are two spaces apart.
+pub fn columns(row: &str) -> Vec<String> {
+    let cells = row.split("  ").map(str::trim);
+    cells
+        .filter(|cell| !cell.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// `N` or `N of M` steps.
+pub fn short(text: &str) -> Told {
+    let (run, planned) = text.split_once(" of ").unwrap_or((text, text));
+    vec![fact("run", run), fact("planned", planned)]
+}
+
+/// What the row of a lost link begins with.
+const LOST: &str = "link lost at step ";
+
+/// The table at the end of a run.
+pub fn console(table: &str) -> Told {
+    let mut recorded = 0;
+    let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
+    let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
+    for line in table.lines() {
+        let cells = columns(line);
+        let heads = [
+            "PROCEDURE",
+            "VERDICT",
+            "REPEATED STEP",
+            "SKIPPED STEPS",
+            "FAULT",
+        ];
+        if let Some(head) = heads
+            .into_iter()
+            .find(|head| line.starts_with(&format!("{head}  ")))
+        {
+            here = head;
+        } else if cells.is_empty() {
+            here = "";
+        } else if here == "PROCEDURE" {
+            let count = |place: usize| cells[place].parse::<u32>().expect("a number");
+            recorded += count(2);
+            *passed.get_or_insert(0) += count(3);
+        } else if here == "VERDICT" {
+            let name = cells[1].split_once(": ").map_or("", |(_, name)| name);
+            bad.extend(marks(name, 's'));
+            let known = btu_rig::procedure::Outside::ALL
+                .iter()
+                .any(|place| place.name() == name);
+            outside += usize::from(known);
+            let why = cells.get(2).filter(|why| why.starts_with(LOST));
+            lost = why.cloned().unwrap_or(lost);
+        } else if here == "FAULT" {
+            parts.push(format!("{}={}", cells[2], cells[4]));
+        } else if let Some(said) = line.strip_prefix("run ") {
+            let of = columns(said);
+            let (steps, rest) = of[2].split_once(" steps, ").expect("steps");
+            let (faults, verdict) = rest.split_once(" faults: ").expect("faults");
+            told.extend(short(steps));
+            told.extend([id(&of[0]), fact("faults", faults), fact("verdict", verdict)]);
+        } else if let Some((state, said)) = line.split_once(": ")
+            && let Some(counts) = count(said, Language::English)
+        {
+            told.push(fact("verdict", state));
+            told.extend(counts);
+        }
+    }
+    told.extend(passed.map(|passed| fact("passed", passed)));
+    told.extend(passed.map(|_| fact("with a result", recorded)));
+    told.push(fact("link en", lost));
+    // The quiet one names no fault.
+    if passed.is_some() {
+        told.push(sorted("parts", parts));
+    }
+    told.extend([
+        sorted("steps that did not pass", bad),
+        fact("outside", outside),
+    ]);
+    told
+}
+
+/// Numbers of an object: `key=fact`, each behind a comma.
+fn keys(of: &Value, names: &str) -> Told {
+    let names = names.split(',').filter_map(|name| name.split_once('='));
+    names.map(|(key, name)| fact(name, &of[key])).collect()
+}
+
+pub fn summary(run: &Value) -> Told {
+    let names = "step_count=planned,steps_run=run,steps_passed=passed,steps_failed=failed,steps_error=error,\
+        steps_not_passed=not passed,steps_not_run=not run,step_attempts=attempts,outside_steps=outside,fault_count=faults";
+    let mut told = keys(run, names);
+    let state = run["verdict"].as_str().unwrap_or(text(&run["state"]));
+    told.extend([fact("verdict", state), id(text(&run["id"]))]);
+    told
+}
+
+pub fn json(run: &Value) -> Told {
+    let mut told = summary(&run["run"]);
+    told.extend(keys(
+        &run["coverage"],
+        "steps=planned,run=run,passed=passed,need_bench=need the bench",
+    ));
+    let on_bench = list(&run["coverage"]["on_bench"]).iter().map(text);
+    told.push(fact(
+        "folders on the bench",
+        on_bench.collect::<Vec<_>>().join(", "),
+    ));
+    let steps = list(&run["steps"]);
+    told.extend(results(steps.iter().map(|step| {
+        let [name, verdict, why] = ["name", "verdict", "message"].map(|key| text(&step[key]));
+        (step["kind"] == "step", name, verdict, why)
+    })));
+    let values = steps.iter().flat_map(|step| list(&step["measurements"]));
+    told.extend(measured(values.map(|one| {
+        let numbers = ["value", "low", "high"].map(|key| one[key].as_f64());
+        (text(&one["name"]).to_owned(), numbers)
+    })));
+    told.push(sorted("parts", seen(list(&run["faults"]).iter())));
+    told
+}
+
+pub fn stream(lines: &[String]) -> Told {
+    let read = |line: &String| serde_json::from_str(line).expect("JSON");
+    let lines: Vec<Value> = lines.iter().map(read).collect();
+    let mut told = results(lines.iter().filter_map(|line| {
+        let name = match text(&line["event"]) {
+            "step_finished" => text(&line["name"]),
+            "outside_step" => text(&line["place"]),
+            _ => return None,
+        };
+        let [verdict, why] = ["verdict", "message"].map(|key| text(&line[key]));
+        Some((line["event"] == "step_finished", name, verdict, why))
+    }));
+    let mut parts: BTreeMap<&str, u32> = BTreeMap::new();
+    let faults = lines.iter().filter(|line| line["event"] == "fault");
+    faults.for_each(|line| {
+        *parts
+            .entry(line["part"].as_str().unwrap_or("-"))
+            .or_default() += 1
+    });
+    told.push(sorted(
+        "parts",
+        parts.iter().map(|(part, seen)| format!("{part}={seen}")),
+    ));
+    for last in lines.iter().filter(|line| line["event"] == "run_finished") {
+        let names = "steps=planned,run_steps=run,passed=passed,failed=failed,error=error,not_run=not run,\
+            attempts=attempts,outside=outside";
+        told.extend(keys(last, names));
+        told.extend([
+            fact("verdict", text(&last["verdict"])),
+            id(text(&last["run"])),
+        ]);
+    }
+    told
+}
+
+pub fn table_of_values(csv: &str) -> Told {
+    let rows: Vec<_> = csv.lines().skip(1).map(csv_cells).collect();
+    let mut steps: BTreeMap<u32, &[String]> = BTreeMap::new();
+    for row in &rows {
+        steps.insert(row[4].parse().expect("a place"), row);
+    }
+    let mut told = results(
+        steps
+            .values()
+            .map(|row| (row[6] == "step", &*row[5], &*row[7], &*row[9])),
+    );
+    let values = rows.iter().filter(|row| !row[10].is_empty());
+    told.extend(measured(values.map(|row| {
+        let numbers = [11, 13, 14].map(|place: usize| row[place].parse::<f64>().ok());
+        (row[10].clone(), numbers)
+    })));
+    told.extend(rows.first().map(|row| id(&row[0])));
+    told
+}
+
+/// Cells of a line (RFC 4180).
+fn csv_cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => {
+                letters.next();
+                cells.last_mut().expect("one").push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            letter => cells.last_mut().expect("one").push(letter),
+        }
+    }
+    cells
+}
+
+pub fn junit(xml: &str) -> Told {
+    let report = Report::deserialize_from_str(xml).expect("JUnit XML");
+    let name = report.name.as_ref().expect("a name").as_str();
+    let (run, said) = name
+        .strip_prefix("ptu run ")
+        .and_then(|said| said.split_once(": "))
+        .expect("a run");
+    let mut told = count(said, Language::English).unwrap_or_else(|| panic!("no count: {said}"));
+    let (mut outside, mut counts, mut bad, mut values) = (0, [0; 3], Vec::new(), Vec::new());
+    let mut lost = "";
+    for case in report
+        .test_suites
+        .iter()
+        .flat_map(|suite| &suite.test_cases)
+    {
+        let kind = case
+            .properties
+            .iter()
+            .find(|property| property.name.as_str() == "kind");
+        let is_step = kind.is_some_and(|kind| kind.value.as_str() == "step");
+        let (place, reruns) = match &case.status {
+            TestCaseStatus::Success { .. } => (Some(0), Vec::new()),
+            TestCaseStatus::Skipped { .. } => (None, Vec::new()),
+            TestCaseStatus::NonSuccess {
+                kind,
+                reruns,
+                message,
+                ..
+            } => {
+                let message = message.as_ref().map(|message| message.as_str());
+                lost = message.filter(|why| why.starts_with(LOST)).unwrap_or(lost);
+                assert!(message.is_some(), "{:?} says not why", case.name);
+                let failed = *kind == NonSuccessKind::Failure;
+                (Some(if failed { 1 } else { 2 }), reruns.runs.clone())
+            }
+        };
+        match (is_step, place) {
+            (true, Some(place)) => counts[place] += 1,
+            (true, None) => {}
+            // Where nothing says why a run did not pass, a case of its own does.
+            (false, _) => outside += usize::from(kind.is_some()),
+        }
+        let again = reruns.iter().filter(|rerun| {
+            rerun
+                .ty
+                .as_ref()
+                .is_some_and(|ty| ty.as_str() != "not tested")
+        });
+        let times = usize::from(place > Some(0)) + again.count();
+        bad.extend(
+            marks(&case.name, 's')
+                .into_iter()
+                .flat_map(|mark| vec![mark; times]),
+        );
+        let lines = case.system_out.iter().flat_map(|out| out.as_str().lines());
+        for line in lines.filter(|line| !line.contains(", uncertainty")) {
+            let (name, value) = line.split_once(" = ").expect("a value");
+            let value = value
+                .split(' ')
+                .next()
+                .and_then(|value| value.parse::<f64>().ok());
+            values.push(format!(
+                "{}={}",
+                marks(name, 'm').concat(),
+                value.map_or("-".into(), |v| v.to_string())
+            ));
+        }
+    }
+    told.extend(numbers("passed|failed|error", counts));
+    told.extend([
+        id(run),
+        fact("outside", outside),
+        fact("link en", lost),
+        sorted("steps that did not pass", bad),
+    ]);
+    told
+}
+
+/// The texts of a page, in their order.
+pub fn texts(page: &str) -> Vec<String> {
+    let body = page.split_once("</style>").map_or(page, |(_, body)| body);
+    let pictures = body
+        .split("<svg")
+        .map(|part| part.split_once("</svg>").map_or(part, |(_, after)| after));
+    let texts = pictures
+        .flat_map(|part| part.split('<'))
+        .map(|part| part.split_once('>').map_or(part, |(_, text)| text));
+    let signs = [
+        ("&lt;", "<"),
+        ("&gt;", ">"),
+        ("&quot;", "\""),
+        ("&amp;", "&"),
+    ];
+    let read = |text: &str| {
+        signs
+            .iter()
+            .fold(text.trim().to_owned(), |text, (sign, letter)| {
+                text.replace(sign, letter)
+            })
+    };
+    texts.map(read).filter(|text| !text.is_empty()).collect()
+}
+
+/// The same of a page as it is printed.
+pub fn printed_texts(page: &Page) -> Vec<String> {
+    let text = |item: &Item| match item {
+        Item::Text(text) => Some(
+            text.lines
+                .iter()
+                .map(|(_, line)| line.as_str())
+                .collect::<String>(),
+        ),
+        _ => None,
+    };
+    let texts = page
+        .iter()
+        .filter_map(text)
+        .map(|text| text.trim().to_owned());
+    texts.filter(|text| !text.is_empty()).collect()
+}
+
+/// A diagnosis as text: the count, the conclusion, and what may be the cause.
+pub fn diagnosed(text: &str) -> Told {
+    let mut lines = text.lines();
+    let of = columns(
+        lines
+            .next()
+            .unwrap_or_default()
+            .strip_prefix("run ")
+            .expect("a run"),
+    );
+    let said: Vec<_> = of[2].split(", ").collect();
+    let mut told = short(said[0].trim_end_matches(" steps"));
+    told.extend([
+        id(&of[0]),
+        fact("not passed", said[1].trim_end_matches(" not passed")),
+        fact("faults", said[2].trim_end_matches(" faults")),
+    ]);
+    told.extend(conclusion(
+        lines.nth(1).unwrap_or_default(),
+        Language::English,
+    ));
+    let rows = lines.filter_map(|line| {
+        let (share, rest) = line.trim_start().split_once(" %  ")?;
+        share.parse::<f64>().ok()?;
+        Some((rest.split("  (").next()?.to_owned(), share.to_owned()))
+    });
+    told.extend(candidates(rows.collect()));
+    told
+}
+
+/// All faults of each part: their shares add up to the part's.
+pub fn in_full(text: &str) -> Told {
+    let (mut told, mut sums): (Told, Vec<(String, f64)>) = (Vec::new(), Vec::new());
+    for line in text.lines().skip(3) {
+        let of_fault = line.trim_start().strip_prefix("of these ");
+        let Some((share, rest)) = of_fault.unwrap_or(line).trim_start().split_once(" %  ") else {
+            continue;
+        };
+        let Ok(share) = share.parse::<f64>() else {
+            continue;
+        };
+        match (of_fault, sums.last_mut()) {
+            (Some(_), Some((_, left))) => *left -= share,
+            _ => {
+                told.push(fact(format!("share of {rest}"), format!("{share:.1}")));
+                sums.push((rest.to_owned(), share));
+            }
+        }
+    }
+    let parts = sums
+        .iter()
+        .filter(|(part, _)| part != "no fault" && !part.starts_with("both "));
+    let wrong = parts
+        .filter(|(_, left)| left.abs() > 0.5)
+        .map(|(part, _)| part.clone());
+    told.push(sorted("parts whose faults do not add up", wrong));
+    told
+}
+
+pub fn diagnosed_json(answer: &Value) -> Told {
+    let mut told = vec![
+        id(text(&answer["run"])),
+        fact("conclusion en", text(&answer["conclusion"])),
+        fact("conclusion ko", text(&answer["conclusion_ko"])),
+    ];
+    for part in list(&answer["parts"]) {
+        let share = format!("{:.1}", 100.0 * number(&part["probability"]));
+        told.push(fact(format!("share of {}", text(&part["part"])), share));
+    }
+    let none = format!("{:.1}", 100.0 * number(&answer["no_fault"]));
+    told.push(fact("share of no fault", none));
+    told
+}

@@ -1,0 +1,623 @@
+//! Runs of every kind, each made from a seed and recorded by what records a run of a bench, with the facts that every
+//! reader of it has to tell.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use Kind::*;
+use btu_rig::procedure::Verdict::{self, Skipped};
+use btu_rig::procedure::{
+    Finding, Findings, Measurement, Outside as Place, OutsideStep, Procedure, RunEvent, RunOptions,
+    StepResult,
+};
+use diagnosis::{Dictionary, Mode};
+use fault_db::{Id, OpenOptions, RunRecord, RunState, Signer, Store, Synchronous, UnitRecord};
+use protocol::event::Severity;
+use protocol::{Duration, Instant};
+use ptu_report::event_lines::EventLines;
+use ptu_runs::bench_worker::Progress;
+use ptu_runs::clock;
+use ptu_runs::run::{
+    CHECK_FAILED, Collector, Evidence, FaultSeen, Listener, MeasuringRules, RunPlan, RunStart,
+    RunStore, SessionEvent, Task, different_steps,
+};
+use ptu_runs::stop::Stop;
+use ptu_runs::stored::stored;
+
+use super::made_plans::{Chance, contents, known, likeliest, own, plan};
+
+/// How a run goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Passed,
+    Failed,
+    Error,
+    LinkLost,
+    Stopped,
+    Broken,
+    Adaptive,
+    Resumed,
+    Repeated,
+    Retried,
+    OneStep,
+    OnTrain,
+    NoSteps,
+    Pair,
+    Outside,
+}
+
+const KINDS: [Kind; 15] = [
+    Passed, Failed, Error, LinkLost, Stopped, Broken, Adaptive, Resumed, Repeated, Retried,
+    OneStep, OnTrain, NoSteps, Pair, Outside,
+];
+/// Parts that faults name.
+pub const PARTS: [&str; 4] = ["eb_relay", "tra", "twc_cpu", "speed_sensor_1"];
+/// Facts of a run by their names, as texts.
+#[derive(Default)]
+pub struct Facts {
+    pub of: String,
+    pub known: BTreeMap<String, String>,
+}
+
+/// A run that was made.
+pub struct Made {
+    pub seed: u64,
+    pub id: Id,
+    pub facts: Facts,
+    /// Lines of its stream for other programs.
+    pub lines: Vec<String>,
+    /// What the window that led it knows.
+    pub live: Progress,
+}
+
+/// Makes runs in a file.
+pub struct Maker {
+    file: PathBuf,
+    dictionary: Dictionary,
+    store: Option<Store>,
+    earlier: Option<Id>,
+}
+
+impl Maker {
+    /// In this file, with the fault dictionary of these scripts.
+    pub fn new(file: PathBuf, scripts: &Path) -> Self {
+        let packed = std::fs::read(scripts.join("dictionary.zst")).expect("a dictionary");
+        Self {
+            file,
+            dictionary: Dictionary::from_bytes(&packed).expect("a dictionary"),
+            store: None,
+            earlier: None,
+        }
+    }
+
+    /// The run of this seed.
+    pub fn make(&mut self, seed: u64) -> Made {
+        let store = self.store.take().unwrap_or_else(|| self.open());
+        let mut making = Making::new(seed, &self.dictionary);
+        let record = making.record(self.earlier);
+        let run_store = RunStore::begin(store, record, None, &Stop::default()).expect("begun");
+        let (id, began) = (run_store.id, RunStart::now());
+        let mut heard = Heard(
+            EventLines::default(),
+            Vec::new(),
+            Progress::new(&making.plan, "unit".into()),
+        );
+        let due = (making.planned(), making.kind == Adaptive);
+        let contents = contents();
+        let mut collector = Collector::new(run_store, began, &mut heard, contents, due);
+        let stopped = making.collect(&mut collector);
+        let outcome = if making.kind == Broken {
+            drop(collector);
+            // Its writer writes what there is, and goes away.
+            while self.open().run(id).expect("begun").run.state == RunState::Running {
+                std::thread::yield_now();
+            }
+            None
+        } else {
+            let (run_store, outcome) = collector.finish(id, stopped);
+            let end = began.end(stored(outcome.verdict), 1_000_000);
+            self.store = Some(run_store.finish(end).expect("stored").0);
+            Some(outcome)
+        };
+        let Heard(mut events, mut lines, mut live) = heard;
+        if let Some(outcome) = outcome {
+            lines.push(events.finished(&outcome));
+            live.end(Some(outcome));
+        }
+        self.earlier = Some(id);
+        let facts = making.facts(id);
+        Made {
+            seed,
+            id,
+            facts,
+            lines,
+            live,
+        }
+    }
+
+    fn open(&self) -> Store {
+        let options = OpenOptions::new(clock::ids()).synchronous(Synchronous::Normal);
+        let store = Store::open(&self.file, options).expect("a database");
+        let signer = Signer::new("Kim", "technician", &[7; 32]).expect("a key");
+        store.sign_with(Some(Arc::new(signer)));
+        store
+    }
+
+    /// The store of all that was made.
+    pub fn store(mut self) -> Store {
+        self.store.take().unwrap_or_else(|| self.open())
+    }
+}
+
+/// What follows a run while it goes on: the stream, its lines, and the window.
+struct Heard(EventLines, Vec<String>, Progress);
+
+impl Listener for Heard {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        self.1.extend(self.0.event(procedure, event));
+        self.2.on_event(&procedure.id, event);
+    }
+}
+
+/// A run that is being made, and what it comes to.
+struct Making<'a> {
+    seed: u64,
+    kind: Kind,
+    chance: Chance,
+    plan: RunPlan,
+    dictionary: &'a Dictionary,
+    /// Fault mode that the unit has; the checks are those of the dictionary then.
+    mode: Option<&'a Mode>,
+    /// Worst result of each step: 0 not run, 1 passed, 2 error, 3 failed.
+    worst: BTreeMap<(usize, usize), u8>,
+    attempts: usize,
+    outside: usize,
+    /// Steps that need the harness.
+    on_bench: usize,
+    /// By name: marks of results that did not pass, and of measurements with values and limits.
+    lists: BTreeMap<&'static str, Vec<String>>,
+    parts: BTreeMap<&'static str, usize>,
+    turn: usize,
+}
+
+impl<'a> Making<'a> {
+    fn new(seed: u64, dictionary: &'a Dictionary) -> Self {
+        let kind = KINDS[seed as usize % KINDS.len()];
+        let mut chance = Chance(seed);
+        let of_dictionary =
+            kind == Pair || (seed % 2 == 1 && matches!(kind, Passed | Failed | Adaptive));
+        let mode = &dictionary.modes[chance.below(dictionary.modes.len())];
+        let procedures = match of_dictionary {
+            true => known(dictionary, mode, &mut chance),
+            false => (0..1 + chance.below(3))
+                .map(|number| own(seed, number, &mut chance))
+                .collect(),
+        };
+        let repeat = if kind == Repeated {
+            2 + chance.below(2) as u32
+        } else {
+            1
+        };
+        let task = |procedure: Procedure| Task {
+            options: RunOptions {
+                chosen: (kind == OneStep).then(|| vec![chance.below(procedure.steps.len())]),
+                repeat,
+                ..RunOptions::default()
+            },
+            procedure: Arc::new(procedure),
+        };
+        Self {
+            plan: plan(procedures.into_iter().map(task).collect()),
+            seed,
+            kind,
+            dictionary,
+            mode: (of_dictionary && kind != Passed).then_some(mode),
+            chance,
+            worst: BTreeMap::new(),
+            attempts: 0,
+            outside: 0,
+            on_bench: 0,
+            lists: BTreeMap::new(),
+            parts: BTreeMap::new(),
+            turn: 0,
+        }
+    }
+
+    fn planned(&self) -> usize {
+        different_steps(&self.plan.tasks)
+    }
+
+    fn record(&self, earlier: Option<Id>) -> RunRecord {
+        let evidence = Evidence::now(
+            contents(),
+            Vec::new(),
+            MeasuringRules::default(),
+            self.planned(),
+        );
+        let pair = if self.kind == Pair { ",tra.dead" } else { "" };
+        RunRecord {
+            unit: UnitRecord {
+                serial: format!("M-{}", self.seed),
+                kind: "atc".into(),
+                config_name: "sg100".into(),
+                sw_versions: BTreeMap::new(),
+            },
+            line: self.dictionary.basis.line.clone(),
+            operator: "김 <b>".into(),
+            source: "sim".into(),
+            connection: Some(["harness", "ptu"][usize::from(self.kind == OnTrain)].into()),
+            evidence: Some(evidence.text()),
+            started_at_us: clock::now_us(),
+            unit_config_sha256: self.dictionary.basis.unit_config_sha256.clone(),
+            injected: self.mode.map(|mode| format!("{}{pair}", mode.name.id)),
+            continues: earlier.filter(|_| self.kind == Resumed),
+            ..RunRecord::default()
+        }
+    }
+
+    /// Has it recorded; what makes an end of it before its time.
+    fn collect(&mut self, to: &mut Collector<'_>) -> Option<Verdict> {
+        let all: Vec<_> = self
+            .plan
+            .tasks
+            .iter()
+            .map(|task| task.procedure.clone())
+            .collect();
+        let ends_in = self.chance.below(all.len());
+        let nothing_at_all = self.kind == NoSteps && self.chance.one_in(3);
+        for (place, procedure) in all.iter().enumerate().filter(|_| !nothing_at_all) {
+            let is_over = place > ends_in;
+            if is_over && matches!(self.kind, Broken | Adaptive) {
+                break;
+            }
+            to.begin(procedure);
+            if is_over && self.kind == Stopped {
+                to.not_begun(Verdict::Aborted, Finding::Stopped);
+                self.outside += 1;
+                continue;
+            }
+            let (steps, at) = (procedure.steps.len(), Instant::ZERO);
+            to.take(SessionEvent::Run(RunEvent::ProcedureStarted { steps, at }));
+            let verdict = self.before(place, is_over, to);
+            let verdict =
+                verdict.and(self.steps(place, procedure, (place == ends_in, is_over), to));
+            if place == ends_in && self.kind == Broken {
+                break;
+            }
+            let findings = Finding::Told("the unit did not come up".to_owned()).into();
+            to.take(SessionEvent::Run(RunEvent::ProcedureFinished {
+                verdict,
+                findings,
+                at,
+            }));
+            let bench_time = Duration::from_us(1_000);
+            to.take(SessionEvent::Ended { bench_time });
+        }
+        (self.kind == Stopped).then_some(Verdict::Aborted)
+    }
+
+    /// Entries outside the steps of a procedure, and what they come to.
+    fn before(&mut self, place: usize, is_over: bool, to: &mut Collector<'_>) -> Verdict {
+        let (places, verdict): (&[Place], _) = match self.kind {
+            // The end of the procedure alone says why.
+            NoSteps if self.chance.one_in(2) => {
+                self.outside += 1;
+                return Verdict::Error;
+            }
+            NoSteps => (&[Place::BringUp], Verdict::Error),
+            LinkLost if is_over => (&[Place::Bench], Verdict::Error),
+            Outside => (&Place::ALL[..9], Verdict::Failed),
+            _ => return Skipped,
+        };
+        let first = if places.len() == 1 || place == 0 {
+            0
+        } else {
+            usize::MAX
+        };
+        let mut all = Skipped;
+        for (number, place) in places.iter().enumerate() {
+            if number != first && !self.chance.one_in(4) {
+                continue;
+            }
+            self.outside += 1;
+            all = verdict;
+            to.take(SessionEvent::Run(RunEvent::OutsideStep(OutsideStep {
+                place: *place,
+                verdict,
+                finding: Finding::Told(format!("what went wrong at {}", place.name())),
+                at: Instant::ZERO,
+            })));
+        }
+        all
+    }
+
+    /// The steps of a procedure, in which the run `ends` or after which it is over, and what they come to.
+    fn steps(
+        &mut self,
+        place: usize,
+        of: &Procedure,
+        (ends, is_over): (bool, bool),
+        to: &mut Collector<'_>,
+    ) -> Verdict {
+        let (steps, options) = (of.steps.len(), self.plan.tasks[place].options.clone());
+        let ends_at = self.chance.below(steps);
+        let mut verdict = if ends && self.kind == LinkLost {
+            Verdict::Error
+        } else {
+            Skipped
+        };
+        let turns = (0..options.repeat).flat_map(|turn| (0..steps).map(move |step| (turn, step)));
+        for (turn, index) in turns {
+            let is_chosen = options
+                .chosen
+                .as_ref()
+                .is_none_or(|chosen| chosen.contains(&index));
+            if !is_chosen || self.kind == NoSteps || (is_over && self.kind == LinkLost) {
+                continue;
+            }
+            let after = ends && (turn, index) > (0, ends_at);
+            let is_end = ends && (turn, index) == (0, ends_at);
+            let result = self.result(of, (place, index, turn, options.repeat), (is_end, after));
+            if self.kind == Retried && self.chance.one_in(2) {
+                verdict = verdict.and(self.attempt(place, of, &result, to));
+            }
+            verdict = verdict.and(result.verdict);
+            self.note(place, result, to);
+            if is_end && matches!(self.kind, Broken | Adaptive) {
+                break;
+            }
+            if is_end && self.kind == LinkLost {
+                to.take(SessionEvent::LinkLost("nothing comes from the unit".into()));
+            }
+        }
+        verdict
+    }
+
+    /// What a step comes to: `is_end` = there the run is broken off; `after` = it comes after that.
+    fn result(
+        &mut self,
+        of: &Procedure,
+        (place, index, turn, repeat): (usize, usize, u32, u32),
+        (is_end, after): (bool, bool),
+    ) -> StepResult {
+        let (step, bad) = (&of.steps[index], self.chance.one_in(4));
+        let counted = self
+            .mode
+            .map(|mode| likeliest(self.dictionary, mode, of, index));
+        let verdict = match (self.kind, counted) {
+            (OnTrain, _) if place > 0 => Skipped,
+            (LinkLost, _) if is_end => Verdict::Error,
+            (Stopped, _) if is_end => Verdict::Aborted,
+            (LinkLost | Stopped, _) if after => Skipped,
+            (_, Some(counted)) => counted,
+            (Failed, _) if (place, index) == (0, 0) => Verdict::Failed,
+            (Error, _) if (place, index) == (0, 0) || bad => Verdict::Error,
+            (Passed | Adaptive | OneStep | Outside, _) => Verdict::Passed,
+            _ if bad => Verdict::Failed,
+            _ => Verdict::Passed,
+        };
+        let found = match verdict {
+            Verdict::Passed => Findings::default(),
+            Skipped if self.kind == OnTrain => Finding::NeedsHarness.not_run().into(),
+            Skipped => Finding::Stopped.not_run().into(),
+            Verdict::Failed => Finding::LimitMissed {
+                measurement: "eb_reaction".into(),
+                value: 640.0,
+                uncertainty: None,
+                low: None,
+                high: Some(472.0),
+                unit: "ms".into(),
+            }
+            .into(),
+            _ => Finding::Told("nothing comes from the unit".into()).into(),
+        };
+        let number = if repeat > 1 {
+            format!(" ({}/{repeat})", turn + 1)
+        } else {
+            String::new()
+        };
+        let most = if verdict == Skipped || self.mode.is_some() {
+            1
+        } else {
+            3
+        };
+        StepResult {
+            index,
+            name: format!("{}{number}", step.name),
+            line: step.line,
+            verdict,
+            repeated: false,
+            findings: found,
+            suspect: None,
+            started: Instant::ZERO,
+            bench_time: Duration::from_us(100_000),
+            limit_source: None,
+            measurements: (0..self.chance.below(most))
+                .map(|_| self.measurement(verdict))
+                .collect(),
+        }
+    }
+
+    fn measurement(&mut self, verdict: Verdict) -> Measurement {
+        let chance = &mut self.chance;
+        let number = |chance: &mut Chance| (1 + chance.below(9_000)) as f64 / 10.0;
+        Measurement {
+            name: format!("m{:04} 반응", chance.below(10_000)),
+            value: (verdict != Verdict::Error || chance.one_in(2)).then(|| number(chance)),
+            unit: ["ms", "km/h", ""][chance.below(3)],
+            low: chance.one_in(2).then(|| number(chance)),
+            high: chance.one_in(2).then(|| number(chance)),
+            uncertainty: chance.one_in(4).then_some(0.5),
+            limit_source: None,
+            verdict: [Verdict::Passed, verdict][usize::from(verdict == Verdict::Failed)],
+        }
+    }
+
+    /// An attempt at a step while the tester's computer stood still; perhaps the step before is run again for the next.
+    fn attempt(
+        &mut self,
+        place: usize,
+        of: &Procedure,
+        result: &StepResult,
+        to: &mut Collector<'_>,
+    ) -> Verdict {
+        let attempt = |index: usize, name: String, verdict: Verdict| StepResult {
+            index,
+            name,
+            verdict,
+            repeated: verdict == Skipped,
+            findings: Finding::StoodStill {
+                by: Duration::from_ms(300),
+                attempt: 1,
+            }
+            .into(),
+            measurements: Vec::new(),
+            ..result.clone()
+        };
+        self.note(
+            place,
+            attempt(result.index, result.name.clone(), Skipped),
+            to,
+        );
+        if result.index == 0 || self.chance.one_in(2) {
+            return Skipped;
+        }
+        let name = format!("{} (repeated)", of.steps[result.index - 1].name);
+        self.note(place, attempt(result.index - 1, name, Verdict::Failed), to);
+        Verdict::Failed
+    }
+
+    fn note(&mut self, place: usize, result: StepResult, to: &mut Collector<'_>) {
+        let rank = match result.verdict {
+            Skipped => 0,
+            Verdict::Passed => 1,
+            Verdict::Failed => 3,
+            _ => 2,
+        };
+        let worst = self.worst.entry((place, result.index)).or_default();
+        *worst = rank.max(*worst);
+        self.attempts += usize::from(rank > 0);
+        let needs_bench = result
+            .findings
+            .iter()
+            .any(|found| found.finding.needs_harness());
+        self.on_bench += usize::from(needs_bench);
+        let mut list =
+            |name, mut all: Vec<String>| self.lists.entry(name).or_default().append(&mut all);
+        if rank > 1 {
+            list("steps that did not pass", marks(&result.name, 's'));
+        }
+        for measured in &result.measurements {
+            let mark = &measured.name[..5];
+            let value = measured
+                .value
+                .map_or("-".to_owned(), |value| value.to_string());
+            let off = measured.value.and(measured.uncertainty);
+            let off = off.map_or_else(String::new, |off| format!("±{off}"));
+            list("values", vec![format!("{mark}={value}{off}")]);
+            let limits = [measured.low, measured.high].into_iter().flatten();
+            let limits: Vec<_> = limits.map(|limit| limit.to_string()).collect();
+            list("limits", vec![format!("{mark}={}", limits.join(","))]);
+        }
+        let finding = Finding::CheckFailed {
+            procedure: "made/up".into(),
+            step: result.name.clone(),
+            findings: result.findings.clone(),
+        };
+        to.take(SessionEvent::Run(RunEvent::StepFinished(result)));
+        if rank == 3 {
+            let part = PARTS[self.chance.below(PARTS.len())];
+            *self.parts.entry(part).or_default() += 1;
+            to.take(SessionEvent::Fault(FaultSeen {
+                code: CHECK_FAILED,
+                name: "check_failed".into(),
+                lru: part.parse().ok(),
+                severity: Severity::Major,
+                at: Instant::ZERO,
+                step: Some(self.turn),
+                finding,
+                freeze: Vec::new(),
+            }));
+        }
+        self.turn += 1;
+    }
+
+    /// What the run comes to.
+    fn facts(mut self, id: Id) -> Facts {
+        let planned = self.planned();
+        let of = |rank: u8| self.worst.values().filter(|worst| **worst == rank).count();
+        let [passed, error, failed] = [1, 2, 3].map(of);
+        let (run, bad) = (passed + error + failed, failed + error);
+        let left = planned - run;
+        let verdict = match self.kind {
+            Broken => "interrupted",
+            Stopped => "aborted",
+            LinkLost | NoSteps => "error",
+            Outside => "failed",
+            _ if failed > 0 => "failed",
+            _ if error > 0 => "error",
+            Adaptive if left > 0 => "inconclusive",
+            _ => "passed",
+        };
+        // What the run as a whole says of itself.
+        let says_left = self.kind == LinkLost && left > 0;
+        let is_silent = self.kind == NoSteps && self.outside == 0;
+        self.outside += usize::from(says_left || is_silent || verdict == "inconclusive");
+        let (attempts, outside, faults) = (self.attempts, self.outside, self.parts.len());
+        let names = "planned|run|passed|failed|error|not passed|not run|attempts|outside|faults|need the bench";
+        let numbers = [
+            planned,
+            run,
+            passed,
+            failed,
+            error,
+            bad,
+            left,
+            attempts,
+            outside,
+            faults,
+            self.on_bench,
+        ];
+        let numbers = numbers.map(|number| number.to_string());
+        let mut known: BTreeMap<_, _> = names.split('|').map(str::to_owned).zip(numbers).collect();
+        let parts = self
+            .parts
+            .iter()
+            .map(|(part, seen)| format!("{part}={seen}"));
+        self.lists.insert("parts", parts.collect());
+        for name in ["steps that did not pass", "values", "limits", "parts"] {
+            let mut all = self.lists.remove(name).unwrap_or_default();
+            all.sort();
+            known.insert(name.into(), all.join(" "));
+        }
+        let only = |is_so: bool, text: String| if is_so { text } else { String::new() };
+        let lost = format!("link lost at step {run} of {planned}; {left} not run");
+        let lost_ko = format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행");
+        let more = [
+            ("verdict", verdict.into()),
+            ("id", id.short()),
+            ("with a result", self.worst.len().to_string()),
+            ("0", "0".into()),
+            (
+                "folders on the bench",
+                only(self.on_bench > 0, "made".into()),
+            ),
+            ("link en", only(says_left, lost)),
+            ("link ko", only(says_left, lost_ko)),
+        ];
+        known.extend(more.map(|(name, text)| (name.to_owned(), text)));
+        Facts {
+            of: format!("seed {} ({:?})", self.seed, self.kind),
+            known,
+        }
+    }
+}
+
+/// The marks in a text: this letter and four digits.
+pub fn marks(text: &str, letter: char) -> Vec<String> {
+    let places = text.match_indices(letter).map(|(at, _)| at);
+    let marks = places.filter_map(|at| text.get(at..at + 5));
+    let is_mark = |mark: &&str| mark[1..].bytes().all(|byte| byte.is_ascii_digit());
+    marks.filter(is_mark).map(str::to_owned).collect()
+}

@@ -1,0 +1,357 @@
+//! What a surface says of a run to people, read as people read it: sentences, and the texts of a sheet in their order.
+
+use std::collections::BTreeMap;
+
+use ptu_report::coverage_text;
+use ptu_report::words::Language;
+use ptu_runs::bench_worker::{Progress, outside_place};
+
+use super::made_runs::{Facts, marks};
+
+/// Facts that a surface tells, by their names.
+pub type Told = Vec<(String, String)>;
+
+/// Holds what surfaces tell to the facts of a run. What the run itself does not know is as the first surface has it.
+#[derive(Default)]
+pub struct Monitor {
+    held: usize,
+    wrong: BTreeMap<String, (usize, String)>,
+}
+
+impl Monitor {
+    pub fn hold(&mut self, facts: &mut Facts, surface: &str, told: Told) {
+        for (fact, value) in told {
+            self.held += 1;
+            let known = facts
+                .known
+                .entry(fact.clone())
+                .or_insert_with(|| value.clone());
+            if *known != value {
+                let first = format!("{}: {value:?} and not {known:?}", facts.of);
+                let place = format!("{surface}, {fact}");
+                self.wrong.entry(place).or_insert((0, first)).0 += 1;
+            }
+        }
+    }
+
+    /// Fails if anything was wrong, or too little was read.
+    pub fn finish(self, least: usize) {
+        let (wrong, held) = (self.wrong, self.held);
+        assert!(
+            wrong.is_empty(),
+            "of {held} facts these are told otherwise, so often, first of: {wrong:#?}"
+        );
+        assert!(held > least, "only {held} facts were held");
+    }
+}
+
+pub fn fact(name: impl Into<String>, value: impl ToString) -> (String, String) {
+    (name.into(), value.to_string())
+}
+
+pub fn sorted(name: &str, all: impl IntoIterator<Item = String>) -> (String, String) {
+    let mut all: Vec<_> = all.into_iter().collect();
+    all.sort();
+    fact(name, all.join(" "))
+}
+
+/// The run by the end of its number, as tables have it.
+pub fn id(of: &str) -> (String, String) {
+    fact("id", &of[of.len().saturating_sub(8)..])
+}
+
+/// Numbers by the names of their facts, which stand in one text.
+pub fn numbers(names: &str, numbers: impl IntoIterator<Item = impl ToString>) -> Told {
+    let names = names.split('|').zip(numbers);
+    names.map(|(name, number)| fact(name, number)).collect()
+}
+
+/// What records of results come to: of each whether it is a step's, its name, its verdict and why.
+pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>) -> Told {
+    let (mut attempts, mut outside, mut bad, mut link) = (0, 0, Vec::new(), None);
+    for (is_step, name, verdict, why) in all {
+        let is_bad = !["passed", "skipped"].contains(&verdict);
+        attempts += usize::from(is_step && verdict != "skipped");
+        outside += usize::from(!is_step && is_bad);
+        if is_step && is_bad {
+            bad.extend(marks(name, 's'));
+        }
+        link = link.or(Some(why).filter(|why| why.starts_with("link lost at step ")));
+    }
+    vec![
+        fact("attempts", attempts),
+        fact("outside", outside),
+        sorted("steps that did not pass", bad),
+        fact("link en", link.unwrap_or_default()),
+    ]
+}
+
+/// Of each measurement its value and its limits; an uncertainty follows the value it is of.
+pub fn measured(all: impl Iterator<Item = (String, [Option<f64>; 3])>) -> Told {
+    let (mut values, mut limits): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    for (name, [value, low, high]) in all {
+        let value = value.map_or("-".to_owned(), |value| value.to_string());
+        let [mark] = &marks(&name, 'm')[..] else {
+            continue;
+        };
+        if name.ends_with(", uncertainty") {
+            // A value that could not be measured has none that is told.
+            let of = values.last_mut().filter(|of| !of.ends_with('-'));
+            of.into_iter().for_each(|of| *of += &format!("±{value}"));
+            continue;
+        }
+        values.push(format!("{mark}={value}"));
+        let all: Vec<_> = [low, high]
+            .into_iter()
+            .flatten()
+            .map(|limit| limit.to_string())
+            .collect();
+        limits.push(format!("{mark}={}", all.join(",")));
+    }
+    vec![sorted("values", values), sorted("limits", limits)]
+}
+
+/// The number before a word, or behind it.
+fn before<'a>(text: &'a str, word: &str) -> Option<&'a str> {
+    let head = &text[..text.find(word)?];
+    let digits = head.trim_end_matches(|c: char| c.is_ascii_digit());
+    Some(&head[digits.len()..]).filter(|number| !number.is_empty())
+}
+
+fn behind<'a>(text: &'a str, word: &str) -> Option<&'a str> {
+    let tail = &text[text.find(word)? + word.len()..];
+    let end = tail.find(|c: char| !c.is_ascii_digit());
+    Some(&tail[..end.unwrap_or(tail.len())])
+}
+
+/// What stands behind the numbers of a sentence that counts a run, in each language.
+const SAID: [&str; 2] = [
+    " steps run| did not pass| not run| attempts| need the bench harness",
+    "개 수행|개 미합격|개 미수행|회|개는 시험대 하네스 필요",
+];
+
+/// The count of a run in a sentence; none if it is no such sentence.
+pub fn count(text: &str, language: Language) -> Option<Told> {
+    let first = &text[..text.find(|c: char| !c.is_ascii_digit())?];
+    let said = SAID[language as usize].split('|');
+    let said: Vec<_> = said.map(|word| before(text, word)).collect();
+    let [part, bad, left, attempts, bench] = said[..] else {
+        return None;
+    };
+    let bad_of_all = before(text, " steps did not pass");
+    let (planned, run, bad) = match language {
+        _ if ["No steps were run", "수행된 단계가 없습니다"]
+            .iter()
+            .any(|none| text.starts_with(none)) =>
+        {
+            ("0", "0", None)
+        }
+        _ if first.is_empty() => return None,
+        Language::English if bad_of_all.is_some() => (bad_of_all?, bad_of_all?, Some(first)),
+        Language::English => (before(text, " steps")?, first, bad),
+        Language::Korean => (before(text, "개 단계")?, part.unwrap_or(first), bad),
+    };
+    let outside =
+        ["outside steps: ", "단계 외 미합격: "].map(|word| behind(text, word))[language as usize];
+    let left = left.unwrap_or(if run == "0" { planned } else { "0" });
+    let [bad, outside, bench] = [bad, outside, bench].map(|number| number.unwrap_or("0"));
+    let counted = [
+        planned,
+        run,
+        bad,
+        left,
+        attempts.unwrap_or(run),
+        outside,
+        bench,
+    ];
+    let mut told = numbers(
+        "planned|run|not passed|not run|attempts|outside|need the bench",
+        counted,
+    );
+    let on_bench = ["the bench harness: ", "하네스 필요: "].map(|word| text.split_once(word));
+    let on_bench = on_bench[language as usize].map_or("", |(_, folders)| folders);
+    told.push(fact("folders on the bench", on_bench));
+    told.push(fact(format!("sentence {}", language.code()), text));
+    Some(told)
+}
+
+/// A verdict or a state in words.
+pub fn verdict(text: &str, language: Language) -> Option<&'static str> {
+    const ALL: [&str; 2] = [
+        "passed|failed|error|skipped|inconclusive|aborted|interrupted",
+        "합격|불합격|판정 불가|생략|판정 보류|중단|미완료",
+    ];
+    let said = text.to_lowercase();
+    let place = ALL[language as usize]
+        .split('|')
+        .position(|word| said == word);
+    ALL[0].split('|').nth(place?)
+}
+
+/// The part whose identifier a text is, or has in parentheses at its end.
+fn part(text: &str) -> &str {
+    let inside = text
+        .strip_suffix(')')
+        .and_then(|text| text.rsplit_once('('));
+    inside.map_or(text, |(_, id)| id)
+}
+
+/// The shares of parts that a conclusion tells, as in "replace the EB relay (eb_relay, 99.6 %)".
+pub fn conclusion(text: &str, language: Language) -> Told {
+    let inside = text
+        .split('(')
+        .skip(1)
+        .filter_map(|rest| rest.split_once(')'));
+    let shares = inside.filter_map(|(inside, _)| inside.strip_suffix(" %")?.split_once(", "));
+    let shares = shares.map(|(part, share)| fact(format!("share of {part}"), share));
+    let said = fact(format!("conclusion {}", language.code()), text);
+    shares.chain([said]).collect()
+}
+
+/// Rows of what may be the cause, each with its share in percent: the likeliest stands first.
+pub fn candidates(rows: Vec<(String, String)>) -> Told {
+    let shares: Vec<f64> = rows
+        .iter()
+        .filter_map(|(_, share)| share.parse().ok())
+        .collect();
+    let falls = shares.windows(2).all(|pair| pair[0] >= pair[1]) && !shares.contains(&0.0);
+    let order = (!rows.is_empty()).then(|| fact("candidates stand in their order", falls));
+    let shares = rows
+        .into_iter()
+        .map(|(part, share)| fact(format!("share of {part}"), share));
+    shares.chain(order).collect()
+}
+
+/// Headings of a sheet's sections.
+fn section(text: &str) -> Option<&'static str> {
+    const ALL: [&str; 2] = [
+        "Verdicts|What did not pass|Faults|Diagnosis|Run|All steps|Scripts|Signatures",
+        "판정 요약|미합격 항목|고장|진단|시험 개요|전체 단계|스크립트|서명",
+    ];
+    let mut places = ALL
+        .iter()
+        .filter_map(|all| all.split('|').position(|word| text == word));
+    ALL[0].split('|').nth(places.next()?)
+}
+
+/// A sheet: its texts in the order in which they stand.
+pub fn sheet(texts: &[String], language: Language) -> Told {
+    let (mut told, mut here) = (Vec::new(), "");
+    let (mut counted, mut bad, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut values, mut limits, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut passed, mut recorded, mut lost) = (None, 0, "");
+    let at = |place: usize| texts.get(place).map_or("", |text| text.as_str());
+    for (place, text) in texts.iter().enumerate() {
+        here = section(text).unwrap_or(here);
+        let next = at(place + 1);
+        if let (Some(said), Some(counts)) = (verdict(text, language), count(next, language)) {
+            told.push(fact("verdict", said));
+            told.extend(counts);
+        }
+        let is_link = ["link lost at step ", "번째에서 연결 끊김"]
+            .iter()
+            .any(|link| text.contains(link));
+        if is_link && here == "What did not pass" {
+            lost = text;
+        }
+        let row = || {
+            texts[place + 1..]
+                .iter()
+                .take_while(|text| verdict(text, language).is_none())
+        };
+        match here {
+            "Verdicts" if text.parse::<u32>().is_ok() => counted.push(text.clone()),
+            "What did not pass" => bad.extend(marks(text, 's')),
+            // Code and name, part, severity, how often.
+            "Faults" if before(text, " ") == text.split(' ').next() => {
+                seen.push(format!("{}={}", part(next), at(place + 3)));
+            }
+            "Diagnosis" if ["Conclusion", "결론"].contains(&text.as_str()) => {
+                told.extend(conclusion(next, language));
+            }
+            "Diagnosis" if text.ends_with(" %") && text.len() < 8 => {
+                rows.push((
+                    part(next).to_owned(),
+                    text.trim_end_matches(" %").to_owned(),
+                ));
+            }
+            "Run" if ["Run number", "시험 번호"].contains(&text.as_str()) => {
+                told.push(id(next));
+            }
+            "All steps" => {
+                let counted = match language {
+                    Language::English => text.strip_suffix(" passed"),
+                    Language::Korean => text.strip_suffix("개 합격"),
+                };
+                let counted =
+                    counted.and_then(|of| of.split_once([" of ", "개 중 "][language as usize]));
+                let counted = counted.map(|pair| <[&str; 2]>::from(pair).map(str::parse::<u32>));
+                if let Some([Ok(one), Ok(other)]) = counted {
+                    let of = [one, other];
+                    *passed.get_or_insert(0) += of[language as usize];
+                    recorded += of[1 - language as usize];
+                }
+                for mark in marks(text, 'm') {
+                    let value = match ["no value", "값 없음"].contains(&next) {
+                        true => "-".to_owned(),
+                        false => next.replace(" ± ", "±"),
+                    };
+                    values.push(format!("{mark}={value}"));
+                    let numbers = row().skip(1).filter(|text| text.parse::<f64>().is_ok());
+                    limits.push(format!(
+                        "{mark}={}",
+                        numbers.cloned().collect::<Vec<_>>().join(",")
+                    ));
+                }
+            }
+            _ => {}
+        }
+    }
+    told.extend(numbers("passed|failed|error|not run", counted));
+    told.extend(passed.map(|passed| fact("passed", passed)));
+    told.extend(passed.map(|_| fact("with a result", recorded)));
+    told.extend(candidates(rows));
+    told.push(fact(format!("link {}", language.code()), lost));
+    told.push(sorted("steps that did not pass", bad));
+    told.extend([
+        sorted("values", values),
+        sorted("limits", limits),
+        sorted("parts", seen),
+    ]);
+    told
+}
+
+/// What the window says that led the run.
+pub fn live(run: &Progress, language: Language) -> Told {
+    let (counts, words) = (run.counts(), language.words());
+    let all = run
+        .procedures
+        .iter()
+        .flat_map(|procedure| &procedure.results);
+    let all: Vec<_> = all
+        .map(|result| (result, result.findings.to_string()))
+        .collect();
+    let mut told = results(all.iter().map(|(result, why)| {
+        let is_step = outside_place(result).is_none();
+        (is_step, &*result.name, result.verdict.label(), why.as_str())
+    }));
+    let counted = [
+        counts.planned,
+        counts.run(),
+        counts.passed,
+        counts.failed,
+        counts.error,
+    ];
+    told.extend(numbers("planned|run|passed|failed|error", counted));
+    told.extend(numbers(
+        "attempts|outside",
+        [counts.attempts, counts.outside],
+    ));
+    let said = coverage_text(&run.coverage(), words);
+    told.extend(
+        said.and_then(|said| count(&said, language))
+            .into_iter()
+            .flatten(),
+    );
+    told
+}
