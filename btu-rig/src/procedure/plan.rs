@@ -284,15 +284,6 @@ impl Action {
         }
     }
 
-    /// A step can fail by it.
-    fn judges(&self) -> bool {
-        match self {
-            Self::Until { .. } | Self::Prompt { .. } => true,
-            Self::OnBench(action) | Self::OnTrain(action) => action.judges(),
-            Self::Stimulus(_) | Self::Wait(_) | Self::Settle { .. } => false,
-        }
-    }
-
     /// Calls `f` with each signal it looks at.
     fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
         match self {
@@ -304,13 +295,6 @@ impl Action {
 }
 
 impl Step {
-    /// It checks something: there is something by which it can fail.
-    pub(super) fn judges(&self) -> bool {
-        !self.expectations.is_empty()
-            || !self.measures.is_empty()
-            || self.actions.iter().any(Action::judges)
-    }
-
     /// Calls `f` with each signal the step looks at, apart from `when`.
     pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
         self.actions

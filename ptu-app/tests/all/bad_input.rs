@@ -64,7 +64,8 @@ fn what_others_wrote_acts_on_no_terminal() {
     );
     let mut told = vec![said.out, said.err];
     for file in ["r.html", "r.csv", "r.json", "r.junit.xml"] {
-        told.push(place.read(file));
+        let text = place.read(file);
+        told.push(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned());
     }
     let fault = place.json("faults list --json");
     let fault = text(&list(&fault)[0]["id"]).to_owned();

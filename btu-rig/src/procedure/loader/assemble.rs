@@ -156,7 +156,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
     if tests_unit_itself(&step.actions) {
         step.measures.extend(of_self_test());
     }
-    if !step.judges() {
+    if !checks(&step) {
         return Err(format!(
             "step \"{}\" checks nothing; give it an `expect` or a `measure`, or an until() or a prompt() in `do`",
             step.name
@@ -172,6 +172,15 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
         });
     }
     Ok(step)
+}
+
+/// There is something by which the step can fail.
+fn checks(step: &Step) -> bool {
+    let judges = |action: &Action| {
+        let (action, _) = action.where_done(true);
+        matches!(action, Action::Until { .. } | Action::Prompt { .. })
+    };
+    !step.expectations.is_empty() || !step.measures.is_empty() || step.actions.iter().any(judges)
 }
 
 /// Items of a self-test are measurements of the step that asks for it.
