@@ -43,7 +43,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
     for (button, name, begin) in [
         ("PDF", "mine.pdf", &b"%PDF-"[..]),
         ("HTML", "mine.html", b"<!DOCTYPE html>"),
-        ("CSV", "mine.csv", b"run,unit_serial,"),
+        ("CSV", "mine.csv", b"\xef\xbb\xbfrun,unit_serial,"),
     ] {
         window.click(button);
         window.wait_for(&format!("Written: {}", window.place.text_path(name)));
