@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use fault_db::{Channel, ChannelKind, TraceData};
-use protocol::signal::Signal;
 
 use crate::plot::{Note, Place, Plot, Series, Style};
-use crate::words::{Language, Words};
+use crate::words::Words;
 
 /// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
 const SPEEDS: [(&str, usize, Style); 4] = [
@@ -194,7 +193,7 @@ fn lane(
             drawing.notes.push(Note {
                 at: (from, base + SWING * WORDS),
                 until: to,
-                text: state(channel, value, label, words).to_owned(),
+                text: words.state(&channel.name, label).into_owned(),
             });
         }
     }
@@ -207,21 +206,6 @@ fn lane(
         style: Style::Line,
         points,
     });
-}
-
-/// A state in the language of the sheet; one that this program calls otherwise is as it was recorded.
-fn state<'a>(channel: &Channel, value: f64, label: &'a str, words: &Words) -> &'a str {
-    let called = |language: Language| {
-        let states = language
-            .words()
-            .bench
-            .states(Signal::from_name(&channel.name)?);
-        states.get(value as usize).copied()
-    };
-    match called(Language::English) {
-        Some(english) if english == label => called(words.language).unwrap_or(label),
-        _ => label,
-    }
 }
 
 /// First and last row and value of each stretch over which a column stays the same.
@@ -250,6 +234,7 @@ fn steps(column: &[f64]) -> Vec<(usize, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::words::Language;
 
     fn trace() -> TraceData {
         let channel = |name: &str, kind| Channel {
