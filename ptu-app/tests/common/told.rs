@@ -6,7 +6,7 @@ use ptu_report::coverage_text;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::{Progress, outside_place};
 
-use super::made_runs::{Facts, marks};
+use super::made_runs::Facts;
 
 /// Facts that a surface tells, by their names.
 pub type Told = Vec<(String, String)>;
@@ -86,28 +86,45 @@ pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>)
     ]
 }
 
+/// The marks in a text: this letter and four digits.
+pub fn marks(text: &str, letter: char) -> Vec<String> {
+    let places = text.match_indices(letter).map(|(at, _)| at);
+    let marks = places.filter_map(|at| text.get(at..at + 5));
+    let is_mark = |mark: &&str| mark[1..].bytes().all(|byte| byte.is_ascii_digit());
+    marks.filter(is_mark).map(str::to_owned).collect()
+}
+
+/// A measurement by its mark: its value with how far it may be off, and its limits.
+pub fn value_and_limits(
+    mark: &str,
+    value: Option<f64>,
+    off: Option<f64>,
+    limits: [Option<f64>; 2],
+) -> (String, String) {
+    let said = |number: f64| number.to_string();
+    let value = value.map_or("-".to_owned(), said);
+    let off = off.map_or_else(String::new, |off| format!("±{off}"));
+    let limits: Vec<_> = limits.into_iter().flatten().map(said).collect();
+    (
+        format!("{mark}={value}{off}"),
+        format!("{mark}={}", limits.join(",")),
+    )
+}
+
 /// Of each measurement its value and its limits; an uncertainty follows the value it is of.
 pub fn measured(all: impl Iterator<Item = (String, [Option<f64>; 3])>) -> Told {
-    let (mut values, mut limits): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut known: Vec<(String, [Option<f64>; 3], Option<f64>)> = Vec::new();
     for (name, [value, low, high]) in all {
-        let value = value.map_or("-".to_owned(), |value| value.to_string());
-        let [mark] = &marks(&name, 'm')[..] else {
-            continue;
-        };
-        if name.ends_with(", uncertainty") {
-            // A value that could not be measured has none that is told.
-            let of = values.last_mut().filter(|of| !of.ends_with('-'));
-            of.into_iter().for_each(|of| *of += &format!("±{value}"));
-            continue;
+        match (&marks(&name, 'm')[..], known.last_mut()) {
+            (_, Some((_, of, off))) if name.ends_with(", uncertainty") => *off = of[0].and(value),
+            ([mark], _) => known.push((mark.clone(), [value, low, high], None)),
+            _ => {}
         }
-        values.push(format!("{mark}={value}"));
-        let all: Vec<_> = [low, high]
-            .into_iter()
-            .flatten()
-            .map(|limit| limit.to_string())
-            .collect();
-        limits.push(format!("{mark}={}", all.join(",")));
     }
+    let said = known
+        .into_iter()
+        .map(|(mark, [value, low, high], off)| value_and_limits(&mark, value, off, [low, high]));
+    let (values, limits): (Vec<_>, Vec<_>) = said.unzip();
     vec![sorted("values", values), sorted("limits", limits)]
 }
 
