@@ -283,7 +283,13 @@ impl Weights {
             return (Finding::NoFault, Sentence::no_fault(self.no_fault));
         }
         if !seen.shows_a_fault() {
-            let checks = [seen.steps.len(), model.dictionary.checks.len()];
+            // However often each was made.
+            let places = seen
+                .steps
+                .iter()
+                .map(|step| model.dictionary.place(&step.check));
+            let made: BTreeSet<_> = places.flatten().collect();
+            let checks = [made.len(), model.dictionary.checks.len()];
             return (Finding::NotEnough, Sentence::nothing_seen(checks, next));
         }
         let named_at = settings.conclusion.named_at;
