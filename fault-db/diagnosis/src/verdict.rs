@@ -275,8 +275,14 @@ impl Weights {
             return Conclusion::NoFault { probability };
         }
         if !seen.shows_a_fault() {
+            // However often each was made.
+            let places = seen
+                .steps
+                .iter()
+                .map(|step| model.dictionary.place(&step.check));
+            let made: BTreeSet<_> = places.flatten().collect();
             return Conclusion::NothingSeen {
-                made: seen.steps.len(),
+                made: made.len(),
                 of: model.dictionary.checks.len(),
             };
         }

@@ -82,7 +82,7 @@ pub fn known(dictionary: &Dictionary, mode: &Mode, chance: &mut Chance) -> Vec<P
         .keys()
         .map(|place| &dictionary.checks[*place].procedure);
     let any = &dictionary.checks[chance.below(dictionary.checks.len())].procedure;
-    let mut ids: Vec<_> = told.take(1 + chance.below(40)).chain([any]).collect();
+    let mut ids: Vec<_> = told.take(1 + chance.below(8)).chain([any]).collect();
     ids.sort();
     ids.dedup();
     let of = |id: &&String| {

@@ -26,6 +26,7 @@ use ptu_runs::stop::Stop;
 use ptu_runs::stored::stored;
 
 use super::made_plans::{Chance, contents, known, likeliest, own, plan};
+use super::told::{marks, sorted, value_and_limits};
 
 /// How a run goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +168,9 @@ struct Making<'a> {
     chance: Chance,
     plan: RunPlan,
     dictionary: &'a Dictionary,
-    /// Fault mode that the unit has; the checks are those of the dictionary then.
+    /// The checks are those of the dictionary.
+    of_dictionary: bool,
+    /// Fault mode that the unit has then.
     mode: Option<&'a Mode>,
     /// Worst result of each step: 0 not run, 1 passed, 2 error, 3 failed.
     worst: BTreeMap<(usize, usize), u8>,
@@ -175,18 +178,20 @@ struct Making<'a> {
     outside: usize,
     /// Steps that need the harness.
     on_bench: usize,
-    /// By name: marks of results that did not pass, and of measurements with values and limits.
-    lists: BTreeMap<&'static str, Vec<String>>,
+    /// Marks of results that did not pass, and of measurements with values and limits.
+    not_passed: Vec<String>,
+    values: Vec<(String, String)>,
     parts: BTreeMap<&'static str, usize>,
     turn: usize,
+    measured: usize,
 }
 
 impl<'a> Making<'a> {
     fn new(seed: u64, dictionary: &'a Dictionary) -> Self {
         let kind = KINDS[seed as usize % KINDS.len()];
         let mut chance = Chance(seed);
-        let of_dictionary =
-            kind == Pair || (seed % 2 == 1 && matches!(kind, Passed | Failed | Adaptive));
+        let of_dictionary = kind == Pair
+            || (seed % 2 == 1 && matches!(kind, Passed | Failed | Adaptive | Repeated));
         let mode = &dictionary.modes[chance.below(dictionary.modes.len())];
         let procedures = match of_dictionary {
             true => known(dictionary, mode, &mut chance),
@@ -194,11 +199,7 @@ impl<'a> Making<'a> {
                 .map(|number| own(seed, number, &mut chance))
                 .collect(),
         };
-        let repeat = if kind == Repeated {
-            2 + chance.below(2) as u32
-        } else {
-            1
-        };
+        let repeat = [1, 2 + chance.below(2) as u32][usize::from(kind == Repeated)];
         let task = |procedure: Procedure| Task {
             options: RunOptions {
                 chosen: (kind == OneStep).then(|| vec![chance.below(procedure.steps.len())]),
@@ -212,15 +213,18 @@ impl<'a> Making<'a> {
             seed,
             kind,
             dictionary,
-            mode: (of_dictionary && kind != Passed).then_some(mode),
+            mode: (of_dictionary && !matches!(kind, Passed | Repeated)).then_some(mode),
+            of_dictionary,
             chance,
             worst: BTreeMap::new(),
             attempts: 0,
             outside: 0,
             on_bench: 0,
-            lists: BTreeMap::new(),
+            not_passed: Vec::new(),
+            values: Vec::new(),
             parts: BTreeMap::new(),
             turn: 0,
+            measured: 0,
         }
     }
 
@@ -229,12 +233,8 @@ impl<'a> Making<'a> {
     }
 
     fn record(&self, earlier: Option<Id>) -> RunRecord {
-        let evidence = Evidence::now(
-            contents(),
-            Vec::new(),
-            MeasuringRules::default(),
-            self.planned(),
-        );
+        let rules = MeasuringRules::default();
+        let evidence = Evidence::now(contents(), Vec::new(), rules, self.planned());
         let pair = if self.kind == Pair { ",tra.dead" } else { "" };
         RunRecord {
             unit: UnitRecord {
@@ -258,12 +258,8 @@ impl<'a> Making<'a> {
 
     /// Has it recorded; what makes an end of it before its time.
     fn collect(&mut self, to: &mut Collector<'_>) -> Option<Verdict> {
-        let all: Vec<_> = self
-            .plan
-            .tasks
-            .iter()
-            .map(|task| task.procedure.clone())
-            .collect();
+        let tasks = self.plan.tasks.iter();
+        let all: Vec<_> = tasks.map(|task| task.procedure.clone()).collect();
         let ends_in = self.chance.below(all.len());
         let nothing_at_all = self.kind == NoSteps && self.chance.one_in(3);
         for (place, procedure) in all.iter().enumerate().filter(|_| !nothing_at_all) {
@@ -310,14 +306,10 @@ impl<'a> Making<'a> {
             Outside => (&Place::ALL[..9], Verdict::Failed),
             _ => return Skipped,
         };
-        let first = if places.len() == 1 || place == 0 {
-            0
-        } else {
-            usize::MAX
-        };
+        let has_first = places.len() == 1 || place == 0;
         let mut all = Skipped;
         for (number, place) in places.iter().enumerate() {
-            if number != first && !self.chance.one_in(4) {
+            if !(has_first && number == 0 || self.chance.one_in(4)) {
                 continue;
             }
             self.outside += 1;
@@ -342,17 +334,12 @@ impl<'a> Making<'a> {
     ) -> Verdict {
         let (steps, options) = (of.steps.len(), self.plan.tasks[place].options.clone());
         let ends_at = self.chance.below(steps);
-        let mut verdict = if ends && self.kind == LinkLost {
-            Verdict::Error
-        } else {
-            Skipped
-        };
+        let is_lost = ends && self.kind == LinkLost;
+        let mut verdict = [Skipped, Verdict::Error][usize::from(is_lost)];
         let turns = (0..options.repeat).flat_map(|turn| (0..steps).map(move |step| (turn, step)));
         for (turn, index) in turns {
-            let is_chosen = options
-                .chosen
-                .as_ref()
-                .is_none_or(|chosen| chosen.contains(&index));
+            let chosen = options.chosen.as_ref();
+            let is_chosen = chosen.is_none_or(|chosen| chosen.contains(&index));
             if !is_chosen || self.kind == NoSteps || (is_over && self.kind == LinkLost) {
                 continue;
             }
@@ -394,6 +381,7 @@ impl<'a> Making<'a> {
             (Failed, _) if (place, index) == (0, 0) => Verdict::Failed,
             (Error, _) if (place, index) == (0, 0) || bad => Verdict::Error,
             (Passed | Adaptive | OneStep | Outside, _) => Verdict::Passed,
+            _ if self.of_dictionary => Verdict::Passed,
             _ if bad => Verdict::Failed,
             _ => Verdict::Passed,
         };
@@ -412,19 +400,12 @@ impl<'a> Making<'a> {
             .into(),
             _ => Finding::Told("nothing comes from the unit".into()).into(),
         };
-        let number = if repeat > 1 {
-            format!(" ({}/{repeat})", turn + 1)
-        } else {
-            String::new()
-        };
-        let most = if verdict == Skipped || self.mode.is_some() {
-            1
-        } else {
-            3
-        };
+        let number = [String::new(), format!(" ({}/{repeat})", turn + 1)];
+        let most = [3, 1][usize::from(verdict == Skipped || self.of_dictionary)];
+        let most = self.chance.below(most);
         StepResult {
             index,
-            name: format!("{}{number}", step.name),
+            name: format!("{}{}", step.name, number[usize::from(repeat > 1)]),
             line: step.line,
             verdict,
             repeated: false,
@@ -433,17 +414,16 @@ impl<'a> Making<'a> {
             started: Instant::ZERO,
             bench_time: Duration::from_us(100_000),
             limit_source: None,
-            measurements: (0..self.chance.below(most))
-                .map(|_| self.measurement(verdict))
-                .collect(),
+            measurements: (0..most).map(|_| self.measurement(verdict)).collect(),
         }
     }
 
     fn measurement(&mut self, verdict: Verdict) -> Measurement {
+        self.measured += 1;
         let chance = &mut self.chance;
         let number = |chance: &mut Chance| (1 + chance.below(9_000)) as f64 / 10.0;
         Measurement {
-            name: format!("m{:04} 반응", chance.below(10_000)),
+            name: format!("m{:04} 반응", self.measured),
             value: (verdict != Verdict::Error || chance.one_in(2)).then(|| number(chance)),
             unit: ["ms", "km/h", ""][chance.below(3)],
             low: chance.one_in(2).then(|| number(chance)),
@@ -475,11 +455,8 @@ impl<'a> Making<'a> {
             measurements: Vec::new(),
             ..result.clone()
         };
-        self.note(
-            place,
-            attempt(result.index, result.name.clone(), Skipped),
-            to,
-        );
+        let first = attempt(result.index, result.name.clone(), Skipped);
+        self.note(place, first, to);
         if result.index == 0 || self.chance.one_in(2) {
             return Skipped;
         }
@@ -498,27 +475,17 @@ impl<'a> Making<'a> {
         let worst = self.worst.entry((place, result.index)).or_default();
         *worst = rank.max(*worst);
         self.attempts += usize::from(rank > 0);
-        let needs_bench = result
-            .findings
-            .iter()
-            .any(|found| found.finding.needs_harness());
+        let all = &result.findings;
+        let needs_bench = all.iter().any(|found| found.finding.needs_harness());
         self.on_bench += usize::from(needs_bench);
-        let mut list =
-            |name, mut all: Vec<String>| self.lists.entry(name).or_default().append(&mut all);
         if rank > 1 {
-            list("steps that did not pass", marks(&result.name, 's'));
+            self.not_passed.extend(marks(&result.name, 's'));
         }
-        for measured in &result.measurements {
-            let mark = &measured.name[..5];
-            let value = measured
-                .value
-                .map_or("-".to_owned(), |value| value.to_string());
-            let off = measured.value.and(measured.uncertainty);
-            let off = off.map_or_else(String::new, |off| format!("±{off}"));
-            list("values", vec![format!("{mark}={value}{off}")]);
-            let limits = [measured.low, measured.high].into_iter().flatten();
-            let limits: Vec<_> = limits.map(|limit| limit.to_string()).collect();
-            list("limits", vec![format!("{mark}={}", limits.join(","))]);
+        for one in &result.measurements {
+            let limits = [one.low, one.high];
+            let off = one.value.and(one.uncertainty);
+            self.values
+                .push(value_and_limits(&one.name[..5], one.value, off, limits));
         }
         let finding = Finding::CheckFailed {
             procedure: "made/up".into(),
@@ -566,31 +533,20 @@ impl<'a> Making<'a> {
         self.outside += usize::from(says_left || is_silent || verdict == "inconclusive");
         let (attempts, outside, faults) = (self.attempts, self.outside, self.parts.len());
         let names = "planned|run|passed|failed|error|not passed|not run|attempts|outside|faults|need the bench";
+        let bench = self.on_bench;
         let numbers = [
-            planned,
-            run,
-            passed,
-            failed,
-            error,
-            bad,
-            left,
-            attempts,
-            outside,
-            faults,
-            self.on_bench,
+            planned, run, passed, failed, error, bad, left, attempts, outside, faults, bench,
         ];
         let numbers = numbers.map(|number| number.to_string());
         let mut known: BTreeMap<_, _> = names.split('|').map(str::to_owned).zip(numbers).collect();
-        let parts = self
-            .parts
-            .iter()
-            .map(|(part, seen)| format!("{part}={seen}"));
-        self.lists.insert("parts", parts.collect());
-        for name in ["steps that did not pass", "values", "limits", "parts"] {
-            let mut all = self.lists.remove(name).unwrap_or_default();
-            all.sort();
-            known.insert(name.into(), all.join(" "));
-        }
+        let parts = self.parts.iter();
+        let (values, limits): (Vec<_>, Vec<_>) = self.values.into_iter().unzip();
+        known.extend([
+            sorted("parts", parts.map(|(part, seen)| format!("{part}={seen}"))),
+            sorted("steps that did not pass", self.not_passed),
+            sorted("values", values),
+            sorted("limits", limits),
+        ]);
         let only = |is_so: bool, text: String| if is_so { text } else { String::new() };
         let lost = format!("link lost at step {run} of {planned}; {left} not run");
         let lost_ko = format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행");
@@ -600,9 +556,10 @@ impl<'a> Making<'a> {
             ("with a result", self.worst.len().to_string()),
             ("0", "0".into()),
             (
-                "folders on the bench",
-                only(self.on_bench > 0, "made".into()),
+                "checks made",
+                if self.of_dictionary { run } else { 0 }.to_string(),
             ),
+            ("folders on the bench", only(bench > 0, "made".into())),
             ("link en", only(says_left, lost)),
             ("link ko", only(says_left, lost_ko)),
         ];
@@ -612,12 +569,4 @@ impl<'a> Making<'a> {
             known,
         }
     }
-}
-
-/// The marks in a text: this letter and four digits.
-pub fn marks(text: &str, letter: char) -> Vec<String> {
-    let places = text.match_indices(letter).map(|(at, _)| at);
-    let marks = places.filter_map(|at| text.get(at..at + 5));
-    let is_mark = |mark: &&str| mark[1..].bytes().all(|byte| byte.is_ascii_digit());
-    marks.filter(is_mark).map(str::to_owned).collect()
 }

@@ -6,7 +6,7 @@ use ptu_report::coverage_text;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::{Progress, outside_place};
 
-use super::made_runs::{Facts, marks};
+use super::made_runs::Facts;
 
 /// Facts that a surface tells, by their names.
 pub type Told = Vec<(String, String)>;
@@ -86,28 +86,45 @@ pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>)
     ]
 }
 
+/// The marks in a text: this letter and four digits.
+pub fn marks(text: &str, letter: char) -> Vec<String> {
+    let places = text.match_indices(letter).map(|(at, _)| at);
+    let marks = places.filter_map(|at| text.get(at..at + 5));
+    let is_mark = |mark: &&str| mark[1..].bytes().all(|byte| byte.is_ascii_digit());
+    marks.filter(is_mark).map(str::to_owned).collect()
+}
+
+/// A measurement by its mark: its value with how far it may be off, and its limits.
+pub fn value_and_limits(
+    mark: &str,
+    value: Option<f64>,
+    off: Option<f64>,
+    limits: [Option<f64>; 2],
+) -> (String, String) {
+    let said = |number: f64| number.to_string();
+    let value = value.map_or("-".to_owned(), said);
+    let off = off.map_or_else(String::new, |off| format!("±{off}"));
+    let limits: Vec<_> = limits.into_iter().flatten().map(said).collect();
+    (
+        format!("{mark}={value}{off}"),
+        format!("{mark}={}", limits.join(",")),
+    )
+}
+
 /// Of each measurement its value and its limits; an uncertainty follows the value it is of.
 pub fn measured(all: impl Iterator<Item = (String, [Option<f64>; 3])>) -> Told {
-    let (mut values, mut limits): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut known: Vec<(String, [Option<f64>; 3], Option<f64>)> = Vec::new();
     for (name, [value, low, high]) in all {
-        let value = value.map_or("-".to_owned(), |value| value.to_string());
-        let [mark] = &marks(&name, 'm')[..] else {
-            continue;
-        };
-        if name.ends_with(", uncertainty") {
-            // A value that could not be measured has none that is told.
-            let of = values.last_mut().filter(|of| !of.ends_with('-'));
-            of.into_iter().for_each(|of| *of += &format!("±{value}"));
-            continue;
+        match (&marks(&name, 'm')[..], known.last_mut()) {
+            (_, Some((_, of, off))) if name.ends_with(", uncertainty") => *off = of[0].and(value),
+            ([mark], _) => known.push((mark.clone(), [value, low, high], None)),
+            _ => {}
         }
-        values.push(format!("{mark}={value}"));
-        let all: Vec<_> = [low, high]
-            .into_iter()
-            .flatten()
-            .map(|limit| limit.to_string())
-            .collect();
-        limits.push(format!("{mark}={}", all.join(",")));
     }
+    let said = known
+        .into_iter()
+        .map(|(mark, [value, low, high], off)| value_and_limits(&mark, value, off, [low, high]));
+    let (values, limits): (Vec<_>, Vec<_>) = said.unzip();
     vec![sorted("values", values), sorted("limits", limits)]
 }
 
@@ -139,13 +156,9 @@ pub fn count(text: &str, language: Language) -> Option<Told> {
         return None;
     };
     let bad_of_all = before(text, " steps did not pass");
+    let nothing = ["No steps were run", "수행된 단계가 없습니다"];
     let (planned, run, bad) = match language {
-        _ if ["No steps were run", "수행된 단계가 없습니다"]
-            .iter()
-            .any(|none| text.starts_with(none)) =>
-        {
-            ("0", "0", None)
-        }
+        _ if nothing.iter().any(|none| text.starts_with(none)) => ("0", "0", None),
         _ if first.is_empty() => return None,
         Language::English if bad_of_all.is_some() => (bad_of_all?, bad_of_all?, Some(first)),
         Language::English => (before(text, " steps")?, first, bad),
@@ -155,19 +168,10 @@ pub fn count(text: &str, language: Language) -> Option<Told> {
         ["outside steps: ", "단계 외 미합격: "].map(|word| behind(text, word))[language as usize];
     let left = left.unwrap_or(if run == "0" { planned } else { "0" });
     let [bad, outside, bench] = [bad, outside, bench].map(|number| number.unwrap_or("0"));
-    let counted = [
-        planned,
-        run,
-        bad,
-        left,
-        attempts.unwrap_or(run),
-        outside,
-        bench,
-    ];
-    let mut told = numbers(
-        "planned|run|not passed|not run|attempts|outside|need the bench",
-        counted,
-    );
+    let tried = attempts.unwrap_or(run);
+    let counted = [planned, run, bad, left, tried, outside, bench];
+    let names = "planned|run|not passed|not run|attempts|outside|need the bench";
+    let mut told = numbers(names, counted);
     let on_bench = ["the bench harness: ", "하네스 필요: "].map(|word| text.split_once(word));
     let on_bench = on_bench[language as usize].map_or("", |(_, folders)| folders);
     told.push(fact("folders on the bench", on_bench));
@@ -182,43 +186,40 @@ pub fn verdict(text: &str, language: Language) -> Option<&'static str> {
         "합격|불합격|판정 불가|생략|판정 보류|중단|미완료",
     ];
     let said = text.to_lowercase();
-    let place = ALL[language as usize]
-        .split('|')
-        .position(|word| said == word);
-    ALL[0].split('|').nth(place?)
+    let mut words = ALL[language as usize].split('|');
+    ALL[0].split('|').nth(words.position(|word| said == word)?)
 }
 
 /// The part whose identifier a text is, or has in parentheses at its end.
 fn part(text: &str) -> &str {
-    let inside = text
-        .strip_suffix(')')
-        .and_then(|text| text.rsplit_once('('));
+    let open = text.strip_suffix(')');
+    let inside = open.and_then(|text| text.rsplit_once('('));
     inside.map_or(text, |(_, id)| id)
 }
 
 /// The shares of parts that a conclusion tells, as in "replace the EB relay (eb_relay, 99.6 %)".
 pub fn conclusion(text: &str, language: Language) -> Told {
-    let inside = text
-        .split('(')
-        .skip(1)
-        .filter_map(|rest| rest.split_once(')'));
+    let open = text.split('(').skip(1);
+    let inside = open.filter_map(|rest| rest.split_once(')'));
     let shares = inside.filter_map(|(inside, _)| inside.strip_suffix(" %")?.split_once(", "));
     let shares = shares.map(|(part, share)| fact(format!("share of {part}"), share));
+    let checks = match language {
+        Language::English => before(text, " of ").filter(|_| text.contains(" checks were made")),
+        Language::Korean => before(text, "개 수행").filter(|_| text.contains("점검 ")),
+    };
+    let checks = checks.map(|made| fact("checks made", made));
     let said = fact(format!("conclusion {}", language.code()), text);
-    shares.chain([said]).collect()
+    shares.chain([said]).chain(checks).collect()
 }
 
 /// Rows of what may be the cause, each with its share in percent: the likeliest stands first.
 pub fn candidates(rows: Vec<(String, String)>) -> Told {
-    let shares: Vec<f64> = rows
-        .iter()
-        .filter_map(|(_, share)| share.parse().ok())
-        .collect();
+    let shares = rows.iter().filter_map(|(_, share)| share.parse().ok());
+    let shares: Vec<f64> = shares.collect();
     let falls = shares.windows(2).all(|pair| pair[0] >= pair[1]) && !shares.contains(&0.0);
     let order = (!rows.is_empty()).then(|| fact("candidates stand in their order", falls));
-    let shares = rows
-        .into_iter()
-        .map(|(part, share)| fact(format!("share of {part}"), share));
+    let rows = rows.into_iter();
+    let shares = rows.map(|(part, share)| fact(format!("share of {part}"), share));
     shares.chain(order).collect()
 }
 
@@ -228,10 +229,8 @@ fn section(text: &str) -> Option<&'static str> {
         "Verdicts|What did not pass|Faults|Diagnosis|Run|All steps|Scripts|Signatures",
         "판정 요약|미합격 항목|고장|진단|시험 개요|전체 단계|스크립트|서명",
     ];
-    let mut places = ALL
-        .iter()
-        .filter_map(|all| all.split('|').position(|word| text == word));
-    ALL[0].split('|').nth(places.next()?)
+    let place = |all: &&str| all.split('|').position(|word| text == word);
+    ALL[0].split('|').nth(ALL.iter().find_map(place)?)
 }
 
 /// A sheet: its texts in the order in which they stand.
@@ -248,19 +247,10 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
             told.push(fact("verdict", said));
             told.extend(counts);
         }
-        let is_link = ["link lost at step ", "번째에서 연결 끊김"]
-            .iter()
-            .any(|link| text.contains(link));
-        if is_link && here == "What did not pass" {
-            lost = text;
-        }
-        let row = || {
-            texts[place + 1..]
-                .iter()
-                .take_while(|text| verdict(text, language).is_none())
-        };
+        let link = ["link lost at step ", "번째에서 연결 끊김"][language as usize];
         match here {
             "Verdicts" if text.parse::<u32>().is_ok() => counted.push(text.clone()),
+            "What did not pass" if text.contains(link) => lost = text,
             "What did not pass" => bad.extend(marks(text, 's')),
             // Code and name, part, severity, how often.
             "Faults" if before(text, " ") == text.split(' ').next() => {
@@ -270,21 +260,17 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
                 told.extend(conclusion(next, language));
             }
             "Diagnosis" if text.ends_with(" %") && text.len() < 8 => {
-                rows.push((
-                    part(next).to_owned(),
-                    text.trim_end_matches(" %").to_owned(),
-                ));
+                let share = text.trim_end_matches(" %");
+                rows.push((part(next).to_owned(), share.to_owned()));
             }
             "Run" if ["Run number", "시험 번호"].contains(&text.as_str()) => {
-                told.push(id(next));
+                told.push(id(next))
             }
             "All steps" => {
-                let counted = match language {
-                    Language::English => text.strip_suffix(" passed"),
-                    Language::Korean => text.strip_suffix("개 합격"),
-                };
-                let counted =
-                    counted.and_then(|of| of.split_once([" of ", "개 중 "][language as usize]));
+                let (of, passes) = [(" of ", " passed"), ("개 중 ", "개 합격")][language as usize];
+                let counted = text
+                    .strip_suffix(passes)
+                    .and_then(|said| said.split_once(of));
                 let counted = counted.map(|pair| <[&str; 2]>::from(pair).map(str::parse::<u32>));
                 if let Some([Ok(one), Ok(other)]) = counted {
                     let of = [one, other];
@@ -297,11 +283,10 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
                         false => next.replace(" ± ", "±"),
                     };
                     values.push(format!("{mark}={value}"));
-                    let numbers = row().skip(1).filter(|text| text.parse::<f64>().is_ok());
-                    limits.push(format!(
-                        "{mark}={}",
-                        numbers.cloned().collect::<Vec<_>>().join(",")
-                    ));
+                    let row = texts[place + 2..].iter();
+                    let row = row.take_while(|text| verdict(text, language).is_none());
+                    let numbers = row.filter(|text| text.parse::<f64>().is_ok()).cloned();
+                    limits.push(format!("{mark}={}", numbers.collect::<Vec<_>>().join(",")));
                 }
             }
             _ => {}
@@ -313,21 +298,15 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     told.extend(candidates(rows));
     told.push(fact(format!("link {}", language.code()), lost));
     told.push(sorted("steps that did not pass", bad));
-    told.extend([
-        sorted("values", values),
-        sorted("limits", limits),
-        sorted("parts", seen),
-    ]);
+    told.extend([sorted("values", values), sorted("limits", limits)]);
+    told.push(sorted("parts", seen));
     told
 }
 
 /// What the window says that led the run.
 pub fn live(run: &Progress, language: Language) -> Told {
     let (counts, words) = (run.counts(), language.words());
-    let all = run
-        .procedures
-        .iter()
-        .flat_map(|procedure| &procedure.results);
+    let all = run.procedures.iter().flat_map(|of| &of.results);
     let all: Vec<_> = all
         .map(|result| (result, result.findings.to_string()))
         .collect();
@@ -335,23 +314,19 @@ pub fn live(run: &Progress, language: Language) -> Told {
         let is_step = outside_place(result).is_none();
         (is_step, &*result.name, result.verdict.label(), why.as_str())
     }));
-    let counted = [
-        counts.planned,
-        counts.run(),
-        counts.passed,
-        counts.failed,
-        counts.error,
-    ];
-    told.extend(numbers("planned|run|passed|failed|error", counted));
+    let [run_steps, not_run] = [counts.run(), counts.not_run()];
+    told.extend(numbers(
+        "planned|run|not run",
+        [counts.planned, run_steps, not_run],
+    ));
+    let came_to = [counts.passed, counts.failed, counts.error];
+    told.extend(numbers("passed|failed|error", came_to));
     told.extend(numbers(
         "attempts|outside",
         [counts.attempts, counts.outside],
     ));
     let said = coverage_text(&run.coverage(), words);
-    told.extend(
-        said.and_then(|said| count(&said, language))
-            .into_iter()
-            .flatten(),
-    );
+    let said = said.and_then(|said| count(&said, language));
+    told.extend(said.into_iter().flatten());
     told
 }

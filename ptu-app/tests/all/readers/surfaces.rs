@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use btu_rig::procedure::Outside;
 use ptu_report::run::page::{Item, Page};
 use ptu_report::words::Language;
 use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
 use serde_json::Value;
 
 use super::seen;
-use crate::common::made_runs::marks;
 use crate::common::told::{
-    Told, candidates, conclusion, count, fact, id, measured, numbers, results, sorted,
+    Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted,
 };
 use crate::common::{list, number, text};
 
@@ -39,17 +39,8 @@ pub fn console(table: &str) -> Told {
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
     for line in table.lines() {
         let cells = columns(line);
-        let heads = [
-            "PROCEDURE",
-            "VERDICT",
-            "REPEATED STEP",
-            "SKIPPED STEPS",
-            "FAULT",
-        ];
-        if let Some(head) = heads
-            .into_iter()
-            .find(|head| line.starts_with(&format!("{head}  ")))
-        {
+        let mut heads = "PROCEDURE|VERDICT|REPEATED STEP|SKIPPED STEPS|FAULT".split('|');
+        if let Some(head) = heads.find(|head| line.starts_with(&format!("{head}  "))) {
             here = head;
         } else if cells.is_empty() {
             here = "";
@@ -60,10 +51,8 @@ pub fn console(table: &str) -> Told {
         } else if here == "VERDICT" {
             let name = cells[1].split_once(": ").map_or("", |(_, name)| name);
             bad.extend(marks(name, 's'));
-            let known = btu_rig::procedure::Outside::ALL
-                .iter()
-                .any(|place| place.name() == name);
-            outside += usize::from(known);
+            let mut places = Outside::ALL.iter();
+            outside += usize::from(places.any(|place| place.name() == name));
             let why = cells.get(2).filter(|why| why.starts_with(LOST));
             lost = why.cloned().unwrap_or(lost);
         } else if here == "FAULT" {
@@ -117,10 +106,8 @@ pub fn json(run: &Value) -> Told {
         "steps=planned,run=run,passed=passed,need_bench=need the bench",
     ));
     let on_bench = list(&run["coverage"]["on_bench"]).iter().map(text);
-    told.push(fact(
-        "folders on the bench",
-        on_bench.collect::<Vec<_>>().join(", "),
-    ));
+    let on_bench: Vec<_> = on_bench.collect();
+    told.push(fact("folders on the bench", on_bench.join(", ")));
     let steps = list(&run["steps"]);
     told.extend(results(steps.iter().map(|step| {
         let [name, verdict, why] = ["name", "verdict", "message"].map(|key| text(&step[key]));
@@ -149,23 +136,17 @@ pub fn stream(lines: &[String]) -> Told {
     }));
     let mut parts: BTreeMap<&str, u32> = BTreeMap::new();
     let faults = lines.iter().filter(|line| line["event"] == "fault");
-    faults.for_each(|line| {
-        *parts
-            .entry(line["part"].as_str().unwrap_or("-"))
-            .or_default() += 1
-    });
-    told.push(sorted(
-        "parts",
-        parts.iter().map(|(part, seen)| format!("{part}={seen}")),
-    ));
+    for part in faults.map(|line| line["part"].as_str().unwrap_or("-")) {
+        *parts.entry(part).or_default() += 1;
+    }
+    let parts = parts.iter().map(|(part, seen)| format!("{part}={seen}"));
+    told.push(sorted("parts", parts));
     for last in lines.iter().filter(|line| line["event"] == "run_finished") {
         let names = "steps=planned,run_steps=run,passed=passed,failed=failed,error=error,not_run=not run,\
             attempts=attempts,outside=outside";
         told.extend(keys(last, names));
-        told.extend([
-            fact("verdict", text(&last["verdict"])),
-            id(text(&last["run"])),
-        ]);
+        let verdict = fact("verdict", text(&last["verdict"]));
+        told.extend([verdict, id(text(&last["run"]))]);
     }
     told
 }
@@ -176,11 +157,8 @@ pub fn table_of_values(csv: &str) -> Told {
     for row in &rows {
         steps.insert(row[4].parse().expect("a place"), row);
     }
-    let mut told = results(
-        steps
-            .values()
-            .map(|row| (row[6] == "step", &*row[5], &*row[7], &*row[9])),
-    );
+    let all = steps.values();
+    let mut told = results(all.map(|row| (row[6] == "step", &*row[5], &*row[7], &*row[9])));
     let values = rows.iter().filter(|row| !row[10].is_empty());
     told.extend(measured(values.map(|row| {
         let numbers = [11, 13, 14].map(|place: usize| row[place].parse::<f64>().ok());
@@ -211,22 +189,15 @@ fn csv_cells(line: &str) -> Vec<String> {
 pub fn junit(xml: &str) -> Told {
     let report = Report::deserialize_from_str(xml).expect("JUnit XML");
     let name = report.name.as_ref().expect("a name").as_str();
-    let (run, said) = name
-        .strip_prefix("ptu run ")
-        .and_then(|said| said.split_once(": "))
-        .expect("a run");
+    let said = name.strip_prefix("ptu run ").expect("a run");
+    let (run, said) = said.split_once(": ").expect("a count");
     let mut told = count(said, Language::English).unwrap_or_else(|| panic!("no count: {said}"));
     let (mut outside, mut counts, mut bad, mut values) = (0, [0; 3], Vec::new(), Vec::new());
     let mut lost = "";
-    for case in report
-        .test_suites
-        .iter()
-        .flat_map(|suite| &suite.test_cases)
-    {
-        let kind = case
-            .properties
-            .iter()
-            .find(|property| property.name.as_str() == "kind");
+    let suites = report.test_suites.iter();
+    for case in suites.flat_map(|suite| &suite.test_cases) {
+        let mut properties = case.properties.iter();
+        let kind = properties.find(|property| property.name.as_str() == "kind");
         let is_step = kind.is_some_and(|kind| kind.value.as_str() == "step");
         let (place, reruns) = match &case.status {
             TestCaseStatus::Success { .. } => (Some(0), Vec::new()),
@@ -250,33 +221,20 @@ pub fn junit(xml: &str) -> Told {
             // Where nothing says why a run did not pass, a case of its own does.
             (false, _) => outside += usize::from(kind.is_some()),
         }
-        let again = reruns.iter().filter(|rerun| {
-            rerun
-                .ty
-                .as_ref()
-                .is_some_and(|ty| ty.as_str() != "not tested")
-        });
-        let times = usize::from(place > Some(0)) + again.count();
-        bad.extend(
-            marks(&case.name, 's')
-                .into_iter()
-                .flat_map(|mark| vec![mark; times]),
-        );
+        let tried = reruns.iter().filter_map(|rerun| rerun.ty.as_ref());
+        let again = tried.filter(|kind| kind.as_str() != "not tested").count();
+        let times = usize::from(place > Some(0)) + again;
+        let all = marks(&case.name, 's').into_iter();
+        bad.extend(all.flat_map(|mark| vec![mark; times]));
         let lines = case.system_out.iter().flat_map(|out| out.as_str().lines());
-        for line in lines.filter(|line| !line.contains(", uncertainty")) {
-            let (name, value) = line.split_once(" = ").expect("a value");
-            let value = value
-                .split(' ')
-                .next()
-                .and_then(|value| value.parse::<f64>().ok());
-            values.push(format!(
-                "{}={}",
-                marks(name, 'm').concat(),
-                value.map_or("-".into(), |v| v.to_string())
-            ));
+        for (name, value) in lines.filter_map(|line| line.split_once(" = ")) {
+            let value = value.split(' ').next().and_then(|value| value.parse().ok());
+            values.push((name.to_owned(), [value, None, None]));
         }
     }
     told.extend(numbers("passed|failed|error", counts));
+    // It has no limits.
+    told.extend(measured(values.into_iter()).into_iter().take(1));
     told.extend([
         id(run),
         fact("outside", outside),
@@ -295,18 +253,9 @@ pub fn texts(page: &str) -> Vec<String> {
     let texts = pictures
         .flat_map(|part| part.split('<'))
         .map(|part| part.split_once('>').map_or(part, |(_, text)| text));
-    let signs = [
-        ("&lt;", "<"),
-        ("&gt;", ">"),
-        ("&quot;", "\""),
-        ("&amp;", "&"),
-    ];
     let read = |text: &str| {
-        signs
-            .iter()
-            .fold(text.trim().to_owned(), |text, (sign, letter)| {
-                text.replace(sign, letter)
-            })
+        let text = text.trim().replace("&lt;", "<").replace("&gt;", ">");
+        text.replace("&quot;", "\"").replace("&amp;", "&")
     };
     texts.map(read).filter(|text| !text.is_empty()).collect()
 }
@@ -314,31 +263,21 @@ pub fn texts(page: &str) -> Vec<String> {
 /// The same of a page as it is printed.
 pub fn printed_texts(page: &Page) -> Vec<String> {
     let text = |item: &Item| match item {
-        Item::Text(text) => Some(
-            text.lines
-                .iter()
-                .map(|(_, line)| line.as_str())
-                .collect::<String>(),
-        ),
+        Item::Text(text) => {
+            let lines = text.lines.iter().map(|(_, line)| line.as_str());
+            Some(lines.collect::<String>().trim().to_owned())
+        }
         _ => None,
     };
-    let texts = page
-        .iter()
-        .filter_map(text)
-        .map(|text| text.trim().to_owned());
+    let texts = page.iter().filter_map(text);
     texts.filter(|text| !text.is_empty()).collect()
 }
 
 /// A diagnosis as text: the count, the conclusion, and what may be the cause.
 pub fn diagnosed(text: &str) -> Told {
     let mut lines = text.lines();
-    let of = columns(
-        lines
-            .next()
-            .unwrap_or_default()
-            .strip_prefix("run ")
-            .expect("a run"),
-    );
+    let first = lines.next().and_then(|line| line.strip_prefix("run "));
+    let of = columns(first.expect("a run"));
     let said: Vec<_> = of[2].split(", ").collect();
     let mut told = short(said[0].trim_end_matches(" steps"));
     told.extend([
@@ -346,10 +285,8 @@ pub fn diagnosed(text: &str) -> Told {
         fact("not passed", said[1].trim_end_matches(" not passed")),
         fact("faults", said[2].trim_end_matches(" faults")),
     ]);
-    told.extend(conclusion(
-        lines.nth(1).unwrap_or_default(),
-        Language::English,
-    ));
+    let said = lines.nth(1).unwrap_or_default();
+    told.extend(conclusion(said, Language::English));
     let rows = lines.filter_map(|line| {
         let (share, rest) = line.trim_start().split_once(" %  ")?;
         share.parse::<f64>().ok()?;
