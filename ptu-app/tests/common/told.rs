@@ -292,7 +292,10 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
             _ => {}
         }
     }
-    told.extend(numbers("passed|failed|error|not run", counted));
+    // Where nothing is outside steps there is no column for it.
+    let none = (counted.len() == 4).then(|| "0".to_owned());
+    counted.extend(none);
+    told.extend(numbers("passed|failed|error|not run|outside", counted));
     told.extend(passed.map(|passed| fact("passed", passed)));
     told.extend(passed.map(|_| fact("with a result", recorded)));
     told.extend(candidates(rows));

@@ -96,24 +96,31 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
     }
     let (counts, common) = (counts_of(&sheet.run.run), &words.common);
     let of = |verdict| (common.stored_verdict(verdict), tone(verdict));
+    // What is outside steps is none of them; without it the verdict may have no reason here.
+    let outside = ((words.report.outside, Tone::Bad), counts.outside);
     let all = [
         (of(Verdict::Passed), counts.passed),
         (of(Verdict::Failed), counts.failed),
         (of(Verdict::Error), counts.error),
         ((words.report.not_run, Tone::Soft), counts.not_run()),
     ];
-    let columns = all.map(|((name, _), _)| Column::new(name, 0.25, Align::Left));
-    let counts = all.map(|((_, tone), count)| {
+    let all: Vec<_> = (all.into_iter())
+        .chain((counts.outside > 0).then_some(outside))
+        .collect();
+    let share = 1.0 / all.len() as f32;
+    let column = |((name, _), _): &((&str, _), _)| Column::new(name, share, Align::Left);
+    let columns: Vec<_> = all.iter().map(column).collect();
+    let counts = all.into_iter().map(|((_, tone), count)| {
         let tone = if count == 0 { Tone::Soft } else { tone };
         (Cell::Text(tone, count.to_string()), 1)
     });
     vec![
         Block::Heading(words.report.summary.into()),
         Block::Table(Table {
-            columns: columns.into(),
+            columns,
             rows: vec![Row {
                 kind: RowKind::Head,
-                cells: counts.into(),
+                cells: counts.collect(),
             }],
         }),
     ]

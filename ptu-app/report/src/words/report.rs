@@ -23,6 +23,7 @@ wordings! {
         repair_claimed: "Fault {fault}: the repair is not proven yet. Runs passed since it: {passed}; such a fault hides in {hidden} of 100 such runs. More such runs needed: {more}", "고장 {fault}: 조치가 아직 검증되지 않았습니다. 조치 이후 합격 {passed}회; 이런 고장은 이런 시험 100회 중 {hidden}회 드러나지 않습니다. {more}회 더 시험하십시오";
         repair_not_shown: "Fault {fault}: the repair is not proven. Runs passed since it: {passed}; such a fault hides in {hidden} of 100 such runs. Run the whole procedures that saw it", "고장 {fault}: 조치가 검증되지 않았습니다. 조치 이후 합격 {passed}회; 이런 고장은 이런 시험 100회 중 {hidden}회 드러나지 않습니다. 고장이 나타난 절차 전체를 시험하십시오";
         all_passed: "{of} steps", "{of}개 단계";
+        outside: "outside steps", "단계 외 미합격";
         outside_steps: "; outside steps: {n}", "; 단계 외 미합격: {n}건";
         no_steps: "No steps were run.", "수행된 단계가 없습니다.";
         not_finished: "The run has no verdict: it is under way or was broken off. What is here was recorded until then.",
