@@ -77,7 +77,7 @@ pub use values::event::{Correction, FaultEvent};
 pub use values::fault_state::{FaultAction, FaultState, TransitionError};
 pub use values::record::{
     CauseRecord, FaultRecord, FreezeSample, LOG_SOURCE, MeasurementRecord, RepairRecord, RunEnd,
-    RunRecord, ScriptRecord, StepRecord, UnitRecord, Verdict,
+    RunRecord, ScriptRecord, StepKind, StepRecord, UnitRecord, Verdict,
 };
 pub use values::step_counts::{StepCounter, StepCounts, base_name, rank};
 pub use values::text_enum::UnknownWord;

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use btu_rig::procedure::{Findings, Measurement, Procedure, RunEvent, Verdict};
-use fault_db::{RunDetail, StepCounts, base_name};
+use fault_db::{RunDetail, StepCounts, StepKind};
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
@@ -20,7 +20,7 @@ use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::failure::Failure;
 use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_runs::stdio;
-use ptu_runs::stored::{by_procedure, of_procedure, standing, was_repeated};
+use ptu_runs::stored::{by_procedure, of_procedure, standing};
 use ptu_runs::table::{Table, cell};
 
 /// How often the bar's clock moves while nothing happens.
@@ -230,8 +230,10 @@ fn measured(measurement: &Measurement) -> String {
 /// Attempts at steps that were not tested, and made again.
 fn repeated(run: &RunDetail) -> String {
     let mut table = Table::new(&["REPEATED STEP", "WHY"]);
-    let places = (0..run.steps.len()).filter(|place| was_repeated(&run.steps, *place));
-    let rows: Vec<_> = places.map(|place| &run.steps[place]).collect();
+    let attempts = run.steps.iter();
+    let rows: Vec<_> = attempts
+        .filter(|step| step.kind == StepKind::Attempt)
+        .collect();
     if rows.is_empty() {
         return String::new();
     }
@@ -244,11 +246,11 @@ fn repeated(run: &RunDetail) -> String {
 
 /// Why steps were skipped, each reason once.
 fn skipped(run: &RunDetail) -> String {
-    let mut reasons = BTreeMap::<&str, BTreeSet<(&str, &str)>>::new();
+    let mut reasons = BTreeMap::<&str, BTreeSet<(&str, Option<u32>)>>::new();
     let skipped = standing(&run.steps);
     for step in skipped.filter(|step| step.verdict == fault_db::Verdict::Skipped) {
         let steps = reasons.entry(&step.message).or_default();
-        steps.insert((&step.procedure, base_name(&step.name)));
+        steps.insert((&step.procedure, step.place));
     }
     if reasons.is_empty() {
         return String::new();

@@ -105,6 +105,8 @@ pub fn measured(
     StepRecord {
         index,
         procedure: check.procedure.to_owned(),
+        kind: fault_db::StepKind::Step,
+        place: Some(index),
         name: check.step.to_owned(),
         verdict,
         started_bench_us: i64::from(index) * 9_000_000,

@@ -5,6 +5,7 @@ use super::checksum::checksum;
 use crate::backend::Value;
 use crate::exchange::domain::check_body;
 use crate::history::withdrawal::check_parents;
+use crate::values::record::StepKind;
 
 pub(super) struct Table {
     pub of: TableId,
@@ -227,13 +228,20 @@ pub(super) static TABLES: [Table; COUNT] = [
         of: TableId::Step,
         name: "step",
         columns: columns![
-            run Run, step_index Integer, procedure Text, name Text, verdict Text,
+            run Run, step_index Integer, procedure Text, kind Text, place Integer, name Text, verdict Text,
             started_bench_us Integer, bench_time_us Integer, message Text, findings Text, script_line Integer,
             limit_source Text,
         ],
         shown: 1,
         by: "run",
         order: "step_index",
+        check: |row| match &row[3] {
+            Value::Text(kind) => {
+                let known = kind.parse::<StepKind>().map(drop);
+                known.map_err(|_| "kind is no word that is known".to_owned())
+            }
+            _ => Ok(()),
+        },
         ..TABLE
     },
     Table {

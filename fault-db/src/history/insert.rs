@@ -91,15 +91,17 @@ pub(crate) fn insert_steps(
     steps: &[StepRecord],
 ) -> rusqlite::Result<()> {
     let mut insert = conn.prepare_cached(
-        "INSERT INTO step(run, step_index, procedure, name, verdict, started_bench_us,
+        "INSERT INTO step(run, step_index, procedure, kind, place, name, verdict, started_bench_us,
             bench_time_us, message, findings, script_line, limit_source)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
     )?;
     for step in steps {
         insert.execute(params![
             run,
             step.index,
             step.procedure,
+            step.kind,
+            step.place,
             step.name,
             step.verdict,
             step.started_bench_us,

@@ -239,7 +239,7 @@ impl Store {
     fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {
         let mut measurements = self.measurements(run)?;
         self.backend().select(
-            "SELECT step_index, procedure, name, verdict, started_bench_us, bench_time_us,
+            "SELECT step_index, procedure, kind, place, name, verdict, started_bench_us, bench_time_us,
                 message, findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
             |row| {
@@ -247,14 +247,16 @@ impl Store {
                 Ok(StepRecord {
                     index,
                     procedure: row.get(1)?,
-                    name: row.get(2)?,
-                    verdict: row.get(3)?,
-                    started_bench_us: row.get(4)?,
-                    bench_time_us: row.get(5)?,
-                    message: row.get(6)?,
-                    findings: row.get(7)?,
-                    script_line: row.get(8)?,
-                    limit_source: row.get(9)?,
+                    kind: row.get(2)?,
+                    place: row.get(3)?,
+                    name: row.get(4)?,
+                    verdict: row.get(5)?,
+                    started_bench_us: row.get(6)?,
+                    bench_time_us: row.get(7)?,
+                    message: row.get(8)?,
+                    findings: row.get(9)?,
+                    script_line: row.get(10)?,
+                    limit_source: row.get(11)?,
                     measurements: measurements.remove(&index).unwrap_or_default(),
                 })
             },

@@ -60,6 +60,9 @@ CREATE TABLE step(
   run INTEGER NOT NULL REFERENCES run(seq),
   step_index INTEGER NOT NULL,
   procedure TEXT NOT NULL,
+  -- what the record is, and the step's place in its procedure; NULL: outside steps
+  kind TEXT NOT NULL CHECK(kind IN ('step','attempt','outside')),
+  place INTEGER,
   name TEXT NOT NULL,
   verdict TEXT NOT NULL CHECK(verdict IN ('passed','failed','error','skipped','inconclusive','aborted')),
   started_bench_us INTEGER NOT NULL,

@@ -89,6 +89,8 @@ CREATE TABLE step(
   run bigint NOT NULL REFERENCES run(seq),
   step_index bigint NOT NULL,
   procedure text COLLATE "C" NOT NULL,
+  kind text COLLATE "C" NOT NULL CHECK(kind IN ('step','attempt','outside')),
+  place bigint,
   name text COLLATE "C" NOT NULL,
   verdict text COLLATE "C" NOT NULL CHECK(verdict IN ('passed','failed','error','skipped','inconclusive','aborted')),
   started_bench_us bigint NOT NULL,

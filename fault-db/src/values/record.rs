@@ -29,6 +29,18 @@ text_enum! {
     }
 }
 
+text_enum! {
+    /// What a record among the steps of a run is.
+    StepKind {
+        /// The result of a step, or of one repetition of it.
+        Step = "step",
+        /// A try at a step that was not tested; another follows.
+        Attempt = "attempt",
+        /// What failed outside steps; its name says where.
+        Outside = "outside",
+    }
+}
+
 /// The unit under test, as a run finds it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitRecord {
@@ -110,6 +122,10 @@ pub struct StepRecord {
     pub index: u32,
     /// The procedure it belongs to.
     pub procedure: String,
+    /// What it is.
+    pub kind: StepKind,
+    /// Place of the step in its procedure, from 0; none outside steps.
+    pub place: Option<u32>,
     /// Its name.
     pub name: String,
     /// The step's verdict.

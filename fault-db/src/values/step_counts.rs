@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::record::{StepRecord, Verdict};
+use super::record::{StepKind, StepRecord, Verdict};
 
 /// Different steps: each counts once, however often it was repeated or begun again. What failed outside the steps of
 /// procedures is none.
@@ -29,11 +29,9 @@ impl StepCounts {
     pub fn of<'a>(records: impl IntoIterator<Item = &'a StepRecord>) -> Self {
         let mut counter = StepCounter::default();
         for record in records {
-            match record.script_line {
-                Some(_) => {
-                    counter.note((&record.procedure, base_name(&record.name)), record.verdict)
-                }
-                None => counter.note_outside(record.verdict),
+            match record.kind {
+                StepKind::Outside => counter.note_outside(record.verdict),
+                _ => counter.note((&record.procedure, record.place), record.verdict),
             }
         }
         counter.counts(0)
@@ -132,19 +130,13 @@ pub fn base_name(name: &str) -> &str {
 pub(crate) const COUNTS_OF_RUN: &str = "
     SELECT count(*) || ' ' || count(CASE WHEN worst = 1 THEN 1 END) || ' ' || count(CASE WHEN worst = 3 THEN 1 END)
         || ' ' || count(CASE WHEN worst = 2 THEN 1 END) || ' ' || coalesce(sum(attempts), 0)
-        || ' ' || (SELECT count(*) FROM step WHERE run = r.seq AND script_line IS NULL
+        || ' ' || (SELECT count(*) FROM step WHERE run = r.seq AND kind = 'outside'
             AND verdict NOT IN ('passed', 'skipped'))
     FROM (SELECT max(verdict_rank) AS worst, count(CASE WHEN verdict_rank > 0 THEN 1 END) AS attempts
-        FROM (SELECT procedure, CASE verdict WHEN 'skipped' THEN 0 WHEN 'passed' THEN 1 WHEN 'failed' THEN 3 ELSE 2 END
-                AS verdict_rank,
-                CASE WHEN cut LIKE '% (' AND tail LIKE '_%/_%)' AND tail NOT LIKE '%/%/%' AND tail NOT LIKE '%)_%'
-                    THEN substr(cut, 1, length(cut) - 2) ELSE name END AS base
-            FROM (SELECT procedure, verdict, name, rtrim(name, '0123456789/)') AS cut,
-                    substr(name, length(rtrim(name, '0123456789/)')) + 1) AS tail
-                FROM (SELECT procedure, verdict, CASE WHEN substr(name, length(name) - 10) = ' (repeated)'
-                        THEN substr(name, 1, length(name) - 11) ELSE name END AS name
-                    FROM step WHERE run = r.seq AND script_line IS NOT NULL) AS result) AS part) AS turn
-        GROUP BY procedure, base) AS step";
+        FROM (SELECT procedure, place,
+                CASE verdict WHEN 'skipped' THEN 0 WHEN 'passed' THEN 1 WHEN 'failed' THEN 3 ELSE 2 END AS verdict_rank
+            FROM step WHERE run = r.seq AND kind <> 'outside') AS turn
+        GROUP BY procedure, place) AS step";
 
 /// What [`COUNTS_OF_RUN`] gave.
 pub(crate) fn counts_of_text(text: &str) -> StepCounts {
@@ -162,18 +154,10 @@ pub(crate) fn counts_of_text(text: &str) -> StepCounts {
 
 #[cfg(test)]
 mod tests {
-    use rusqlite::Connection;
+    use super::base_name;
 
-    use super::{COUNTS_OF_RUN, base_name, counts_of_text};
-
-    /// Goal: Rust and SQL cut a name alike. Method: a run with the name and with its base has one step, or two.
     #[test]
     fn a_repetition_has_the_name_of_its_step() {
-        let file = Connection::open_in_memory().expect("opened");
-        let made = file.execute_batch(
-            "CREATE TABLE step (run, procedure, name, verdict, script_line); CREATE TABLE r (seq); INSERT INTO r VALUES (1)",
-        );
-        made.expect("made");
         for (name, base) in [
             ("code 25", "code 25"),
             ("code 25 (2/3)", "code 25"),
@@ -181,24 +165,12 @@ mod tests {
             ("code 25 (Repeated)", "code 25 (Repeated)"),
             ("code (cab)", "code (cab)"),
             ("code (a/b)", "code (a/b)"),
-            ("code (/)", "code (/)"),
             ("code (1/)", "code (1/)"),
             ("code (1/2/3)", "code (1/2/3)"),
             ("code (1/2))", "code (1/2))"),
             ("code (1) (1/2)", "code (1)"),
         ] {
             assert_eq!(base_name(name), base);
-            for other in [base, "code"] {
-                let insert = "INSERT INTO step VALUES (1, 'p', ?1, 'passed', 1)";
-                file.execute("DELETE FROM step", []).expect("emptied");
-                for name in [name, other] {
-                    file.execute(insert, [name]).expect("inserted");
-                }
-                let count = format!("SELECT ({COUNTS_OF_RUN}) FROM r");
-                let text = file.query_row(&count, [], |row| row.get::<_, String>(0));
-                let planned = counts_of_text(&text.expect("counted")).planned;
-                assert_eq!(planned, 1 + u32::from(base != other), "{name} and {other}");
-            }
         }
     }
 }

@@ -118,6 +118,8 @@ pub fn step(index: u32) -> StepRecord {
     StepRecord {
         index,
         procedure: "atp.overspeed".to_owned(),
+        kind: fault_db::StepKind::Step,
+        place: Some(index),
         name: format!("step {index}"),
         verdict: Verdict::Passed,
         started_bench_us: i64::from(index) * 50_000,

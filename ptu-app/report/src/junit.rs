@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use btu_rig::procedure::Outside;
 use chrono::{DateTime, FixedOffset};
-use fault_db::{RunDetail, StepRecord, Verdict, base_name, rank};
+use fault_db::{RunDetail, StepRecord, Verdict, rank};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
@@ -49,11 +49,9 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
 fn by_step(steps: Vec<&StepRecord>) -> Vec<Vec<&StepRecord>> {
     let mut all: Vec<Vec<&StepRecord>> = Vec::new();
     for step in steps {
-        let name = base_name(&step.name);
-        let same = all.iter_mut().find(|results| {
-            let is_step = |step: &StepRecord| outside_of(step).is_none();
-            is_step(step) && is_step(results[0]) && base_name(&results[0].name) == name
-        });
+        let same = all
+            .iter_mut()
+            .find(|of| step.place.is_some() && of[0].place == step.place);
         match same {
             Some(results) => results.push(step),
             None => all.push(vec![step]),

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use btu_rig::procedure::Findings;
-use fault_db::{RunDetail, RunSummary, StepCounts, Verdict, base_name};
+use fault_db::{RunDetail, RunSummary, StepCounts, Verdict};
 
 use crate::run::Evidence;
 use crate::stored::findings;
@@ -34,19 +34,19 @@ impl Coverage {
     pub fn of_run(run: &RunDetail) -> Self {
         let steps = run.steps.iter();
         let skipped = steps.filter(|step| step.verdict == Verdict::Skipped);
-        let found = skipped.map(|step| (&*step.procedure, &*step.name, findings(&step.findings)));
+        let found = skipped.map(|step| (&*step.procedure, step.place, findings(&step.findings)));
         Self::of(counts_of(&run.run), found)
     }
 
-    /// Of these counts; `skipped` = procedure, name and reason of each step that was skipped.
+    /// Of these counts; `skipped` = procedure, place and reason of each step that was skipped.
     pub fn of<'a>(
         steps: StepCounts,
-        skipped: impl Iterator<Item = (&'a str, &'a str, Findings)>,
+        skipped: impl Iterator<Item = (&'a str, Option<u32>, Findings)>,
     ) -> Self {
         let on_bench =
             skipped.filter(|(_, _, why)| why.iter().any(|why| why.finding.needs_harness()));
         let on_bench: BTreeSet<_> = on_bench
-            .map(|(procedure, name, _)| (procedure, base_name(name)))
+            .map(|(procedure, place, _)| (procedure, place))
             .collect();
         let folder = |procedure: &str| procedure.split('/').next().unwrap_or(procedure).to_owned();
         Self {

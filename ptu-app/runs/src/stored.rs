@@ -4,7 +4,7 @@
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, Verdict};
-use fault_db::{FaultRecord, StepRecord};
+use fault_db::{FaultRecord, StepKind, StepRecord};
 use protocol::lru;
 
 use crate::run::FaultSeen;
@@ -90,6 +90,8 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
     StepRecord {
         index: 0,
         procedure: procedure.to_owned(),
+        kind: StepKind::Outside,
+        place: None,
         name: entry.place.name().to_owned(),
         verdict: stored(entry.verdict),
         started_bench_us: bench_us,
@@ -105,21 +107,13 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
 /// Where this failed, if it is no step of a script.
 pub fn outside_of(step: &StepRecord) -> Option<Outside> {
     let named = |place: &Outside| place.name() == step.name;
-    Outside::ALL
-        .into_iter()
-        .find(named)
-        .filter(|_| step.script_line.is_none())
-}
-
-/// Whether the result at `place` is an attempt at a step that was not tested and made again: another result of that step
-/// follows.
-pub fn was_repeated(steps: &[StepRecord], place: usize) -> bool {
-    let step = &steps[place];
-    let later = steps[place + 1..].iter();
-    step.verdict == fault_db::Verdict::Skipped
-        && later
-            .take_while(|later| later.procedure == step.procedure)
-            .any(|later| later.name == step.name && outside_of(later).is_none())
+    let is_outside = step.kind == StepKind::Outside;
+    is_outside.then(|| {
+        Outside::ALL
+            .into_iter()
+            .find(named)
+            .unwrap_or(Outside::Whole)
+    })
 }
 
 /// The verdict of a procedure by its records, in a run with this verdict. One that was broken off is an error, as its
@@ -154,8 +148,7 @@ pub fn by_procedure(steps: &[StepRecord]) -> Vec<(&str, Vec<&StepRecord>)> {
 
 /// Results of steps that stand, without attempts that were made again.
 pub fn standing(steps: &[StepRecord]) -> impl Iterator<Item = &StepRecord> {
-    let places = (0..steps.len()).filter(|place| !was_repeated(steps, *place));
-    places.map(|place| &steps[place])
+    steps.iter().filter(|step| step.kind != StepKind::Attempt)
 }
 
 #[cfg(test)]

@@ -51,6 +51,8 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
     let step = StepRecord {
         index: 0,
         procedure: "atp/overspeed".into(),
+        kind: fault_db::StepKind::Step,
+        place: Some(0),
         name: "step".into(),
         verdict: Verdict::Passed,
         started_bench_us: 0,

@@ -63,6 +63,7 @@ pub(super) const VIEWS: &[View] = &[
             ("unit", Text),
             ("step_index", Whole),
             ("procedure", Text),
+            ("kind", Text),
             ("name", Text),
             ("verdict", Text),
             ("message", Text),

@@ -117,6 +117,8 @@ fn step(index: u32, failed: bool) -> StepRecord {
     };
     StepRecord {
         procedure: format!("atp/part_{}", index / 40),
+        kind: fault_db::StepKind::Step,
+        place: Some(index),
         name: format!(
             "step no {index} {}",
             "of a very long name ".repeat(index as usize % 9)

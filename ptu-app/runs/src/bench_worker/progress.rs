@@ -121,7 +121,13 @@ impl Progress {
         let skipped = self.procedures.iter().flat_map(|progress| {
             let results = progress.results.iter();
             let skipped = results.filter(|step| step.verdict == Verdict::Skipped);
-            skipped.map(|step| (&*progress.procedure.id, &*step.name, step.findings.clone()))
+            skipped.map(|step| {
+                (
+                    &*progress.procedure.id,
+                    Some(step.index as u32),
+                    step.findings.clone(),
+                )
+            })
         });
         Coverage::of(self.counts(), skipped)
     }

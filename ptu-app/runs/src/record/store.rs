@@ -80,6 +80,8 @@ fn step(index: u32, run: &RecordedRun) -> StepRecord {
     StepRecord {
         index,
         procedure: "record".into(),
+        kind: fault_db::StepKind::Step,
+        place: Some(index),
         name: run.name(),
         verdict: Verdict::Skipped,
         started_bench_us: i64::from(run.at_ms) * 1000,

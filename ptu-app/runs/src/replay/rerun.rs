@@ -270,6 +270,8 @@ fn write(
     writer.step(StepRecord {
         index: 0,
         procedure: original.procedure.clone(),
+        kind: fault_db::StepKind::Step,
+        place: Some(0),
         name: format!("replay of trace {}", original.id.short()),
         verdict,
         started_bench_us: began_us,

@@ -3,7 +3,9 @@
 
 use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
-use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
+use fault_db::{
+    Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepKind, StepRecord,
+};
 use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
@@ -270,6 +272,11 @@ impl<'a> Collector<'a> {
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
+            kind: match result.repeated {
+                true => StepKind::Attempt,
+                false => StepKind::Step,
+            },
+            place: Some(result.index as u32),
             name: result.name,
             verdict: stored(result.verdict),
             started_bench_us: (self.before + Duration::from_us(result.started.as_us())).as_us()

@@ -228,7 +228,7 @@ fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
         by_run
     };
     let runs = ask("SELECT id, coalesce(verdict, 'interrupted') FROM runs");
-    let steps = ask("SELECT run_id, name, verdict, message, script_line FROM steps");
+    let steps = ask("SELECT run_id, name, verdict, message, kind FROM steps");
     let values = ask("SELECT run_id, name, value, low, high FROM measurements ORDER BY step_index");
     let parts = ask("SELECT run_id, lru, count(*) FROM occurrences GROUP BY run_id, lru");
     for run in made {
@@ -237,7 +237,7 @@ fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
             [&runs, &steps, &values, &parts].map(|all| all.get(&of).map_or(&[][..], |rows| rows));
         let steps = steps
             .iter()
-            .map(|row| (!row[4].is_empty(), &*row[1], &*row[2], &*row[3]));
+            .map(|row| (row[4] != "outside", &*row[1], &*row[2], &*row[3]));
         let values = values.iter().map(|row| {
             let numbers = [2, 3, 4].map(|place: usize| row[place].parse::<f64>().ok());
             (row[1].clone(), numbers)

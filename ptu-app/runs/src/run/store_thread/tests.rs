@@ -28,6 +28,8 @@ fn step(index: u32) -> StepRecord {
     StepRecord {
         index,
         procedure: "atp/overspeed".into(),
+        kind: fault_db::StepKind::Step,
+        place: Some(index),
         name: format!("step {index}"),
         verdict: Verdict::Passed,
         started_bench_us: 0,
