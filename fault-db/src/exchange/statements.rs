@@ -85,7 +85,7 @@ impl Table {
             unless => format!(" WHERE NOT {unless}"),
         };
         format!(
-            "{into} SELECT {values} FROM {{rows}}{joins}{filter} ORDER BY x.place ON CONFLICT DO NOTHING"
+            "{into} SELECT {values} FROM {{rows}}{joins}{filter} ORDER BY x.sent_at ON CONFLICT DO NOTHING"
         )
     }
 
@@ -105,7 +105,7 @@ impl Table {
             types.map(|(place, column)| format!("${place}::{}[]", column.kind.server_type()));
         let names = self.sent(true).map(|column| column.name);
         let rows = format!(
-            "unnest({}) WITH ORDINALITY AS x({}, place)",
+            "unnest({}) WITH ORDINALITY AS x({}, sent_at)",
             listed(arrays),
             listed(names)
         );

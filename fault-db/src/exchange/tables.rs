@@ -206,12 +206,12 @@ pub(super) static TABLES: [Table; COUNT] = [
                 LEFT JOIN fault f ON f.id = x.id LEFT JOIN fault_alias a ON a.id = x.id
              WHERE coalesce(f.seq, a.fault) IS NOT NULL
                 AND NOT EXISTS (SELECT 1 FROM fault g WHERE g.id = x.fault)
-             ORDER BY x.fault, x.place ON CONFLICT DO NOTHING",
+             ORDER BY x.fault, x.sent_at ON CONFLICT DO NOTHING",
             "INSERT INTO fault_alias(id, fault)
              SELECT x.id, k.fault FROM {rows}
                 JOIN laptop_fault k ON k.laptop = {laptop} AND k.id = x.fault
              WHERE NOT EXISTS (SELECT 1 FROM fault g WHERE g.id = x.id)
-             ORDER BY x.place ON CONFLICT DO NOTHING",
+             ORDER BY x.sent_at ON CONFLICT DO NOTHING",
         ],
         ..TABLE
     },

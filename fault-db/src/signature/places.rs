@@ -107,7 +107,7 @@ fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<Place>> {
                 let (index, procedure, name) = (
                     row.get::<i64>(0)?,
                     row.get::<String>(1)?,
-                    row.get::<String>(2)?,
+                    row.get::<String>(4)?,
                 );
                 format!("step {index} ({procedure}: {name})")
             }

@@ -31,6 +31,8 @@ pub struct Unit {
     pub log: VecDeque<UnitEvent>,
     /// Its present or last run.
     pub run: Option<Progress>,
+    /// Its case asked for that run.
+    is_run_of_case: bool,
     pub(super) runs_ended: usize,
     /// The person knows that it cannot be reached.
     lost: bool,
@@ -51,6 +53,7 @@ impl Unit {
             setup: Request::Idle,
             log: VecDeque::new(),
             run: None,
+            is_run_of_case: false,
             runs_ended: 0,
             lost: false,
             stopping: false,
@@ -117,14 +120,20 @@ impl Unit {
         self.bench.stop_all();
     }
 
-    /// Begins a run, if nothing else has the bench; whether it did.
-    pub fn begin(&mut self, order: RunOrder) -> bool {
+    /// Begins a run, perhaps one of the unit's case, if nothing else has the bench; whether it did.
+    pub fn begin(&mut self, order: RunOrder, of_case: bool) -> bool {
         if !self.may_run() {
             return false;
         }
         self.run = Some(Progress::new(&order.plan, self.name()));
+        self.is_run_of_case = of_case;
         self.bench.run(order);
         true
+    }
+
+    /// Its present or last run, if that is one of its case: a run that another page asked for says nothing of the case.
+    pub fn run_of_case(&self) -> Option<&Progress> {
+        self.run.as_ref().filter(|_| self.is_run_of_case)
     }
 
     /// Answers what the run's script asks; it asks nothing more then.
@@ -401,17 +410,20 @@ mod tests {
 
         let folder = tempfile::tempdir().expect("a folder");
         let database = folder.path().join("history.db");
-        assert!(unit.begin(order(&database, &setup)));
+        assert!(unit.begin(order(&database, &setup), false));
         // As far as anybody sees, nothing has begun.
         assert_eq!(unit.phase(), Phase::Idle);
         assert!(!unit.may_run());
-        assert!(!unit.begin(order(&database, &setup)));
+        assert!(!unit.begin(order(&database, &setup), false));
 
         drop(let_go);
         until(&mut unit, &|unit| unit.may_run());
         assert_eq!(unit.runs_ended, 1);
         assert!(unit.run.as_ref().is_some_and(|run| run.id().is_some()));
-        assert!(unit.begin(order(&database, &setup)), "and then again");
+        assert!(
+            unit.begin(order(&database, &setup), false),
+            "and then again"
+        );
         until(&mut unit, &|unit| unit.may_run());
         assert_eq!(unit.runs_ended, 2);
     }

@@ -263,6 +263,41 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     assert!(!counted.window.enabled(case.prove));
 }
 
+/// Goal: a case is settled by its own runs alone. Method: a run of another page fails while the case waits for its proof, and
+/// then the proof fails; only the proof leads back to a result.
+#[test]
+fn a_run_of_another_page_is_none_of_the_case() {
+    let words = Language::English.words();
+    let case = &words.case;
+    let (size, faults) = ([1280.0, 800.0], "eb_relay.slow");
+    let mut counted = window(Language::English, size, Density::Operator, faults);
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted.window.write(case.note, "cleaned its contacts");
+    counted.click(case.save);
+    counted.window.wait_for(case.fitted);
+    counted.window.page(Page::Procedures);
+    let found = latest(&counted.window)["run"]["id"].clone();
+    counted.window.wait_for(words.procedures.run);
+    counted.window.click(words.procedures.run);
+    counted.window.until("another run is over", |window| {
+        let run = &latest(window)["run"];
+        run["id"] != found && run["verdict"] == "failed"
+    });
+    counted.window.page(Page::Case);
+    // Time to take what it says.
+    counted.window.pass(2.0);
+    counted.window.wait_for(case.fitted);
+    assert!(!counted.window.shows(case.record_repair));
+    counted.click(case.fitted);
+    counted.click(case.prove);
+    counted.window.wait_for(case.record_repair);
+}
+
 /// Goal: a unit that was here before needs no typing. Method: one click on it, and its case has its history.
 #[test]
 fn a_unit_seen_before_is_chosen_by_one_click() {

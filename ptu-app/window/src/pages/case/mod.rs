@@ -101,7 +101,9 @@ impl CasePage {
         context: &PageContext<'_>,
     ) {
         let unit = context.units.chosen();
-        let Some(run) = unit.run.as_ref() else { return };
+        let Some(run) = unit.run_of_case() else {
+            return;
+        };
         let Some(Some(outcome)) = &run.ended else {
             return;
         };

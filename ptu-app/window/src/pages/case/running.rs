@@ -26,7 +26,7 @@ impl CasePage {
     ) {
         let words = context.words;
         let unit = context.units.chosen();
-        let under_way = unit.run.as_ref().filter(|run| run.is_running());
+        let under_way = unit.run_of_case().filter(|run| run.is_running());
         let Some(run) = under_way else {
             // It has ended, and what it says is worked out; or it never began.
             let said = match has_orders || unit.phase() == Phase::Running || self.is_over(context) {
@@ -55,8 +55,7 @@ impl CasePage {
 
     /// The last run has ended and was not looked at yet.
     fn is_over(&self, context: &PageContext<'_>) -> bool {
-        let run = context.units.chosen().run.as_ref();
-        let id = run.and_then(Progress::id);
+        let id = context.units.chosen().run_of_case().and_then(Progress::id);
         id.is_some() && id != self.seen
     }
 }

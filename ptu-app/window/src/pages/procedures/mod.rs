@@ -74,6 +74,8 @@ pub struct ProceduresPage {
 struct PendingOrder {
     /// The unit it is for, by its own number.
     unit: u64,
+    /// It is for a run of the unit's case.
+    of_case: bool,
     order: Request<Prepared>,
 }
 
@@ -218,13 +220,14 @@ impl ProceduresPage {
         let connection = context.units.of_id(unit).map(|unit| unit.connection());
         if let Some(connection) = connection {
             let selection = self.chosen(connection);
-            self.order_of(unit, selection, how, context);
+            self.order_of((unit, false), selection, how, context);
         }
     }
 
+    /// `of_case`: the run is one of the case that the unit is in.
     fn order_of(
         &mut self,
-        id: u64,
+        (id, of_case): (u64, bool),
         selection: Selection,
         how: RunSettings,
         context: &mut PageContext<'_>,
@@ -247,6 +250,7 @@ impl ProceduresPage {
         });
         self.orders.push(PendingOrder {
             unit: id,
+            of_case,
             order: Request::Pending(order),
         });
     }
@@ -259,7 +263,7 @@ impl ProceduresPage {
             match ordered.order {
                 Request::Ready(Prepared::Order(order)) => {
                     let unit = context.units.of_id(ordered.unit);
-                    if unit.is_some_and(|unit| unit.begin(*order)) {
+                    if unit.is_some_and(|unit| unit.begin(*order, ordered.of_case)) {
                         self.shown = ResultsView::default();
                     } else {
                         let run = About::Run(ordered.unit);

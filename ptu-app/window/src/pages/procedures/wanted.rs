@@ -87,6 +87,7 @@ impl ProceduresPage {
             symptom: None,
         };
         let all = &suite.procedures;
+        let of_case = !matches!(wanted, Wanted::Step { .. });
         let (selection, what) = match wanted {
             Wanted::Step { procedure, step } => {
                 let found = all.iter().find(|known| known.id == procedure);
@@ -108,6 +109,6 @@ impl ProceduresPage {
             context.messages.trouble(said, what);
             return;
         }
-        self.order_of(unit, selection, how, context);
+        self.order_of((unit, of_case), selection, how, context);
     }
 }
