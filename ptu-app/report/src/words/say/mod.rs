@@ -1,9 +1,11 @@
 //! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
 
+mod conclusion;
 pub(super) mod condition;
 mod diagnosis;
 mod drive;
 mod finding;
+mod reasons;
 
 use std::borrow::Cow;
 

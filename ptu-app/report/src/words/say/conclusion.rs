@@ -1,0 +1,412 @@
+//! What a diagnosis comes to, and what to run next: a sentence in both languages for each kind.
+
+use diagnosis::{Conclusion, NextCheck};
+use protocol::LruId;
+use protocol::injection::Lru;
+
+use super::super::names;
+use super::diagnosis::{Both, checked};
+
+/// Parts named at most where it cannot be told which one has failed.
+const MOST_NAMED: usize = 3;
+
+pub(super) fn both<const N: usize>(texts: [(&str, &str); N]) -> [Both; N] {
+    texts.map(|(english, korean)| [english.to_owned(), korean.to_owned()])
+}
+
+pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names: &[Lru]) -> Both {
+    let [said, said_ko] = answered(conclusion, next.is_some(), names);
+    let then = match conclusion {
+        Conclusion::Found { .. }
+        | Conclusion::TwoFound { .. }
+        | Conclusion::NoFault { .. }
+        | Conclusion::NotWeighed => None,
+        // A measurement tells which.
+        Conclusion::OneOf { .. }
+        | Conclusion::Common { .. }
+        | Conclusion::OneOrCommon { .. }
+        | Conclusion::NotAlone { .. } => next.map(|next| run_next(next, names)),
+        Conclusion::NothingSeen { .. } | Conclusion::CannotTell { .. } | Conclusion::BrokenOff => {
+            let [nothing] = both([(
+                "nothing in this suite would tell more",
+                "더 알려 줄 점검이 없습니다",
+            )]);
+            Some(next.map_or(nothing, |next| run_next(next, names)))
+        }
+    };
+    match then {
+        None => [said, said_ko],
+        Some([then, then_ko]) => [format!("{said}; {then}"), format!("{said_ko}; {then_ko}")],
+    }
+}
+
+/// Without what to run next.
+fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
+    match conclusion {
+        Conclusion::Found { part, probability } => {
+            let [part, part_ko] = named(part, Some(*probability), names);
+            [format!("replace {part}"), format!("교체 대상: {part_ko}")]
+        }
+        Conclusion::TwoFound { parts, probability } => {
+            let sure = percent(*probability);
+            let [[one, one_ko], [other, other_ko]] =
+                parts.each_ref().map(|part| named(part, None, names));
+            [
+                format!("two faults ({sure}): replace {one} and {other}"),
+                format!("복합 고장 ({sure}), 교체 대상: {one_ko}, {other_ko}"),
+            ]
+        }
+        Conclusion::OneOf { group, probability } => {
+            let sure = percent(*probability);
+            let parts = group.parts.iter().map(|part| named(part, None, names));
+            let [parts, parts_ko] = one_or_other(&parts.collect::<Vec<_>>());
+            let measure = &group.measure;
+            [
+                format!("{parts} ({sure}); to tell which, {}", measure.english),
+                format!("{parts_ko} ({sure}); 판별 방법: {}", measure.korean),
+            ]
+        }
+        Conclusion::Common {
+            cause,
+            parts,
+            probability,
+        } => {
+            let sure = percent(*probability);
+            let places = parts.each_ref().map(|part| named(part, None, names));
+            let [places, places_ko] = joined(&places, [" and ", ", "]);
+            let [part, part_ko] = named(&cause.part, None, names);
+            let [measure, measure_ko] = [&cause.measure.english, &cause.measure.korean];
+            [
+                format!(
+                    "one cause at {places} ({sure}): {part}, its wiring, or a fault of each; to tell which, {measure}"
+                ),
+                format!(
+                    "{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장; 판별 방법: {measure_ko}"
+                ),
+            ]
+        }
+        Conclusion::OneOrCommon {
+            cause,
+            part,
+            probability,
+            other,
+        } => {
+            let [found, found_ko] = named(part, Some(*probability), names);
+            let [of, of_ko] = named(&cause.part, None, names);
+            let [one, one_ko] = called(part, names);
+            let [other, other_ko] = named(other, None, names);
+            let [measure, measure_ko] = [&cause.measure.english, &cause.measure.korean];
+            [
+                format!(
+                    "{found}, or one cause at {one} and {other}: {of} or its wiring; to tell which, {measure}"
+                ),
+                format!(
+                    "{found_ko} 또는 {one_ko}, {other_ko}에 공통된 원인: {of_ko} 또는 배선; 판별 방법: {measure_ko}"
+                ),
+            ]
+        }
+        Conclusion::NotAlone {
+            part,
+            probability,
+            other,
+        } => {
+            let [found, found_ko] = named(part, Some(*probability), names);
+            let [other, other_ko] = named(other, None, names);
+            [
+                format!(
+                    "not certain yet: {found}; a sign of a fault in {other} does not come from it"
+                ),
+                format!(
+                    "아직 확실하지 않습니다: {found_ko}; {other_ko} 고장 징후는 이 고장으로 설명되지 않습니다"
+                ),
+            ]
+        }
+        Conclusion::NoFault { probability } => {
+            let sure = percent(*probability);
+            [
+                format!("no fault found ({sure})"),
+                format!("고장이 발견되지 않았습니다 ({sure})"),
+            ]
+        }
+        Conclusion::NothingSeen { made, of } => [
+            format!("not enough was run: {made} of {of} checks were made and show nothing wrong"),
+            format!(
+                "시험 범위가 부족하여 판별할 수 없습니다: 점검 {of}개 중 {made}개 수행, 이상이 발견되지 않음"
+            ),
+        ],
+        Conclusion::CannotTell { likely } => {
+            let shown = likely.iter().take(MOST_NAMED);
+            let shown: Vec<_> = shown
+                .map(|part| named(&part.lru, Some(part.probability), names))
+                .collect();
+            cannot_tell(&shown, likely.len() - shown.len(), can_go_on)
+        }
+        Conclusion::BrokenOff => {
+            let [said] = both([(
+                "not enough was run: the run was stopped before its end",
+                "시험 범위가 부족하여 판별할 수 없습니다: 시험이 도중에 중단되었습니다",
+            )]);
+            said
+        }
+        Conclusion::NotWeighed => {
+            let [said] = both([(
+                "cannot tell: the run did not pass, and what did not pass was not run to its end or is not in the dictionary",
+                "판별할 수 없습니다: 합격하지 못한 시험이며, 합격하지 못한 항목은 끝까지 수행되지 않았거나 고장 사전에 없습니다",
+            )]);
+            said
+        }
+    }
+}
+
+/// Which of these parts, and so many more, has failed.
+fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
+    let [more, more_ko] = match more {
+        0 => [String::new(), String::new()],
+        n => [format!(" or one of {n} more"), format!(" 외 {n}개")],
+    };
+    let [all, all_ko] = one_or_other(shown);
+    let [not_run, unknown] = both([
+        (
+            "not enough was run to tell which part",
+            "시험 범위가 부족하여 판별할 수 없습니다",
+        ),
+        ("cannot tell which part", "부품을 판별할 수 없습니다"),
+    ]);
+    match shown {
+        // As many parts as nobody could choose from.
+        [] if can_go_on => not_run,
+        [] => unknown,
+        [[one, one_ko]] => [
+            format!("not certain yet: {one}"),
+            format!("아직 확실하지 않습니다: {one_ko}"),
+        ],
+        _ => [
+            format!("cannot tell yet which: {all}{more}"),
+            format!("아직 판별할 수 없습니다: {all_ko}{more_ko}"),
+        ],
+    }
+}
+
+fn run_next(next: &NextCheck, names: &[Lru]) -> Both {
+    let [again, again_ko] = if next.again {
+        [" again", " 다시"]
+    } else {
+        [""; 2]
+    };
+    let tells = tells(next, names).map(|tells| match &*tells {
+        "" => String::new(),
+        tells => format!(": {tells}"),
+    });
+    let time_s = next.cost_s.ceil();
+    let ([check, check_ko], [tells, tells_ko]) = (checked(&next.check), tells);
+    [
+        format!("next, run{again} {check} ({time_s:.0} s){tells}"),
+        format!("다음 점검:{again_ko} {check_ko} ({time_s:.0}초){tells_ko}"),
+    ]
+}
+
+/// What a check tells that passes where some parts have failed, and does not pass where others have.
+pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
+    let all = |parts: &[LruId]| {
+        let named: Vec<_> = parts.iter().map(|part| called(part, names)).collect();
+        one_or_other(&named)
+    };
+    let (passes, fails) = (&next.passes_with, &next.fails_with);
+    let ([passed, passed_ko], [failed, failed_ko]) = (all(passes), all(fails));
+    match (passes.is_empty(), fails.is_empty()) {
+        (true, true) => Both::default(),
+        (false, true) => [
+            format!("it passes if the fault is in {passed}"),
+            format!("{passed_ko} 고장이면 합격합니다"),
+        ],
+        (true, false) => [
+            format!("it fails if the fault is in {failed}"),
+            format!("{failed_ko} 고장이면 불합격합니다"),
+        ],
+        (false, false) => [
+            format!("it passes if the fault is in {passed}, and fails if it is in {failed}"),
+            format!("{passed_ko} 고장이면 합격, {failed_ko} 고장이면 불합격합니다"),
+        ],
+    }
+}
+
+/// Named parts, one of which it is.
+fn one_or_other(named: &[Both]) -> Both {
+    joined(named, [" or ", " 또는 "])
+}
+
+/// Named parts with these words between them.
+fn joined(named: &[Both], words: [&str; 2]) -> Both {
+    [0, 1].map(|language| {
+        let named: Vec<_> = named.iter().map(|part| &*part[language]).collect();
+        named.join(words[language])
+    })
+}
+
+/// A part by its name alone, within a sentence.
+fn called(part: &LruId, names: &[Lru]) -> Both {
+    let known = names.iter().find(|known| known.id == *part);
+    known.map_or_else(
+        || [part.to_string(), part.to_string()],
+        |known| [in_sentence(&known.name), known.name_ko.clone()],
+    )
+}
+
+/// A part by its name, with the identifier that commands take and its probability; by the identifier alone where the
+/// catalogue has no name.
+fn named(part: &LruId, probability: Option<f64>, names: &[Lru]) -> Both {
+    let sure = probability.map(percent);
+    let Some(known) = names.iter().find(|known| known.id == *part) else {
+        let id = sure.map_or_else(|| part.to_string(), |sure| format!("{part} ({sure})"));
+        return [id.clone(), id];
+    };
+    let apart = sure.map_or_else(String::new, |sure| format!(", {sure}"));
+    let with_id = |name: &str| format!("{name} ({part}{apart})");
+    [with_id(&in_sentence(&known.name)), with_id(&known.name_ko)]
+}
+
+/// An English name within a sentence: "the EB relay", "speed sensor 1".
+fn in_sentence(name: &str) -> String {
+    let within = names::within_a_sentence(name);
+    match name.ends_with(|last: char| last.is_ascii_digit()) {
+        true => within,
+        false => format!("the {within}"),
+    }
+}
+
+fn percent(probability: f64) -> String {
+    format!("{:.1} %", 100.0 * probability)
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{CheckName, PartProbability};
+
+    use super::*;
+
+    /// A sentence is for reading: three parts of five are named, the rest counted.
+    #[test]
+    fn no_more_parts_are_named_than_a_person_can_choose_from() {
+        let part = |name: &&str| PartProbability {
+            lru: name.parse().expect("a part"),
+            probability: 0.2,
+        };
+        let likely = ["a", "b", "c", "d", "e"].iter().map(part).collect();
+        let [english, korean] = concluded(&Conclusion::CannotTell { likely }, None, &[]);
+        assert!(
+            english.contains("c (20.0 %) or one of 2 more;"),
+            "{english}"
+        );
+        assert!(korean.contains("c (20.0 %) 외 2개;"), "{korean}");
+        assert!(!english.contains("d (") && !korean.contains("d ("));
+    }
+
+    /// People know a part by its name, commands by its identifier.
+    #[test]
+    fn a_part_is_called_by_its_name_with_its_identifier() {
+        let known = |id: &str, name: &str, name_ko: &str| Lru {
+            id: id.parse().expect("a part"),
+            name: name.into(),
+            name_ko: name_ko.into(),
+        };
+        let names = [
+            known("eb_relay", "EB relay", "비상제동 계전기"),
+            known("speed_sensor_1", "Speed sensor 1", "속도센서 1"),
+            known("master_controller", "Master controller", "주간제어기"),
+        ];
+        let id = |id: &str| id.parse::<LruId>().expect("a part");
+        let found = |part: &str, names: &[Lru]| {
+            let (part, probability) = (id(part), 0.996);
+            concluded(&Conclusion::Found { part, probability }, None, names)
+        };
+        let [english, korean] = found("eb_relay", &names);
+        assert_eq!(english, "replace the EB relay (eb_relay, 99.6 %)");
+        assert_eq!(korean, "교체 대상: 비상제동 계전기 (eb_relay, 99.6 %)");
+        let two = Conclusion::TwoFound {
+            parts: [id("speed_sensor_1"), id("master_controller")],
+            probability: 0.96,
+        };
+        let [english, korean] = concluded(&two, None, &names);
+        let said = "two faults (96.0 %): replace speed sensor 1 (speed_sensor_1) and the master controller (master_controller)";
+        assert_eq!(english, said);
+        let said = "복합 고장 (96.0 %), 교체 대상: 속도센서 1 (speed_sensor_1), 주간제어기 (master_controller)";
+        assert_eq!(korean, said);
+        assert_eq!(found("relay", &names)[0], "replace relay (99.6 %)");
+    }
+
+    /// Where parts cannot be told apart, the sentence names all of them, and the measurement that tells.
+    #[test]
+    fn parts_that_are_not_told_apart_are_named_with_the_measurement() {
+        let id = |id: &str| id.parse::<LruId>().expect("a part");
+        let measure = || diagnosis::Measure {
+            english: "record the frames".into(),
+            korean: "전문을 기록합니다".into(),
+        };
+        let cause = || diagnosis::Shared {
+            part: id("link"),
+            reaches: vec![id("sensor"), id("relay")],
+            measure: measure(),
+        };
+        let group = diagnosis::Group {
+            parts: vec![id("sensor"), id("relay")],
+            measure: measure(),
+        };
+        let probability = 0.9;
+        let all = [
+            (
+                Conclusion::OneOf { group, probability },
+                "sensor or relay (90.0 %); to tell which, record the frames",
+                "sensor 또는 relay (90.0 %); 판별 방법: 전문을 기록합니다",
+            ),
+            (
+                Conclusion::Common {
+                    cause: cause(),
+                    parts: [id("sensor"), id("relay")],
+                    probability,
+                },
+                "one cause at sensor and relay (90.0 %): link, its wiring, or a fault of each; to tell which, record the frames",
+                "sensor, relay에 공통된 원인 (90.0 %): link, 배선 또는 각각의 고장; 판별 방법: 전문을 기록합니다",
+            ),
+            (
+                Conclusion::OneOrCommon {
+                    cause: cause(),
+                    part: id("relay"),
+                    probability,
+                    other: id("sensor"),
+                },
+                "relay (90.0 %), or one cause at relay and sensor: link or its wiring; to tell which, record the frames",
+                "relay (90.0 %) 또는 relay, sensor에 공통된 원인: link 또는 배선; 판별 방법: 전문을 기록합니다",
+            ),
+            (
+                Conclusion::NotAlone {
+                    part: id("relay"),
+                    probability,
+                    other: id("antenna"),
+                },
+                "not certain yet: relay (90.0 %); a sign of a fault in antenna does not come from it",
+                "아직 확실하지 않습니다: relay (90.0 %); antenna 고장 징후는 이 고장으로 설명되지 않습니다",
+            ),
+        ];
+        for (conclusion, english, korean) in all {
+            assert_eq!(concluded(&conclusion, None, &[]), [english, korean]);
+        }
+        let next = NextCheck {
+            check: CheckName {
+                procedure: "a/b".into(),
+                step: "c".into(),
+            },
+            gain_bits: 1.0,
+            cost_s: 11.2,
+            again: true,
+            passes_with: vec![id("relay")],
+            fails_with: Vec::new(),
+        };
+        let (made, of) = (3, 40);
+        let said = concluded(&Conclusion::NothingSeen { made, of }, Some(&next), &[]);
+        let expected = [
+            "not enough was run: 3 of 40 checks were made and show nothing wrong; next, run again a/b: c (12 s): it passes if the fault is in relay",
+            "시험 범위가 부족하여 판별할 수 없습니다: 점검 40개 중 3개 수행, 이상이 발견되지 않음; 다음 점검: 다시 a/b: c (12초): relay 고장이면 합격합니다",
+        ];
+        assert_eq!(said, expected);
+    }
+}
