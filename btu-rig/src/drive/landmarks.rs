@@ -30,7 +30,7 @@ pub struct Landmark {
     pub what: Mark,
 }
 
-/// What happened on the way.
+/// An event on the way of a train.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A precise-stop marker was passed.

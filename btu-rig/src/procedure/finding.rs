@@ -23,28 +23,32 @@ pub struct LoggedEvent {
     pub parameter: i32,
 }
 
+/// A measured value outside its limits, all in `unit`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitMissed {
+    /// Name in its script.
+    pub measurement: String,
+    /// What was measured.
+    pub value: f64,
+    /// How far the true value may be off.
+    pub uncertainty: Option<f64>,
+    /// Least value allowed.
+    pub low: Option<f64>,
+    /// Greatest value allowed.
+    pub high: Option<f64>,
+    /// Unit of all these; empty for counts and states.
+    pub unit: String,
+}
+
 /// One thing that was found, or why nothing could be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
-    /// A measured value is outside its limits, all in `unit`.
-    LimitMissed {
-        /// Name in its script.
-        measurement: String,
-        /// What was measured.
-        value: f64,
-        /// How far the true value may be off.
-        uncertainty: Option<f64>,
-        /// Least value allowed.
-        low: Option<f64>,
-        /// Greatest value allowed.
-        high: Option<f64>,
-        /// Unit of all these; empty for counts and states.
-        unit: String,
-    },
+    /// A measured value is outside its limits.
+    LimitMissed(LimitMissed),
     /// A condition did not come true in time.
     NeverBecame {
-        /// Which.
+        /// The condition.
         condition: Condition,
         /// The time it had.
         within: Duration,
@@ -52,12 +56,12 @@ pub enum Finding {
         seen: Option<u16>,
         /// The data that were missing then.
         missing: Option<MissingData>,
-        /// What is behind its signals.
+        /// The reason that a signal of the condition gives, such as a refusal of the unit.
         said: Option<String>,
     },
     /// A condition did not stay true.
     HeldOnlyFor {
-        /// Which.
+        /// The condition.
         condition: Condition,
         /// For how long it did.
         held: Duration,
@@ -66,19 +70,19 @@ pub enum Finding {
     },
     /// A condition came true that must not.
     CameTrue {
-        /// Which.
+        /// The condition.
         condition: Condition,
     },
     /// Whether a condition that must not come true did is not known.
     Unknown {
-        /// Which.
+        /// The condition.
         condition: Condition,
         /// The data that were missing.
         missing: MissingData,
     },
     /// An event was not logged that should have been.
     NotLogged {
-        /// Which.
+        /// The event.
         event: Event,
         /// Least and greatest parameter.
         parameter: [i32; 2],
@@ -87,7 +91,7 @@ pub enum Finding {
     },
     /// An event was logged that must not be.
     Logged {
-        /// Which.
+        /// The event.
         event: Event,
     },
     /// An event was logged that no step provoked.
@@ -199,19 +203,19 @@ pub enum Finding {
     NotBegun(Box<Finding>),
     /// A step before did not pass, after which no other is run.
     NotPassed {
-        /// Its name.
+        /// Name of the step.
         step: String,
     },
     /// The step before, from which this one continues, was not tested.
     NotTestedBefore {
-        /// Its name.
+        /// Name of the step.
         step: String,
     },
     /// Only a bench with its harness can do it.
     NeedsHarness,
     /// The condition under which a step is run does not hold.
     ConditionFalse {
-        /// What is behind its signals.
+        /// The reason that a signal of the condition gives, such as a refusal of the unit.
         said: Option<String>,
     },
     /// Whether the condition under which a step is run holds is not known.
@@ -258,7 +262,7 @@ pub enum Finding {
     },
     /// A fault was found while the unit was brought up, or settled again.
     FoundBefore {
-        /// Its name.
+        /// Name of the fault.
         fault: String,
         /// What came after.
         before: Before,
@@ -276,9 +280,9 @@ pub enum Finding {
     },
     /// A step that failed, as a fault.
     CheckFailed {
-        /// Its procedure.
+        /// Procedure of the step.
         procedure: String,
-        /// Its name.
+        /// Name of the step.
         step: String,
         /// What it found.
         findings: Findings,
@@ -316,7 +320,7 @@ pub enum Before {
     Repetition,
 }
 
-/// What a step waits for.
+/// What a step was waiting for when its time was over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WaitedFor {

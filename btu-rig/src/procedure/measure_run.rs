@@ -11,7 +11,7 @@ use super::UnitTime;
 use super::Verdict;
 use super::action_run::Scan;
 use super::condition::{Answer, Captured, MissingData};
-use super::finding::{Finding, WhyNoValue};
+use super::finding::{Finding, LimitMissed, WhyNoValue};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
@@ -260,14 +260,14 @@ impl MeasurementRun {
         let measurement = measure.name.clone();
         Some(match (measured.verdict, measured.value) {
             (Verdict::Passed, _) => return None,
-            (Verdict::Failed, Some(value)) => Finding::LimitMissed {
+            (Verdict::Failed, Some(value)) => Finding::LimitMissed(LimitMissed {
                 measurement,
                 value,
                 uncertainty: measured.uncertainty,
                 low: measured.low,
                 high: measured.high,
                 unit: measured.unit.to_owned(),
-            },
+            }),
             (_, Some(_)) => Finding::LimitUnknown { measurement },
             (_, None) => Finding::NoValue {
                 measurement,

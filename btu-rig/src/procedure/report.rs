@@ -97,6 +97,11 @@ impl Outside {
         Self::Whole,
     ];
 
+    /// The place of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|place| place.name() == name)
+    }
+
     /// Its name, under which it is stored and shown where a step has the name of the script.
     pub const fn name(self) -> &'static str {
         match self {

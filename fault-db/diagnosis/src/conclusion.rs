@@ -12,14 +12,14 @@ use super::verdict::{Finding, PartProbability};
 pub enum Conclusion {
     /// One part has failed.
     Found {
-        /// Which.
+        /// The part.
         part: LruId,
         /// How likely that is.
         probability: f64,
     },
     /// Two parts have failed.
     TwoFound {
-        /// Which.
+        /// The part.
         parts: [LruId; 2],
         /// How likely it is that both have.
         probability: f64,
@@ -33,7 +33,7 @@ pub enum Conclusion {
     },
     /// One cause at two parts that share something, or a fault of each.
     Common {
-        /// What they share.
+        /// The part that both share, such as a supply or a link.
         cause: Shared,
         /// The parts.
         parts: [LruId; 2],
@@ -42,7 +42,7 @@ pub enum Conclusion {
     },
     /// A part has failed, or something that it shares with another part that a sign names.
     OneOrCommon {
-        /// What they share.
+        /// The part that both share, such as a supply or a link.
         cause: Shared,
         /// The part.
         part: LruId,

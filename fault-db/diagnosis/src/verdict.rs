@@ -41,7 +41,7 @@ pub struct Candidate {
 pub struct PartProbability {
     /// The part.
     pub lru: LruId,
-    /// Its share, or the probability that it has failed.
+    /// Of [`Diagnosis::lrus`] its share, of [`Diagnosis::parts`] the probability that it has failed.
     pub probability: f64,
 }
 
@@ -136,12 +136,13 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;
         let next_check = weights.next_check(belief, self.seen);
-        let own = || weights.conclusion(belief.model, self.seen);
+        let parts = weights.told();
+        let own = || weights.conclusion(belief.model, self.seen, &parts);
         let conclusion = self.answer.clone().unwrap_or_else(own);
         let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
         let shown = self.pairs.iter().filter(is_shown);
         Diagnosis {
-            candidates: weights.candidates(belief, self.seen),
+            candidates: weights.candidates(belief, self.seen, &parts),
             next_check,
             conclusion,
             two_faults: shown
@@ -152,7 +153,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
                 .collect(),
             no_fault: weights.no_fault,
             lrus: weights.lrus.clone(),
-            parts: weights.told(),
+            parts,
         }
     }
 
@@ -216,14 +217,19 @@ impl Weights {
         (Self::new(belief.model, &pairs, &single), pairs)
     }
 
-    fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
+    /// In the order of `parts`.
+    fn candidates(
+        &self,
+        belief: &Belief<'_, '_>,
+        seen: &Observation,
+        parts: &[PartProbability],
+    ) -> Vec<Candidate> {
         let model = belief.model;
         let ConclusionSettings {
             least_shown,
             most_shown,
             ..
         } = model.settings.conclusion;
-        let parts = self.told();
         let rank = |fault: &Fault| {
             let lru = model.lru(fault.hypothesis);
             parts.iter().position(|part| Some(&part.lru) == lru)
@@ -255,7 +261,13 @@ impl Weights {
         fresh.or_else(|| belief.next_check_again(&done))
     }
 
-    fn conclusion(&self, model: &Model<'_>, seen: &Observation) -> Conclusion {
+    /// `parts` are told with these probabilities.
+    fn conclusion(
+        &self,
+        model: &Model<'_>,
+        seen: &Observation,
+        parts: &[PartProbability],
+    ) -> Conclusion {
         let settings = model.settings;
         match self.failed(settings.found_at)[..] {
             [] => {}
@@ -287,10 +299,9 @@ impl Weights {
             };
         }
         let named_at = settings.conclusion.named_at;
-        let parts = self.told().into_iter();
-        let likely = parts.filter(|part| part.probability >= named_at);
+        let likely = parts.iter().filter(|part| part.probability >= named_at);
         Conclusion::CannotTell {
-            likely: likely.collect(),
+            likely: likely.cloned().collect(),
         }
     }
 }

@@ -182,7 +182,7 @@ impl Weights {
         failed.filter(|(_, p)| *p >= sure).collect()
     }
 
-    /// The same of all parts, the likeliest first.
+    /// All parts with the probability that each has failed, alone or beside another, the likeliest first.
     pub fn told(&self) -> Vec<PartProbability> {
         let all = self.failed(0.0).into_iter();
         let told = all.map(|(lru, probability)| PartProbability {

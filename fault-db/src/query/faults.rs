@@ -43,7 +43,7 @@ pub struct FaultSummary {
     pub trace_id: Option<Id>,
     /// What was seen last, in English.
     pub message: String,
-    /// The same as data.
+    /// What `message` says as data: JSON of the program.
     pub findings: Option<String>,
 }
 
@@ -96,7 +96,7 @@ pub struct Occurrence {
     pub bench_us: i64,
     /// Description, in English.
     pub message: String,
-    /// The same as data.
+    /// What `message` says as data: JSON of the program.
     pub findings: Option<String>,
     /// Its trace, if one was kept.
     pub trace_id: Option<Id>,

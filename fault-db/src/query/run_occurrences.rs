@@ -24,7 +24,7 @@ pub struct RunOccurrence {
     pub trace_id: Option<Id>,
     /// What was seen, in English.
     pub message: String,
-    /// The same as data.
+    /// What `message` says as data: JSON of the program.
     pub findings: Option<String>,
 }
 

@@ -1,6 +1,6 @@
 //! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
 
-use btu_rig::procedure::{Finding, Findings};
+use btu_rig::procedure::finding::{Finding, Findings, LimitMissed};
 use btu_rig::stimulus::number;
 use protocol::event::Event;
 use protocol::injection::Lru;
@@ -69,10 +69,9 @@ fn place(seen: &Findings) -> Option<(&str, &str, &Findings)> {
     })
 }
 
-/// Whether what was seen, as it is stored, is that this step failed.
-pub fn is_of_step(data: &Option<String>, procedure: &str, step: &str) -> bool {
-    let seen = findings(data);
-    place(&seen).is_some_and(|(of, name, _)| of == procedure && name == step)
+/// Whether what was seen is that this step failed.
+pub fn is_of_step(seen: &Findings, procedure: &str, step: &str) -> bool {
+    place(seen).is_some_and(|(of, name, _)| of == procedure && name == step)
 }
 
 /// What was seen in few words: the step, the measured value, and its limit, or why else the step failed.
@@ -82,26 +81,23 @@ fn what_failed(seen: &Findings, words: &Words) -> String {
     };
     let step = words.content(step);
     let step = step.split(": ").next().unwrap_or_default();
-    let first = why.iter().next();
-    let why = first
-        .and_then(|found| beyond_limit(&found.finding, words))
-        .unwrap_or_else(|| words.findings(why));
+    let why = match why.iter().next().map(|found| &found.finding) {
+        Some(Finding::LimitMissed(missed)) => beyond_limit(missed, words),
+        _ => words.findings(why),
+    };
     format!("{step}: {why}")
 }
 
-/// A measured value with its limit; `None` for any other finding.
-fn beyond_limit(finding: &Finding, words: &Words) -> Option<String> {
-    let Finding::LimitMissed {
+/// A measured value with its limit.
+fn beyond_limit(missed: &LimitMissed, words: &Words) -> String {
+    let LimitMissed {
         measurement: name,
         value,
         low,
         high,
         unit,
         ..
-    } = finding
-    else {
-        return None;
-    };
+    } = missed;
     let limit = match (low.map(number), high.map(number)) {
         (Some(low), Some(high)) => format!("{low}…{high}"),
         (Some(low), None) => format!("≥ {low}"),
@@ -110,7 +106,7 @@ fn beyond_limit(finding: &Finding, words: &Words) -> Option<String> {
     let limit = fill(words.common.limit_is, &[("limit", &limit)]);
     let value = format!("{} {}", number(*value), words.unit(unit));
     let name = measurement(name, words);
-    Some(format!("{name} {}, {limit}", value.trim_end()))
+    format!("{name} {}, {limit}", value.trim_end())
 }
 
 /// A measurement's name without what only scripts write.
@@ -181,14 +177,14 @@ mod tests {
     }
 
     fn missed(name: &str, value: f64, limits: [Option<f64>; 2], unit: &str) -> Finding {
-        Finding::LimitMissed {
+        Finding::LimitMissed(LimitMissed {
             measurement: name.into(),
             value,
             uncertainty: None,
             low: limits[0],
             high: limits[1],
             unit: unit.into(),
-        }
+        })
     }
 
     #[test]
@@ -228,13 +224,12 @@ mod tests {
             said.contains("TWC 통신 정상 = 꺼짐") && said.contains("프레임"),
             "{said}"
         );
-        let data = relay.to_json();
         assert!(is_of_step(
-            &data,
+            &relay,
             "atp/overspeed",
             "code 25: alarm, FSB, EB"
         ));
-        assert!(!is_of_step(&data, "atp/overspeed", "another"));
+        assert!(!is_of_step(&relay, "atp/overspeed", "another"));
         let none = (&None, "brake line at 3.0 km/h");
         assert_eq!(
             PartNames::default().fault("x", none, english),

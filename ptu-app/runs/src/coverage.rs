@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use btu_rig::procedure::Findings;
 use fault_db::{RunDetail, RunSummary, StepCounts, Verdict};
 
 use crate::run::Evidence;
@@ -32,22 +31,21 @@ pub struct Coverage {
 impl Coverage {
     /// Of a stored run.
     pub fn of_run(run: &RunDetail) -> Self {
-        let steps = run.steps.iter();
-        let skipped = steps.filter(|step| step.verdict == Verdict::Skipped);
-        let found = skipped.map(|step| (&*step.procedure, step.place, findings(&step.findings)));
-        Self::of(counts_of(&run.run), found)
+        let skipped = run
+            .steps
+            .iter()
+            .filter(|step| step.verdict == Verdict::Skipped);
+        let on_bench = skipped.filter(|step| findings(&step.findings).need_harness());
+        let on_bench = on_bench.map(|step| (&*step.procedure, step.place));
+        Self::of(counts_of(&run.run), on_bench)
     }
 
-    /// Of these counts; `skipped` = procedure, place and reason of each step that was skipped.
+    /// Of these counts; `on_bench` = procedure and place of each step that was skipped because it needs the bench harness.
     pub fn of<'a>(
         steps: StepCounts,
-        skipped: impl Iterator<Item = (&'a str, Option<u32>, Findings)>,
+        on_bench: impl Iterator<Item = (&'a str, Option<u32>)>,
     ) -> Self {
-        let on_bench =
-            skipped.filter(|(_, _, why)| why.iter().any(|why| why.finding.needs_harness()));
-        let on_bench: BTreeSet<_> = on_bench
-            .map(|(procedure, place, _)| (procedure, place))
-            .collect();
+        let on_bench: BTreeSet<_> = on_bench.collect();
         let folder = |procedure: &str| procedure.split('/').next().unwrap_or(procedure).to_owned();
         Self {
             steps,

@@ -106,14 +106,8 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
 
 /// Where this failed, if it is no step of a script.
 pub fn outside_of(step: &StepRecord) -> Option<Outside> {
-    let named = |place: &Outside| place.name() == step.name;
     let is_outside = step.kind == StepKind::Outside;
-    is_outside.then(|| {
-        Outside::ALL
-            .into_iter()
-            .find(named)
-            .unwrap_or(Outside::Whole)
-    })
+    is_outside.then(|| Outside::from_name(&step.name).unwrap_or(Outside::Whole))
 }
 
 /// The verdict of a procedure by its records, in a run with this verdict. One that was broken off is an error, as its

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use Kind::*;
 use btu_rig::procedure::Verdict::{self, Skipped};
+use btu_rig::procedure::finding::LimitMissed;
 use btu_rig::procedure::{
     Finding, Findings, Measurement, Outside as Place, OutsideStep, Procedure, RunEvent, RunOptions,
     StepResult,
@@ -389,14 +390,14 @@ impl<'a> Making<'a> {
             Verdict::Passed => Findings::default(),
             Skipped if self.kind == OnTrain => Finding::NeedsHarness.not_run().into(),
             Skipped => Finding::Stopped.not_run().into(),
-            Verdict::Failed => Finding::LimitMissed {
+            Verdict::Failed => Finding::LimitMissed(LimitMissed {
                 measurement: "eb_reaction".into(),
                 value: 640.0,
                 uncertainty: None,
                 low: None,
                 high: Some(472.0),
                 unit: "ms".into(),
-            }
+            })
             .into(),
             _ => Finding::Told("nothing comes from the unit".into()).into(),
         };
@@ -475,9 +476,7 @@ impl<'a> Making<'a> {
         let worst = self.worst.entry((place, result.index)).or_default();
         *worst = rank.max(*worst);
         self.attempts += usize::from(rank > 0);
-        let all = &result.findings;
-        let needs_bench = all.iter().any(|found| found.finding.needs_harness());
-        self.on_bench += usize::from(needs_bench);
+        self.on_bench += usize::from(result.findings.need_harness());
         if rank > 1 {
             self.not_passed.extend(marks(&result.name, 's'));
         }

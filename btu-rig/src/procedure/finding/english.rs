@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use protocol::event::LOG_ENTRIES;
 use protocol::message::SelfTest;
 
-use super::{Before, Finding, Findings, LoggedEvent, WaitedFor, WhyNoValue};
+use super::{Before, Finding, Findings, LimitMissed, LoggedEvent, WaitedFor, WhyNoValue};
 use crate::procedure::EventSource;
 use crate::procedure::describe::{bit_names, clock_wrong, limits, logged_text, meanings};
 use crate::procedure::event_text;
@@ -47,14 +47,14 @@ impl Display for Findings {
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::LimitMissed {
+            Self::LimitMissed(LimitMissed {
                 measurement,
                 value,
                 uncertainty,
                 low,
                 high,
                 unit,
-            } => {
+            }) => {
                 let off = uncertainty.map_or(String::new(), |off| format!(" ± {}", number(off)));
                 let (value, limits) = (number(*value), limits(*low, *high));
                 let text = format!("{measurement} = {value}{off}, allowed {limits} {unit}");

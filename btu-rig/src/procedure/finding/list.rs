@@ -15,9 +15,9 @@ pub struct Findings(Vec<Found>);
 /// A finding, and how often it came.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// What.
+    /// The finding.
     pub finding: Finding,
-    /// How often; left out if once.
+    /// How often it came; not in JSON if once.
     #[serde(default = "once", skip_serializing_if = "is_once")]
     pub times: u32,
 }
@@ -50,6 +50,11 @@ impl Findings {
     /// As they were stored; `None` for what this version does not know.
     pub fn from_json(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
+    }
+
+    /// One of them is that only a bench with its harness can do this.
+    pub fn need_harness(&self) -> bool {
+        self.iter().any(|found| found.finding.needs_harness())
     }
 
     /// Adds one that came so often.

@@ -118,18 +118,13 @@ impl Progress {
 
     /// How much of what was due was run.
     pub fn coverage(&self) -> Coverage {
-        let skipped = self.procedures.iter().flat_map(|progress| {
+        let on_bench = self.procedures.iter().flat_map(|progress| {
             let results = progress.results.iter();
             let skipped = results.filter(|step| step.verdict == Verdict::Skipped);
-            skipped.map(|step| {
-                (
-                    &*progress.procedure.id,
-                    Some(step.index as u32),
-                    step.findings.clone(),
-                )
-            })
+            let on_bench = skipped.filter(|step| step.findings.need_harness());
+            on_bench.map(|step| (&*progress.procedure.id, Some(step.index as u32)))
         });
-        Coverage::of(self.counts(), skipped)
+        Coverage::of(self.counts(), on_bench)
     }
 
     /// Of a plan that has not begun, on this unit.
@@ -337,11 +332,7 @@ impl Progress {
 
 /// Where this failed, if it is no step of the procedure.
 pub fn outside_place(result: &StepResult) -> Option<Outside> {
-    let named = |place: &Outside| place.name() == result.name;
-    Outside::ALL
-        .into_iter()
-        .find(named)
-        .filter(|_| result.index == OUTSIDE)
+    Outside::from_name(&result.name).filter(|_| result.index == OUTSIDE)
 }
 
 /// The place in the procedure of what is no step of it.

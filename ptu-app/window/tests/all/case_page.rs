@@ -70,6 +70,20 @@ fn window(language: Language, size: [f32; 2], density: Density, faults: &str) ->
     }
 }
 
+/// A window in English whose case has found a part of a unit with these faults, and asks for the repair.
+fn repairing(faults: &str) -> Counted {
+    let case = &Language::English.words().case;
+    let size = [1280.0, 800.0];
+    let mut counted = window(Language::English, size, Density::Operator, faults);
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.click(case.record_repair);
+    counted.window.wait_for(case.serial_new);
+    counted
+}
+
 /// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was
 /// done. Method: a slow EB relay, in both languages, on both sizes of a depot's laptop.
 fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Density) {
@@ -206,18 +220,7 @@ fn a_case_takes_ten_clicks_in_korean_on_a_small_screen() {
 #[test]
 fn a_repair_that_did_not_help_leads_back_to_the_result() {
     let case = &Language::English.words().case;
-    let mut counted = window(
-        Language::English,
-        [1280.0, 800.0],
-        Density::Operator,
-        "eb_relay.slow,fsb_output.dead",
-    );
-    counted.click("Connect");
-    counted.window.wait_for("SIM-0001");
-    counted.click(case.unknown);
-    counted.click(case.find_part);
-    counted.click(case.record_repair);
-    counted.window.wait_for(case.serial_new);
+    let mut counted = repairing("eb_relay.slow,fsb_output.dead");
     // As a scanner types: each number ends with Enter, and the next one goes into the next field.
     counted.window.write(case.serial_old, "R-0815");
     for typed in ["R-4711", "cleaned its contacts"] {
@@ -268,14 +271,7 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
 fn a_run_of_another_page_is_none_of_the_case() {
     let words = Language::English.words();
     let case = &words.case;
-    let (size, faults) = ([1280.0, 800.0], "eb_relay.slow");
-    let mut counted = window(Language::English, size, Density::Operator, faults);
-    counted.click("Connect");
-    counted.window.wait_for("SIM-0001");
-    counted.click(case.unknown);
-    counted.click(case.find_part);
-    counted.click(case.record_repair);
-    counted.window.wait_for(case.serial_new);
+    let mut counted = repairing("eb_relay.slow");
     counted.window.write(case.note, "cleaned its contacts");
     counted.click(case.save);
     counted.window.wait_for(case.fitted);

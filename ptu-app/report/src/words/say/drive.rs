@@ -27,7 +27,7 @@ impl Words {
         }
     }
 
-    /// What happened on the way.
+    /// An event on the way of a train.
     pub fn mark(&self, mark: &Mark) -> String {
         match self.language {
             Language::English => mark.to_string(),

@@ -52,7 +52,7 @@ pub(super) fn step_found(step: &StepReason, run: &RunDetail) -> Both {
         .map(|record| findings(&record.findings))
         .unwrap_or_default();
     let missed = |found: &&btu_rig::procedure::finding::Found| {
-        matches!(found.finding, Finding::LimitMissed { .. })
+        matches!(found.finding, Finding::LimitMissed(_))
     };
     let first = found.iter().find(missed).or(found.iter().next());
     let [found, found_ko] = match first {

@@ -17,6 +17,7 @@ use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::failure::Failure;
+use ptu_runs::stored::findings;
 use ptu_runs::structure::{Chain, Structure};
 
 /// Signals of the check that are drawn, at most.
@@ -145,7 +146,9 @@ fn read(
     let store = paths.read()?;
     let shows = |seen: &&RunOccurrence| {
         let check = on_way.as_ref().map(|(check, ..)| check);
-        check.is_some_and(|check| is_of_step(&seen.findings, &check.procedure.id, &check.name))
+        check.is_some_and(|check| {
+            is_of_step(&findings(&seen.findings), &check.procedure.id, &check.name)
+        })
     };
     let seen = store.run_occurrences(run)?;
     let of_check = seen.iter().find(shows);

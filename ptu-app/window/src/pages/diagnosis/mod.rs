@@ -2,6 +2,7 @@
 
 mod candidates;
 
+use btu_rig::procedure::Findings;
 use diagnosis::Reason;
 use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
 use fault_db::{Id, RunOccurrence};
@@ -14,6 +15,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::run_diagnosis::{Answer, diagnose_run};
+use ptu_runs::stored::findings;
 
 /// Size of the conclusion, points: it is read first, and may fill two lines.
 const HEADLINE: f32 = 20.0;
@@ -34,15 +36,19 @@ pub struct DiagnosisPage {
 pub struct NamedAnswer {
     answer: Answer,
     parts: PartNames,
-    /// Faults that have a trace.
-    traced: Vec<RunOccurrence>,
+    /// Faults that have a trace, each with what was seen.
+    traced: Vec<(RunOccurrence, Findings)>,
 }
 
 impl NamedAnswer {
     fn of(paths: &DataPaths, run: Id) -> Result<Self, Failure> {
         let store = paths.read()?;
         let traced = store.run_occurrences(run)?.into_iter();
-        let traced = traced.filter(|seen| seen.trace_id.is_some());
+        let traced = traced.filter(|fault| fault.trace_id.is_some());
+        let traced = traced.map(|fault| {
+            let seen = findings(&fault.findings);
+            (fault, seen)
+        });
         Ok(Self {
             answer: diagnose_run(&store, &paths.scripts, run)?,
             parts: PartNames::of(&paths.scripts),
@@ -52,12 +58,15 @@ impl NamedAnswer {
 
     /// What a trace shows.
     fn shown_by(&self, trace: Id, words: &Words) -> String {
-        let shown = self.traced.iter().find(|seen| seen.trace_id == Some(trace));
+        let shown = self
+            .traced
+            .iter()
+            .find(|(fault, _)| fault.trace_id == Some(trace));
         shown.map_or_else(
             || trace.short(),
-            |seen| {
-                self.parts
-                    .fault(&seen.lru, (&seen.findings, &seen.message), words)
+            |(fault, _)| {
+                let seen = (&fault.findings, &*fault.message);
+                self.parts.fault(&fault.lru, seen, words)
             },
         )
     }
@@ -66,9 +75,8 @@ impl NamedAnswer {
     fn trace_of(&self, reason: &Reason) -> Option<Id> {
         let check = reason.step()?;
         let mut traced = self.traced.iter();
-        let about =
-            |seen: &&RunOccurrence| is_of_step(&seen.findings, &check.procedure, &check.step);
-        traced.find(about)?.trace_id
+        let about = traced.find(|(_, seen)| is_of_step(seen, &check.procedure, &check.step));
+        about?.0.trace_id
     }
 }
 

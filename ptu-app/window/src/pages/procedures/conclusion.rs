@@ -8,6 +8,7 @@ use crate::request::Request;
 use ptu_report::proof_text;
 use ptu_runs::failure::Exit;
 use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
+use ptu_runs::stored::findings;
 
 /// What is said of a run that has ended.
 pub struct Concluded {
@@ -35,7 +36,7 @@ impl ProceduresPage {
         let id = outcome.id;
         self.traced = Request::Pending(context.queries.run(move |paths| {
             let seen = paths.read()?.run_occurrences(id)?.into_iter();
-            let traced = seen.filter_map(|seen| Some((seen.findings, seen.trace_id?)));
+            let traced = seen.filter_map(|seen| Some((findings(&seen.findings), seen.trace_id?)));
             Ok(traced.collect())
         }));
         self.conclusion = match outcome.exit {

@@ -12,6 +12,7 @@ mod wanted;
 
 use std::sync::Arc;
 
+use btu_rig::procedure::Findings;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
@@ -65,7 +66,7 @@ pub struct ProceduresPage {
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
     /// What the faults of that run said, with their traces.
-    traced: Request<Vec<(Option<String>, fault_db::Id)>>,
+    traced: Request<Vec<(Findings, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
 }

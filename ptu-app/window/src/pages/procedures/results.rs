@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use btu_rig::procedure::{Measurement, StepResult, Verdict};
+use btu_rig::procedure::{Findings, Measurement, StepResult, Verdict};
 use eframe::egui::{Button, Grid, Id, RichText, Ui, UiBuilder};
 use protocol::lru;
 
@@ -60,7 +60,7 @@ pub fn results(
     run: &Progress,
     shown: &mut ResultsView,
     texts: Option<&BTreeMap<String, String>>,
-    (traced, go_to): (&[(Option<String>, fault_db::Id)], &mut Vec<Destination>),
+    (traced, go_to): (&[(Findings, fault_db::Id)], &mut Vec<Destination>),
 ) {
     ui.separator();
     ui.horizontal(|ui| {
@@ -109,7 +109,7 @@ fn trace_of(
     run: &Progress,
     procedure: usize,
     result: &StepResult,
-    traced: &[(Option<String>, fault_db::Id)],
+    traced: &[(Findings, fault_db::Id)],
 ) -> Option<fault_db::Id> {
     let procedure = &run.procedures.get(procedure)?.procedure.id;
     let mut traced = traced.iter();
