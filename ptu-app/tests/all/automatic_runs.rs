@@ -1,7 +1,7 @@
 //! Automatic operation through the frames, with every controller: each section of each line, empty
 //! and full, and stops when something is not as it should be.
 
-use crate::common::{Place, list, number, text};
+use crate::common::{Place, draw, list, number, text};
 use serde_json::Value;
 
 const CONTROLLERS: [&str; 4] = ["servo", "pi", "fuzzy", "pss"];
@@ -15,15 +15,22 @@ fn passes(procedure: &str, line: &str, controller: &str) -> Value {
     report
 }
 
+/// A third of all controllers on all lines.
+fn drawn<T: Copy>(lines: &[T]) -> Vec<(&'static str, T)> {
+    let all = CONTROLLERS
+        .into_iter()
+        .flat_map(|controller| lines.iter().map(move |line| (controller, *line)));
+    draw::drawn(all, 3)
+}
+
 /// Goal: each controller drives the train through the frames, not only in tests of its own.
 #[test]
 fn every_controller_runs_the_whole_of_every_line() {
-    for controller in CONTROLLERS {
-        for (line, sections) in [("line8", 12), ("line6", 4), ("test_track", 1)] {
-            let report = passes("ato/line_run", line, controller);
-            // Ready and run, empty and full.
-            assert_eq!(list(&report["steps"]).len(), sections * 4);
-        }
+    let lines = [("line8", 12), ("line6", 4), ("test_track", 1)];
+    for (controller, (line, sections)) in drawn(&lines) {
+        let report = passes("ato/line_run", line, controller);
+        // Ready and run, empty and full.
+        assert_eq!(list(&report["steps"]).len(), sections * 4);
     }
 }
 
@@ -42,19 +49,15 @@ fn a_setting_changes_the_controller() {
 
 #[test]
 fn every_controller_stops_when_something_is_not_as_it_should_be() {
-    for controller in CONTROLLERS {
-        for line in ["line8", "line6"] {
-            passes("ato/stop_degraded", line, controller);
-        }
+    for (controller, line) in drawn(&["line8", "line6"]) {
+        passes("ato/stop_degraded", line, controller);
     }
 }
 
 #[test]
 fn every_controller_runs_driverless_and_makes_an_overrun_good() {
-    for controller in CONTROLLERS {
-        for line in ["line8", "line6"] {
-            passes("ato/driverless_section", line, controller);
-        }
+    for (controller, line) in drawn(&["line8", "line6"]) {
+        passes("ato/driverless_section", line, controller);
     }
 }
 

@@ -35,6 +35,7 @@ fn asked() -> Request {
 /// Goal: a laptop alone detects at least 90 % of the fault modes that the catalogue declares within its reach.
 /// Method: each at all its levels, on a unit that differs as good ones do.
 #[test]
+#[ignore = "long suite: each fault mode within reach of a laptop, at all its levels"]
 fn a_laptop_alone_finds_nine_in_ten_of_what_is_within_its_reach() {
     let suite = Suite::load(&scripts(), Connection::Ptu).unwrap();
     let modes = suite.catalogue.faults.iter();
@@ -54,7 +55,7 @@ fn a_laptop_alone_finds_nine_in_ten_of_what_is_within_its_reach() {
 }
 
 /// Goal: one fault, one part: a unit that its supply starts again and again is the finding of every procedure in which
-/// it does, and none of them is an error of the bench. Method: twelve seeds of the whole suite.
+/// it does, and none of them is an error of the bench. Method: five seeds of the whole suite.
 #[test]
 fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
     let suite = Suite::load(&scripts(), Connection::Btu).unwrap();
@@ -67,7 +68,7 @@ fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
         level: 0,
         seed,
     };
-    let samples: Vec<_> = (1..=12).map(of).collect();
+    let samples: Vec<_> = (1..=5).map(of).collect();
     for (run, sample) in runs(&suite, &samples).into_iter().zip(&samples) {
         assert!(!run.passed, "seed {}", sample.seed);
         let errors = run
@@ -83,6 +84,7 @@ fn a_supply_that_dips_when_warm_fails_the_suite_and_is_no_error_of_the_bench() {
 /// that has none of its part. An adaptive run with it finds most parts in half of the steps. Method: two parts with few
 /// modes, one seed.
 #[test]
+#[ignore = "long suite: dictionaries with parts left out"]
 fn what_is_left_out_is_diagnosed_by_a_dictionary_that_does_not_know_it() {
     let suite = Suite::load(&scripts(), Connection::Ptu).unwrap();
     let parts = ["door_contact", "tra"].map(|part| format!("{part}."));

@@ -6,18 +6,15 @@
 //! of the unit makes fail does not.
 //!
 //! The whole suite on every mode takes minutes. The check runs for each mode the procedures that the table
-//! names, and the whole suite for one mode in ten, which others are with each commit.
+//! names, and the whole suite for one mode in twenty, which others are with each commit.
 
 mod runs;
 
 use std::collections::BTreeSet;
-use std::path::Path;
-use std::process::Command;
 use std::sync::Mutex;
 
-use crate::common::{Place, has_shape, list, normalised, text};
+use crate::common::{Place, draw, has_shape, list, normalised, text};
 use glob::Pattern;
-use protocol::Random;
 use protocol::injection::{FaultKind, FaultMode};
 use protocol::signal::Signal;
 use runs::{FaultRun, TestBench, run_program};
@@ -31,9 +28,7 @@ const AFTER_S: f64 = 5.0;
 const WORKERS: usize = 2;
 
 /// The check runs the whole suite on one mode in so many.
-const ONE_IN: usize = 10;
-/// Names the seed of their draw.
-const SEED: &str = "FAULT_SEED";
+const ONE_IN: usize = 20;
 
 /// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
@@ -139,23 +134,9 @@ fn each_fault_fails_the_step_that_the_table_names() {
 #[test]
 fn some_faults_are_found_by_the_whole_suite() {
     let bench = TestBench::new();
-    let seed = seed();
-    let mut random = Random::new(seed);
-    let mut waiting: Vec<_> = bench.catalogue.faults.iter().collect();
-    let drawn = (0..waiting.len().div_ceil(ONE_IN))
-        .map(|_| waiting.swap_remove(random.below(waiting.len())));
-    let drawn: Vec<_> = drawn.collect();
+    let drawn = draw::drawn(&bench.catalogue.faults, ONE_IN);
     let found = on_each(drawn.into_iter(), |mode| problems(mode, &bench.run(mode)));
-    assert!(found.is_empty(), "{SEED}={seed}\n{}", found.join("\n"));
-}
-
-#[test]
-#[ignore = "long suite: the whole suite on every fault mode"]
-fn every_injectable_fault_is_found_and_kept_with_its_trace() {
-    let bench = TestBench::new();
-    let modes = bench.catalogue.faults.iter();
-    let found = on_each(modes, |mode| problems(mode, &bench.run(mode)));
-    assert!(found.is_empty(), "{}", found.join("\n"));
+    assert!(found.is_empty(), "{}\n{}", draw::told(), found.join("\n"));
 }
 
 /// What is wrong with each mode, two of them side by side.
@@ -177,22 +158,6 @@ fn on_each<'a>(
         }
     });
     found.into_inner().expect("problems")
-}
-
-/// The seed that is asked for, or one that follows from the last commit; without Git from the table.
-fn seed() -> u64 {
-    if let Ok(asked) = std::env::var(SEED) {
-        return asked.parse().expect("FAULT_SEED is a number");
-    }
-    let mut git = Command::new("git");
-    git.args(["rev-parse", "HEAD"])
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")));
-    let commit = git.output().ok().filter(|output| output.status.success());
-    let hashed = commit.map_or(FOUND_BY.into(), |output| output.stdout);
-    // FNV-1a.
-    hashed.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 /// The program says of a faulty unit what the same run in process gives.

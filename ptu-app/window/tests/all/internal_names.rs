@@ -2,7 +2,7 @@
 
 use crate::common::is_english;
 use crate::common::window::{Window, settings};
-use crate::common::{Place, scripts};
+use crate::common::{Place, draw, scripts};
 use protocol::signal::Signal;
 use ptu_options::Page;
 use ptu_report::words::Language;
@@ -56,7 +56,7 @@ fn texts(page: &str) -> Vec<&str> {
 #[test]
 fn sheets_and_reasons_have_no_internal_names() {
     let mut wrong = Vec::new();
-    for fault in FAULTS {
+    for fault in draw::drawn(FAULTS, 2) {
         let place = Place::new();
         place.ptu(&["run", "--inject", fault]).exits(1);
         let answer = place.json("diagnose latest --json");

@@ -105,14 +105,11 @@ fn the_whole_way(language: Language) {
 }
 
 #[test]
-fn the_whole_way_on_a_train_is_clicked_through() {
-    the_whole_way(Language::English);
-}
-
-#[test]
-#[ignore = "long suite: the check clicks in English, and shows each page in Korean"]
-fn the_whole_way_on_a_train_is_clicked_through_in_korean() {
-    the_whole_way(Language::Korean);
+#[ignore = "long suite: minutes of clicks on a served train"]
+fn the_whole_way_on_a_train_is_clicked_through_in_both_languages() {
+    for language in Language::ALL {
+        the_whole_way(language);
+    }
 }
 
 /// Goal: another unit than the one asked for is told as that, in words of the window. Method: a unit of one serial number,

@@ -1,0 +1,51 @@
+//! What the check runs a part of, other parts with each commit; the long suite runs all of it.
+
+use std::path::Path;
+use std::process::Command;
+
+use protocol::Random;
+
+/// Names the seed of a draw; "all" draws everything.
+const SEED: &str = "CHECK_SEED";
+
+/// One in so many of what there is, one at least; a test that fails says the [`seed`] by which the same are drawn again.
+pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
+    let mut waiting: Vec<T> = all.into_iter().collect();
+    let Ok(number) = seed().parse() else {
+        return waiting;
+    };
+    let mut random = Random::new(number);
+    (0..waiting.len().div_ceil(one_in))
+        .map(|_| waiting.swap_remove(random.below(waiting.len())))
+        .collect()
+}
+
+/// What `CHECK_SEED` says, or a number that follows from the last commit; without Git 0.
+///
+/// # Panics
+/// If the variable is neither a number nor "all".
+pub fn seed() -> String {
+    if let Ok(asked) = std::env::var(SEED) {
+        let known = asked == "all" || asked.parse::<u64>().is_ok();
+        assert!(known, "{SEED} is a number or \"all\", not {asked:?}");
+        return asked;
+    }
+    let mut git = Command::new("git");
+    git.args(["rev-parse", "HEAD"])
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")));
+    let commit = git.output().ok().filter(|output| output.status.success());
+    let digits = commit.and_then(|output| {
+        Some(
+            String::from_utf8_lossy(&output.stdout)
+                .get(..15)?
+                .to_owned(),
+        )
+    });
+    let number = digits.and_then(|digits| u64::from_str_radix(&digits, 16).ok());
+    number.unwrap_or_default().to_string()
+}
+
+/// The line that begins a list of what failed among what was drawn.
+pub fn told() -> String {
+    format!("{SEED}={}", seed())
+}
