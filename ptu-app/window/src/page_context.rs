@@ -73,6 +73,8 @@ pub enum Destination {
     Faults(FaultsOf),
     /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.
     FindPart(Option<Symptom>),
+    /// Runs all that shows whether it is sound; stays with the case.
+    RunAll(Option<Symptom>),
     /// Runs these procedures, and those that this part can fail, on the chosen unit; stays with the case.
     Prove {
         procedures: BTreeSet<String>,

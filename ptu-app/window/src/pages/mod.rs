@@ -88,7 +88,11 @@ impl Pages {
                 Page::Faults
             }
             Destination::FindPart(symptom) => {
-                self.procedures.find_part(symptom, context);
+                self.procedures.find_part(symptom, true, context);
+                Page::Case
+            }
+            Destination::RunAll(symptom) => {
+                self.procedures.find_part(symptom, false, context);
                 Page::Case
             }
             Destination::Prove { procedures, part } => {

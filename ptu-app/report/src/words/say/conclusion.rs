@@ -243,6 +243,12 @@ fn joined(named: &[Both], words: [&str; 2]) -> Both {
     })
 }
 
+/// Parts by their names alone, within a sentence.
+pub(super) fn all_called(parts: &[LruId], names: &[Lru]) -> Both {
+    let parts: Vec<_> = parts.iter().map(|part| called(part, names)).collect();
+    joined(&parts, [" and ", ", "])
+}
+
 /// A part by its name alone, within a sentence.
 fn called(part: &LruId, names: &[Lru]) -> Both {
     let known = names.iter().find(|known| known.id == *part);

@@ -17,8 +17,11 @@ pub(super) enum Wanted {
         procedure: String,
         step: String,
     },
-    /// As few steps as it takes to find the faulty part.
-    Part(Option<Symptom>),
+    /// As few steps as it takes to find the faulty part, or else all.
+    Part {
+        symptom: Option<Symptom>,
+        adaptive: bool,
+    },
     /// These procedures, and those that suspect the part.
     Prove {
         procedures: BTreeSet<String>,
@@ -50,8 +53,13 @@ impl ProceduresPage {
     }
 
     /// Finds the faulty part of the chosen unit, which was brought with this symptom.
-    pub fn find_part(&mut self, symptom: Option<Symptom>, context: &mut PageContext<'_>) {
-        self.want(Wanted::Part(symptom), context);
+    pub fn find_part(
+        &mut self,
+        symptom: Option<Symptom>,
+        adaptive: bool,
+        context: &mut PageContext<'_>,
+    ) {
+        self.want(Wanted::Part { symptom, adaptive }, context);
     }
 
     /// Runs these procedures on the chosen unit, and those that suspect this part.
@@ -94,9 +102,8 @@ impl ProceduresPage {
                 let only = found.map(|found| Selection::only(found, &step));
                 (only.unwrap_or_default(), format!("{procedure} {step}"))
             }
-            Wanted::Part(symptom) => {
-                how.adaptive = true;
-                how.symptom = symptom;
+            Wanted::Part { symptom, adaptive } => {
+                (how.adaptive, how.symptom) = (adaptive, symptom);
                 (Selection::usual(all, connection), String::new())
             }
             Wanted::Prove { procedures, part } => {
