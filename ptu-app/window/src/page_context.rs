@@ -80,6 +80,8 @@ pub enum Destination {
         procedures: BTreeSet<String>,
         part: String,
     },
+    /// What the chosen unit's run left when its link was lost; stays where it is.
+    GoOn,
     /// The procedures, running one step at once.
     RunStep {
         /// Procedure, as `atp/overspeed`.

@@ -60,6 +60,11 @@ impl Pages {
         }
     }
 
+    /// A run that broke off can go on: the scripts are those it is of.
+    pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
+        self.procedures.goes_on(context)
+    }
+
     /// Goes where the person wants to; the page to show then.
     pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
@@ -98,6 +103,10 @@ impl Pages {
             Destination::Prove { procedures, part } => {
                 self.procedures.prove(procedures, part, context);
                 Page::Case
+            }
+            Destination::GoOn => {
+                self.procedures.go_on(context);
+                context.settings.page
             }
             Destination::RunStep {
                 procedure,

@@ -67,6 +67,11 @@ impl CasePage {
         if self.repair.is_undone(context) && self.stage == Stage::Prove {
             self.stage = Stage::Repair;
         }
+        // A run that goes on blanks the result it had.
+        let run = context.units.chosen().run_of_case();
+        if self.stage == Stage::Result && run.is_some_and(Progress::is_running) {
+            (self.found, self.stage) = (None, Stage::Find);
+        }
         if matches!(self.stage, Stage::Find | Stage::Prove) {
             self.take_run(concluded, context);
         }
@@ -227,11 +232,11 @@ impl CasePage {
 }
 
 /// The button of a page that is pressed first.
-fn primary(ui: &mut Ui, text: &str) -> Response {
+fn primary(ui: &mut Ui, text: &str, enabled: bool) -> Response {
     let fill = Palette::of(ui).fill;
     ui.scope(|ui| {
-        if !ui.is_enabled() {
-            return large(ui, text, true);
+        if !(enabled && ui.is_enabled()) {
+            return large(ui, text, enabled);
         }
         let widgets = &mut ui.visuals_mut().widgets;
         for widget in [&mut widgets.inactive, &mut widgets.hovered] {

@@ -164,6 +164,7 @@ impl CasePage {
         let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
         let first = found.told.next(check.is_some());
         let failed = matches!(found.told, Told::Part | Told::Unsure | Told::NoPart);
+        let may_run = context.units.chosen().may_run();
         let mut asked = None;
         ui.horizontal_wrapped(|ui| {
             let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
@@ -190,10 +191,14 @@ impl CasePage {
             ways.sort_by_key(|(way, ..)| *way != first);
             for (way, text, _) in ways.iter().filter(|(.., offered)| *offered) {
                 let text = fill(text, &[("time", &time.as_deref().unwrap_or_default())]);
+                let runs = matches!(way, Next::Check | Next::WholeSuite | Next::RunAgain);
                 let button = match *way == first {
-                    true => primary(ui, &text),
-                    false => large(ui, &text, true),
+                    true => primary(ui, &text, may_run || !runs),
+                    false => large(ui, &text, may_run || !runs),
                 };
+                if runs && !may_run {
+                    ui.label(RichText::new(words.procedures.connect_first).color(palette.quiet));
+                }
                 if place.clicked(&button) {
                     asked = Some(*way);
                 }
