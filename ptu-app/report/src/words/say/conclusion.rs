@@ -128,6 +128,10 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 format!("고장이 발견되지 않았습니다 ({sure})"),
             ]
         }
+        Conclusion::NothingSeen { made: 0, of } => [
+            format!("nothing was tested: none of {of} checks was made"),
+            format!("시험한 것이 없습니다: 점검 {of}개 중 0개 수행"),
+        ],
         Conclusion::NothingSeen { made, of } => [
             format!("not enough was run: {made} of {of} checks were made and show nothing wrong"),
             format!(
