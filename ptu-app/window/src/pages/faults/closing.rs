@@ -1,6 +1,6 @@
 //! The dialog before faults are closed: every fault that closes, and why. A reason is required of faults that nobody repaired.
 
-use eframe::egui::{Align2, Button, Id, Key, RichText, Ui, Window};
+use eframe::egui::{Align2, Button, Id, Key, RichText, ScrollArea, Ui, Window};
 use fault_db::{FaultAction, FaultDetail, FaultState, FaultSummary};
 
 use crate::parts::{ActionPlace, note_edit};
@@ -10,6 +10,8 @@ use ptu_report::words::{Faults, Words, fill};
 
 /// Width of the dialog, points.
 const WIDE: f32 = 560.0;
+/// Height of its title and its last rows with what is above it, points.
+const AROUND: f32 = 240.0;
 
 /// What is written before faults are closed.
 #[derive(Default)]
@@ -61,17 +63,20 @@ impl Closing {
         dialog.show(ui.ctx(), |ui| {
             Sizes::of(ui).set(ui);
             ui.set_width(WIDE.min(ui.ctx().content_rect().width() - 40.0));
-            if closing.len() > 1 {
-                let part = parts.name(detail.fault.cause(), words.language);
-                ui.label(fill(said.close_together, &[("part", &part)]));
-            }
-            for fault in &closing {
-                let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
-                ui.label(RichText::new(name).strong());
-            }
-            if !repaired {
-                self.why(ui, said);
-            }
+            let high = ui.ctx().content_rect().height() - AROUND;
+            ScrollArea::vertical().max_height(high).show(ui, |ui| {
+                if closing.len() > 1 {
+                    let part = parts.name(detail.fault.cause(), words.language);
+                    ui.label(fill(said.close_together, &[("part", &part)]));
+                }
+                for fault in &closing {
+                    let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
+                    ui.label(RichText::new(name).strong());
+                }
+                if !repaired {
+                    self.why(ui, said);
+                }
+            });
             let note = self.note(said, repaired);
             let missing = note.is_none();
             if missing {
