@@ -25,16 +25,19 @@ pub fn places(value: Option<f64>, low: Option<f64>, high: Option<f64>) -> Option
     let value = value.filter(|value| value.is_finite())?;
     let (from, to) = match (low, high) {
         (Some(low), Some(high)) => (low, high),
-        // One-sided: the bar begins or ends as far from the limit as zero or the value is.
-        (Some(low), None) => (
-            low,
-            low + (value - low).abs().max(low.abs()).max(f64::MIN_POSITIVE),
-        ),
-        (None, Some(high)) => (
-            high - (high - value).abs().max(high.abs()).max(f64::MIN_POSITIVE),
-            high,
-        ),
         (None, None) => return None,
+        (Some(limit), None) | (None, Some(limit)) => {
+            // One-sided: from zero to beyond the greater of value and limit, so that the other end looks like no limit.
+            let beyond = 1.0 + BEYOND;
+            let start = (beyond * value.min(limit)).min(0.0);
+            let span = (beyond * value.max(limit)).max(0.0) - start;
+            let place = |x: f64| (x - start) / span.max(f64::MIN_POSITIVE);
+            let at = place(limit);
+            return Some(match low {
+                Some(_) => (place(value), at, 1.0),
+                None => (place(value), 0.0, at),
+            });
+        }
     };
     let long = 1.0 + 2.0 * BEYOND;
     let (start, span) = if to > from {
@@ -62,8 +65,14 @@ mod tests {
 
     #[test]
     fn one_limit_is_enough_and_none_gives_no_bar() {
-        let high = places(Some(0.1), None, Some(0.4)).expect("a bar");
-        assert!(high.0 < high.2);
+        let (value, from, to) = places(Some(640.0), None, Some(472.0)).expect("a bar");
+        assert_eq!(from, 0.0, "no lower limit is drawn");
+        assert!(to < value && value < 1.0, "nor is the value at the end");
+        let (value, from, to) = places(Some(0.1), Some(0.4), None).expect("a bar");
+        assert_eq!(to, 1.0, "no upper limit is drawn");
+        assert!(value < from && 0.0 < value);
+        let below_zero = places(Some(-3.0), None, Some(-1.0)).expect("a bar");
+        assert!(0.0 < below_zero.0 && below_zero.0 < below_zero.2 && below_zero.2 < 1.0);
         assert_eq!(places(Some(1.0), None, None), None);
         assert_eq!(places(Some(f64::NAN), Some(0.0), None), None);
         assert_eq!(places(None, Some(0.0), None), None);

@@ -51,6 +51,11 @@ impl Unit {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
     }
 
+    /// Again where another was.
+    pub fn at_port(port: &str) -> Self {
+        Self::serve(&["--tcp", port], "tcp:")
+    }
+
     /// Aboard a train, its maintenance port on a new pseudo-terminal.
     pub fn aboard(arguments: &[&str]) -> Self {
         let train = [&["train", "--pty"], arguments].concat();

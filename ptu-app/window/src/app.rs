@@ -122,6 +122,10 @@ impl App {
         Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut page_context));
         Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut page_context));
         Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut page_context));
+        if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
+            let goes_on = self.pages.goes_on(&page_context);
+            Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
+        }
         if page_context.settings.locked {
             Panel::top("locked").show(ui, |ui| self.frame.locked(ui, &mut page_context));
         }

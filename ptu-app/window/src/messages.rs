@@ -11,6 +11,8 @@ pub struct Messages {
     unread: Option<usize>,
     /// What was taken back last.
     taken_back: Option<Written>,
+    /// Runs that had ended when an undo was offered last.
+    runs_ended: usize,
 }
 
 /// A person's step that was written about a fault, and with it about its case.
@@ -90,8 +92,14 @@ impl Messages {
         }
     }
 
-    /// The place of the latest message whose step can be undone now, the step, and how long it still can, s.
-    pub fn undoable(&mut self, now_s: f64) -> Option<(usize, Written, f64)> {
+    /// The place of the latest message whose step can be undone now, the step, and how long it still can, s. What a run that has
+    /// ended since found may rest on the step: `runs_ended` = how many have.
+    pub fn undoable(&mut self, now_s: f64, runs_ended: usize) -> Option<(usize, Written, f64)> {
+        if std::mem::replace(&mut self.runs_ended, runs_ended) != runs_ended {
+            for message in &mut self.all {
+                message.written = None;
+            }
+        }
         let place = self
             .all
             .iter()
@@ -139,6 +147,17 @@ impl Messages {
         self.all.get(self.unread?).filter(|message| !message.over)
     }
 
+    /// The latest that is no trouble and still holds, unless trouble came after it or it is that of this place.
+    pub fn latest_note(&self, but: Option<usize>) -> Option<&Message> {
+        let place = self
+            .all
+            .len()
+            .checked_sub(1)
+            .filter(|place| Some(*place) != but);
+        let last = self.all.get(place?);
+        last.filter(|message| !message.bad && !message.over)
+    }
+
     /// Marks the latest trouble as acknowledged.
     pub fn acknowledge(&mut self) {
         self.unread = None;
@@ -167,5 +186,31 @@ impl Messages {
             written: None,
             shown_at_s: None,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: an undo is offered only where it is done, and hides nothing. Method: a step that was written, a note after it, and a
+    /// run that ends, on whose proof the step may rest.
+    #[test]
+    fn an_undo_hides_no_newer_message_and_ends_with_the_next_run() {
+        let (fault, at_us) = (Id::from_bytes([1; 16]), 7);
+        let written = Written { fault, at_us };
+        let mut messages = Messages::default();
+        messages.note_written("repaired", written);
+        assert_eq!(messages.undoable(1.0, 3), None, "runs ended meanwhile");
+        messages.note_written("repaired", written);
+        let offered = messages.undoable(1.0, 3);
+        assert_eq!(offered, Some((1, written, UNDO_S)));
+        let newer =
+            |messages: &Messages| messages.latest_note(Some(1)).map(|said| said.text.clone());
+        assert_eq!(newer(&messages), None);
+        messages.note("connected");
+        assert_eq!(newer(&messages).as_deref(), Some("connected"));
+        assert!(messages.undoable(2.0, 3).is_some());
+        assert_eq!(messages.undoable(2.0, 4), None);
     }
 }

@@ -73,11 +73,15 @@ pub enum Destination {
     Faults(FaultsOf),
     /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.
     FindPart(Option<Symptom>),
+    /// Runs all that shows whether it is sound; stays with the case.
+    RunAll(Option<Symptom>),
     /// Runs these procedures, and those that this part can fail, on the chosen unit; stays with the case.
     Prove {
         procedures: BTreeSet<String>,
         part: String,
     },
+    /// What the chosen unit's run left when its link was lost; stays where it is.
+    GoOn,
     /// The procedures, running one step at once.
     RunStep {
         /// Procedure, as `atp/overspeed`.

@@ -18,6 +18,8 @@ pub struct Palette {
     pub quiet: Color32,
     /// What is chosen, and the first curve.
     pub accent: Color32,
+    /// Ground of the button that is pressed first; white stands on it.
+    pub fill: Color32,
     /// An armed unit: outranks everything else on the screen.
     pub armed: Color32,
     /// Lines behind curves.
@@ -33,6 +35,7 @@ const DARK: Palette = Palette {
     warn: Color32::from_rgb(245, 184, 65),
     quiet: Color32::from_rgb(140, 148, 158),
     accent: Color32::from_rgb(90, 169, 255),
+    fill: Color32::from_rgb(31, 111, 201),
     armed: Color32::from_rgb(214, 40, 40),
     grid: Color32::from_rgb(58, 62, 68),
     curves: [
@@ -52,6 +55,7 @@ const LIGHT: Palette = Palette {
     warn: Color32::from_rgb(160, 98, 0),
     quiet: Color32::from_rgb(100, 108, 116),
     accent: Color32::from_rgb(0, 92, 184),
+    fill: Color32::from_rgb(11, 92, 181),
     armed: Color32::from_rgb(200, 20, 20),
     grid: Color32::from_rgb(214, 217, 221),
     curves: [

@@ -33,6 +33,11 @@ wordings! {
         stopping: "stopping: outputs are being made safe …", "정지 중: 출력을 안전 상태로 전환 중 …";
         is_connected: "Connected to unit {unit}", "장치 {unit} 연결됨";
         is_disconnected: "Disconnected; outputs safe, unit disarmed", "연결 해제됨: 출력은 안전하고 시험 허가는 해제됨";
+        link_gone: "link lost", "링크 끊김";
+        go_on: "Reconnect and continue", "다시 연결하고 계속";
+        go_on_not: "The scripts are others since: the run cannot go on", "그 뒤 스크립트가 바뀌어 계속할 수 없습니다";
+        go_on_hint: "Connects the unit, sets the procedure up again and repeats its step. Another unit does not continue the run.", "장치를 연결하고 절차를 다시 준비한 뒤 중단된 단계를 반복합니다. 다른 장치로는 계속할 수 없습니다.";
+        end_run: "End the run", "시험 끝내기";
         link_lost: "The connection to the unit is lost", "장치와의 링크가 끊어졌습니다";
         broken: "The bench's program failed: switch the unit off and report what was done", "시험대 프로그램에 오류가 발생했습니다: 장치 전원을 끄고 상황을 보고하십시오";
         cannot_list: "Ports, lines or units cannot be listed", "포트, 노선, 장치 목록을 읽을 수 없습니다";

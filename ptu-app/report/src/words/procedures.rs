@@ -39,13 +39,14 @@ wordings! {
         no_such_step: "There is no such step in these scripts", "이 스크립트에는 그런 단계가 없습니다";
         progress: "{done} of {all} steps, {bad} not passed", "{all}개 중 {done}개 단계, 미합격 {bad}";
         elapsed: "{time} elapsed", "경과 {time}";
-        left: "about {time} of bench time left", "시험대 시간 약 {time} 남음";
+        left: "at most {time} of bench time left", "시험대 시간 최대 {time} 남음";
         bringing_up: "bringing the unit up", "장치 준비 중";
         waiting: "waiting for {what}: {left} s left", "대기 중: {what}, {left}초 남음";
         paused: "Paused before: {step}", "일시 정지, 다음 단계: {step}";
         asked: "The script asks", "스크립트 질문";
         yes: "Yes", "예";
         no: "No", "아니요";
+        all_passed: "No step failed; passed: {n}", "불합격 단계 없음, 합격 {n}";
         no_measurements: "This step measures nothing", "이 단계에는 측정이 없습니다";
         results: "results", "결과";
         only_bad: "only those not passed", "미합격만";

@@ -35,6 +35,7 @@ wordings! {
         of_all: "{share} %, together {sum} %", "{share} %, 누계 {sum} %";
         days: "{n} days", "{n}일";
         hours: "{n} h", "{n}시간";
+        minutes: "{n} min", "{n}분";
         percent: "{n} %", "{n} %";
         unknown: "–", "–";
         control: "measured values with control limits", "측정값과 관리 한계";

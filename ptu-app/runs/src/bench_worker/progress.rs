@@ -44,10 +44,8 @@ pub struct Progress {
     /// The outcome once the run has ended; the inner `None` = it could not be started or recorded.
     pub ended: Option<Option<Outcome>>,
     began: time::Instant,
-    /// Worst-case time of all steps, and of those that are over, with the time these took.
-    worst: Duration,
-    worst_done: Duration,
-    took: Duration,
+    /// Worst-case time of the steps that are still to come.
+    worst_left: Duration,
 }
 
 /// A procedure of a run.
@@ -133,7 +131,7 @@ impl Progress {
             ProcedureProgress::of(task.procedure.clone(), task.options.chosen.clone())
         };
         let procedures: Vec<_> = plan.tasks.iter().map(procedure).collect();
-        let worst = procedures
+        let worst_left = procedures
             .iter()
             .zip(&plan.tasks)
             .flat_map(|(progress, task)| {
@@ -158,9 +156,7 @@ impl Progress {
             faults: Vec::new(),
             ended: None,
             began: time::Instant::now(),
-            worst,
-            worst_done: Duration::ZERO,
-            took: Duration::ZERO,
+            worst_left,
         }
     }
 
@@ -216,13 +212,9 @@ impl Progress {
         (self.done as f32 / self.steps as f32).min(1.0)
     }
 
-    /// Bench time still to come, s: worst cases of the steps left, as much shorter as those done were.
-    pub fn left_s(&self) -> Option<f64> {
-        if self.worst_done == Duration::ZERO {
-            return None;
-        }
-        let left = self.worst.as_secs() - self.worst_done.as_secs();
-        Some((left * self.took.as_secs() / self.worst_done.as_secs()).max(0.0))
+    /// Bench time still to come at most, s. An estimate by how long the steps before took would grow with each slow one.
+    pub fn left_s(&self) -> f64 {
+        self.worst_left.as_secs()
     }
 
     /// Time since it was begun, s.
@@ -316,8 +308,11 @@ impl Progress {
         }
         let progress = &mut self.procedures[place];
         if let Some(step) = progress.procedure.steps.get(result.index) {
-            self.worst_done += step.worst_case;
-            self.took += result.bench_time;
+            let left_us = self
+                .worst_left
+                .as_us()
+                .saturating_sub(step.worst_case.as_us());
+            self.worst_left = Duration::from_us(left_us);
         }
         let passed = matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
         if self.done < KEPT || (!passed && self.not_passed < KEPT) {

@@ -230,10 +230,14 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
         run.run.verdict,
         Some(Verdict::Passed | Verdict::Skipped | Verdict::Inconclusive) | None
     );
-    let nothing_wrong = matches!(
-        diagnosis.conclusion,
-        Conclusion::NoFault { .. } | Conclusion::NothingSeen { .. }
-    );
+    // Of a run that tested nothing that is what there is to say.
+    let nothing_wrong = match diagnosis.conclusion {
+        Conclusion::NoFault { .. } => true,
+        Conclusion::NothingSeen { made, .. } => {
+            made > 0 || run.run.verdict == Some(Verdict::Aborted)
+        }
+        _ => false,
+    };
     if !passed && !run.steps.is_empty() && nothing_wrong {
         diagnosis.conclusion = match (run.run.verdict, &diagnosis.next_check) {
             (Some(Verdict::Aborted), Some(_)) => Conclusion::BrokenOff,

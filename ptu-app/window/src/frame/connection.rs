@@ -142,6 +142,10 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
         let differs = differs_from_record(&live.sample, frame);
         (live.phase, live.identity, live.link.share(), differs)
     };
+    if unit.is_lost() {
+        chip(ui, frame.link_gone, palette.warn);
+        return;
+    }
     if phase == Phase::Offline {
         ui.label(RichText::new(frame.not_connected).color(palette.quiet));
         return;
@@ -160,7 +164,7 @@ fn identity(ui: &mut Ui, context: &PageContext<'_>) {
         }
         let share = 100.0 * share.unwrap_or(1.0);
         let colour = if share >= 99.9 {
-            palette.good
+            palette.quiet
         } else {
             palette.warn
         };

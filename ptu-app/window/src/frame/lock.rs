@@ -1,7 +1,7 @@
 //! The lock between two shifts: the window shows what goes on and stops everything, and does nothing else until somebody
 //! gives a name. It is a name and no password.
 
-use eframe::egui::{Button, Key, RichText, Ui};
+use eframe::egui::{Button, Color32, Key, RichText, Ui};
 
 use crate::parts::{ActionPlace, name_edit};
 use crate::{PageContext, Palette, Sizes};
@@ -13,7 +13,19 @@ const STRENGTH: f32 = 0.75;
 
 /// What follows in `ui` can be read and not clicked.
 pub fn only_look(ui: &mut Ui) {
-    ui.visuals_mut().disabled_alpha = STRENGTH;
+    let quiet = Palette::of(ui).quiet;
+    let visuals = ui.visuals_mut();
+    visuals.disabled_alpha = STRENGTH;
+    // Without a ground a button does not look as if it worked.
+    let widgets = &mut visuals.widgets;
+    for widget in [
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+    ] {
+        widget.weak_bg_fill = Color32::TRANSPARENT;
+        widget.fg_stroke.color = quiet;
+    }
     ui.disable();
 }
 
@@ -41,4 +53,27 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
         }
         ui.label(RichText::new(words.lock_is_no_password).color(Palette::of(ui).quiet));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::Shape;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn a_locked_button_has_no_ground_as_one_that_works_has() {
+        let grounds = |locked: bool| {
+            let harness = Harness::new_ui(move |ui| {
+                if locked {
+                    only_look(ui);
+                }
+                ui.add(Button::new("Arm"));
+            });
+            let shapes = harness.output().shapes.iter().map(|seen| &seen.shape);
+            let filled = |shape: &&Shape| matches!(shape, Shape::Rect(rect) if rect.fill != Color32::TRANSPARENT);
+            shapes.filter(filled).count()
+        };
+        assert!(grounds(true) < grounds(false));
+    }
 }

@@ -58,14 +58,19 @@ impl Undo {
 }
 
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
-    let undoable = context.messages.undoable(ui.input(|input| input.time));
-    let undoable = undoable.filter(|_| !context.settings.locked);
+    let ended = context.units.runs_ended();
+    let undoable = context
+        .messages
+        .undoable(ui.input(|input| input.time), ended);
+    // Who takes it back is written down with it.
+    let named = !context.settings.operator.trim().is_empty();
+    let undoable = undoable.filter(|_| named && !context.settings.locked);
     let all = context.messages.all();
-    let Some(last) = all.last() else {
+    if all.is_empty() {
         let quiet = Palette::of(ui).quiet;
         ui.label(RichText::new(context.words.frame.title).color(quiet));
         return;
-    };
+    }
     let mut clear = false;
     let mut noted = false;
     let mut taken_back = None;
@@ -87,8 +92,17 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         let trouble = context.messages.unread_trouble();
         noted = trouble.is_some() && ui.button(context.words.frame.dismiss).clicked();
-        let told = undoable.and_then(|(place, written, left_s)| {
-            let told = all.get(place)?;
+        if let Some(trouble) = trouble {
+            said(ui, trouble, context.words);
+        }
+        // Trouble is shown until it was taken note of, and not again as the latest message.
+        let undone = undoable.map(|(place, ..)| place);
+        if let Some(last) = context.messages.latest_note(undone) {
+            said(ui, last, context.words);
+        }
+        if let Some((place, written, left_s)) = undoable
+            && let Some(told) = all.get(place)
+        {
             let place = ActionPlace::new(ui, "undo", written.at_us);
             let button = ui
                 .button(context.words.frame.undo)
@@ -96,14 +110,6 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
             taken_back = place.clicked(&button).then(|| (written, told.text.clone()));
             ui.ctx()
                 .request_repaint_after(Duration::from_secs_f64(left_s));
-            Some(told)
-        });
-        if let Some(trouble) = trouble {
-            said(ui, trouble, context.words);
-        }
-        // Trouble is shown until it was taken note of, and not again as the latest message.
-        let told = told.unwrap_or(last);
-        if !told.bad && !told.over {
             said(ui, told, context.words);
         }
     });

@@ -5,6 +5,7 @@ mod care;
 mod connection;
 mod keys;
 mod lock;
+mod lost;
 mod messages;
 mod navigation;
 mod setup;
@@ -47,6 +48,12 @@ impl Frame {
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         Sizes::of(ui).set(ui);
         lock::bar(ui, context);
+    }
+
+    /// A run that broke off with the link, and how it goes on.
+    pub fn lost(&self, ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
+        Sizes::of(ui).set(ui);
+        lost::row(ui, goes_on, context);
     }
 
     /// The latest message, and all of them.

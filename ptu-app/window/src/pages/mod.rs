@@ -60,6 +60,11 @@ impl Pages {
         }
     }
 
+    /// A run that broke off can go on: the scripts are those it is of.
+    pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
+        self.procedures.goes_on(context)
+    }
+
     /// Goes where the person wants to; the page to show then.
     pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
@@ -88,12 +93,20 @@ impl Pages {
                 Page::Faults
             }
             Destination::FindPart(symptom) => {
-                self.procedures.find_part(symptom, context);
+                self.procedures.find_part(symptom, true, context);
+                Page::Case
+            }
+            Destination::RunAll(symptom) => {
+                self.procedures.find_part(symptom, false, context);
                 Page::Case
             }
             Destination::Prove { procedures, part } => {
                 self.procedures.prove(procedures, part, context);
                 Page::Case
+            }
+            Destination::GoOn => {
+                self.procedures.go_on(context);
+                context.settings.page
             }
             Destination::RunStep {
                 procedure,

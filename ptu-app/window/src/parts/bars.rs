@@ -15,8 +15,9 @@ const ROWS: f32 = 7.0;
 const TARGET: f32 = 26.0;
 /// Room a name takes in a low chart by name.
 const NAME: f32 = 120.0;
-/// Room for the count behind a bar, and for what more is said there.
-const COUNT: f32 = 26.0;
+/// Between a bar and what is said behind it.
+const BESIDE: f32 = 3.0;
+/// Room for what is said behind the count of a bar.
 const MORE: f32 = 210.0;
 
 /// A bar.
@@ -105,7 +106,13 @@ impl Chart<'_> {
         let name = if self.leads { rect.width() / 3.0 } else { NAME };
         let left = rect.left() + name.min(rect.width() / 2.0);
         let says_more = bars.iter().any(|bar| !bar.more.is_empty());
-        let room = rect.right() - left - if says_more { MORE } else { COUNT };
+        let said = |bar: &Bar| {
+            let painter = ui.painter();
+            let laid = painter.layout_no_wrap(bar.said(), font.clone(), palette.quiet);
+            laid.size().x
+        };
+        let widest = bars.iter().map(said).fold(0.0, f32::max) + 2.0 * BESIDE;
+        let room = rect.right() - left - if says_more { MORE.max(widest) } else { widest };
         let mut clicked = None;
         for (place, bar) in bars.iter().enumerate() {
             let top = rect.top() + row * place as f32;
@@ -117,7 +124,7 @@ impl Chart<'_> {
             let size = vec2(length, row - 3.0);
             let filled = Rect::from_min_size(pos2(left, line.center().y - size.y / 2.0), size);
             painter.rect_filled(filled, 0.0, palette.accent);
-            let end = pos2(filled.right() + 3.0, line.center().y);
+            let end = pos2(filled.right() + BESIDE, line.center().y);
             painter.text(
                 end,
                 Align2::LEFT_CENTER,
@@ -179,4 +186,32 @@ impl Chart<'_> {
 fn most(bars: &[Bar]) -> f32 {
     let most = bars.iter().map(|bar| bar.value).fold(0.0, f64::max);
     if most > 0.0 { most as f32 } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::Shape;
+    use eframe::egui::epaint::ClippedShape;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn no_digit_of_a_count_is_cut() {
+        let chart = Chart {
+            title: "faults",
+            width: 300.0,
+            leads: false,
+            sums: true,
+        };
+        let bars = [Bar::new("EB relay", 4347), Bar::new("other", 1)];
+        let harness = Harness::new_ui(|ui| {
+            chart.by_name(ui, &bars);
+        });
+        let counted = |seen: &&ClippedShape| matches!(&seen.shape, Shape::Text(text) if text.galley.text() == "4347");
+        let seen = harness.output().shapes.iter().find(counted);
+        let ClippedShape {
+            clip_rect, shape, ..
+        } = seen.expect("the count");
+        assert!(clip_rect.contains_rect(shape.visual_bounding_rect()));
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use btu_rig::procedure::UnitEvent;
 use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Finding, UnitEvent};
 use btu_rig::stimulus::Stimulus;
 use protocol::message::Identity;
 use protocol::signal::Signal;
@@ -34,8 +34,10 @@ pub struct Unit {
     /// Its case asked for that run.
     is_run_of_case: bool,
     pub(super) runs_ended: usize,
-    /// The person knows that it cannot be reached.
+    /// The link to it is lost, which the person knows.
     lost: bool,
+    /// Its run broke off with the link, and nobody has ended it.
+    waits: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
     /// Nothing is begun: no name has been given.
@@ -56,6 +58,7 @@ impl Unit {
             is_run_of_case: false,
             runs_ended: 0,
             lost: false,
+            waits: false,
             stopping: false,
             locked: false,
             not_safe: false,
@@ -127,6 +130,7 @@ impl Unit {
         }
         self.run = Some(Progress::new(&order.plan, self.name()));
         self.is_run_of_case = of_case;
+        self.waits = false;
         self.bench.run(order);
         true
     }
@@ -134,6 +138,27 @@ impl Unit {
     /// Its present or last run, if that is one of its case: a run that another page asked for says nothing of the case.
     pub fn run_of_case(&self) -> Option<&Progress> {
         self.run.as_ref().filter(|_| self.is_run_of_case)
+    }
+
+    /// Its case asked for its run.
+    pub fn is_run_of_case(&self) -> bool {
+        self.is_run_of_case
+    }
+
+    /// The link to it was lost, and it was not reached again.
+    pub fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// Its run that broke off with the link and can go on, and where it did.
+    pub fn waiting_run(&self) -> Option<(&Progress, &Finding)> {
+        let run = self.run.as_ref().filter(|_| self.waits)?;
+        Some((run, link_loss(run)?))
+    }
+
+    /// The run that broke off stays as it is.
+    pub fn end_run(&mut self) {
+        self.waits = false;
     }
 
     /// Answers what the run's script asks; it asks nothing more then.
@@ -245,6 +270,7 @@ impl Unit {
                 said.note(this_run, ended);
                 if let Some(run) = &mut self.run {
                     run.end(Some(outcome));
+                    self.waits = link_loss(run).is_some();
                 }
             }
             BenchEvent::RunFailed(why) => {
@@ -264,6 +290,20 @@ impl Unit {
             said.trouble(About::Connection(self.id), words.frame.link_lost, why);
         }
     }
+}
+
+/// Where a run broke off with the link: as is said of it as a whole, or of its last step.
+fn link_loss(run: &Progress) -> Option<&Finding> {
+    let results = run.procedures.iter().rev().flat_map(|of| &of.results);
+    let mut all = results.flat_map(|result| result.findings.iter());
+    let lost = |finding: &Finding| {
+        matches!(
+            finding,
+            Finding::LinkLostAt { .. } | Finding::LinkLost { .. }
+        )
+    };
+    let found = all.find(|found| lost(&found.finding));
+    found.map(|found| &found.finding)
 }
 
 /// Whether what was being stopped is stopped, or cannot be stopped any more.
@@ -311,120 +351,4 @@ impl UnitMessages<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::{Arc, OnceLock};
-    use std::time::{Duration, Instant};
-
-    use super::*;
-    use ptu_report::words::Language;
-    use ptu_runs::bench_worker::LiveState;
-    use ptu_runs::data::ScriptsDirectory;
-    use ptu_runs::run::{RunPlan, Suite, Task};
-
-    /// Longest time anything here takes to come about.
-    const PATIENCE: Duration = Duration::from_secs(300);
-
-    fn scripts() -> ScriptsDirectory {
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts")
-    }
-
-    /// Blocks the bench thread, once it shows an idle unit, until it is released.
-    #[derive(Default)]
-    struct BlockedBench(OnceLock<Arc<LiveState>>, OnceLock<()>);
-
-    impl BlockedBench {
-        fn look(&self) {
-            let on_bench = std::thread::current().name() == Some("bench");
-            let idle = |live_state: &Arc<LiveState>| live_state.read().phase == Phase::Idle;
-            if on_bench && self.0.get().is_some_and(idle) {
-                self.1.wait();
-            }
-        }
-    }
-
-    /// Lets it go also when the test fails: a unit waits for its bench's thread.
-    struct ReleaseOnDrop(Arc<BlockedBench>);
-
-    impl Drop for ReleaseOnDrop {
-        fn drop(&mut self) {
-            let _ = self.0.1.set(());
-        }
-    }
-
-    fn order(database: &std::path::Path, setup: &BenchSetup) -> RunOrder {
-        let chosen = ["door/interlocks".to_owned()];
-        let suite = Suite::load(&scripts(), &chosen, setup).expect("the suite");
-        let task = |procedure| Task {
-            procedure,
-            options: Default::default(),
-        };
-        RunOrder {
-            plan: RunPlan {
-                tasks: suite.procedures.into_iter().map(task).collect(),
-                jobs: 1,
-                stop_on_fail: false,
-                operator: String::new(),
-                train: String::new(),
-                symptom: None,
-                scripts_sha256: suite.sha256,
-                adaptive: None,
-                continues: None,
-                measuring: Default::default(),
-            },
-            store: fault_db::Store::open(database, ptu_runs::clock::open_options())
-                .expect("a database"),
-            realtime: false,
-        }
-    }
-
-    /// Goal: one click is one run. Method: a bench that is held up and takes its orders late; what is
-    /// ordered meanwhile is refused, until the run is over.
-    #[test]
-    fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
-        let held_up = Arc::<BlockedBench>::default();
-        let wake = {
-            let held_up = held_up.clone();
-            Arc::new(move || held_up.look())
-        };
-        let mut unit = Unit::new(0, BenchChoice::default(), wake).expect("a thread");
-        let let_go = ReleaseOnDrop(held_up.clone());
-        assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
-        let setup = unit.choice.setup(&scripts()).expect("its configuration");
-        unit.bench.connect(setup.clone());
-        let began = Instant::now();
-        let until = |unit: &mut Unit, holds: &dyn Fn(&Unit) -> bool| {
-            let mut messages = Messages::default();
-            while !holds(unit) {
-                assert!(began.elapsed() < PATIENCE, "waited in vain");
-                let mut said = UnitMessages {
-                    unit: None,
-                    messages: &mut messages,
-                };
-                unit.poll(Language::English.words(), &mut said);
-                std::thread::sleep(Duration::from_millis(5));
-            }
-        };
-        until(&mut unit, &|unit| unit.phase() == Phase::Idle);
-        assert!(unit.may_run());
-
-        let folder = tempfile::tempdir().expect("a folder");
-        let database = folder.path().join("history.db");
-        assert!(unit.begin(order(&database, &setup), false));
-        // As far as anybody sees, nothing has begun.
-        assert_eq!(unit.phase(), Phase::Idle);
-        assert!(!unit.may_run());
-        assert!(!unit.begin(order(&database, &setup), false));
-
-        drop(let_go);
-        until(&mut unit, &|unit| unit.may_run());
-        assert_eq!(unit.runs_ended, 1);
-        assert!(unit.run.as_ref().is_some_and(|run| run.id().is_some()));
-        assert!(
-            unit.begin(order(&database, &setup), false),
-            "and then again"
-        );
-        until(&mut unit, &|unit| unit.may_run());
-        assert_eq!(unit.runs_ended, 2);
-    }
-}
+mod tests;

@@ -121,6 +121,20 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     );
     let found = latest(&counted.window);
     assert_eq!(found["run"]["symptom"], "brakes_late");
+    let part = match language {
+        Language::English => "the EB relay",
+        Language::Korean => relay,
+    };
+    assert!(
+        counted
+            .window
+            .shows(&fill(case.replace, &[("part", &part)]))
+    );
+    let id = text(&found["run"]["id"]);
+    assert!(
+        counted.window.shows_part(&id[id.len() - 8..]),
+        "the run is named"
+    );
     counted.click(case.record_repair);
     counted.window.wait_for(case.serial_new);
     counted.look("repair");

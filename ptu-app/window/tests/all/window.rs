@@ -7,7 +7,7 @@ use eframe::egui::{Event, Key, ViewportEvent, ViewportId};
 use ptu_options::Page;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::Phase;
-use ptu_window::Settings;
+use ptu_window::{Density, Settings};
 
 /// Runs on the simulated unit take as long as on a real one.
 fn realtime(page: Page) -> Settings {
@@ -87,6 +87,31 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "failed");
     assert_eq!(run["run"]["injected"], "eb_relay.slow");
+}
+
+/// Goal: the page of a run says what its reader needs. Method: a run that passes, in an operator's view, which has no source, then
+/// in an engineer's; its end leaves no blank page.
+#[test]
+fn an_operator_reads_no_source_and_a_passed_run_says_so() {
+    let place = Place::new();
+    let script = "procedure(title = \"Asks\", suspect = \"-\")\n\
+        step(\"asks\", do = [prompt(\"There?\", within = s(600))], measure = value(\"v\", speed))\n";
+    let scripts = own_scripts(&place, script);
+    let mut settings = settings(Page::Procedures);
+    settings.density = Density::Operator;
+    let mut window = Window::with(Place::new(), &scripts, settings);
+    let words = Language::English.words();
+    window.click(words.frame.connect);
+    window.wait_for("SIM-0001");
+    window.click(words.procedures.run);
+    window.wait_for("There?");
+    assert!(!window.shows_part("own.star:"));
+    window.click(words.frame.engineer);
+    window.wait_for_part("own.star:");
+    window.click("Yes");
+    window.wait_for_part("Run over: passed");
+    let passed = words.procedures.all_passed.replace("{n}", "1");
+    window.wait_for(&passed);
 }
 
 /// Goal: a note that is being written when the diagnosis comes is not lost to it. Method: whoever answers is

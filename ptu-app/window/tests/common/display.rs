@@ -107,6 +107,15 @@ impl Display {
         sent.expect("sent").check().expect("taken");
     }
 
+    /// Some program has something to paste.
+    pub fn has_copied(&self) -> bool {
+        let (connection, _) = x11rb::connect(Some(&self.name)).expect("the server");
+        let atom = connection.intern_atom(false, b"CLIPBOARD").expect("asked");
+        let atom = atom.reply().expect("an atom").atom;
+        let owner = connection.get_selection_owner(atom).expect("asked");
+        owner.reply().expect("an owner").owner != x11rb::NONE
+    }
+
     pub fn tool(&self, arguments: &[&str]) -> bool {
         let mut tool = Command::new("xdotool");
         tool.args(arguments).env("DISPLAY", &self.name);

@@ -13,6 +13,7 @@ use crate::run::content::body;
 use crate::run::plots::plots;
 use crate::run::sources::Sources;
 use crate::run::{Sheet, page, steps};
+use crate::trace_notes::{note_text as run_note_text, noted_by};
 use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
@@ -23,6 +24,7 @@ const MOST_STEPS: usize = 6;
 const MOST_COMPARED: usize = 24;
 const MOST_FAULTS: usize = 8;
 const MOST_EVENTS: usize = 10;
+const MOST_NOTES: usize = 3;
 
 impl CaseSheet {
     /// All of it.
@@ -137,13 +139,19 @@ impl CaseSheet {
         blocks
     }
 
-    /// What was done, the last of it.
+    /// What was done, the last of it, and what was said of the last run: who checked it.
     fn done(&self, words: &Words) -> Vec<Block> {
         let (common, report) = (&words.common, &words.report);
         let seen_again = |event: &&FaultEvent| event.kind != "recurred";
         let all: Vec<_> = self.fault.events.iter().filter(seen_again).collect();
         let last = all.get(all.len().saturating_sub(MOST_EVENTS)..);
-        let rows = last.unwrap_or_default().iter();
+        let events = last.unwrap_or_default().iter();
+        let run = &self.last().run;
+        let notes = run.notes.iter().rev().take(MOST_NOTES).rev();
+        let noted = notes.map(|note| {
+            let (who, text) = (noted_by(note, run, words), run_note_text(note, words));
+            done_row(note.at_us, common.note, &who, &text)
+        });
         let columns = [
             (common.time, 0.18),
             (report.what, 0.16),
@@ -154,7 +162,10 @@ impl CaseSheet {
             Block::Heading(sentence(words.faults.what_was_done)),
             table(
                 &columns,
-                rows.map(|event| self.told(event, words)).collect(),
+                events
+                    .map(|event| self.told(event, words))
+                    .chain(noted)
+                    .collect(),
             ),
         ]
     }
@@ -185,14 +196,18 @@ impl CaseSheet {
             }
             _ => note_text(&self.fault, event, words).into_owned(),
         };
-        let cells = [
-            local(event.at_us),
-            sentence(what),
-            clipped(&event.who, 40),
-            clipped(&note, 300),
-        ];
-        Row::words(RowKind::Head, cells)
+        done_row(event.at_us, what, &event.who, &note)
     }
+}
+
+fn done_row(at_us: i64, what: &str, who: &str, note: &str) -> Row {
+    let cells = [
+        local(at_us),
+        sentence(what),
+        clipped(who, 40),
+        clipped(note, 300),
+    ];
+    Row::words(RowKind::Head, cells)
 }
 
 fn table(columns: &[(&str, f32)], rows: Vec<Row>) -> Block {

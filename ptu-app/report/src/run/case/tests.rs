@@ -62,6 +62,19 @@ fn a_case_of_many_failures_has_its_signatures_on_page_one_of_three_at_most() {
     assert!(pages(&annex, words).expect("pages").len() > 3);
 }
 
+/// Goal: a signature is on the sheet that is written after it. Method: a note on the last run, as who checks it leaves one.
+#[test]
+fn a_repair_sheet_names_who_checked_its_last_run() {
+    let (stored, run) = stored(1, true);
+    repair(&stored);
+    let who = "Ahn Sook-ja";
+    let noted = stored.store.add_run_note(run, who, "Checked", 91_000_000);
+    noted.expect("a note");
+    let pages = pages(&case(&stored, false), Language::English.words()).expect("pages");
+    let all: String = pages.iter().map(|page| words_of(page)).collect();
+    assert!(all.contains(who), "{all}");
+}
+
 #[test]
 fn a_fault_that_nobody_repaired_has_a_sheet_that_says_so() {
     let (stored, run) = stored(1, true);

@@ -128,6 +128,10 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 format!("고장이 발견되지 않았습니다 ({sure})"),
             ]
         }
+        Conclusion::NothingSeen { made: 0, of } => [
+            format!("nothing was tested: none of {of} checks was made"),
+            format!("시험한 것이 없습니다: 점검 {of}개 중 0개 수행"),
+        ],
         Conclusion::NothingSeen { made, of } => [
             format!("not enough was run: {made} of {of} checks were made and show nothing wrong"),
             format!(
@@ -241,6 +245,12 @@ fn joined(named: &[Both], words: [&str; 2]) -> Both {
         let named: Vec<_> = named.iter().map(|part| &*part[language]).collect();
         named.join(words[language])
     })
+}
+
+/// Parts by their names alone, within a sentence.
+pub(super) fn all_called(parts: &[LruId], names: &[Lru]) -> Both {
+    let parts: Vec<_> = parts.iter().map(|part| called(part, names)).collect();
+    joined(&parts, [" and ", ", "])
 }
 
 /// A part by its name alone, within a sentence.

@@ -2,11 +2,12 @@
 
 use diagnosis::{CheckName, FaultText, NextCheck, Reason};
 use fault_db::RunDetail;
+use protocol::LruId;
 use protocol::injection::Lru;
 use ptu_runs::run_diagnosis::{Answer, Warning};
 
 use super::super::{Language, Words, content};
-use super::conclusion::{concluded, tells};
+use super::conclusion::{all_called, concluded, tells};
 use super::reasons::{fault_text, logged, step_expected, step_found, told, warned};
 
 /// The same in English and in Korean.
@@ -25,6 +26,11 @@ impl Words {
         let diagnosis = &answer.diagnosis;
         let next = diagnosis.next_check.as_ref();
         self.choose(concluded(&diagnosis.conclusion, next, &answer.names))
+    }
+
+    /// Parts by name alone, within a sentence.
+    pub fn parts(&self, parts: &[LruId], names: &[Lru]) -> String {
+        self.choose(all_called(parts, names))
     }
 
     /// What a check tells; empty if that is not known.

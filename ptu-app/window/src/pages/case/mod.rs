@@ -10,8 +10,9 @@ mod running;
 mod seen;
 mod stage;
 mod symptom;
+mod verdict;
 
-use eframe::egui::{Button, Response, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{Button, Color32, Response, RichText, ScrollArea, Ui, vec2};
 use fault_db::Id;
 
 use super::procedures::Concluded;
@@ -65,6 +66,11 @@ impl CasePage {
         }
         if self.repair.is_undone(context) && self.stage == Stage::Prove {
             self.stage = Stage::Repair;
+        }
+        // A run that goes on blanks the result it had.
+        let run = context.units.chosen().run_of_case();
+        if self.stage == Stage::Result && run.is_some_and(Progress::is_running) {
+            (self.found, self.stage) = (None, Stage::Find);
         }
         if matches!(self.stage, Stage::Find | Stage::Prove) {
             self.take_run(concluded, context);
@@ -124,7 +130,7 @@ impl CasePage {
             // Another repair is to be fitted and proved.
             self.proof = Proof::default();
         } else {
-            self.proof.ran(said, outcome.verdict);
+            self.proof.ran(said, run, outcome, context.words);
         }
         self.stage = next;
     }
@@ -225,9 +231,26 @@ impl CasePage {
     }
 }
 
+/// The button of a page that is pressed first.
+fn primary(ui: &mut Ui, text: &str, enabled: bool) -> Response {
+    let fill = Palette::of(ui).fill;
+    ui.scope(|ui| {
+        if !(enabled && ui.is_enabled()) {
+            return large(ui, text, enabled);
+        }
+        let widgets = &mut ui.visuals_mut().widgets;
+        for widget in [&mut widgets.inactive, &mut widgets.hovered] {
+            widget.weak_bg_fill = fill;
+            widget.fg_stroke.color = Color32::WHITE;
+        }
+        large(ui, text, true)
+    })
+    .inner
+}
+
 /// A button that is found and hit at arm's length.
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
-    let button = Button::new(RichText::new(text).size(Sizes::of(ui).text).strong());
+    let button = Button::new(RichText::new(text).size(Sizes::of(ui).text));
     let button = button.min_size(vec2(180.0, Sizes::of(ui).target));
     if ui.layout().is_horizontal() {
         return ui.add_enabled(enabled, button);

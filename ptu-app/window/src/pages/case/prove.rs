@@ -4,14 +4,18 @@ use btu_rig::procedure::Verdict;
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
 
+use super::result::headline;
+use super::verdict::Told;
 use super::{CasePage, Stage, large};
 use crate::pages::procedures::Concluded;
 use crate::parts::ActionPlace;
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette, Sizes};
-use ptu_report::words::fill;
+use ptu_report::naming::DOT;
+use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::clock::now_us;
+use ptu_runs::run::Outcome;
 
 /// How far the proof is.
 #[derive(Default)]
@@ -19,7 +23,7 @@ pub struct Proof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
-    /// What the last run says of the repair.
+    /// What the last run says of the repair, or what it came to itself.
     said: Option<String>,
     verdict: Option<Verdict>,
     /// Answers with the run that was signed, and by whom.
@@ -43,9 +47,21 @@ impl Proof {
     }
 
     /// A proof run has ended so.
-    pub fn ran(&mut self, said: Option<&Concluded>, verdict: Verdict) {
-        self.said = said.map(|said| said.text.clone());
-        self.verdict = Some(verdict);
+    pub fn ran(
+        &mut self,
+        said: Option<&Concluded>,
+        run: &Progress,
+        outcome: &Outcome,
+        words: &Words,
+    ) {
+        let of_repair = said.map(|said| said.text.clone());
+        let of_repair = of_repair.filter(|text| !text.is_empty());
+        self.said = Some(of_repair.unwrap_or_else(|| {
+            let told = Told::of(outcome.verdict, None);
+            let headline = headline(told, run, outcome, None, words);
+            [told.word(&words.case), &headline].join(DOT)
+        }));
+        self.verdict = Some(outcome.verdict);
     }
 
     /// Who checked the sheet of this run.
@@ -87,15 +103,8 @@ impl CasePage {
             self.running(ui, has_orders, Stage::Prove, context);
             return;
         }
-        if let Some(said) = self.proof.said.as_ref().filter(|said| !said.is_empty()) {
+        if let Some(said) = &self.proof.said {
             ui.label(RichText::new(said).size(Sizes::of(ui).text).strong());
-        } else if let Some(verdict) = self.proof.verdict {
-            let name = context.words.common.verdict(verdict);
-            let said = match verdict {
-                Verdict::Passed => words.no_fault.to_owned(),
-                _ => fill(words.not_finished, &[("verdict", &name)]),
-            };
-            ui.label(RichText::new(said).size(Sizes::of(ui).text));
         }
         let quiet = Palette::of(ui).quiet;
         ui.label(RichText::new(words.fitted_hint).color(quiet));

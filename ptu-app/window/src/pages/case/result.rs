@@ -3,29 +3,33 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Measurement, Verdict};
+use btu_rig::procedure::{Measurement, StepResult, Verdict};
 use eframe::egui::{RichText, Ui};
 use fault_db::Id;
 
 use super::evidence::Evidence;
-use super::{CasePage, Stage, large};
+use super::verdict::{Next, Told, named};
+use super::{CasePage, Stage, large, primary};
 use crate::pages::procedures::{Concluded, measurements};
-use crate::parts::ActionPlace;
+use crate::parts::{ActionPlace, chip};
 use crate::{Density, Destination, PageContext, Palette, Sizes};
 use ptu_report::diagnosis::MOST_REASONS;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Progress;
-use ptu_runs::failure::Exit;
+use ptu_runs::clock;
 use ptu_runs::run::Outcome;
 use ptu_runs::run_diagnosis::Answer;
 
 /// What was found in a run.
 pub struct Found {
     pub run: Id,
-    exit: Exit,
-    verdict: Verdict,
-    /// The conclusion of the diagnosis, in the language of the window.
+    /// When it ended, µs since 1970.
+    ended_us: i64,
+    told: Told,
+    /// In the language of the window.
     headline: String,
+    /// The conclusion of the diagnosis, likewise.
+    concluded: String,
     /// Parts in the order of their probability.
     pub parts: Vec<String>,
     answer: Option<Arc<Answer>>,
@@ -57,13 +61,15 @@ impl Found {
         let traces = answer.and_then(|answer| answer.traces.get(parts.first()?));
         let any = answer.and_then(|answer| answer.traces.values().flatten().next());
         let trace = traces.and_then(|traces| traces.first()).or(any).copied();
-        let part = parts.first().filter(|_| outcome.exit == Exit::Failed);
+        let part = parts.first().filter(|_| outcome.verdict == Verdict::Failed);
+        let told = Told::of(outcome.verdict, diagnosis.map(|said| &said.conclusion));
         let shown = |part: &String| Evidence::ask(part, (outcome.id, trace), run, context);
         Self {
             run: outcome.id,
-            exit: outcome.exit,
-            verdict: outcome.verdict,
-            headline: said.map(|said| said.text.clone()).unwrap_or_default(),
+            ended_us: clock::now_us(),
+            told,
+            headline: headline(told, run, outcome, answer, context.words),
+            concluded: said.map(|said| said.text.clone()).unwrap_or_default(),
             answer: said.and_then(|said| said.answer.clone()),
             shown_by: shown_by(run),
             evidence: part.map(shown),
@@ -80,6 +86,31 @@ impl Found {
             evidence.poll(context);
         }
     }
+}
+
+/// The headline with its parts, steps or reason.
+pub fn headline(
+    told: Told,
+    run: &Progress,
+    outcome: &Outcome,
+    answer: Option<&Answer>,
+    words: &Words,
+) -> String {
+    let parts = answer.map(|answer| words.parts(&named(&answer.diagnosis), &answer.names));
+    let error = |result: &&StepResult| result.verdict == Verdict::Error;
+    let why = || {
+        let mut results = run.procedures.iter().rev().flat_map(|of| &of.results);
+        let result = results.find(error);
+        result.map(|result| words.findings(&result.findings))
+    };
+    let why = why().filter(|_| told == Told::NotTested);
+    let counts: [(&str, &dyn std::fmt::Display); 4] = [
+        ("part", &parts.unwrap_or_default()),
+        ("why", &why.unwrap_or_default()),
+        ("n", &outcome.counts.run()),
+        ("all", &outcome.counts.planned),
+    ];
+    fill(told.headline(&words.case), &counts)
 }
 
 /// Procedures of a run that did not pass.
@@ -111,33 +142,66 @@ impl CasePage {
         let Some(found) = &mut self.found else {
             return;
         };
-        let headline = match found.exit {
-            Exit::Failed => found.headline.clone(),
-            Exit::Passed => words.case.no_fault.to_owned(),
-            _ => {
-                let verdict = words.common.verdict(found.verdict);
-                fill(words.case.not_finished, &[("verdict", &verdict)])
-            }
-        };
-        ui.label(
-            RichText::new(headline)
-                .size(Sizes::of(ui).headline)
-                .strong(),
-        );
+        let palette = Palette::of(ui);
+        ui.horizontal_wrapped(|ui| {
+            let word = found.told.word(&words.case);
+            chip(ui, word, found.told.colour(&palette));
+            let said: [(&str, &dyn std::fmt::Display); 2] = [
+                ("id", &found.run.short()),
+                ("time", &clock::local(found.ended_us)),
+            ];
+            ui.label(RichText::new(fill(words.case.of_run, &said)).color(palette.quiet));
+        });
+        let headline = RichText::new(&found.headline).size(Sizes::of(ui).headline);
+        ui.label(headline.strong());
         if let Some((step, measured)) = &found.shown_by {
             ui.label(RichText::new(&*words.content(step)).size(Sizes::of(ui).text));
             measurements(ui, words, measured);
         }
         reasons(ui, words, found);
         let place = ActionPlace::new(ui, "case result", found.run);
-        let mut next = None;
+        let check = found.answer.as_ref();
+        let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
+        let first = found.told.next(check.is_some());
+        let failed = matches!(found.told, Told::Part | Told::Unsure | Told::NoPart);
+        let may_run = context.units.chosen().may_run();
+        let mut asked = None;
         ui.horizontal_wrapped(|ui| {
-            let failed = found.exit == Exit::Failed;
-            if failed && place.clicked(&large(ui, words.case.record_repair, true)) {
-                next = Some(Stage::Repair);
-            }
-            if place.clicked(&large(ui, words.case.to_sheet, true)) {
-                next = Some(Stage::Sheet);
+            let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
+            let mut ways = [
+                (Next::Repair, words.case.record_repair, failed),
+                (Next::Check, words.case.run_next, check.is_some()),
+                (
+                    Next::ShowFailed,
+                    words.case.show_failed,
+                    first == Next::ShowFailed,
+                ),
+                (
+                    Next::WholeSuite,
+                    words.case.run_whole,
+                    first == Next::WholeSuite,
+                ),
+                (
+                    Next::RunAgain,
+                    words.case.run_again,
+                    first == Next::RunAgain,
+                ),
+                (Next::Sheet, words.case.to_sheet, true),
+            ];
+            ways.sort_by_key(|(way, ..)| *way != first);
+            for (way, text, _) in ways.iter().filter(|(.., offered)| *offered) {
+                let text = fill(text, &[("time", &time.as_deref().unwrap_or_default())]);
+                let runs = matches!(way, Next::Check | Next::WholeSuite | Next::RunAgain);
+                let button = match *way == first {
+                    true => primary(ui, &text, may_run || !runs),
+                    false => large(ui, &text, may_run || !runs),
+                };
+                if runs && !may_run {
+                    ui.label(RichText::new(words.procedures.connect_first).color(palette.quiet));
+                }
+                if place.clicked(&button) {
+                    asked = Some(*way);
+                }
             }
             if let Some(trace) = found.trace
                 && ui.button(words.diagnosis.traces).clicked()
@@ -148,49 +212,59 @@ impl CasePage {
                 context.go_to.push(Destination::Diagnosis(found.run));
             }
         });
-        next_check(ui, found, self.unit.as_deref(), context);
+        next_check(ui, found, words);
         if let Some(evidence) = &mut found.evidence {
             evidence.show(ui, words);
         }
-        if let Some(next) = next {
-            self.repair.prepare(found, &self.known);
-            self.stage = next;
+        match asked {
+            Some(Next::Repair) => {
+                self.repair.prepare(found, &self.known);
+                self.stage = Stage::Repair;
+            }
+            Some(Next::Sheet) => self.stage = Stage::Sheet,
+            Some(Next::ShowFailed) => context.go_to.push(Destination::Report(found.run)),
+            Some(Next::Check) => {
+                let check = check.map(|next| &next.check).zip(self.unit.clone());
+                context
+                    .go_to
+                    .extend(check.map(|(check, unit)| Destination::RunStep {
+                        procedure: check.procedure.clone(),
+                        step: check.step.clone(),
+                        unit,
+                    }));
+            }
+            Some(again @ (Next::WholeSuite | Next::RunAgain)) => {
+                let symptom = self.tiles.symptom();
+                context.go_to.push(match again {
+                    Next::WholeSuite => Destination::RunAll(symptom),
+                    _ => Destination::FindPart(symptom),
+                });
+                self.found = None;
+                self.stage = Stage::Find;
+            }
+            None => {}
         }
     }
 }
 
-/// What would tell more, and how long it takes.
-fn next_check(ui: &mut Ui, found: &Found, unit: Option<&str>, context: &mut PageContext<'_>) {
-    let words = context.words;
-    let (Some(answer), Some(unit)) = (&found.answer, unit) else {
+/// What would tell more.
+fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
+    let Some(answer) = &found.answer else {
         return;
     };
     let Some(next) = &answer.diagnosis.next_check else {
         return;
     };
-    ui.horizontal_wrapped(|ui| {
-        let step = words.content(&next.check.step);
-        let time = format!("{:.0} s", next.cost_s.ceil());
-        let said = [("check", &step as &dyn std::fmt::Display), ("time", &time)];
-        let mut said = fill(words.case.next_check, &said);
-        let tells = words.tells(next, &answer.names);
-        if !tells.is_empty() {
-            said = format!("{said}: {tells}");
-        }
-        ui.label(RichText::new(said).size(Sizes::of(ui).text));
-        let run = ui.button(words.diagnosis.run_it);
-        let run = match Sizes::of(ui).density {
-            Density::Operator => run,
-            Density::Engineer => run.on_hover_text(next.check.to_string()),
-        };
-        if run.clicked() {
-            context.go_to.push(Destination::RunStep {
-                procedure: next.check.procedure.clone(),
-                step: next.check.step.clone(),
-                unit: unit.to_owned(),
-            });
-        }
-    });
+    let step = words.content(&next.check.step);
+    let mut said = fill(words.case.next_check, &[("check", &step)]);
+    let tells = words.tells(next, &answer.names);
+    if !tells.is_empty() {
+        said = format!("{said}: {tells}");
+    }
+    let said = ui.label(RichText::new(said).size(Sizes::of(ui).text));
+    if Sizes::of(ui).density == Density::Engineer {
+        said.on_hover_text(next.check.to_string());
+    }
 }
 
 fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
@@ -209,4 +283,5 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
         };
         ui.label(format!("+ {said}"));
     }
+    ui.label(RichText::new(&found.concluded).color(quiet));
 }

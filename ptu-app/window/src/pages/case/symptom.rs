@@ -20,6 +20,11 @@ pub struct SymptomTiles {
 }
 
 impl SymptomTiles {
+    /// The one chosen, if it is known.
+    pub fn symptom(&self) -> Option<Symptom> {
+        self.chosen.clone().flatten()
+    }
+
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.symptoms.poll()
             && let Request::Failed(why) = &self.symptoms
@@ -87,7 +92,7 @@ impl CasePage {
             false => words.name_first,
         };
         if place.clicked(&find.on_disabled_hover_text(hint)) {
-            let symptom = self.tiles.chosen.clone().flatten();
+            let symptom = self.tiles.symptom();
             context.go_to.push(Destination::FindPart(symptom));
             self.stage = Stage::Find;
         }

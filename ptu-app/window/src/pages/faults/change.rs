@@ -1,12 +1,15 @@
 //! Changes to a fault: state, repairs and notes.
 
 use eframe::egui::{Button, Grid, RichText, Ui};
-use fault_db::{FaultAction, FaultState, FaultSummary, Id, RepairRecord};
+use fault_db::{FaultAction, FaultDetail, FaultState, FaultSummary, Id, RepairRecord, ToWithdraw};
+
+use super::closing::{Chosen, Closing};
 
 use crate::messages::Written;
 use crate::parts::{ActionPlace, field, name_edit, note_edit, typed};
 use crate::request::Request;
 use crate::{PageContext, Palette};
+use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock::now_us;
 
@@ -32,6 +35,8 @@ pub struct Change {
     under_way: Request<Written>,
     /// What is being recorded, as its button says it.
     what: &'static str,
+    /// It is itself an undoing.
+    takes_back: bool,
 }
 
 /// What is written about one fault.
@@ -41,6 +46,8 @@ struct Form {
     note: String,
     serial_old: String,
     serial_new: String,
+    /// The dialog is open.
+    closing: Option<Closing>,
 }
 
 impl Form {
@@ -83,7 +90,10 @@ impl Change {
             }
             Request::Ready(changed) => {
                 let said = fill(context.words.faults.recorded, &[("what", &self.what)]);
-                context.messages.note_written(said, changed);
+                match std::mem::take(&mut self.takes_back) {
+                    true => context.messages.note(said),
+                    false => context.messages.note_written(said, changed),
+                }
                 if self.form.of == Some(changed.fault) {
                     self.form = Form::about(changed.fault);
                 }
@@ -93,15 +103,17 @@ impl Change {
         }
     }
 
-    /// Shows it: only what the fault's state allows, and nothing while that state is being read again.
+    /// Shows it: only what the fault's state allows, and nothing while that state is being read again. Of a closed fault that
+    /// was seen again since, nothing.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         context: &mut PageContext<'_>,
-        fault: &FaultSummary,
-        is_stale: bool,
+        (detail, parts): (&FaultDetail, &PartNames),
+        (is_stale, seen_since): (bool, bool),
     ) {
         let words = context.words;
+        let fault = &detail.fault;
         if let Some(why) = context.only_reads() {
             ui.label(RichText::new(why).color(Palette::of(ui).quiet));
             return;
@@ -127,14 +139,20 @@ impl Change {
         ui.add_enabled_ui(may, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for state in TOWARDS {
-                    if fault.state.next(FaultAction::towards(state)).is_err() {
+                    // What closed it is taken back while nothing rests on that.
+                    let reopens = (fault.state, state) == (FaultState::Closed, FaultState::Open);
+                    let taken_back = reopens && was_closed_last(detail) && !seen_since;
+                    if fault.state.next(FaultAction::towards(state)).is_err() && !taken_back {
                         continue;
                     }
                     let reason = self.form.missing_reason(state, words);
                     let button = ui.add_enabled(reason.is_none(), Button::new(name(state, words)));
                     let button = button.on_disabled_hover_text(reason.unwrap_or_default());
                     if place.clicked(&button) {
-                        self.bring(context, fault, state, &who);
+                        match state {
+                            FaultState::Closed => self.form.closing = Some(Closing::default()),
+                            _ => self.bring(context, fault, state, &who),
+                        }
                     }
                 }
                 let written = !self.form.note.trim().is_empty();
@@ -150,6 +168,17 @@ impl Change {
                 }
             });
         });
+        let closes = may && fault.state.next(FaultAction::Close).is_ok();
+        let dialog = self.form.closing.as_mut().filter(|_| closes);
+        match dialog.and_then(|dialog| dialog.show(ui, (words, parts), detail)) {
+            Some(Chosen::Close(note)) => {
+                self.form.note = note;
+                self.bring(context, fault, FaultState::Closed, &who);
+                self.form.closing = None;
+            }
+            Some(Chosen::Cancel) => self.form.closing = None,
+            None => {}
+        }
         if who.is_empty() {
             ui.label(RichText::new(words.faults.who_first).color(Palette::of(ui).quiet));
         }
@@ -162,7 +191,13 @@ impl Change {
         state: FaultState,
         who: &str,
     ) {
-        self.what = name(state, context.words);
+        self.what = match state {
+            FaultState::Closed => context.words.common.closed,
+            _ => name(state, context.words),
+        };
+        let was_closed = fault.state == FaultState::Closed;
+        self.takes_back = was_closed;
+        let undone = context.words.faults.reopen;
         let repair = RepairRecord {
             part: fault.cause().to_owned(),
             serial_old: typed(&self.form.serial_old),
@@ -172,7 +207,10 @@ impl Change {
         let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
         self.under_way = Request::Pending(context.queries.run(move |paths| {
             let (store, at_us) = (paths.open()?, now_us());
-            if state == FaultState::Repaired {
+            if was_closed {
+                let why = if note.is_empty() { undone } else { &*note };
+                store.withdraw(id, ToWithdraw::default(), &who, why, at_us)?;
+            } else if state == FaultState::Repaired {
                 store.repair_case(id, &repair, &who, at_us)?;
             } else {
                 store.set_case_state(id, state, &who, &note, at_us)?;
@@ -180,6 +218,13 @@ impl Change {
             Ok(Written { fault: id, at_us })
         }));
     }
+}
+
+/// What a person wrote last about it is that it is closed.
+fn was_closed_last(detail: &FaultDetail) -> bool {
+    let mut written = detail.events.iter().rev();
+    let last = written.find(|event| !event.who.is_empty());
+    last.is_some_and(|event| event.kind == "closed")
 }
 
 fn name(state: FaultState, words: &Words) -> &'static str {

@@ -3,12 +3,13 @@
 mod bars;
 mod change;
 mod charts;
+mod closing;
 mod detail;
 mod filter;
 mod list;
 
 use eframe::egui::{CentralPanel, CollapsingHeader, RichText, ScrollArea, Ui};
-use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultSummary, Id};
+use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 
 use crate::page_context::FaultsOf;
 use crate::parts::look_back::since_us;
@@ -194,7 +195,14 @@ impl FaultsPage {
         match self.detail.get() {
             Request::Ready(detail) => {
                 detail::head(ui, (context.words, parts), detail, context.go_to);
-                self.change.show(ui, context, &detail.fault, stale);
+                let seen_since = self.history.get().value().is_some_and(|known| {
+                    known
+                        .faults
+                        .iter()
+                        .any(|other| takes_its_place(other, &detail.fault))
+                });
+                let stands = (stale, seen_since);
+                self.change.show(ui, context, (detail, parts), stands);
                 detail::rest(ui, (context.words, parts), detail, context.go_to);
             }
             Request::Failed(why) => {
@@ -209,6 +217,12 @@ impl FaultsPage {
             }
         }
     }
+}
+
+/// The same fault, seen again after this one was closed.
+fn takes_its_place(other: &FaultSummary, closed: &FaultSummary) -> bool {
+    let of = |fault: &FaultSummary| (fault.unit_serial.clone(), fault.code, fault.lru.clone());
+    other.state != FaultState::Closed && of(other) == of(closed)
 }
 
 fn detail_of(id: Id, context: &PageContext<'_>) -> Pending<FaultDetail> {

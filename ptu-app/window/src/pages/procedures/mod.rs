@@ -217,6 +217,7 @@ impl ProceduresPage {
             stop_on_fail: !adaptive && self.stop_on_fail,
             adaptive,
             symptom: None,
+            continues: None,
         };
         let connection = context.units.of_id(unit).map(|unit| unit.connection());
         if let Some(connection) = connection {

@@ -23,6 +23,8 @@ pub struct RunSettings {
     pub adaptive: bool,
     /// What who brought the unit said is wrong with it.
     pub symptom: Option<Symptom>,
+    /// The run that broke off, of which this is the rest.
+    pub continues: Option<fault_db::Id>,
 }
 
 /// Evaluates the scripts as they are on the disk now, for this unit.
@@ -110,7 +112,7 @@ pub fn order(
             symptom: how.symptom.map(|symptom| symptom.id),
             scripts_sha256: suite.sha256.clone(),
             adaptive,
-            continues: None,
+            continues: how.continues,
             measuring: Default::default(),
         },
         store,
@@ -163,6 +165,7 @@ mod tests {
             stop_on_fail: false,
             adaptive: false,
             symptom: None,
+            continues: None,
         };
         order(
             paths,

@@ -81,9 +81,8 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
             None => {
                 let elapsed = minutes(run.elapsed_s());
                 ui.label(fill(procedures.elapsed, &[("time", &elapsed)]));
-                if let Some(left) = run.left_s() {
-                    ui.label(fill(procedures.left, &[("time", &minutes(left))]));
-                }
+                let left = minutes(run.left_s());
+                ui.label(fill(procedures.left, &[("time", &left)]));
             }
         }
     });

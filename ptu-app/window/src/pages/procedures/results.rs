@@ -10,7 +10,7 @@ use protocol::lru;
 
 use crate::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::query_worker::QueryWorker;
-use crate::{Destination, Palette};
+use crate::{Density, Destination, Palette, Sizes};
 use ptu_report::naming::{self, PartNames, code, is_of_step};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
@@ -85,6 +85,10 @@ pub fn results(
         ui.separator();
     }
     faults(ui, (words, parts), run);
+    if found.is_empty() && run.id().is_some() {
+        let passed = fill(words.procedures.all_passed, &[("n", &run.counts().passed)]);
+        ui.label(RichText::new(passed).color(Palette::of(ui).quiet));
+    }
     let height = ui.spacing().interact_size.y;
     rows(ui, height, found.len(), |ui, range| {
         for (p, r, result) in found.get(range).into_iter().flatten() {
@@ -220,7 +224,7 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     });
 }
 
-/// The script around a line, which is marked.
+/// The script around a line, which is marked; an operator reads no source.
 pub fn source(
     ui: &mut Ui,
     texts: Option<&BTreeMap<String, String>>,
@@ -228,7 +232,8 @@ pub fn source(
     line: u32,
     around: Range<u32>,
 ) {
-    let Some(text) = texts.and_then(|texts| texts.get(path)) else {
+    let shown = texts.filter(|_| Sizes::of(ui).density == Density::Engineer);
+    let Some(text) = shown.and_then(|texts| texts.get(path)) else {
         return;
     };
     let palette = Palette::of(ui);

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
+use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions, Verdict};
 use protocol::{Duration, LruId};
 
+use ptu_runs::bench_worker::Progress;
 use ptu_runs::run::Task;
 
 /// How much of something is chosen.
@@ -65,6 +66,26 @@ impl Selection {
             only.set_step(procedure, place, true);
         }
         only
+    }
+
+    /// What a run left that broke off: of the procedure under way the step that it broke off and those after it, as that
+    /// procedure is set up again, and all of those that were still to come.
+    pub fn rest(run: &Progress) -> Self {
+        let mut rest = Self::default();
+        for of in &run.procedures {
+            let is_told = |verdict: Verdict| !matches!(verdict, Verdict::Error | Verdict::Aborted);
+            if of.verdict.is_some_and(is_told) {
+                continue;
+            }
+            let told = |place: &usize| {
+                let mut results = of.results.iter().filter(|step| step.index == *place);
+                results.any(|step| is_told(step.verdict) && step.verdict != Verdict::Skipped)
+            };
+            for place in of.chosen.iter().skip_while(|place| told(place)) {
+                rest.set_step(&of.procedure, *place, true);
+            }
+        }
+        rest
     }
 
     /// How much of a procedure is chosen.

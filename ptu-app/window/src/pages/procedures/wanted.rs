@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use btu_rig::procedure::plan::Connection;
-
 use super::prepare::RunSettings;
 use super::selection::Selection;
 use super::{ProceduresPage, controls};
@@ -17,8 +15,13 @@ pub(super) enum Wanted {
         procedure: String,
         step: String,
     },
-    /// As few steps as it takes to find the faulty part.
-    Part(Option<Symptom>),
+    /// As few steps as it takes to find the faulty part, or else all.
+    Part {
+        symptom: Option<Symptom>,
+        adaptive: bool,
+    },
+    /// What a run left that broke off with the link, once its unit is connected again.
+    Rest,
     /// These procedures, and those that suspect the part.
     Prove {
         procedures: BTreeSet<String>,
@@ -50,8 +53,13 @@ impl ProceduresPage {
     }
 
     /// Finds the faulty part of the chosen unit, which was brought with this symptom.
-    pub fn find_part(&mut self, symptom: Option<Symptom>, context: &mut PageContext<'_>) {
-        self.want(Wanted::Part(symptom), context);
+    pub fn find_part(
+        &mut self,
+        symptom: Option<Symptom>,
+        adaptive: bool,
+        context: &mut PageContext<'_>,
+    ) {
+        self.want(Wanted::Part { symptom, adaptive }, context);
     }
 
     /// Runs these procedures on the chosen unit, and those that suspect this part.
@@ -62,6 +70,21 @@ impl ProceduresPage {
         context: &mut PageContext<'_>,
     ) {
         self.want(Wanted::Prove { procedures, part }, context);
+    }
+
+    /// Runs what the chosen unit's run left when its link was lost.
+    pub fn go_on(&mut self, context: &mut PageContext<'_>) {
+        self.want(Wanted::Rest, context);
+    }
+
+    /// The scripts are those of the run that broke off.
+    pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
+        let suite = self.suite.value();
+        let waiting = context.units.chosen().waiting_run();
+        let same = suite
+            .zip(waiting)
+            .map(|(suite, (run, _))| suite.sha256 == run.scripts_sha256);
+        same.unwrap_or_default()
     }
 
     fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
@@ -77,27 +100,52 @@ impl ProceduresPage {
         let Some((wanted, unit)) = self.wanted.take() else {
             return;
         };
-        let connection = context.units.of_id(unit).map(|unit| unit.connection());
-        let connection = connection.unwrap_or(Connection::Btu);
+        let Some(of) = context.units.of_id(unit) else {
+            return;
+        };
+        let connection = of.connection();
+        let rest = of
+            .waiting_run()
+            .map(|(run, _)| (Selection::rest(run), run.id()));
+        if let Wanted::Rest = wanted
+            && rest.is_some()
+            && !of.may_run()
+        {
+            self.wanted = Some((wanted, unit));
+            return;
+        }
+        let was_of_case = of.is_run_of_case();
         let mut how = RunSettings {
             operator: context.settings.operator.clone(),
             repeat: 1,
             stop_on_fail: false,
             adaptive: false,
             symptom: None,
+            continues: None,
         };
         let all = &suite.procedures;
-        let of_case = !matches!(wanted, Wanted::Step { .. });
+        let of_case = match &wanted {
+            Wanted::Step { .. } => false,
+            Wanted::Rest => was_of_case,
+            Wanted::Part { .. } | Wanted::Prove { .. } => true,
+        };
         let (selection, what) = match wanted {
             Wanted::Step { procedure, step } => {
                 let found = all.iter().find(|known| known.id == procedure);
                 let only = found.map(|found| Selection::only(found, &step));
                 (only.unwrap_or_default(), format!("{procedure} {step}"))
             }
-            Wanted::Part(symptom) => {
-                how.adaptive = true;
-                how.symptom = symptom;
+            Wanted::Part { symptom, adaptive } => {
+                (how.adaptive, how.symptom) = (adaptive, symptom);
                 (Selection::usual(all, connection), String::new())
+            }
+            Wanted::Rest => {
+                // Another unit does not continue the run.
+                let Some((rest, continued)) = rest else {
+                    return;
+                };
+                how.continues = continued;
+                (rest, String::new())
             }
             Wanted::Prove { procedures, part } => {
                 let selection = Selection::proof(all, connection, &procedures, &part);

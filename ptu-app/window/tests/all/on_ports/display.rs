@@ -23,6 +23,9 @@ const PAGES: [&str; 6] = [
 /// Where the button that begins a run is on the page of procedures.
 const RUN: [&str; 2] = ["418", "95"];
 
+/// Where a field is on the page of sheets.
+const FIND: [&str; 2] = ["104", "129"];
+
 /// It is clicked again after this time.
 const AGAIN: Duration = Duration::from_secs(3);
 
@@ -61,6 +64,25 @@ fn every_page_is_shown_on_a_real_display() {
         }
         shown.close();
     }
+}
+
+/// Goal: a serial number goes from the window into another program. Method: what is typed into a field is copied by keys, and
+/// the display's clipboard has an owner.
+#[test]
+fn what_is_copied_is_on_the_clipboard_of_the_system() {
+    let place = Place::new();
+    let display = Display::new(&place);
+    let shown = Shown::open(&place, &display, &["--page", "report"]);
+    shown.settled();
+    assert!(!display.has_copied());
+    shown.until("a copy", |display| {
+        let [x, y] = FIND;
+        display.tool(&["mousemove", x, y, "click", "1"]);
+        display.tool(&["type", "R-0815"]);
+        display.tool(&["key", "ctrl+a", "ctrl+c"]);
+        display.has_copied()
+    });
+    shown.close();
 }
 
 /// Goal: a run is not lost with the window. Method: a run that takes as long as on a real unit, and the

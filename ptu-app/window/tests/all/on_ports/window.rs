@@ -2,8 +2,8 @@
 //! connection to the part that failed, the unit's log and its run record, in both languages.
 
 use crate::common::served::Unit;
-use crate::common::window::{Window, latest, settings};
-use crate::common::{Place, scripts};
+use crate::common::window::{Window, latest, own_scripts, settings};
+use crate::common::{Place, list, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::words::{Language, Words};
@@ -159,6 +159,44 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "error");
     assert_eq!(run["run"]["state"], "finished");
+}
+
+/// Goal: a pulled cable costs the step it broke off and no more. Method: the unit dies in the second step and is there again; the run
+/// goes on with that step, and is linked to the first.
+#[test]
+fn a_run_whose_link_was_lost_goes_on_with_its_step() {
+    let place = Place::new();
+    let script = "procedure(title = \"Asks\", suspect = \"-\")\n\
+        step(\"waits\", do = [wait(ms(200))], measure = value(\"v\", speed))\n\
+        step(\"asks\", do = [prompt(\"There?\", within = s(600))], measure = value(\"w\", speed))\n\
+        step(\"then\", do = [wait(ms(200))], measure = value(\"x\", speed))\n";
+    let scripts = own_scripts(&place, script);
+    let mut unit = Unit::on_tcp(&[]);
+    let mut settings = settings(Page::Procedures);
+    settings.unit.endpoint = unit.address.clone();
+    let mut window = Window::with(Place::new(), &scripts, settings);
+    let words = Language::English.words();
+    window.click(words.frame.connect);
+    window.wait_for("SIM-0001");
+    window.click(words.procedures.run);
+    window.wait_for("There?");
+    unit.kill();
+    window.wait_for_part("link lost at step 2 of 3");
+    window.wait_for(words.frame.link_gone);
+    window.wait_for(words.frame.end_run);
+    assert!(!window.shows_part("link 100"));
+    let broken = latest(&window)["run"]["id"].clone();
+    let _again = Unit::at_port(&unit.port);
+    window.click(words.frame.go_on);
+    window.wait_for("There?");
+    assert!(!window.shows(words.frame.link_gone));
+    window.click("Yes");
+    window.wait_for_part("Run over: passed");
+    let rest = latest(&window);
+    assert_eq!(rest["run"]["continues"], broken);
+    let steps = list(&rest["steps"]).iter();
+    let names: Vec<_> = steps.map(|step| &step["name"]).collect();
+    assert_eq!(names, ["asks", "then"], "{rest}");
 }
 
 #[test]

@@ -119,6 +119,10 @@ fn parts_that_are_not_told_apart_are_named_with_the_measurement() {
         passes_with: vec![id("relay")],
         fails_with: Vec::new(),
     };
+    let nothing = Conclusion::NothingSeen { made: 0, of: 40 };
+    let [english, korean] = concluded(&nothing, None, &[]);
+    assert!(english.starts_with("nothing was tested: none of 40 checks was made"));
+    assert!(korean.starts_with("시험한 것이 없습니다"));
     let (made, of) = (3, 40);
     let said = concluded(&Conclusion::NothingSeen { made, of }, Some(&next), &[]);
     let expected = [

@@ -1,0 +1,207 @@
+//! What a run comes to: a word, a headline, and what to do next. The run decides; a diagnosis adds a part to one that failed.
+
+use btu_rig::procedure::Verdict;
+use diagnosis::{Conclusion, Diagnosis};
+use eframe::egui::Color32;
+use protocol::LruId;
+
+use crate::Palette;
+use ptu_report::words::Case;
+
+/// What a case is told at its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// A check failed, and these parts have.
+    Part,
+    /// A check failed, and more than one part may have.
+    Unsure,
+    /// A check failed, and no part explains it.
+    NoPart,
+    /// What was run passed, and is not all.
+    NotAll,
+    NotTested,
+    Stopped,
+    NoFault,
+}
+
+/// What the accent button of a result does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    Repair,
+    Check,
+    ShowFailed,
+    WholeSuite,
+    RunAgain,
+    Sheet,
+}
+
+impl Told {
+    /// Of a run, with the diagnosis of one that failed.
+    pub fn of(run: Verdict, said: Option<&Conclusion>) -> Self {
+        match run {
+            Verdict::Failed => match said {
+                Some(Conclusion::Found { .. } | Conclusion::TwoFound { .. }) => Self::Part,
+                Some(said) if !parts(said).is_empty() => Self::Unsure,
+                _ => Self::NoPart,
+            },
+            Verdict::Inconclusive | Verdict::Skipped => Self::NotAll,
+            Verdict::Error => Self::NotTested,
+            Verdict::Aborted => Self::Stopped,
+            Verdict::Passed => Self::NoFault,
+        }
+    }
+
+    pub fn next(self, has_check: bool) -> Next {
+        match self {
+            Self::Part => Next::Repair,
+            Self::Unsure if has_check => Next::Check,
+            Self::Unsure | Self::NoPart => Next::ShowFailed,
+            Self::NotAll => Next::WholeSuite,
+            Self::NotTested | Self::Stopped => Next::RunAgain,
+            Self::NoFault => Next::Sheet,
+        }
+    }
+
+    pub fn word(self, words: &Case) -> &'static str {
+        match self {
+            Self::Part | Self::NoPart => words.is_failed,
+            Self::Unsure => words.is_unsure,
+            Self::NotAll => words.is_not_found,
+            Self::NotTested => words.is_not_tested,
+            Self::Stopped => words.is_stopped,
+            Self::NoFault => words.is_passed,
+        }
+    }
+
+    /// What stands below the word; of parts, steps and reasons it is completed with these.
+    pub fn headline(self, words: &Case) -> &'static str {
+        match self {
+            Self::Part => words.replace,
+            Self::Unsure => words.probably,
+            Self::NoPart => words.no_part_explains,
+            Self::NotAll => words.not_everything,
+            Self::NotTested => "{why}",
+            Self::Stopped => words.stopped_at,
+            Self::NoFault => words.no_fault,
+        }
+    }
+
+    pub fn colour(self, palette: &Palette) -> Color32 {
+        match self {
+            Self::Part | Self::NoPart => palette.bad,
+            Self::Unsure | Self::NotAll | Self::NotTested | Self::Stopped => palette.warn,
+            Self::NoFault => palette.good,
+        }
+    }
+}
+
+/// The parts that a headline names: those to replace, or the likeliest.
+pub fn named(diagnosis: &Diagnosis) -> Vec<LruId> {
+    let mut parts = parts(&diagnosis.conclusion);
+    if !matches!(diagnosis.conclusion, Conclusion::TwoFound { .. }) {
+        parts.truncate(1);
+    }
+    parts
+}
+
+fn parts(said: &Conclusion) -> Vec<LruId> {
+    match said {
+        Conclusion::Found { part, .. }
+        | Conclusion::OneOrCommon { part, .. }
+        | Conclusion::NotAlone { part, .. } => vec![part.clone()],
+        Conclusion::TwoFound { parts, .. } | Conclusion::Common { parts, .. } => parts.to_vec(),
+        Conclusion::OneOf { group, .. } => group.parts.clone(),
+        Conclusion::CannotTell { likely } => likely.iter().map(|part| part.lru.clone()).collect(),
+        Conclusion::NoFault { .. }
+        | Conclusion::NothingSeen { .. }
+        | Conclusion::BrokenOff
+        | Conclusion::NotWeighed => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use diagnosis::PartProbability;
+    use ptu_report::words::Language;
+
+    /// Goal: a diagnosis makes no failed run a sound unit, and no other run a part. Method: every pair of a run's verdict and what
+    /// a diagnosis comes to, against the table of the design.
+    #[test]
+    fn the_run_decides_and_a_diagnosis_adds_a_part_to_one_that_failed() {
+        let words = &Language::English.words().case;
+        let part: LruId = "eb_relay".parse().unwrap();
+        let probability = 0.9;
+        let likely = |n| {
+            let lru = part.clone();
+            vec![PartProbability { lru, probability }; n]
+        };
+        let parts = [part.clone(), part.clone()];
+        let found = Conclusion::Found {
+            part: part.clone(),
+            probability,
+        };
+        let said = [
+            (None, 2),
+            (Some(found), 0),
+            (Some(Conclusion::TwoFound { parts, probability }), 0),
+            (Some(Conclusion::CannotTell { likely: likely(3) }), 1),
+            (
+                Some(Conclusion::NotAlone {
+                    part: part.clone(),
+                    probability,
+                    other: part.clone(),
+                }),
+                1,
+            ),
+            (Some(Conclusion::CannotTell { likely: likely(0) }), 2),
+            (Some(Conclusion::NoFault { probability }), 2),
+            (Some(Conclusion::NothingSeen { made: 1, of: 2 }), 2),
+            (Some(Conclusion::BrokenOff), 2),
+            (Some(Conclusion::NotWeighed), 2),
+        ];
+        let failed = [
+            ("Failed", "Replace {part}", Next::Repair),
+            ("Not certain yet", "Probably {part}", Next::Check),
+            ("Failed", "No single part explains it", Next::ShowFailed),
+        ];
+        let others = [
+            (
+                Verdict::Inconclusive,
+                "Nothing found",
+                "Not everything was run",
+                Next::WholeSuite,
+            ),
+            (
+                Verdict::Skipped,
+                "Nothing found",
+                "Not everything was run",
+                Next::WholeSuite,
+            ),
+            (
+                Verdict::Error,
+                "Could not be tested",
+                "{why}",
+                Next::RunAgain,
+            ),
+            (
+                Verdict::Aborted,
+                "Stopped",
+                "Stopped at step {n} of {all}",
+                Next::RunAgain,
+            ),
+            (Verdict::Passed, "Passed", "No fault found", Next::Sheet),
+        ];
+        for (said, row) in &said {
+            let says = |run| {
+                let told = Told::of(run, said.as_ref());
+                (told.word(words), told.headline(words), told.next(true))
+            };
+            assert_eq!(says(Verdict::Failed), failed[*row], "{said:?}");
+            for (run, word, headline, next) in others {
+                assert_eq!(says(run), (word, headline, next), "{run} {said:?}");
+            }
+        }
+        assert_eq!(Told::Unsure.next(false), Next::ShowFailed);
+    }
+}
