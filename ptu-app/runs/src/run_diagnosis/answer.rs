@@ -230,11 +230,13 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
         run.run.verdict,
         Some(Verdict::Passed | Verdict::Skipped | Verdict::Inconclusive) | None
     );
-    // Of a run that tested nothing that is what there is to say.
+    // A step that no fault dictionary counts tests something, too.
+    let tested = |verdict: Verdict| matches!(verdict, Verdict::Passed | Verdict::Failed);
+    let tested = run.steps.iter().any(|step| tested(step.verdict));
     let nothing_wrong = match diagnosis.conclusion {
         Conclusion::NoFault { .. } => true,
         Conclusion::NothingSeen { made, .. } => {
-            made > 0 || run.run.verdict == Some(Verdict::Aborted)
+            made > 0 || tested || run.run.verdict == Some(Verdict::Aborted)
         }
         _ => false,
     };
