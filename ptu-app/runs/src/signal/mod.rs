@@ -12,6 +12,7 @@ mod receive;
 mod tests;
 mod twc;
 mod wav;
+mod wav_head;
 
 pub use make::{Made, Samples, Strength, Wave, bytes_of, make, reference_hz, rest_hz, samples};
 pub use picture::{Columns, Picture, Span};

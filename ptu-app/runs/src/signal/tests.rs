@@ -244,6 +244,119 @@ fn channels_are_read_each_and_not_without_end() {
     );
 }
 
+/// Goal: a recording is heard alike, whoever wrote it. Method: one code in every form: samples in containers that are wider, of
+/// floating point, of eight bits; a piece of odd length before the samples; lengths that a recorder did not know when it was
+/// killed; files for more than 4 GB.
+#[test]
+fn a_recording_in_any_form_is_heard_alike() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("x.wav");
+    let unit = unit();
+    let samples: Vec<f64> = CodeWave::new(3_000.0, 10.0, 1_000.0, RATE)
+        .take(96_000)
+        .map(|sample| sample / 4_096.0)
+        .collect();
+    let number = |bytes: usize, steps: f64| -> Vec<u8> {
+        let whole = |sample: &f64| ((sample * steps).round() / steps * 2f64.powi(31)) as i32;
+        let of = |sample| whole(sample).to_le_bytes()[4 - bytes..].to_vec();
+        samples.iter().flat_map(of).collect()
+    };
+    let level = |file: &[u8], what: &str| {
+        std::fs::write(&path, file).expect("written");
+        let reading = read(&path, &unit, 4_096.0).expect(what);
+        let [source] = &reading.sources[..] else {
+            panic!("{what}: {reading:?}");
+        };
+        source.level_mv.expect("a level")
+    };
+    let chunk =
+        |name: &[u8], length: u32, content: &[u8]| [name, &length.to_le_bytes(), content].concat();
+    let format = |kind: u16, bytes: u16, bits: u16| {
+        let words = [kind, 1, 48_000, 0, 0, 0, bytes, bits];
+        let words: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let valid = [22, 0, bits as u8, 0, 0, 0, 0, 0, kind as u8, 0];
+        let guid = [0, 0, 0, 0, 16, 0, 128, 0, 0, 170, 0, 56, 155, 113];
+        let extensible = [&0xfffeu16.to_le_bytes(), &words[2..], &valid, &guid].concat();
+        chunk(b"fmt ", 40, &extensible)
+    };
+    let riff = |format: &[u8], data: &[u8]| {
+        let data = chunk(b"data", data.len() as u32, data);
+        chunk(
+            b"RIFF",
+            4 + (format.len() + data.len()) as u32,
+            &[b"WAVE", format, &data].concat(),
+        )
+    };
+    let wide = number(2, 32_768.0);
+    let plain = riff(&format(1, 2, 16), &wide);
+    let expected = level(&plain, "16 bits");
+    let in_mv = samples.iter().map(|sample| sample * 4_096.0);
+    wav::write(&path, 48_000, 4_096.0, in_mv).expect("written");
+    let written = std::fs::read(&path).expect("our own");
+    assert!((level(&written, "our own") - expected).abs() < 1.0);
+    let is_expected = |file: &[u8], what: &str| {
+        let heard = level(file, what);
+        assert!(
+            (heard - expected).abs() < 0.02 * expected,
+            "{what}: {heard}, not {expected}"
+        );
+    };
+    is_expected(&riff(&format(1, 2, 12), &number(2, 2_048.0)), "12 in 16");
+    is_expected(&riff(&format(1, 3, 20), &number(3, 524_288.0)), "20 in 24");
+    is_expected(
+        &riff(&format(1, 4, 24), &number(4, 8_388_608.0)),
+        "24 in 32",
+    );
+    let bytes = samples
+        .iter()
+        .map(|sample| (sample * 128.0).round() as i8 as u8 ^ 128);
+    is_expected(
+        &riff(&format(1, 1, 8), &bytes.collect::<Vec<_>>()),
+        "8 bits",
+    );
+    let float: Vec<u8> = samples
+        .iter()
+        .flat_map(|sample| sample.to_le_bytes())
+        .collect();
+    is_expected(&riff(&format(3, 8, 64), &float), "64-bit float");
+    let odd = [chunk(b"LIST", 5, b"INFOx\0"), format(1, 2, 16)].concat();
+    is_expected(&riff(&odd, &wide), "a piece of five bytes");
+    for unknown in [0, u32::MAX] {
+        let mut file = plain.clone();
+        file[4..8].copy_from_slice(&unknown.to_le_bytes());
+        file[64..68].copy_from_slice(&unknown.to_le_bytes());
+        is_expected(&file, "a recorder that was killed");
+    }
+    let long = [&[0; 8][..], &(wide.len() as u64).to_le_bytes(), &[0; 12]].concat();
+    let content = [
+        b"WAVE".to_vec(),
+        chunk(b"ds64", 28, &long),
+        format(1, 2, 16),
+        chunk(b"data", u32::MAX, &wide),
+        chunk(b"LIST", 4, b"INFO"),
+    ];
+    is_expected(&chunk(b"RF64", u32::MAX, &content.concat()), "RF64");
+    let tail = |name: &[u8; 4]| {
+        [
+            &name[..],
+            b"\xf3\xac\xd3\x11\x8c\xd1\x00\xc0\x4f\x8e\xdb\x8a",
+        ]
+        .concat()
+    };
+    let wave64 = |name, content: &[u8]| {
+        let length = (24 + content.len() as u64).to_le_bytes();
+        [tail(name), length.to_vec(), content.to_vec()].concat()
+    };
+    let content = [
+        wave64(b"fmt ", &format(1, 2, 16)[8..]),
+        wave64(b"data", &wide),
+    ]
+    .concat();
+    let riff64 = b"riff\x2e\x91\xcf\x11\xa5\xd6\x28\xdb\x04\xc1\x00\x00";
+    let file = [&riff64[..], &[0; 8], &tail(b"wave"), &content].concat();
+    is_expected(&file, "Wave64");
+}
+
 /// Goal: what is no recording of such signals ends in words, not in a code and not in a panic.
 #[test]
 fn what_is_no_such_signal_is_said() {

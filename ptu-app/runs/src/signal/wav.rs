@@ -1,20 +1,27 @@
 //! WAV files: samples of any usual format, as mV.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::Path;
 
-use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
+use hound::{SampleFormat, WavSpec, WavWriter};
 
+use super::wav_head::{self, Head};
 use crate::failure::Failure;
 use crate::new_file::{NewFile, kind};
 
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
 
+/// Bytes that are read together, more than a frame of any number of channels.
+const PIECE: usize = 1 << 20;
+
 /// A file to read.
 pub struct Wav {
-    reader: WavReader<BufReader<File>>,
+    file: BufReader<File>,
+    head: Head,
+    /// Bytes that are still to come, as far as the file says.
+    left: Option<u64>,
     shown: String,
 }
 
@@ -33,35 +40,36 @@ impl Wav {
     /// It cannot be read, or is no WAV file that can be understood.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
-        let failed = |error: hound::Error| match error {
-            hound::Error::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-                Failure::bench(format!("cannot read {shown}: {error}"))
-            }
-            error => Failure::usage(format!(
-                "{shown} is no WAV file that can be read ({error}); give a file of PCM or floating-point samples"
-            )),
-        };
         let file = fault_db::open_regular_file(path)
             .map_err(|error| Failure::bench(format!("cannot read {shown}: {error}")))?;
-        let reader = WavReader::new(BufReader::new(file)).map_err(failed)?;
-        let spec = reader.spec();
-        if spec.channels == 0 || !(1..=MOST_HZ).contains(&spec.sample_rate) {
+        let mut file = BufReader::new(file);
+        let head = wav_head::read(&mut file).map_err(|why| {
+            Failure::usage(format!(
+                "{shown} is no WAV file that can be read ({why}); give a file of PCM or floating-point samples"
+            ))
+        })?;
+        if !(1..=MOST_HZ).contains(&head.sample_hz) {
             return Err(Failure::usage(format!(
                 "{shown} has {} channels at {} Hz: nothing that can be read",
-                spec.channels, spec.sample_rate
+                head.channels, head.sample_hz
             )));
         }
-        Ok(Self { reader, shown })
+        Ok(Self {
+            file,
+            head,
+            left: head.length,
+            shown,
+        })
     }
 
     /// Rate of its samples, Hz.
     pub fn sample_hz(&self) -> u32 {
-        self.reader.spec().sample_rate
+        self.head.sample_hz
     }
 
     /// Number of channels.
     pub fn channels(&self) -> usize {
-        usize::from(self.reader.spec().channels)
+        usize::from(self.head.channels)
     }
 
     /// The next samples, mV, of its first `most` channels, `frames` of each or less at its end, and why there are no more.
@@ -72,41 +80,38 @@ impl Wav {
         most: usize,
         full_scale_mv: f64,
     ) -> (Vec<Vec<f32>>, Option<End>) {
-        let WavSpec {
-            channels,
-            bits_per_sample,
-            sample_format,
-            ..
-        } = self.reader.spec();
-        let channels = usize::from(channels);
+        let (channels, bytes) = (self.channels(), self.head.bytes);
+        let frame = channels * bytes;
+        let at_once = PIECE / frame * frame;
+        let wanted = frames as u64 * frame as u64;
+        let allowed = self.left.map_or(wanted, |left| left.min(wanted));
         let mut block = vec![Vec::new(); channels.min(most)];
-        let (mut place, mut passed) = (0, 0);
-        let mut pass = |sample: f64| {
-            if let Some(channel) = block.get_mut(place) {
-                let mv = sample * full_scale_mv;
-                channel.push(if mv.is_finite() { mv as f32 } else { 0.0 });
+        let (mut got, mut read, mut failed) = (0, Vec::new(), None);
+        while got < allowed && failed.is_none() {
+            read.clear();
+            let piece = (allowed - got).min(at_once as u64);
+            let result = (&mut self.file).take(piece).read_to_end(&mut read);
+            failed = result.err().map(|error| error.to_string());
+            got += read.len() as u64;
+            // A frame that is cut off in its middle is none.
+            for frame in read.chunks_exact(frame) {
+                for (sample, channel) in frame.chunks_exact(bytes).zip(&mut block) {
+                    let mv = self.head.sample(sample) * full_scale_mv;
+                    channel.push(if mv.is_finite() { mv as f32 } else { 0.0 });
+                }
             }
-            place = (place + 1) % channels;
-            passed += 1;
-        };
-        let wanted = frames * channels;
-        let read: hound::Result<()> = match sample_format {
-            SampleFormat::Float => (self.reader.samples::<f32>().take(wanted))
-                .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample)))),
-            SampleFormat::Int => {
-                let full = 2f64.powi(i32::from(bits_per_sample) - 1);
-                (self.reader.samples::<i32>().take(wanted))
-                    .try_for_each(|sample| sample.map(|sample| pass(f64::from(sample) / full)))
+            if (read.len() as u64) < piece {
+                break;
             }
+        }
+        if got < allowed && self.left.is_some() {
+            failed.get_or_insert("it ends before all samples that its head tells of".to_owned());
+        }
+        let end = match failed {
+            Some(what) => Some(End::Broken(format!("{}: {what}", self.shown))),
+            None => (got < wanted).then_some(End::Whole),
         };
-        // A frame that is cut off in its middle is none.
-        let whole = block.last().map_or(0, Vec::len);
-        block.iter_mut().for_each(|channel| channel.truncate(whole));
-        let end = match read {
-            Ok(()) if passed < wanted => Some(End::Whole),
-            Ok(()) => None,
-            Err(error) => Some(End::Broken(format!("{}: {error}", self.shown))),
-        };
+        self.left = self.left.map(|left| left - got);
         (block, end)
     }
 }

@@ -1,0 +1,204 @@
+//! Heads of WAV files: RIFF, its form for more than 4 GB (RF64, EBU Tech 3306), and Sony's Wave64. What follows the head
+//! are samples in containers of whole bytes, the highest bits of which are used (WAVEFORMATEXTENSIBLE).
+
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// Pieces of a file before its samples; one of a program that writes recordings has a few.
+const MOST_CHUNKS: usize = 1_000;
+/// As much of a format as says anything here, bytes.
+const FORMAT: u64 = 40;
+/// A length that its writer did not know, or that stands elsewhere.
+const OPEN: u64 = 0xffff_ffff;
+const BEGINNINGS: [&[u8; 4]; 4] = [b"RIFF", b"RF64", b"BW64", b"riff"];
+/// What a Wave64 file begins with, and what stands behind the length of the whole.
+const W64_RIFF: [u8; 16] = *b"riff\x2e\x91\xcf\x11\xa5\xd6\x28\xdb\x04\xc1\x00\x00";
+const W64_WAVE: [u8; 16] = *b"wave\xf3\xac\xd3\x11\x8c\xd1\x00\xc0\x4f\x8e\xdb\x8a";
+const PCM: u16 = 1;
+const FLOAT: u16 = 3;
+const EXTENSIBLE: u16 = 0xfffe;
+
+/// What the samples are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Head {
+    pub channels: u16,
+    /// Hz.
+    pub sample_hz: u32,
+    /// Of one sample of one channel.
+    pub bytes: usize,
+    pub is_float: bool,
+    /// Bytes of all samples; `None` up to the end of the file, as a recorder that was killed leaves it.
+    pub length: Option<u64>,
+}
+
+impl Head {
+    /// A sample of as many bytes as one has, as a part of full scale.
+    pub fn sample(&self, bytes: &[u8]) -> f64 {
+        match *bytes {
+            // Of eight bits alone there is no sign.
+            [byte] => (f64::from(byte) - 128.0) / 128.0,
+            [a, b, c, d] if self.is_float => f32::from_le_bytes([a, b, c, d]).into(),
+            [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+            _ => {
+                // The highest bits count.
+                let mut number = [0; 4];
+                number[4 - bytes.len()..].copy_from_slice(bytes);
+                f64::from(i32::from_le_bytes(number)) / 2f64.powi(31)
+            }
+        }
+    }
+}
+
+/// One piece of a file.
+struct Chunk {
+    name: [u8; 4],
+    length: u64,
+}
+
+/// How pieces are named and measured.
+#[derive(Clone, Copy)]
+enum Form {
+    Riff,
+    Wave64,
+}
+
+/// Reads up to the first sample.
+///
+/// # Errors
+/// Why it is no WAV file that can be read.
+pub(super) fn read(file: &mut (impl Read + Seek)) -> Result<Head, String> {
+    let mut begin = [0; 12];
+    let (name, rest) = begin.split_at_mut(4);
+    file.read_exact(name).map_err(ended)?;
+    if !BEGINNINGS.iter().any(|known| *known == name) {
+        return Err("it begins as no WAV file does".to_owned());
+    }
+    file.read_exact(rest).map_err(ended)?;
+    let [a, b, c, d, size @ .., _, _, _, _] = begin;
+    let form = match &[a, b, c, d] {
+        b"RIFF" | b"RF64" | b"BW64" if &begin[8..] == b"WAVE" => Form::Riff,
+        b"riff" => Form::Wave64,
+        _ => return Err("it begins as no WAV file does".to_owned()),
+    };
+    let is_open = matches!(u64::from(u32::from_le_bytes(size)), 0 | OPEN);
+    if matches!(form, Form::Wave64) {
+        let mut whole = [0; 40];
+        whole[..12].copy_from_slice(&begin);
+        file.read_exact(&mut whole[12..]).map_err(ended)?;
+        if whole[..16] != W64_RIFF || whole[24..] != W64_WAVE {
+            return Err("it begins as no Wave64 file does".to_owned());
+        }
+    }
+    let (mut head, mut long) = (None, None);
+    for _ in 0..MOST_CHUNKS {
+        let chunk = form.chunk(file).map_err(ended)?;
+        match &chunk.name {
+            b"fmt " => head = Some(format(&start(file, &chunk, form)?)?),
+            b"ds64" => long = at(&start(file, &chunk, form)?, 8).map(u64::from_le_bytes),
+            b"data" => {
+                let head: Head = head.ok_or("its samples come before what they are")?;
+                let length = match (chunk.length, long) {
+                    (OPEN, Some(long)) => Some(long),
+                    (OPEN, None) => None,
+                    (0, _) if is_open => None,
+                    (length, _) => Some(length),
+                };
+                return Ok(Head { length, ..head });
+            }
+            _ => form
+                .pass(file, filled(chunk.length, form.step()))
+                .map_err(ended)?,
+        }
+    }
+    Err("it has no samples".to_owned())
+}
+
+impl Form {
+    fn chunk(self, file: &mut impl Read) -> io::Result<Chunk> {
+        let mut head = [0; 24];
+        let head = match self {
+            Self::Riff => &mut head[..8],
+            Self::Wave64 => &mut head[..],
+        };
+        file.read_exact(head)?;
+        let length = match self {
+            Self::Riff => at(head, 4).map(|size| u64::from(u32::from_le_bytes(size))),
+            // The length of a piece counts its own head.
+            Self::Wave64 => at(head, 16).map(|size| u64::from_le_bytes(size).saturating_sub(24)),
+        };
+        Ok(Chunk {
+            name: at(head, 0).unwrap_or_default(),
+            length: length.unwrap_or_default(),
+        })
+    }
+
+    /// Pieces begin at multiples of so many bytes.
+    fn step(self) -> u64 {
+        match self {
+            Self::Riff => 2,
+            Self::Wave64 => 8,
+        }
+    }
+
+    fn pass(self, file: &mut impl Seek, bytes: u64) -> io::Result<()> {
+        let forward = i64::try_from(bytes).map_err(|_| io::ErrorKind::UnexpectedEof)?;
+        file.seek(SeekFrom::Current(forward)).map(drop)
+    }
+}
+
+/// The beginning of a piece, behind which the file then stands.
+fn start(file: &mut (impl Read + Seek), chunk: &Chunk, form: Form) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let taken = chunk.length.min(FORMAT);
+    file.take(taken).read_to_end(&mut bytes).map_err(ended)?;
+    if bytes.len() as u64 != taken {
+        return Err(ended(io::ErrorKind::UnexpectedEof.into()));
+    }
+    let rest = filled(chunk.length, form.step()) - taken;
+    form.pass(file, rest).map_err(ended)?;
+    Ok(bytes)
+}
+
+fn format(bytes: &[u8]) -> Result<Head, String> {
+    let number = |place| at(bytes, place).map(u16::from_le_bytes);
+    let missing = "what its samples are is cut off";
+    let kind = match number(0).ok_or(missing)? {
+        EXTENSIBLE => number(24).ok_or(missing)?,
+        kind => kind,
+    };
+    let channels = number(2).ok_or(missing)?;
+    let sample_hz = at(bytes, 4).map(u32::from_le_bytes).ok_or(missing)?;
+    let (frame, bits) = (number(12).ok_or(missing)?, number(14).ok_or(missing)?);
+    let bytes = match channels {
+        0 => 0,
+        _ if frame % channels == 0 && frame >= channels => usize::from(frame / channels),
+        _ => usize::from(bits.div_ceil(8)),
+    };
+    match (kind, bytes) {
+        (PCM, 1..=4) | (FLOAT, 4 | 8) => Ok(Head {
+            channels,
+            sample_hz,
+            bytes,
+            is_float: kind == FLOAT,
+            length: None,
+        }),
+        (PCM | FLOAT, _) => Err(format!("samples of {bytes} bytes")),
+        (other, _) => Err(format!("its samples are packed, as format {other}")),
+    }
+}
+
+/// A length with what fills it up; a damaged one may be any.
+fn filled(length: u64, step: u64) -> u64 {
+    length.checked_next_multiple_of(step).unwrap_or(u64::MAX)
+}
+
+/// So many bytes from a place on, if there are as many.
+fn at<const N: usize>(bytes: &[u8], place: usize) -> Option<[u8; N]> {
+    bytes.get(place..place + N)?.try_into().ok()
+}
+
+fn ended(error: io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => "it ends before its samples".to_owned(),
+        _ => error.to_string(),
+    }
+}
