@@ -384,7 +384,7 @@ fn files_that_are_wrong_are_told_with_the_place() {
     let diff = |file: &str| place.ptu(&["trace", "diff", "latest", file]);
     for (text, told) in [
         ("", "it is empty"),
-        ("time_s,speed\n", "it has no samples"),
+        ("time_s,speed\n", "no rows stand below the headings"),
         (
             "time_s,speed\n0,1\n1,fast\n",
             "line 3, column 2 (\"speed\"): \"fast\" is no number",

@@ -32,7 +32,7 @@ use protocol::link::{End, Link};
 use protocol::message::{Address as Party, CATALOGUE, Channel as WireChannel, Message};
 use protocol::{Backlog, Duration, Instant};
 use ptu_report::Target;
-use ptu_report::trace_io::{Seconds, import};
+use ptu_report::trace_io::{Columns, Seconds, import};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::drive::{SectionChoice, Setting};
 use ptu_runs::link::Endpoint;
@@ -299,7 +299,7 @@ fn tables_and_messages_of_other_programs() {
     let file = |name: &str| folder.path().join(name);
     let read = |file: &PathBuf, bytes: &[u8]| {
         std::fs::write(file, bytes).expect("written");
-        let _ = import(file, &known);
+        let _ = import(file, &known, &Columns::default());
     };
     let tables = [
         "time_s,speed (km/h),eb,mode\n-0.1,1.5,0,off\n-0.05,2,1,ato\n0,,true,1\n",
@@ -315,7 +315,7 @@ fn tables_and_messages_of_other_programs() {
     let beside = file("t.csv-metadata.json");
     fuzz("csv-description", [about]).run(20_000, |bytes| {
         std::fs::write(&beside, bytes).expect("written");
-        let _ = import(&csv, &known);
+        let _ = import(&csv, &known, &Columns::default());
     });
     let mcap = file("t.mcap");
     let examples = [mcap_file(None), mcap_file(Some(mcap::Compression::Zstd))];

@@ -68,16 +68,15 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         is_row_by_row &= held.is_row_by_row;
         // Each column goes as soon as it is aligned: a large file is in memory once.
         for (channel, column) in table.channels.into_iter().zip(table.columns) {
-            if !names.insert(channel.name.clone()) {
-                return Err(Failure::usage(format!(
-                    "signal \"{}\" comes twice in the file",
-                    channel.name
-                )));
-            }
+            let is_first = names.insert(channel.name.clone());
             if known.contains(channel.name.as_str()) {
+                if !is_first {
+                    let what = format!("signal \"{}\" comes twice in the file", channel.name);
+                    return Err(Failure::usage(what));
+                }
                 imported.channels.push(channel);
                 imported.columns.push(held.column(&column));
-            } else {
+            } else if is_first {
                 unknown.push(channel.name);
             }
         }

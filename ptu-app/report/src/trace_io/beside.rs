@@ -6,13 +6,14 @@ use fault_db::{Id, Store, TraceData};
 
 use super::align::{Aligned, align};
 use super::series::import;
+use super::times::Columns;
 use ptu_runs::failure::Failure;
 use ptu_runs::replay::{Rule, rule_between};
 
 /// Names that are told of a file that has none of the trace's signals.
 const SHOWN_NAMES: usize = 10;
 
-/// Reads a file and lays it `shift_us` later beside the trace `id`, whose samples are `came`.
+/// Reads a file, as was `asked`, and lays it `shift_us` later beside the trace `id`, whose samples are `came`.
 ///
 /// # Errors
 /// The file cannot be read, or has no signal or no time in common with the trace.
@@ -21,8 +22,9 @@ pub fn beside(
     (id, came): (Id, TraceData),
     file: &Path,
     shift_us: i64,
+    asked: &Columns,
 ) -> Result<(Aligned, Rule), Failure> {
-    let import = import(file, &came.channels)?;
+    let import = import(file, &came.channels, asked)?;
     let aligned = align(import, came, shift_us)?;
     // Nothing compared must not look like nothing that differs.
     if aligned.imported.channels.is_empty() {
@@ -34,7 +36,7 @@ pub fn beside(
             .map(String::as_str)
             .collect();
         return Err(Failure::usage(format!(
-            "{}: none of its signals is one of the trace's: {}{more}",
+            "{}: none of its signals is one of the trace's: {}{more}; `--map NAME=SIGNAL` says what one is",
             file.display(),
             shown.join(", ")
         )));

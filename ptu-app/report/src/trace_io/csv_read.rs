@@ -1,40 +1,42 @@
-//! Imports comma-separated values: our own exports, or any table with times in its first column.
+//! Imports comma-separated values: our own exports, or any table with a column of times.
 
-use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader, Read};
+use std::cell::Cell;
+use std::collections::HashSet;
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
+use std::rc::Rc;
 
+use csv::{ByteRecord, Reader, ReaderBuilder};
 use fault_db::{Channel, open_regular_file, read_regular_file};
 use serde_json::Value;
 
 use super::about::TraceInfo;
 use super::csv::beside;
-use super::known::KnownSignals;
-use super::series::{Import, Table, check_size, wrong};
+use super::known::{Known, KnownSignals};
+use super::series::{Import, Table, check_size, in_order, plain, wrong};
+use super::times::{Columns, TimeUnit};
+use super::utf16::Text;
 use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::Failure;
 
-/// A longer line is none of a table of signals.
+/// A longer line is none of a table of signals, bytes; of these the library reads ahead a part.
 const MAX_LINE: u64 = 1 << 20;
+/// Lines before the first row of a table: what a recorder says of itself.
+const MOST_BEFORE: usize = 1_000;
+/// Lines by which the separator is found.
+const LOOKED_AT: usize = 50;
 
-/// Reads a file: headings in the first line, seconds in the first column, separated by comma, semicolon or
-/// tab.
-pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
+/// Reads a file: what a recorder says of itself, headings, perhaps units, then a row a line; separated by comma, semicolon or tab.
+pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let about = about(file)?;
     let opened = open_regular_file(file);
     let opened = opened
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
-    let mut lines = Lines {
-        file,
-        input: BufReader::new(opened),
-        number: 0,
-        bytes: Vec::new(),
-    };
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let table = read_table(&mut lines, &KnownSignals::of(&[own, known]))?;
+    let (table, is_utc) = read_table(file, opened, &KnownSignals::of(&[own, known]), asked)?;
     Ok(Import {
         tables: vec![table],
-        is_utc: false,
+        is_utc,
         about,
     })
 }
@@ -57,228 +59,305 @@ fn about(file: &Path) -> Result<Option<TraceInfo>, Failure> {
     Ok(note.and_then(|note| serde_json::from_value(note.clone()).ok()))
 }
 
-struct Lines<'f, R> {
+/// The records of a table, one by one.
+struct Records<'f, R> {
     file: &'f Path,
-    input: R,
-    number: usize,
-    bytes: Vec<u8>,
+    input: Reader<Watched<R>>,
+    /// Bytes that were read since the last record.
+    since: Rc<Cell<u64>>,
+    record: ByteRecord,
+    cells: Vec<String>,
+    /// Where the last record began that was read.
+    line: u64,
+    separator: u8,
 }
 
-impl<R: BufRead> Lines<'_, R> {
-    /// The next line that has something in it.
-    fn next(&mut self) -> Result<Option<&str>, Failure> {
+/// Refuses a record without an end: a quotation mark that is not closed makes one of a whole file.
+struct Watched<R> {
+    input: R,
+    since: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Watched<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        if self.since.get() > MAX_LINE {
+            return Err(io::Error::other(
+                "longer than a line of a table can be, or a quotation mark is not closed",
+            ));
+        }
+        let read = self.input.read(to)?;
+        self.since.set(self.since.get() + read as u64);
+        Ok(read)
+    }
+}
+
+impl<'f, R: Read> Records<'f, R> {
+    fn new(
+        file: &'f Path,
+        mut input: BufReader<Text<R>>,
+    ) -> Result<Records<'f, BufReader<Text<R>>>, Failure> {
+        let begin = input
+            .fill_buf()
+            .map_err(|error| wrong(file, &error.to_string()))?;
+        let separator = separator(&String::from_utf8_lossy(begin));
+        let since = Rc::new(Cell::new(0));
+        let watched = Watched {
+            input,
+            since: since.clone(),
+        };
+        let mut form = ReaderBuilder::new();
+        form.delimiter(separator).has_headers(false).flexible(true);
+        Ok(Records {
+            file,
+            input: form.comment(Some(b'#')).from_reader(watched),
+            since,
+            record: ByteRecord::new(),
+            cells: Vec::new(),
+            line: 0,
+            separator,
+        })
+    }
+}
+
+impl<R: Read> Records<'_, R> {
+    /// The next record that has something in it; bytes that are no UTF-8 are Latin-1.
+    fn next(&mut self) -> Result<bool, Failure> {
         loop {
-            self.bytes.clear();
-            self.number += 1;
-            let read = (&mut self.input)
-                .take(MAX_LINE)
-                .read_until(b'\n', &mut self.bytes)
-                .map_err(|error| {
-                    Failure::usage(format!("cannot read {}: {error}", self.file.display()))
-                })?;
-            if read == 0 {
-                return Ok(None);
+            self.since.set(0);
+            let more = self.input.read_byte_record(&mut self.record);
+            if !more.map_err(|error| self.unread(&error.to_string()))? {
+                return Ok(false);
             }
-            if read as u64 == MAX_LINE {
-                return Err(self.wrong("it is longer than a line of a table can be"));
+            self.cells.clear();
+            for cell in &self.record {
+                let text = std::str::from_utf8(cell).map_or_else(
+                    |_| cell.iter().copied().map(char::from).collect(),
+                    str::to_owned,
+                );
+                self.cells.push(
+                    text.trim_matches(|letter: char| {
+                        letter.is_whitespace() || letter == '\u{feff}'
+                    })
+                    .to_owned(),
+                );
             }
-            if !self.bytes.trim_ascii().is_empty() {
-                break;
+            if self.cells.iter().any(|cell| !cell.is_empty()) {
+                let place = self.record.position();
+                self.line = place.map_or(self.line, csv::Position::line);
+                return Ok(true);
             }
         }
-        match std::str::from_utf8(&self.bytes) {
-            Ok(line) => {
-                let line = line.trim_end_matches(['\r', '\n']);
-                // A mark some programs begin their files with.
-                Ok(Some(line.strip_prefix('\u{feff}').unwrap_or(line)))
-            }
-            Err(_) => Err(self.wrong("it is not UTF-8")),
-        }
+    }
+
+    fn comma(&self) -> bool {
+        self.separator != b','
+    }
+
+    /// What is wrong with what is read now.
+    fn unread(&self, what: &str) -> Failure {
+        wrong(self.file, &format!("after line {}: {what}", self.line))
     }
 
     fn wrong(&self, what: &str) -> Failure {
-        wrong(self.file, &format!("line {}: {what}", self.number))
+        wrong(self.file, &format!("line {}: {what}", self.line))
     }
 
     fn wrong_cell(&self, column: usize, heading: &str, what: &str) -> Failure {
-        let place = format!("column {} (\"{heading}\")", column + 1);
-        wrong(self.file, &format!("line {}, {place}: {what}", self.number))
+        let (line, column) = (self.line, column + 1);
+        let place = format!("line {line}, column {column} (\"{heading}\")");
+        wrong(self.file, &format!("{place}: {what}"))
     }
 }
 
-fn read_table<R: BufRead>(
-    lines: &mut Lines<'_, R>,
+/// What stands above the rows, of which the first was read then.
+struct Above {
+    headings: Vec<String>,
+    time: usize,
+    unit: TimeUnit,
+}
+
+fn above<R: Read>(
+    records: &mut Records<'_, R>,
     known: &KnownSignals,
-) -> Result<Table, Failure> {
-    let file = lines.file;
-    let Some(line) = lines.next()? else {
-        return Err(wrong(file, "it is empty"));
-    };
-    let separator = separator(line);
-    let headings =
-        fields(line, separator).map_err(|what| wrong(file, &format!("line 1: {what}")))?;
-    if headings.len() < 2 {
-        let what = "headings are missing: times, then a column a signal";
-        return Err(lines.wrong(what));
-    }
-    check_size(file, headings.len() - 1, 0)?;
-    let signals: Vec<_> = headings[1..]
-        .iter()
-        .map(|heading| known.signal(heading))
-        .collect();
-    let mut names = BTreeSet::new();
-    for (place, signal) in signals.iter().enumerate() {
-        if !names.insert(signal.channel.name.as_str()) {
-            return Err(lines.wrong_cell(place + 1, &headings[place + 1], "it comes twice"));
+    asked: &Columns,
+) -> Result<Above, Failure> {
+    // Headings by which a column of times is known, then the unit below; else the line before the first that begins with a
+    // time.
+    let (mut named, mut before): (Option<Above>, Option<Vec<String>>) = (None, None);
+    let mut is_last = false;
+    for _ in 0..MOST_BEFORE {
+        if !records.next()? {
+            break;
+        }
+        check_size(records.file, records.cells.len().saturating_sub(1), 0)?;
+        let (cells, comma) = (&records.cells, records.comma());
+        if let Some(above) = &mut named {
+            let cell = cells.get(above.time).map_or("", String::as_str);
+            if above.unit.time(cell, comma).is_some() {
+                return Ok(named.take().expect("just seen"));
+            }
+            above.unit = asked.unit(&above.headings[above.time], Some(cell));
+        }
+        let headings = || cells.iter().map(String::as_str);
+        let is_signal = |name: &str| known.named(name).is_some();
+        match asked.time(headings(), is_signal) {
+            Some(time) if cells.len() > 1 => {
+                is_last = true;
+                let unit = asked.unit(&cells[time], None);
+                named = Some(Above {
+                    headings: cells.clone(),
+                    time,
+                    unit,
+                });
+            }
+            _ if named.is_some() => is_last = false,
+            _ => {
+                let is_row =
+                    asked.time.is_none() && TimeUnit::Seconds.time(&cells[0], comma).is_some();
+                if let Some(headings) = before.take_if(|before| is_row && before.len() > 1) {
+                    let unit = asked.unit(&headings[0], None);
+                    return Ok(Above {
+                        headings,
+                        time: 0,
+                        unit,
+                    });
+                }
+                before = Some(cells.clone());
+            }
         }
     }
+    match (named, &asked.time) {
+        (Some(_), _) if is_last => Err(wrong(records.file, "no rows stand below the headings")),
+        (Some(above), _) => {
+            let cell = records.cells.get(above.time).map_or("", String::as_str);
+            let what = format!("\"{cell}\" is no time");
+            Err(records.wrong_cell(above.time, &above.headings[above.time], &what))
+        }
+        (None, Some(time)) => Err(wrong(
+            records.file,
+            &format!("no column is called \"{time}\""),
+        )),
+        (None, None) if before.is_none() => Err(wrong(records.file, "it is empty")),
+        (None, None) => Err(wrong(
+            records.file,
+            "no line of headings has rows with times below; `--time` names the column of times",
+        )),
+    }
+}
+
+fn read_table(
+    file: &Path,
+    input: impl Read,
+    known: &KnownSignals,
+    asked: &Columns,
+) -> Result<(Table, bool), Failure> {
+    let mut records = Records::new(file, BufReader::new(Text::new(BufReader::new(input))))?;
+    let Above {
+        mut headings,
+        time,
+        unit,
+    } = above(&mut records, known, asked)?;
+    // What ends each line with a separator has a heading of nothing.
+    while headings.len() > 2 && headings.last().is_some_and(String::is_empty) {
+        headings.pop();
+    }
+    check_size(file, headings.len() - 1, 0)?;
+    let signals = signals(&records, &headings, time, known, asked)?;
     let mut table = Table {
         times_us: Vec::new(),
         columns: vec![Vec::new(); signals.len()],
         channels: signals
             .iter()
-            .map(|signal| signal.channel.clone())
+            .map(|signal| signal.1.channel.clone())
             .collect(),
     };
-    let mut cells = Vec::new();
+    let mut is_utc = None;
     loop {
-        let Some(line) = lines.next()? else {
-            return Ok(table);
+        let (cells, comma) = (&records.cells, records.comma());
+        let found = cells
+            .iter()
+            .rposition(|cell| !cell.is_empty())
+            .map_or(0, |last| last + 1);
+        if found > headings.len() || cells.len() < headings.len() {
+            let (found, wanted) = (found.max(cells.len().min(headings.len())), headings.len());
+            return Err(records.wrong(&format!("{found} fields where the headings are {wanted}")));
+        }
+        let cell = &cells[time];
+        let read = unit
+            .time(cell, comma)
+            .filter(|time| *is_utc.get_or_insert(time.is_utc) == time.is_utc);
+        let Some(at) = read else {
+            return Err(records.wrong_cell(
+                time,
+                &headings[time],
+                &format!("\"{cell}\" is no time"),
+            ));
         };
-        let read = fields(line, separator);
-        cells.clear();
-        cells.extend(read.map_err(|what| lines.wrong(what))?);
-        if cells.len() != headings.len() {
-            let (found, wanted) = (cells.len(), headings.len());
-            return Err(lines.wrong(&format!("{found} fields where the headings are {wanted}")));
-        }
-        let time_us =
-            time_us(&cells[0]).map_err(|what| lines.wrong_cell(0, &headings[0], &what))?;
-        if table.times_us.last().is_some_and(|last| *last > time_us) {
-            return Err(lines.wrong_cell(0, &headings[0], "it is earlier than the line before"));
-        }
-        table.times_us.push(time_us);
-        for (place, cell) in cells[1..].iter().enumerate() {
-            let sample = signals[place].sample(cell);
-            let wrong = |what: String| lines.wrong_cell(place + 1, &headings[place + 1], &what);
-            table.columns[place].push(sample.map_err(wrong)?);
+        table.times_us.push(at.us);
+        for ((place, signal), column) in signals.iter().zip(&mut table.columns) {
+            let sample = signal.sample(&cells[*place], comma);
+            column.push(match sample {
+                Ok(sample) => sample,
+                // What no trace has is left out; its texts say nothing here.
+                Err(_) if !signal.is_of_a_trace() => f64::NAN,
+                Err(what) => return Err(records.wrong_cell(*place, &headings[*place], &what)),
+            });
         }
         check_size(file, table.columns.len(), table.samples())?;
-    }
-}
-
-/// The one of the usual three that the headings have most of.
-fn separator(line: &str) -> char {
-    let count = |separator: &char| line.matches(*separator).count();
-    // Of equals the last is taken.
-    [';', '\t', ',']
-        .into_iter()
-        .max_by_key(count)
-        .unwrap_or(',')
-}
-
-fn fields(line: &str, separator: char) -> Result<Vec<String>, &'static str> {
-    let mut fields = Vec::new();
-    let mut field = String::new();
-    let mut quoted = false;
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if quoted && letters.peek() == Some(&'"') => {
-                letters.next();
-                field.push('"');
-            }
-            '"' if quoted || field.trim().is_empty() => quoted = !quoted,
-            _ if letter == separator && !quoted => {
-                fields.push(std::mem::take(&mut field).trim().to_owned());
-            }
-            _ => field.push(letter),
+        if !records.next()? {
+            in_order(&mut table);
+            return Ok((table, is_utc.unwrap_or_default()));
         }
     }
-    if quoted {
-        return Err("a quotation mark is not closed");
+}
+
+/// The signals of a table, with the places of their columns.
+fn signals<R: Read>(
+    records: &Records<'_, R>,
+    headings: &[String],
+    time: usize,
+    known: &KnownSignals,
+    asked: &Columns,
+) -> Result<Vec<(usize, Known)>, Failure> {
+    let (mut signals, mut names) = (Vec::new(), HashSet::new());
+    for (place, heading) in headings
+        .iter()
+        .enumerate()
+        .filter(|(place, _)| *place != time)
+    {
+        let name = asked.name(heading);
+        let mut signal = known.signal(name);
+        if !names.insert(signal.channel.name.clone()) {
+            if signal.is_of_a_trace() {
+                return Err(records.wrong_cell(place, heading, "it comes twice"));
+            }
+            signal.channel = plain(&format!("{name} (column {})", place + 1));
+        }
+        signals.push((place, signal));
     }
-    fields.push(field.trim().to_owned());
-    Ok(fields)
+    Ok(signals)
 }
 
-fn time_us(cell: &str) -> Result<i64, String> {
-    let seconds = cell.parse::<f64>().ok();
-    let time_us = seconds.and_then(whole_us);
-    time_us.ok_or_else(|| format!("\"{cell}\" is no time in seconds"))
-}
-
-/// Seconds as microseconds, if there are as many.
-pub(super) fn whole_us(seconds: f64) -> Option<i64> {
-    (seconds.abs() < 9e12).then(|| (seconds * 1e6).round() as i64)
+/// The one of the usual three that most lines have as often as the others.
+fn separator(begin: &str) -> u8 {
+    let lines = || {
+        begin
+            .lines()
+            .filter(|line| !line.is_empty())
+            .take(LOOKED_AT)
+    };
+    let alike = |separator: &u8| {
+        let counts = lines().map(|line| line.matches(char::from(*separator)).count());
+        let counts: Vec<usize> = counts.filter(|count| *count > 0).collect();
+        let same = |one: &usize| counts.iter().filter(|other| *other == one).count();
+        counts.iter().map(same).max().unwrap_or(0)
+    };
+    // Of equals the last is taken: a comma may be a decimal one.
+    [b',', b'\t', b';']
+        .into_iter()
+        .max_by_key(alike)
+        .unwrap_or(b',')
 }
 
 #[cfg(test)]
-mod tests {
-    use fault_db::ChannelKind;
-
-    use super::super::series::plain;
-    use super::*;
-
-    fn read(text: &str) -> Result<Table, String> {
-        let mut lines = Lines {
-            file: Path::new("x.csv"),
-            input: text.as_bytes(),
-            number: 0,
-            bytes: Vec::new(),
-        };
-        let mode = Channel {
-            name: "mode".into(),
-            unit: String::new(),
-            kind: ChannelKind::Enum {
-                labels: [(0, "off".to_owned()), (3, "ato".to_owned())].into(),
-            },
-        };
-        let speed = Channel {
-            unit: "km/h".into(),
-            ..plain("speed")
-        };
-        read_table(&mut lines, &KnownSignals::of(&[&[mode, speed]]))
-            .map_err(|failure| failure.message)
-    }
-
-    #[test]
-    fn tables_of_other_programs_are_read() {
-        let table = read("\u{feff}t;mode;\"a \"\"b\"\"\";speed_kmh\r\n0,5;;;\r\n");
-        assert_eq!(
-            table.expect_err("a decimal comma"),
-            "x.csv: line 2, column 1 (\"t\"): \"0,5\" is no time in seconds"
-        );
-        let table = read("t;mode;\"a \"\"b\"\"\";speed_kmh\r\n\r\n-0.5;ato;1e3;\r\n1;0;nan;7.5");
-        let table = table.expect("read");
-        let names: Vec<_> = table.channels.iter().map(|c| c.name.as_str()).collect();
-        assert_eq!(names, ["mode", "a \"b\"", "speed"]);
-        assert_eq!(table.times_us, [-500_000, 1_000_000]);
-        assert_eq!(table.columns[0], [3.0, 0.0]);
-        assert_eq!(table.columns[1][0], 1000.0);
-        assert!(table.columns[1][1].is_nan() && table.columns[2][0].is_nan());
-        assert_eq!(table.columns[2][1], 7.5);
-    }
-
-    #[test]
-    fn errors_are_reported_with_line_and_column() {
-        for (text, told) in [
-            ("", "x.csv: it is empty"),
-            ("only", "x.csv: line 1: headings are missing"),
-            ("t,a,a\n", "line 1, column 3 (\"a\"): it comes twice"),
-            ("t,a\n1\n", "line 2: 1 fields where the headings are 2"),
-            ("t,a\n1,x\n", "line 2, column 2 (\"a\"): \"x\" is no number"),
-            (
-                "t,a\n1,1\n\n0,1\n",
-                "line 4, column 1 (\"t\"): it is earlier",
-            ),
-            ("t,mode\n1,on\n", "\"on\" is none of off, ato"),
-            ("t,a\nnan,1\n", "\"nan\" is no time"),
-            ("t,a\n1e300,1\n", "\"1e300\" is no time"),
-            ("t,\"a\n1,1\n", "line 1: a quotation mark is not closed"),
-        ] {
-            let found = read(text).expect_err(text);
-            assert!(found.contains(told), "{text:?}: {found}");
-        }
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@ use fault_db::{Channel, ChannelKind};
 
 use super::column::column_name;
 use super::series::plain;
+use super::times::number;
 
 /// A longer text is no word of a signal, bytes.
 const MAX_WORD: usize = 1024;
@@ -15,6 +16,7 @@ const MAX_WORD: usize = 1024;
 pub(super) struct Known {
     pub channel: Channel,
     words: HashMap<String, f64>,
+    is_of_a_trace: bool,
 }
 
 /// Signals by their names.
@@ -32,7 +34,16 @@ impl Known {
                 words.entry(word.clone()).or_insert(*number as f64);
             }
         }
-        Self { channel, words }
+        Self {
+            channel,
+            words,
+            is_of_a_trace: true,
+        }
+    }
+
+    /// Whether it is one of the signals that were known, not just a number of that name.
+    pub fn is_of_a_trace(&self) -> bool {
+        self.is_of_a_trace
     }
 
     /// The number of a word, if it has that.
@@ -40,15 +51,15 @@ impl Known {
         self.words.get(word).copied()
     }
 
-    /// What a cell says: a number, or a word of this signal.
-    pub fn sample(&self, cell: &str) -> Result<f64, String> {
+    /// What a cell says: a number, with a decimal comma if there may be one, or a word of this signal.
+    pub fn sample(&self, cell: &str, comma: bool) -> Result<f64, String> {
         if cell.is_empty() {
             return Ok(f64::NAN);
         }
         if cell.len() > MAX_WORD {
             return Err(format!("a text of {} bytes is no sample", cell.len()));
         }
-        if let Ok(number) = cell.parse::<f64>() {
+        if let Some(number) = number(cell, comma) {
             return Ok(number);
         }
         match &self.channel.kind {
@@ -84,6 +95,9 @@ impl KnownSignals {
     /// The same; else a number of this name.
     pub fn signal(&self, name: &str) -> Known {
         let known = self.named(name).cloned();
-        known.unwrap_or_else(|| Known::new(plain(name)))
+        known.unwrap_or_else(|| Known {
+            is_of_a_trace: false,
+            ..Known::new(plain(name))
+        })
     }
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::about::{NAME, TraceInfo};
 use super::known::{Known, KnownSignals};
-use super::series::{Import, Table, check_size, plain, wrong};
+use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use ptu_runs::failure::Failure;
 
 /// A longer record, or piece of compressed messages, is refused instead of being held in memory.
@@ -284,17 +284,4 @@ fn signal<'a>(topic: &str, path: &str, known: &'a KnownSignals) -> Option<&'a Kn
     let is_value = matches!(path, "" | "value" | "data");
     let of_topic = || is_value.then(|| known.named(topic)).flatten();
     known.named(path).or_else(of_topic)
-}
-
-/// Puts rows into the order of their times: messages need not be.
-fn in_order(table: &mut Table) {
-    if table.times_us.is_sorted() {
-        return;
-    }
-    let mut rows: Vec<usize> = (0..table.times_us.len()).collect();
-    rows.sort_by_key(|row| table.times_us[*row]);
-    table.times_us = rows.iter().map(|row| table.times_us[*row]).collect();
-    for column in &mut table.columns {
-        *column = rows.iter().map(|row| column[*row]).collect();
-    }
 }

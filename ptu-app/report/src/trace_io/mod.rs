@@ -20,9 +20,12 @@ mod mcap_write;
 mod parquet;
 mod parquet_pages;
 mod parquet_read;
+mod parquet_values;
 mod part;
 mod run_mcap;
 mod series;
+mod times;
+mod utf16;
 
 pub use about::TraceInfo;
 pub use align::{Aligned, align};
@@ -32,3 +35,4 @@ pub use export::{Format, export};
 pub use part::{Seconds, TracePart};
 pub use run_mcap::RunMcap;
 pub use series::{Import, import, is_importable};
+pub use times::{Columns, TimeUnit};

@@ -1,4 +1,4 @@
-//! Imports Apache Parquet: our own exports, or any flat table with seconds in its first column.
+//! Imports Apache Parquet: our own exports, or any table with a column of times.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,11 +12,12 @@ use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use super::about::{NAME, TraceInfo};
-use super::csv_read::whole_us;
 use super::known::{Known, KnownSignals};
 use super::parquet::UTC;
 use super::parquet_pages::{check_footer, check_pages};
-use super::series::{Import, Table, check_size, wrong};
+use super::parquet_values::Values;
+use super::series::{Import, Table, check_size, in_order, wrong};
+use super::times::{Columns, TimeUnit};
 use ptu_runs::failure::Failure;
 
 /// All pages that are read, unpacked.
@@ -24,16 +25,36 @@ const MAX_UNPACKED: u64 = 512 << 20;
 /// Rows that are held as they come from the file: a text may be as long as a page.
 const AT_ONCE: usize = 16;
 
-/// Reads a file: one row after the other, each column but the first and that of UTC a signal.
-pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
+/// A column that is a signal, or would be.
+struct Signal {
+    place: usize,
+    known: Known,
+    /// Why its values are not read; no trace has such a signal.
+    values: Result<Values, String>,
+}
+
+/// The column of times.
+struct Times {
+    place: usize,
+    unit: TimeUnit,
+    is_utc: bool,
+}
+
+/// Reads a file: one row after the other, each column but those of times a signal.
+pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let opened = open_regular_file(file)
         .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
     // The library panics on some pages that say another length than they have, where it could answer.
-    let read = catch_unwind(AssertUnwindSafe(|| read_table(file, opened, known)));
+    let read = catch_unwind(AssertUnwindSafe(|| read_table(file, opened, known, asked)));
     read.unwrap_or_else(|_| Err(wrong(file, "damaged: a page is not as it says")))
 }
 
-fn read_table(file: &Path, opened: File, known: &[Channel]) -> Result<Import, Failure> {
+fn read_table(
+    file: &Path,
+    opened: File,
+    known: &[Channel],
+    asked: &Columns,
+) -> Result<Import, Failure> {
     let damaged =
         |error: ParquetError| wrong(file, &format!("damaged, or no Parquet file: {error}"));
     let refused = |what: String| wrong(file, &what);
@@ -44,11 +65,12 @@ fn read_table(file: &Path, opened: File, known: &[Channel]) -> Result<Import, Fa
     let reader = SerializedFileReader::new(opened).map_err(damaged)?;
     let about = about(reader.metadata());
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let columns = columns(file, reader.metadata(), &KnownSignals::of(&[own, known]))?;
+    let names = KnownSignals::of(&[own, known]);
+    let (times, columns) = columns(file, reader.metadata(), &names, asked)?;
     let mut left = MAX_UNPACKED;
     let mut table = Table {
         times_us: Vec::new(),
-        channels: (columns.iter().map(|(_, known)| known.channel.clone())).collect(),
+        channels: (columns.iter().map(|column| column.known.channel.clone())).collect(),
         columns: vec![Vec::new(); columns.len()],
     };
     for place in 0..reader.num_row_groups() {
@@ -56,17 +78,19 @@ fn read_table(file: &Path, opened: File, known: &[Channel]) -> Result<Import, Fa
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(usize::MAX);
         let all = rows.saturating_add(table.times_us.len());
         check_size(file, columns.len(), all.saturating_mul(columns.len() + 1))?;
-        let read = std::iter::once(0).chain(columns.iter().map(|(place, _)| *place));
-        for place in read {
+        let read = columns.iter().filter(|column| column.values.is_ok());
+        for place in std::iter::once(times.place).chain(read.map(|column| column.place)) {
             let column = group.metadata().column(place);
             check_pages(&pages, column, &mut left).map_err(refused)?;
         }
-        read_group(&*group, rows, &columns, &mut table)
-            .map_err(|what| wrong(file, &format!("rows from {}: {what}", table.times_us.len())))?;
+        let before = table.times_us.len();
+        read_group(&*group, rows, (&times, &columns), &mut table)
+            .map_err(|what| wrong(file, &format!("rows from {before}: {what}")))?;
     }
+    in_order(&mut table);
     Ok(Import {
         tables: vec![table],
-        is_utc: false,
+        is_utc: times.is_utc,
         about,
     })
 }
@@ -78,74 +102,143 @@ fn about(metadata: &ParquetMetaData) -> Option<TraceInfo> {
     serde_json::from_str(about.value.as_deref()?).ok()
 }
 
-/// The signals, each with the place of its column.
+/// The times, and the signals.
 fn columns(
     file: &Path,
     metadata: &ParquetMetaData,
     known: &KnownSignals,
-) -> Result<Vec<(usize, Known)>, Failure> {
+    asked: &Columns,
+) -> Result<(Times, Vec<Signal>), Failure> {
     let schema = metadata.file_metadata().schema_descr();
-    let mut columns = Vec::new();
-    for (place, column) in schema.columns().iter().enumerate() {
-        if column.max_rep_level() > 0 || column.max_def_level() > 1 {
-            let path = column.path().string();
-            return Err(wrong(file, &format!("column \"{path}\" is no plain one")));
-        }
-        if place > 0 && column.name() != UTC {
-            columns.push((place, known.signal(column.name())));
-        }
-    }
-    check_size(file, columns.len(), 0)?;
-    if columns.is_empty() {
+    let all = schema.columns();
+    let is_signal = |name: &str| known.named(name).is_some();
+    let headings = || all.iter().map(|column| column.name());
+    let place = asked.time(
+        headings().map(|name| if name == UTC { "" } else { name }),
+        is_signal,
+    );
+    let place = match (place, &asked.time) {
+        (Some(place), _) => place,
+        (None, Some(time)) => return Err(wrong(file, &format!("no column is called \"{time}\""))),
+        (None, None) => 0,
+    };
+    let Some(time) = all.get(place).filter(|_| all.len() > 1) else {
         return Err(wrong(
             file,
             "a column of times and one a signal are missing",
         ));
+    };
+    let values = Values::of(time).map_err(|what| {
+        wrong(
+            file,
+            &format!("column \"{}\", the times: {what}", time.path().string()),
+        )
+    })?;
+    let (unit, is_utc) = match values {
+        Values::Times { unit, is_utc } => (unit, is_utc),
+        Values::Numbers(_) => (asked.unit(time.name(), None), false),
+        _ => {
+            return Err(wrong(
+                file,
+                &format!("column \"{}\" has no times", time.name()),
+            ));
+        }
+    };
+    let mut signals = Vec::new();
+    for (at, column) in all.iter().enumerate() {
+        if at == place || column.name() == UTC {
+            continue;
+        }
+        let path = column.path().string();
+        let values = Values::of(column).and_then(|values| match values {
+            Values::Times { .. } => Err("times are no samples".to_owned()),
+            values => Ok(values),
+        });
+        let name = asked.name(&path);
+        if let (true, Err(what)) = (is_signal(name), &values) {
+            return Err(wrong(file, &format!("column \"{path}\": {what}")));
+        }
+        signals.push(Signal {
+            place: at,
+            known: known.signal(name),
+            values,
+        });
     }
-    Ok(columns)
+    check_size(file, signals.len(), 0)?;
+    Ok((
+        Times {
+            place,
+            unit,
+            is_utc,
+        },
+        signals,
+    ))
 }
 
 fn read_group(
     group: &dyn RowGroupReader,
     rows: usize,
-    columns: &[(usize, Known)],
+    (times, columns): (&Times, &[Signal]),
     table: &mut Table,
 ) -> Result<(), String> {
     let reader = |place: usize| group.get_column_reader(place).map_err(|e| e.to_string());
-    for seconds in samples(reader(0)?, rows, None)? {
-        let time_us =
-            whole_us(seconds).ok_or_else(|| format!("{seconds} is no time in seconds"))?;
-        if table.times_us.last().is_some_and(|last| *last > time_us) {
-            return Err(format!("{seconds} s is earlier than the row before"));
-        }
+    for number in samples(reader(times.place)?, rows, Values::PLAIN, None)? {
+        let time_us = times
+            .unit
+            .us(number)
+            .ok_or_else(|| format!("{number} is no time"))?;
         table.times_us.push(time_us);
     }
-    for ((place, known), column) in columns.iter().zip(&mut table.columns) {
-        let read = samples(reader(*place)?, rows, Some(known));
-        column.extend(read.map_err(|what| format!("column \"{}\": {what}", known.channel.name))?);
+    for (column, to) in columns.iter().zip(&mut table.columns) {
+        let known = &column.known;
+        match &column.values {
+            Ok(values) => {
+                let read = samples(reader(column.place)?, rows, *values, Some(known));
+                to.extend(
+                    read.map_err(|what| format!("column \"{}\": {what}", known.channel.name))?,
+                );
+            }
+            Err(_) => to.resize(to.len() + rows, f64::NAN),
+        }
     }
     Ok(())
 }
 
 /// A column's samples; an unknown one is NaN, and words are those of the channel.
-fn samples(reader: ColumnReader, rows: usize, known: Option<&Known>) -> Result<Vec<f64>, String> {
+fn samples(
+    reader: ColumnReader,
+    rows: usize,
+    values: Values,
+    known: Option<&Known>,
+) -> Result<Vec<f64>, String> {
     match reader {
         ColumnReader::DoubleColumnReader(column) => numbers(column, rows, |n| Ok(*n)),
         ColumnReader::FloatColumnReader(column) => numbers(column, rows, |n| Ok(f64::from(*n))),
-        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, |n| Ok(f64::from(*n))),
-        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |n| Ok(*n as f64)),
+        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, |n| Ok(values.of_32(*n))),
+        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |n| Ok(values.of_64(*n))),
         ColumnReader::BoolColumnReader(column) => {
             numbers(column, rows, |n| Ok(f64::from(u8::from(*n))))
         }
-        ColumnReader::ByteArrayColumnReader(column) => {
-            let known = known.ok_or("the first column has texts in place of seconds")?;
-            let number = |word: &parquet::data_type::ByteArray| {
-                let word = word.as_utf8().map_err(|error| error.to_string())?;
-                known.sample(word)
-            };
-            numbers(column, rows, number)
+        ColumnReader::FixedLenByteArrayColumnReader(column) => {
+            numbers(column, rows, |bytes| values.of_bytes(bytes.data()))
         }
-        _ => Err("its values are neither numbers, bits nor words".into()),
+        ColumnReader::ByteArrayColumnReader(column) if values == Values::Words => {
+            let known = known.ok_or("texts in place of times")?;
+            numbers(column, rows, |word| {
+                let word = word.as_utf8().map_err(|error| error.to_string())?;
+                known
+                    .sample(word, false)
+                    .or_else(|what| match known.is_of_a_trace() {
+                        true => Err(what),
+                        // What no trace has is left out; its texts say nothing here.
+                        false => Ok(f64::NAN),
+                    })
+            })
+        }
+        ColumnReader::ByteArrayColumnReader(column) => {
+            numbers(column, rows, |bytes| values.of_bytes(bytes.data()))
+        }
+        ColumnReader::Int96ColumnReader(_) => Err("its values are of 96 bits".to_owned()),
     }
 }
 
@@ -175,4 +268,89 @@ fn numbers<T: DataType>(
         }
     }
     Ok(samples)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use parquet::basic::Compression;
+    use parquet::data_type::{DoubleType, Int32Type, Int64Type};
+    use parquet::file::properties::WriterProperties;
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
+
+    use super::super::series::plain;
+    use super::*;
+
+    /// Goal: a table of another program is right or refused. Method: two rows in each compression, with a time in milliseconds
+    /// behind, a decimal speed, an unsigned count, and dates, which no trace has.
+    #[test]
+    fn tables_of_other_programs_are_read() {
+        let schema = "message t {
+            required int32 speed (DECIMAL(8,2));
+            required int32 count (INTEGER(32,false));
+            required int64 seen (TIMESTAMP(MILLIS,true));
+            required double time_ms;
+        }";
+        let schema = Arc::new(parse_message_type(schema).expect("a schema"));
+        let folder = tempfile::tempdir().expect("a folder");
+        for compression in [
+            Compression::UNCOMPRESSED,
+            Compression::SNAPPY,
+            Compression::GZIP(Default::default()),
+            Compression::BROTLI(Default::default()),
+            Compression::LZ4_RAW,
+            Compression::ZSTD(Default::default()),
+        ] {
+            let path = folder.path().join("t.parquet");
+            let file = File::create(&path).expect("a file");
+            let properties = WriterProperties::builder().set_compression(compression);
+            let mut writer =
+                SerializedFileWriter::new(file, schema.clone(), Arc::new(properties.build()))
+                    .expect("a writer");
+            let mut group = writer.next_row_group().expect("a group");
+            let mut place = 0;
+            while let Some(mut column) = group.next_column().expect("a column") {
+                let written = match place {
+                    0 => column
+                        .typed::<Int32Type>()
+                        .write_batch(&[3_294, -200], None, None),
+                    1 => column
+                        .typed::<Int32Type>()
+                        .write_batch(&[-1_294_967_296, 1], None, None),
+                    2 => column.typed::<Int64Type>().write_batch(&[1, 2], None, None),
+                    _ => column
+                        .typed::<DoubleType>()
+                        .write_batch(&[1_000.0, -500.0], None, None),
+                };
+                written.expect("written");
+                column.close().expect("closed");
+                place += 1;
+            }
+            group.close().expect("closed");
+            writer.close().expect("closed");
+            let read = read(
+                &path,
+                &[plain("speed"), plain("count")],
+                &Columns::default(),
+            );
+            let read = read.expect("read");
+            let table = &read.tables[0];
+            assert!(!read.is_utc);
+            // In the order of their times.
+            assert_eq!(table.times_us, [-500_000, 1_000_000], "{compression:?}");
+            assert_eq!(table.columns[0], [-2.0, 32.94]);
+            assert_eq!(table.columns[1], [1.0, 3e9]);
+            let asked = Columns {
+                time: Some("seen".to_owned()),
+                ..Columns::default()
+            };
+            let dated = super::read(&path, &[plain("speed")], &asked).expect("dates");
+            assert!(dated.is_utc && dated.tables[0].times_us == [1_000, 2_000]);
+            let wrong = super::read(&path, &[plain("seen")], &Columns::default());
+            let wrong = wrong.expect_err("no signal").message;
+            assert!(wrong.contains("column \"seen\""), "{wrong}");
+        }
+    }
 }

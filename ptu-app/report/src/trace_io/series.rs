@@ -6,6 +6,7 @@ use fault_db::trace::MAX_SAMPLES;
 use fault_db::{Channel, ChannelKind};
 
 use super::about::TraceInfo;
+use super::times::Columns;
 use super::{csv_read, mcap_read, parquet_read};
 use ptu_runs::failure::Failure;
 
@@ -35,19 +36,26 @@ pub struct Import {
 
 /// Whether a file of this name can be read.
 pub fn is_importable(file: &Path) -> bool {
-    let ending = file.extension().and_then(|ending| ending.to_str());
-    matches!(ending, Some("csv" | "parquet" | "mcap"))
+    matches!(&*ending(file), "csv" | "parquet" | "mcap")
 }
 
-/// Reads a CSV, Parquet or MCAP file; signals that are among `known` are of their kind.
+fn ending(file: &Path) -> String {
+    let ending = file
+        .extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.unwrap_or_default()
+}
+
+/// Reads a CSV, Parquet or MCAP file; signals that are among `known` are of their kind. What was `asked` of a table's columns
+/// stands before their headings.
 ///
 /// # Errors
 /// The file cannot be read, or is not what its ending says: with the place where.
-pub fn import(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
-    let import = match file.extension().and_then(|ending| ending.to_str()) {
-        Some("mcap") => mcap_read::read(file, known)?,
-        Some("parquet") => parquet_read::read(file, known)?,
-        _ => csv_read::read(file, known)?,
+pub fn import(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
+    let import = match &*ending(file) {
+        "mcap" => mcap_read::read(file, known)?,
+        "parquet" => parquet_read::read(file, known, asked)?,
+        _ => csv_read::read(file, known, asked)?,
     };
     if import.tables.iter().all(|table| table.times_us.is_empty()) {
         return Err(wrong(file, "it has no samples"));
@@ -75,6 +83,19 @@ pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<
         file,
         &format!("it has more than {more}; export a part of it"),
     ))
+}
+
+/// Puts rows into the order of their times: rows and messages need not be.
+pub(super) fn in_order(table: &mut Table) {
+    if table.times_us.is_sorted() {
+        return;
+    }
+    let mut rows: Vec<usize> = (0..table.times_us.len()).collect();
+    rows.sort_by_key(|row| table.times_us[*row]);
+    table.times_us = rows.iter().map(|row| table.times_us[*row]).collect();
+    for column in &mut table.columns {
+        *column = rows.iter().map(|row| column[*row]).collect();
+    }
 }
 
 /// A number of unknown kind, as which a signal is taken that no trace has.

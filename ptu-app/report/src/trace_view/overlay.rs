@@ -8,7 +8,7 @@ use std::sync::Arc;
 use fault_db::{Id, Store, TraceData};
 
 use super::TraceView;
-use crate::trace_io::beside;
+use crate::trace_io::{Columns, beside};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
@@ -70,7 +70,8 @@ impl Overlay {
                 (store.trace(*other)?, rule_between(store, id, *other)?, None)
             }
             OverlaySource::File(file) => {
-                let (aligned, rule) = beside(store, (id, store.trace(id)?), file, 0)?;
+                let (aligned, rule) =
+                    beside(store, (id, store.trace(id)?), file, 0, &Columns::default())?;
                 (aligned.imported, rule, Some(aligned.rows))
             }
         };

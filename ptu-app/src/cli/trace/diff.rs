@@ -10,7 +10,7 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption};
-use ptu_report::trace_io::{beside, is_importable};
+use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 
@@ -21,14 +21,15 @@ use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_betw
 /// tolerance for each unit of measure). The number of log entries (`events`) is not compared; on a port neither are
 /// efforts, accelerations and counts of frames.
 ///
-/// B may be a .csv, .parquet or .mcap file: an export, or another program's table with seconds in its first
-/// column or messages in JSON. Seconds count from the trigger, messages have a time of day. Each row of the trace is
+/// B may be a .csv, .parquet or .mcap file: an export, or another program's table with a column of times or messages in
+/// JSON. Seconds count from the trigger, dates and messages are of the calendar (UTC). Each row of the trace is
 /// compared with the last sample before it.
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest
 ///   ptu trace diff latest twin --signal speed,speed1,speed2,eb
 ///   ptu trace diff latest oscilloscope.csv --shift -0.35
+///   ptu trace diff latest oscilloscope.csv --map CH1=eb --time x-axis --time-unit ms
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiffArguments {
@@ -45,6 +46,15 @@ pub struct DiffArguments {
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
         allow_hyphen_values = true, value_parser = shift_argument)]
     shift: f64,
+    /// Take a column of a file for a signal
+    #[arg(long = "map", value_name = "NAME=SIGNAL", value_parser = map_argument)]
+    names: Vec<(String, String)>,
+    /// The column of a file that has the times
+    #[arg(long, value_name = "NAME")]
+    time: Option<String>,
+    /// The unit of a file's times: s, ms, us or ns [default: as the column's name says, else s]
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<TimeUnit>,
     #[command(flatten)]
     json: Json,
     #[command(flatten)]
@@ -66,6 +76,10 @@ impl DiffArguments {
         } else if self.shift != 0.0 {
             return Err(Failure::usage(
                 "--shift lays a file elsewhere; traces are laid at their triggers",
+            ));
+        } else if !self.names.is_empty() || self.time.is_some() || self.time_unit.is_some() {
+            return Err(Failure::usage(
+                "--map, --time and --time-unit say what the columns of a file are; B is none",
             ));
         } else if self.expected == "twin" {
             let original = Original::read(store, a)?;
@@ -102,7 +116,12 @@ impl DiffArguments {
         file: &Path,
     ) -> Result<ComparedTraces, Failure> {
         let shift_us = (self.shift * 1e6) as i64;
-        let (aligned, rule) = beside(store, (a, came), file, shift_us)?;
+        let asked = Columns {
+            names: self.names.clone(),
+            time: self.time.clone(),
+            unit: self.time_unit,
+        };
+        let (aligned, rule) = beside(store, (a, came), file, shift_us, &asked)?;
         Ok(ComparedTraces {
             name: self.expected.clone(),
             came: aligned.trace,
@@ -138,6 +157,13 @@ impl ComparedTraces {
             window_s: None,
         }
     }
+}
+
+fn map_argument(text: &str) -> Result<(String, String), String> {
+    let parts = text.split_once('=');
+    let parts = parts.filter(|(name, signal)| !name.is_empty() && !signal.is_empty());
+    let (name, signal) = parts.ok_or_else(|| format!("\"{text}\" is not NAME=SIGNAL"))?;
+    Ok((name.to_owned(), signal.to_owned()))
 }
 
 fn shift_argument(text: &str) -> Result<f64, String> {
