@@ -197,6 +197,11 @@ fn above<R: Read>(
                 return Ok(named.take().expect("just seen"));
             }
             above.unit = asked.unit(&above.headings[above.time], Some(cell));
+            // Units below the headings are no headings, though "second" may be one.
+            if cell.parse::<TimeUnit>().is_ok() {
+                is_last = false;
+                continue;
+            }
         }
         let headings = || cells.iter().map(String::as_str);
         let is_signal = |name: &str| known.named(name).is_some();

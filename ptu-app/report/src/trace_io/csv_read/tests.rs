@@ -50,6 +50,7 @@ fn every_form_of_a_table_is_read_alike() {
         "time_ms,speed\n-2000,20\n-1000,10.5\n",
         "Time [us]\tspeed\n-2000000\t20\n-1000000\t10.5\n",
         "speed,time_s\n10.5,-1\n20,-2\n",
+        "x-axis,speed\nsecond,Volt\n-2,20\n-1,10.5\n",
         "# of a recorder\nModel,X\nx-axis,speed\nms,km/h\n-2000,20\n-1000,10.5\n",
         "\u{c2}g;speed\n-2;20\n-1;10.5\n",
         "time,note,speed,note\n-2,\"a\nb\",20,\n-1,ok,10.5,ok\n",
