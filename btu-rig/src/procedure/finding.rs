@@ -28,7 +28,7 @@ pub struct LoggedEvent {
 pub struct LimitMissed {
     /// Name in its script.
     pub measurement: String,
-    /// What was measured.
+    /// Measured value.
     pub value: f64,
     /// How far the true value may be off.
     pub uncertainty: Option<f64>,

@@ -19,7 +19,7 @@ use super::utf16::Text;
 use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::Failure;
 
-/// A longer line is none of a table of signals, bytes; of these the library reads ahead a part.
+/// Longest line of a table, bytes. A line may be longer by what the CSV library reads at once.
 const MAX_LINE: u64 = 1 << 20;
 /// Lines before the first row of a table: what a recorder says of itself.
 const MOST_BEFORE: usize = 1_000;
@@ -91,11 +91,8 @@ impl<R: Read> Read for Watched<R> {
     }
 }
 
-impl<'f, R: Read> Records<'f, R> {
-    fn new(
-        file: &'f Path,
-        mut input: BufReader<Text<R>>,
-    ) -> Result<Records<'f, BufReader<Text<R>>>, Failure> {
+impl<'f, R: BufRead> Records<'f, R> {
+    fn new(file: &'f Path, mut input: R) -> Result<Self, Failure> {
         let begin = input
             .fill_buf()
             .map_err(|error| wrong(file, &error.to_string()))?;
@@ -107,7 +104,7 @@ impl<'f, R: Read> Records<'f, R> {
         };
         let mut form = ReaderBuilder::new();
         form.delimiter(separator).has_headers(false).flexible(true);
-        Ok(Records {
+        Ok(Self {
             file,
             input: form.comment(Some(b'#')).from_reader(watched),
             since,
@@ -117,9 +114,7 @@ impl<'f, R: Read> Records<'f, R> {
             separator,
         })
     }
-}
 
-impl<R: Read> Records<'_, R> {
     /// The next record that has something in it; bytes that are no UTF-8 are Latin-1.
     fn next(&mut self) -> Result<bool, Failure> {
         loop {
@@ -176,7 +171,7 @@ struct Above {
     unit: TimeUnit,
 }
 
-fn above<R: Read>(
+fn above<R: BufRead>(
     records: &mut Records<'_, R>,
     known: &KnownSignals,
     asked: &Columns,
@@ -266,7 +261,6 @@ fn read_table(
     while headings.len() > 2 && headings.last().is_some_and(String::is_empty) {
         headings.pop();
     }
-    check_size(file, headings.len() - 1, 0)?;
     let signals = signals(&records, &headings, time, known, asked)?;
     let mut table = Table {
         times_us: Vec::new(),
@@ -317,7 +311,7 @@ fn read_table(
 }
 
 /// The signals of a table, with the places of their columns.
-fn signals<R: Read>(
+fn signals<R: BufRead>(
     records: &Records<'_, R>,
     headings: &[String],
     time: usize,

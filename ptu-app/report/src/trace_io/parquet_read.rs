@@ -29,8 +29,8 @@ const AT_ONCE: usize = 16;
 struct Signal {
     place: usize,
     known: Known,
-    /// Why its values are not read; no trace has such a signal.
-    values: Result<Values, String>,
+    /// What its values mean; `None` if they cannot be read, and then no trace has the signal.
+    values: Option<Values>,
 }
 
 /// The column of times.
@@ -78,7 +78,7 @@ fn read_table(
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(usize::MAX);
         let all = rows.saturating_add(table.times_us.len());
         check_size(file, columns.len(), all.saturating_mul(columns.len() + 1))?;
-        let read = columns.iter().filter(|column| column.values.is_ok());
+        let read = columns.iter().filter(|column| column.values.is_some());
         for place in std::iter::once(times.place).chain(read.map(|column| column.place)) {
             let column = group.metadata().column(place);
             check_pages(&pages, column, &mut left).map_err(refused)?;
@@ -112,11 +112,8 @@ fn columns(
     let schema = metadata.file_metadata().schema_descr();
     let all = schema.columns();
     let is_signal = |name: &str| known.named(name).is_some();
-    let headings = || all.iter().map(|column| column.name());
-    let place = asked.time(
-        headings().map(|name| if name == UTC { "" } else { name }),
-        is_signal,
-    );
+    let headings = all.iter().map(|column| column.name());
+    let place = asked.time(headings, |name| name == UTC || is_signal(name));
     let place = match (place, &asked.time) {
         (Some(place), _) => place,
         (None, Some(time)) => return Err(wrong(file, &format!("no column is called \"{time}\""))),
@@ -161,7 +158,7 @@ fn columns(
         signals.push(Signal {
             place: at,
             known: known.signal(name),
-            values,
+            values: values.ok(),
         });
     }
     check_size(file, signals.len(), 0)?;
@@ -192,13 +189,13 @@ fn read_group(
     for (column, to) in columns.iter().zip(&mut table.columns) {
         let known = &column.known;
         match &column.values {
-            Ok(values) => {
+            Some(values) => {
                 let read = samples(reader(column.place)?, rows, *values, Some(known));
                 to.extend(
                     read.map_err(|what| format!("column \"{}\": {what}", known.channel.name))?,
                 );
             }
-            Err(_) => to.resize(to.len() + rows, f64::NAN),
+            None => to.resize(to.len() + rows, f64::NAN),
         }
     }
     Ok(())

@@ -308,11 +308,7 @@ impl Progress {
         }
         let progress = &mut self.procedures[place];
         if let Some(step) = progress.procedure.steps.get(result.index) {
-            let left_us = self
-                .worst_left
-                .as_us()
-                .saturating_sub(step.worst_case.as_us());
-            self.worst_left = Duration::from_us(left_us);
+            self.worst_left = self.worst_left - step.worst_case;
         }
         let passed = matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
         if self.done < KEPT || (!passed && self.not_passed < KEPT) {

@@ -9,7 +9,6 @@ const MOST_CHUNKS: usize = 1_000;
 const FORMAT: u64 = 40;
 /// A length that its writer did not know, or that stands elsewhere.
 const OPEN: u64 = 0xffff_ffff;
-const BEGINNINGS: [&[u8; 4]; 4] = [b"RIFF", b"RF64", b"BW64", b"riff"];
 /// What a Wave64 file begins with, and what stands behind the length of the whole.
 const W64_RIFF: [u8; 16] = *b"riff\x2e\x91\xcf\x11\xa5\xd6\x28\xdb\x04\xc1\x00\x00";
 const W64_WAVE: [u8; 16] = *b"wave\xf3\xac\xd3\x11\x8c\xd1\x00\xc0\x4f\x8e\xdb\x8a";
@@ -17,7 +16,7 @@ const PCM: u16 = 1;
 const FLOAT: u16 = 3;
 const EXTENSIBLE: u16 = 0xfffe;
 
-/// What the samples are.
+/// Form of the samples of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Head {
     pub channels: u16,
@@ -66,28 +65,29 @@ enum Form {
 /// # Errors
 /// Why it is no WAV file that can be read.
 pub(super) fn read(file: &mut (impl Read + Seek)) -> Result<Head, String> {
-    let mut begin = [0; 12];
-    let (name, rest) = begin.split_at_mut(4);
-    file.read_exact(name).map_err(ended)?;
-    if !BEGINNINGS.iter().any(|known| *known == name) {
-        return Err("it begins as no WAV file does".to_owned());
-    }
-    file.read_exact(rest).map_err(ended)?;
-    let [a, b, c, d, size @ .., _, _, _, _] = begin;
-    let form = match &[a, b, c, d] {
-        b"RIFF" | b"RF64" | b"BW64" if &begin[8..] == b"WAVE" => Form::Riff,
+    let mut name = [0; 4];
+    file.read_exact(&mut name).map_err(ended)?;
+    let form = match &name {
+        b"RIFF" | b"RF64" | b"BW64" => Form::Riff,
         b"riff" => Form::Wave64,
         _ => return Err("it begins as no WAV file does".to_owned()),
     };
-    let is_open = matches!(u64::from(u32::from_le_bytes(size)), 0 | OPEN);
-    if matches!(form, Form::Wave64) {
-        let mut whole = [0; 40];
-        whole[..12].copy_from_slice(&begin);
-        file.read_exact(&mut whole[12..]).map_err(ended)?;
-        if whole[..16] != W64_RIFF || whole[24..] != W64_WAVE {
-            return Err("it begins as no Wave64 file does".to_owned());
-        }
+    let mut rest = [0; 36];
+    let rest = match form {
+        Form::Riff => &mut rest[..8],
+        Form::Wave64 => &mut rest[..],
+    };
+    file.read_exact(rest).map_err(ended)?;
+    let is_whole = match form {
+        Form::Riff => rest[4..] == *b"WAVE",
+        Form::Wave64 => rest[..12] == W64_RIFF[4..] && rest[20..] == W64_WAVE,
+    };
+    if !is_whole {
+        return Err("it begins as no WAV file does".to_owned());
     }
+    // Of RIFF the length of the whole; of Wave64 a part of the name, which is no such number.
+    let size = at(rest, 0).map(u32::from_le_bytes);
+    let is_open = matches!(size.map(u64::from), Some(0 | OPEN));
     let (mut head, mut long) = (None, None);
     for _ in 0..MOST_CHUNKS {
         let chunk = form.chunk(file).map_err(ended)?;
@@ -104,9 +104,7 @@ pub(super) fn read(file: &mut (impl Read + Seek)) -> Result<Head, String> {
                 };
                 return Ok(Head { length, ..head });
             }
-            _ => form
-                .pass(file, filled(chunk.length, form.step()))
-                .map_err(ended)?,
+            _ => form.pass(file, &chunk, 0).map_err(ended)?,
         }
     }
     Err("it has no samples".to_owned())
@@ -131,17 +129,16 @@ impl Form {
         })
     }
 
-    /// Pieces begin at multiples of so many bytes.
-    fn step(self) -> u64 {
-        match self {
+    /// Goes from `taken` bytes into a piece to the next, which begins at a multiple of some bytes. A damaged length may be any.
+    fn pass(self, file: &mut impl Seek, chunk: &Chunk, taken: u64) -> io::Result<()> {
+        let step = match self {
             Self::Riff => 2,
             Self::Wave64 => 8,
-        }
-    }
-
-    fn pass(self, file: &mut impl Seek, bytes: u64) -> io::Result<()> {
-        let forward = i64::try_from(bytes).map_err(|_| io::ErrorKind::UnexpectedEof)?;
-        file.seek(SeekFrom::Current(forward)).map(drop)
+        };
+        let filled = chunk.length.checked_next_multiple_of(step);
+        let rest = filled.and_then(|filled| i64::try_from(filled - taken).ok());
+        let rest = rest.ok_or(io::ErrorKind::UnexpectedEof)?;
+        file.seek(SeekFrom::Current(rest)).map(drop)
     }
 }
 
@@ -153,8 +150,7 @@ fn start(file: &mut (impl Read + Seek), chunk: &Chunk, form: Form) -> Result<Vec
     if bytes.len() as u64 != taken {
         return Err(ended(io::ErrorKind::UnexpectedEof.into()));
     }
-    let rest = filled(chunk.length, form.step()) - taken;
-    form.pass(file, rest).map_err(ended)?;
+    form.pass(file, chunk, taken).map_err(ended)?;
     Ok(bytes)
 }
 
@@ -184,11 +180,6 @@ fn format(bytes: &[u8]) -> Result<Head, String> {
         (PCM | FLOAT, _) => Err(format!("samples of {bytes} bytes")),
         (other, _) => Err(format!("its samples are packed, as format {other}")),
     }
-}
-
-/// A length with what fills it up; a damaged one may be any.
-fn filled(length: u64, step: u64) -> u64 {
-    length.checked_next_multiple_of(step).unwrap_or(u64::MAX)
 }
 
 /// So many bytes from a place on, if there are as many.

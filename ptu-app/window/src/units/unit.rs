@@ -140,7 +140,7 @@ impl Unit {
         self.run.as_ref().filter(|_| self.is_run_of_case)
     }
 
-    /// Its case asked for its run.
+    /// Whether the page of the case asked for the run of this unit.
     pub fn is_run_of_case(&self) -> bool {
         self.is_run_of_case
     }

@@ -247,7 +247,7 @@ impl CasePage {
     }
 }
 
-/// What would tell more.
+/// Shows the check that would tell the diagnosis most, and what of.
 fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
     let Some(answer) = &found.answer else {
         return;

@@ -35,7 +35,7 @@ pub struct Change {
     under_way: Request<Written>,
     /// What is being recorded, as its button says it.
     what: &'static str,
-    /// It is itself an undoing.
+    /// Whether what is being recorded takes a closing back, so that no undo is offered for it.
     takes_back: bool,
 }
 

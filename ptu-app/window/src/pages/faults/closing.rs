@@ -20,7 +20,7 @@ pub struct Closing {
     looked: String,
 }
 
-/// What was chosen in the dialog.
+/// Which button of the dialog was clicked.
 pub enum Chosen {
     Cancel,
     /// With this note.
