@@ -129,14 +129,17 @@ impl Settings {
 
     /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
     pub fn load(file: &Path) -> Self {
-        let text = read_regular_file(file, LONGEST_FILE).unwrap_or_default();
+        Self::of(&read_regular_file(file, LONGEST_FILE).unwrap_or_default())
+    }
+
+    fn of(text: &[u8]) -> Self {
         let mut settings: Self = match text.is_empty() {
             // Who starts the window for the first time is led through a case.
             true => Self {
                 density: Density::Operator,
                 ..Self::default()
             },
-            false => serde_json::from_slice(&text).unwrap_or_default(),
+            false => serde_json::from_slice(text).unwrap_or_default(),
         };
         settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
         settings.forget_operator(clock::now_us());
@@ -197,5 +200,14 @@ mod tests {
         assert_eq!(Settings::load(&file).operator, "", "asked for again");
         std::fs::write(&file, "{\"zoom\":").expect("damaged");
         assert_eq!(Settings::load(&file), Settings::default());
+    }
+
+    #[test]
+    fn damaged_settings_are_read_or_left() {
+        let kept = serde_json::to_vec_pretty(&Settings::default()).expect("JSON");
+        fuzzing::Fuzz::new("window-settings", env!("CARGO_MANIFEST_DIR"), [kept])
+            .run(20_000, |bytes| {
+                assert!(Settings::of(bytes).zoom.is_finite())
+            });
     }
 }

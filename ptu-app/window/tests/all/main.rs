@@ -10,7 +10,6 @@ mod by_the_clock;
 mod care_dialog;
 mod case_page;
 mod compare_runs;
-mod damaged_settings;
 mod drive_page;
 mod history_page;
 mod internal_names;
