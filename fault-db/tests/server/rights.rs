@@ -194,6 +194,8 @@ fn setting_up_again_changes_nothing() {
 
 #[test]
 fn an_account_that_may_delete_rows_is_refused_as_the_laptops_account() {
+    // Makes the laptops' account.
+    shared().database();
     let address = shared().empty();
     let mut client = shared().client("postgres");
     client

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use fault_db::{Channel, open_regular_file};
 use mcap::McapError;
-use mcap::records::Record;
+use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::Value;
 
@@ -91,11 +91,45 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
                     let what = format!("it unpacks to more than {MAX_BYTES} bytes");
                     return Err(wrong(file, &what));
                 }
-                reading.take(mcap::parse_record(opcode, data).map_err(damaged)?)?;
+                if !texts_fit(opcode, data) {
+                    return Err(damaged(McapError::UnexpectedEof));
+                }
+                if matches!(opcode, op::CHANNEL | op::MESSAGE | op::METADATA) {
+                    reading.take(mcap::parse_record(opcode, data).map_err(damaged)?)?;
+                }
             }
         }
     }
     reading.finish()
+}
+
+/// Whether the texts of a record are as long as they say: the library takes memory for what they say, up to 4 GB, before
+/// it reads them.
+fn texts_fit(opcode: u8, data: &[u8]) -> bool {
+    let (numbers, texts) = match opcode {
+        op::CHANNEL => (4, 2),
+        op::METADATA => (0, 1),
+        _ => return true,
+    };
+    let fit = || {
+        let mut rest = data.get(numbers..)?;
+        for _ in 0..texts {
+            rest = text(rest)?.1;
+        }
+        // Behind them a map: the length of its bytes, as a text has, and texts.
+        let mut map = text(rest)?.0;
+        while !map.is_empty() {
+            map = text(map)?.1;
+        }
+        Some(())
+    };
+    fit().is_some()
+}
+
+/// A text behind its length in bytes, and what follows it.
+fn text(data: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = data.split_first_chunk()?;
+    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }
 
 /// What is wrong, with the reason of the library's reason.
