@@ -3,7 +3,8 @@
 //! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
 //! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
 //!
-//! `CAMPAIGN=N` does N times the usual amount ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
+//! A check does a part of the usual amount, and all of it with `CHECK_SEED=all`. `CAMPAIGN=N` does N times the usual
+//! amount ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
 
 #![allow(
     clippy::print_stdout,
@@ -27,6 +28,8 @@ const HANG: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(500);
 /// More memory than this no reader may hold at a time, bytes.
 const MOST_MEMORY: u64 = 512 << 20;
+/// A check feeds one in so many of the damaged inputs.
+const PART_OF_A_CHECK: u64 = 4;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;
 
@@ -78,12 +81,18 @@ impl Fuzz {
         }
     }
 
-    /// Feeds the reader: first the corpus as it is, then `runs` damaged ones.
+    /// Feeds the reader: first the corpus as it is, then `runs` damaged ones, or a part of them in a check.
     ///
     /// # Panics
     /// The reader did, or took too much memory. Ends the process if it takes too long.
     pub fn run(self, runs: u64, mut read: impl FnMut(&[u8])) {
-        let (runs, seed) = (amount(runs), seed());
+        let is_whole = std::env::var("CHECK_SEED").is_ok_and(|seed| seed == "all");
+        let runs = match set("CAMPAIGN") {
+            Some(times) => runs * times,
+            None if is_whole => runs,
+            None => runs.div_ceil(PART_OF_A_CHECK),
+        };
+        let seed = seed();
         let mut mutator = Mutator::new(seed, &self.name);
         let watch = Watch::begin(&self.name);
         let began = Instant::now();

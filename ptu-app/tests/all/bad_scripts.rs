@@ -54,6 +54,11 @@ fn a_script_that_asks_for_more_than_a_machine_has_is_refused() {
         let list = place.ptu("run --list wrong.star");
         list.exits(2).explains(&["wrong.star:1:1: ", words]);
     }
+}
+
+#[test]
+#[ignore = "takes a processor for as long as a script may load"]
+fn a_script_that_computes_too_long_is_refused() {
     let place = Place::new();
     let square = "def f():\n    x = 3\n    for i in range(40):\n        x = x * x\nf()\n";
     place.write("wrong.star", &format!("{HEAD}{square}"));
