@@ -36,7 +36,7 @@ mod store;
 pub mod trace;
 mod values;
 
-pub use error::{QueryLimit, StoreError};
+pub use error::{Misplaced, QueryLimit, ServerReason, StoreError};
 pub use exchange::domain::{Refusals, Refused};
 pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
@@ -55,7 +55,10 @@ pub use history::run_writer::RunWriter;
 pub use history::verify::{RepairToProve, SettledFault};
 pub use history::withdrawal::{ToWithdraw, Withdrawn};
 pub use id::{Id, IdSource};
-pub use maintenance::{CheckReport, KeyUse, Problem, PruneCounts, PruneRule, Verification};
+pub use maintenance::{
+    Advice, CheckReport, Damage, Derived, KeyUse, Problem, ProblemKind, PruneCounts, PruneRule,
+    Samples, SchemaObject, SealPlace, Verification, WrongSignature,
+};
 pub use query::{
     ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultFilter, FaultStat, FaultSummary,
     Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,

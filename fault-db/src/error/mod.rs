@@ -1,6 +1,7 @@
 //! Errors of the store, each with the file or server it concerns and the next move. A message that ends with
 //! another file to choose does not say how: that is the caller's to add.
 
+mod misplaced;
 mod query_limit;
 mod server;
 mod sqlite;
@@ -8,12 +9,15 @@ mod sqlite;
 use std::path::PathBuf;
 
 use crate::id::{Id, list};
+use crate::maintenance::Damage;
 use crate::trace::TraceError;
 use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
+pub use misplaced::Misplaced;
 pub(crate) use query_limit::MOST_RESULT_BYTES;
 pub use query_limit::QueryLimit;
 pub(crate) use server::NO_TLS;
+pub use server::ServerReason;
 
 /// An error of the store. Nothing committed before it is lost.
 #[derive(Debug, thiserror::Error)]
@@ -65,20 +69,22 @@ pub enum StoreError {
         known: i32,
     },
     /// The file holds a table, index, view or trigger that this program did not make, or an altered one.
-    #[error("{} was altered by hand: {what}; nothing is written to it. Look at it with `db check` and `db query`, keep a copy of it as it is, then go on with a backup, or take out by hand what is not of this program and check it again", .path.display())]
+    #[error("{} was altered by hand: {what}{}; nothing is written to it. Look at it with `db check` and `db query`, keep a copy of it as it is, then go on with a backup, or take out by hand what is not of this program and check it again", .path.display(), and_more(*.more))]
     Altered {
         /// The database file.
         path: PathBuf,
         /// The first finding.
-        what: String,
+        what: Damage,
+        /// How many more there are.
+        more: usize,
     },
     /// The file is no longer the one that was opened, or another name leads to it, too.
     #[error("the database {} {what}", .path.display())]
     Misplaced {
         /// The database file.
         path: PathBuf,
-        /// What has happened to the database file: "was removed", "was replaced by another file".
-        what: &'static str,
+        /// What has happened to it.
+        what: Misplaced,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
@@ -310,7 +316,7 @@ pub enum StoreError {
         /// What was being done.
         doing: &'static str,
         /// What went wrong.
-        reason: String,
+        reason: ServerReason,
     },
     /// The server refuses the connection or the right.
     #[error("{} refuses: {reason}; ask who looks after the server", .path.display())]
@@ -318,7 +324,7 @@ pub enum StoreError {
         /// The server.
         path: PathBuf,
         /// The server's message.
-        reason: String,
+        reason: ServerReason,
     },
     /// The server's certificate is not trusted.
     #[error("{} is not trusted: {reason}", .path.display())]
@@ -326,7 +332,7 @@ pub enum StoreError {
         /// The server.
         path: PathBuf,
         /// What is missing, and what to do.
-        reason: String,
+        reason: ServerReason,
     },
     /// Other sessions keep the server busy for too long.
     #[error("{} is busy ({doing}: {reason}); try again later", .path.display())]
@@ -407,5 +413,19 @@ impl StoreError {
             what,
             asked: id.to_string(),
         }
+    }
+}
+
+/// Two errors are the same if they say the same.
+impl PartialEq for StoreError {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
+
+fn and_more(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        more => format!(", and {more} more"),
     }
 }

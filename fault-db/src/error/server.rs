@@ -11,6 +11,44 @@ use super::StoreError;
 /// The error if the server has no TLS and the address demands it.
 pub(crate) const NO_TLS: &str = "server does not support TLS";
 
+/// Why there is no connection with a server, and what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ServerReason {
+    /// No program at that address.
+    #[error("nothing listens there")]
+    NothingListens,
+    /// It is silent.
+    #[error("no answer in time")]
+    NoAnswer,
+    /// The file of the socket is not there.
+    #[error("there is no such socket")]
+    NoSocket,
+    /// It broke off.
+    #[error("the connection is lost")]
+    Lost,
+    /// None was given.
+    #[error("it wants a password")]
+    NoPassword,
+    /// It offers none, and the address demands it.
+    #[error("it has no TLS; on a network you trust add sslmode=disable")]
+    NoTls,
+    /// The certificate's issuer is not trusted.
+    #[error("nobody known here issued its certificate; name the issuer's with sslrootcert=FILE")]
+    UnknownIssuer,
+    /// The certificate names another host.
+    #[error("its certificate is for another host; use the name that stands in it")]
+    OtherHost,
+    /// The certificate is too old.
+    #[error("its certificate has expired; renew it, or set this computer's clock")]
+    Expired,
+    /// The certificate is too new.
+    #[error("its certificate is not valid yet; set this computer's clock")]
+    NotYetValid,
+    /// The words of the server or the system.
+    #[error("{0}")]
+    Said(String),
+}
+
 /// Classifies an error of a server by what a caller can do about it.
 pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error) -> StoreError {
     let path = path.to_path_buf();
@@ -30,15 +68,19 @@ pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error
         | SqlState::INVALID_PASSWORD
         | SqlState::INVALID_AUTHORIZATION_SPECIFICATION
         | SqlState::INVALID_CATALOG_NAME
-        | SqlState::READ_ONLY_SQL_TRANSACTION => StoreError::ServerRefuses { path, reason },
-        SqlState::DISK_FULL | SqlState::OUT_OF_MEMORY => StoreError::ServerRefuses { path, reason },
+        | SqlState::READ_ONLY_SQL_TRANSACTION
+        | SqlState::DISK_FULL
+        | SqlState::OUT_OF_MEMORY => StoreError::ServerRefuses {
+            path,
+            reason: ServerReason::Said(reason),
+        },
         SqlState::ADMIN_SHUTDOWN
         | SqlState::CRASH_SHUTDOWN
         | SqlState::CANNOT_CONNECT_NOW
         | SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => StoreError::ServerUnreachable {
             path,
             doing,
-            reason,
+            reason: ServerReason::Said(reason),
         },
         _ => StoreError::Server {
             path,
@@ -63,7 +105,7 @@ fn without_message(
     source: postgres::Error,
 ) -> StoreError {
     if source.is_closed() {
-        let reason = "the connection is lost".to_owned();
+        let reason = ServerReason::Lost;
         return StoreError::ServerUnreachable {
             path,
             doing,
@@ -83,11 +125,11 @@ fn without_message(
         return match reason.as_str() {
             NO_TLS => StoreError::ServerRefuses {
                 path,
-                reason: "it has no TLS; on a network you trust add sslmode=disable".to_owned(),
+                reason: ServerReason::NoTls,
             },
             "password missing" => StoreError::ServerRefuses {
                 path,
-                reason: "it wants a password".to_owned(),
+                reason: ServerReason::NoPassword,
             },
             _ => StoreError::Server {
                 path,
@@ -101,14 +143,14 @@ fn without_message(
         return StoreError::ServerNotTrusted { path, reason };
     }
     let reason = match network.kind() {
-        std::io::ErrorKind::ConnectionRefused => "nothing listens there".to_owned(),
-        std::io::ErrorKind::TimedOut => "no answer in time".to_owned(),
-        std::io::ErrorKind::NotFound => "there is no such socket".to_owned(),
+        std::io::ErrorKind::ConnectionRefused => ServerReason::NothingListens,
+        std::io::ErrorKind::TimedOut => ServerReason::NoAnswer,
+        std::io::ErrorKind::NotFound => ServerReason::NoSocket,
         std::io::ErrorKind::UnexpectedEof
         | std::io::ErrorKind::ConnectionReset
         | std::io::ErrorKind::ConnectionAborted
-        | std::io::ErrorKind::BrokenPipe => "the connection is lost".to_owned(),
-        _ => network.to_string(),
+        | std::io::ErrorKind::BrokenPipe => ServerReason::Lost,
+        _ => ServerReason::Said(network.to_string()),
     };
     StoreError::ServerUnreachable {
         path,
@@ -117,23 +159,17 @@ fn without_message(
     }
 }
 
-/// Why a certificate was not trusted, and what to do about it.
-fn distrust(error: &rustls::Error) -> String {
-    use rustls::Error::InvalidCertificate;
+/// Why a certificate was not trusted.
+fn distrust(error: &rustls::Error) -> ServerReason {
+    use CertificateError as C;
     match error {
-        InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
-            "nobody known here issued its certificate; name the issuer's with sslrootcert=FILE"
-                .to_owned()
-        }
-        InvalidCertificate(
-            CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. },
-        ) => "its certificate is for another host; use the name that stands in it".to_owned(),
-        InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
-            "its certificate has expired; renew it, or set this computer's clock".to_owned()
-        }
-        InvalidCertificate(
-            CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. },
-        ) => "its certificate is not valid yet; set this computer's clock".to_owned(),
-        other => other.to_string(),
+        rustls::Error::InvalidCertificate(wrong) => match wrong {
+            C::UnknownIssuer | C::BadSignature => ServerReason::UnknownIssuer,
+            C::NotValidForName | C::NotValidForNameContext { .. } => ServerReason::OtherHost,
+            C::Expired | C::ExpiredContext { .. } => ServerReason::Expired,
+            C::NotValidYet | C::NotValidYetContext { .. } => ServerReason::NotYetValid,
+            _ => ServerReason::Said(error.to_string()),
+        },
+        other => ServerReason::Said(other.to_string()),
     }
 }

@@ -5,5 +5,8 @@ mod check;
 mod prune;
 
 pub(crate) use check::has_its_traces;
-pub use check::{CheckReport, KeyUse, Problem, Verification};
+pub use check::{
+    Advice, CheckReport, Damage, Derived, KeyUse, Problem, ProblemKind, Samples, SchemaObject,
+    SealPlace, Verification, WrongSignature,
+};
 pub use prune::{PruneCounts, PruneRule};

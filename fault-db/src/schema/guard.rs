@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, Result};
 
+use crate::maintenance::{Damage, SchemaObject};
 use crate::schema::sql_functions;
 use crate::schema::{self, SCHEMA_VERSION};
 
@@ -24,32 +25,32 @@ pub(crate) fn harden(conn: &Connection, triggers: bool) -> Result<()> {
 
 /// Descriptions of all objects of a file of this schema version that this program did not make or that were
 /// altered; empty if there are none.
-pub(crate) fn foreign_objects(conn: &Connection, version: i32) -> Result<Vec<String>> {
+pub(crate) fn foreign_objects(conn: &Connection, version: i32) -> Result<Vec<Damage>> {
     let made = made(version)?;
     let found = objects(conn)?;
     let mut foreign_objects = Vec::new();
     for (object, (of, sql)) in &found {
-        let (kind, name) = object;
-        let on = match of == name {
-            true => String::new(),
-            false => format!(" on {of}"),
-        };
+        let (_, name) = object;
+        let on = (of != name).then(|| of.clone());
         match made.get(object) {
-            None => {
-                foreign_objects.push(format!("the {kind} \"{name}\"{on} is not of this program"))
-            }
+            None => foreign_objects.push(Damage::Foreign(named(object, on))),
             Some((made_of, made_sql)) if made_of != of || made_sql != sql => {
-                foreign_objects.push(format!(
-                    "the {kind} \"{name}\"{on} is not as this program made it"
-                ));
+                foreign_objects.push(Damage::Remade(named(object, on)));
             }
             Some(_) => {}
         }
     }
-    for (kind, name) in made.keys().filter(|object| !found.contains_key(*object)) {
-        foreign_objects.push(format!("the {kind} \"{name}\" is missing"));
-    }
+    let missing = made.keys().filter(|object| !found.contains_key(*object));
+    foreign_objects.extend(missing.map(|object| Damage::NoObject(named(object, None))));
     Ok(foreign_objects)
+}
+
+fn named((kind, name): &(String, String), on: Option<String>) -> SchemaObject {
+    SchemaObject {
+        kind: kind.clone(),
+        name: name.clone(),
+        on,
+    }
 }
 
 /// The objects of a file of this version as the program makes them.
@@ -158,11 +159,12 @@ mod tests {
             sql_functions::register(&conn).expect("functions");
             schema::create(&conn, version).expect("made");
             conn.execute_batch("ANALYZE").expect("statistics");
-            assert_eq!(foreign_objects(&conn, version).expect("compared"), [""; 0]);
+            assert_eq!(foreign_objects(&conn, version).expect("compared"), []);
             let planted = "CREATE TRIGGER x AFTER UPDATE ON run BEGIN SELECT 1; END;
                 CREATE TABLE mine(a); CREATE INDEX y ON run(source); DROP INDEX run_by_start";
             conn.execute_batch(planted).expect("planted");
             let found = foreign_objects(&conn, version).expect("compared");
+            let found: Vec<_> = found.iter().map(Damage::to_string).collect();
             assert_eq!(
                 found,
                 [

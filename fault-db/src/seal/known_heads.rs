@@ -4,6 +4,7 @@
 use super::copied_from;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
+use crate::maintenance::Damage;
 
 /// An entry of a chain as it was seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +84,7 @@ pub(crate) fn broken(
     store: &Backend,
     known: &[KnownHead],
     own: Option<Id>,
-) -> SqlResult<Vec<(Id, String)>> {
+) -> SqlResult<Vec<(Id, Damage)>> {
     let mut found = Vec::new();
     for head in known {
         let (origin, ordinal) = (head.origin, head.ordinal);
@@ -94,22 +95,13 @@ pub(crate) fn broken(
         let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
         let hash: Option<Vec<u8>> =
             store.first(sql, &values![origin, ordinal], |row| row.get(0))?;
-        let at = chrono::DateTime::from_timestamp_micros(head.seen_at_us).unwrap_or_default();
-        let at = match head.seen_at_us {
-            0 => "here".to_owned(),
-            _ => format!("at {}", at.format("%Y-%m-%d %H:%M:%S UTC")),
-        };
-        let file = origin.short();
+        let seen = head.seen_at_us;
         match hash {
             Some(hash) if hash == head.hash => {}
-            Some(_) => found.push((
-                origin,
-                format!("the chain of file {file} was rewritten: entry {ordinal} is not the one that was known {at}"),
-            )),
-            None if own == Some(origin) => found.push((
-                origin,
-                format!("the chain of file {file} was cut: entry {ordinal}, which was known {at}, is not there"),
-            )),
+            Some(_) => found.push((origin, Damage::Rewritten(origin, ordinal, seen))),
+            None if own == Some(origin) => {
+                found.push((origin, Damage::Cut(origin, ordinal, seen)));
+            }
             None => {}
         }
     }
@@ -175,7 +167,7 @@ mod tests {
         own.backend()
             .execute(cut, &values![head.origin, head.ordinal])
             .expect("cut");
-        let said = &own.check().expect("checked").problems[0].detail;
+        let said = &own.check().expect("checked").problems[0].detail.to_string();
         assert!(said.contains("was cut: entry 3"), "{said}");
         assert_eq!(
             other.seen_otherwise(&own).expect("compared"),
@@ -187,7 +179,7 @@ mod tests {
             ..crate::Instrument::default()
         })
         .expect("registered");
-        let said = own.check().expect("checked").problems[0].detail.clone();
+        let said = own.check().expect("checked").problems[0].detail.to_string();
         assert!(said.contains("was rewritten: entry 3"), "{said}");
         assert_eq!(other.seen_otherwise(&own).expect("compared"), [said]);
         let third = open(&dir.path().join("c.db"), 20_000);

@@ -12,7 +12,7 @@ use super::bounded::BoundedConnector;
 use super::password::{self, Password};
 use super::{schema, tls};
 use crate::backend::{Backend, Server};
-use crate::error::StoreError;
+use crate::error::{ServerReason, StoreError};
 use crate::files::platform;
 use crate::id::IdSource;
 use crate::store::Store;
@@ -91,9 +91,9 @@ fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
     }
     Err(StoreError::ServerRefuses {
         path: path.to_path_buf(),
-        reason: format!(
+        reason: ServerReason::Said(format!(
             "its text is {encoding}; make the database with `createdb -E UTF8 -T template0`"
-        ),
+        )),
     })
 }
 
@@ -133,7 +133,7 @@ fn reach(
     let guard = address.guard();
     let not_trusted = |reason| StoreError::ServerNotTrusted {
         path: path.to_path_buf(),
-        reason,
+        reason: ServerReason::Said(reason),
     };
     let tls = match guard {
         Guard::Disable => None,
@@ -156,27 +156,27 @@ fn reach(
             // Nobody receives it if it took too long.
             let _ = done.send(connected);
         });
-    let away = |reason: String| StoreError::ServerUnreachable {
+    let away = |reason| StoreError::ServerUnreachable {
         path: path.to_path_buf(),
         doing: DOING,
         reason,
     };
-    connecting.map_err(|error| away(error.to_string()))?;
+    connecting.map_err(|error| away(ServerReason::Said(error.to_string())))?;
     let patience = Duration::from_secs(address.connect_timeout_s + 1);
     let connected = waiting
         .recv_timeout(patience)
-        .map_err(|_| away("no answer in time".to_owned()))?;
+        .map_err(|_| away(ServerReason::NoAnswer))?;
     connected.map_err(
         |error| match StoreError::from_sql(path, DOING, error.into()) {
             StoreError::ServerRefuses { path, reason } => StoreError::ServerRefuses {
                 path,
                 reason: match &password.passed_over {
-                    Some(why) => format!("{reason}; {why}"),
+                    Some(why) => ServerReason::Said(format!("{reason}; {why}")),
                     None => reason,
                 },
             },
             // Any other error means that there is no connection.
-            StoreError::Server { source, .. } => away(source.to_string()),
+            StoreError::Server { source, .. } => away(ServerReason::Said(source.to_string())),
             other => other,
         },
     )

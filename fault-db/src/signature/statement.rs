@@ -7,6 +7,7 @@ use super::signed::Signed;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::maintenance::has_its_traces;
+use crate::maintenance::{SealPlace, WrongSignature};
 use crate::seal::events_and_notes::{event_digest, note_digest};
 use crate::seal::{hex, run};
 
@@ -146,13 +147,13 @@ pub(crate) fn read_signature(
     backend: &Backend,
     group: Id,
     text: &str,
-) -> SqlResult<Result<Statement, String>> {
+) -> SqlResult<Result<Statement, WrongSignature>> {
     let signed = match Signed::read(text) {
         Ok(signed) => signed,
-        Err(error) => return Ok(Err(error.to_string())),
+        Err(error) => return Ok(Err(WrongSignature::Document(error))),
     };
     let Some(statement) = Statement::of(&signed) else {
-        return Ok(Err("it is no statement about a seal".to_owned()));
+        return Ok(Err(WrongSignature::NoStatement));
     };
     let wrong = match wrong_subject(backend, group, &statement)? {
         None => seal_mismatch(backend, &statement)?,
@@ -162,10 +163,14 @@ pub(crate) fn read_signature(
 }
 
 /// How what a signature names is not what it hangs on: a run or instrument on itself, a note on its run, an event on its fault.
-fn wrong_subject(backend: &Backend, group: Id, statement: &Statement) -> SqlResult<Option<String>> {
+fn wrong_subject(
+    backend: &Backend,
+    group: Id,
+    statement: &Statement,
+) -> SqlResult<Option<WrongSignature>> {
     let what = &statement.what;
     let Ok(id) = statement.id.parse::<Id>() else {
-        return Ok(Some("it names no seal".to_owned()));
+        return Ok(Some(WrongSignature::NoSeal));
     };
     let owners = match &what[..] {
         "run" | "instrument" => vec![id],
@@ -180,17 +185,17 @@ fn wrong_subject(backend: &Backend, group: Id, statement: &Statement) -> SqlResu
             &values![id],
             |row| row.get(0),
         )?,
-        _ => return Ok(Some(format!("a \"{what}\" is not signed there"))),
+        _ => return Ok(Some(WrongSignature::NotThere(what.clone()))),
     };
     // That a note or event was taken out is told by its seal.
     let is_own = owners.is_empty() || owners.contains(&group);
-    Ok((!is_own).then(|| format!("it is of another: it signs {what} {id}")))
+    Ok((!is_own).then(|| WrongSignature::Other(what.clone(), id)))
 }
 
 /// How the seal that a signature names differs from it.
-fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<String>> {
+fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<WrongSignature>> {
     let (Ok(id), Ok(file)) = (statement.id.parse::<Id>(), statement.file.parse::<Id>()) else {
-        return Ok(Some("it names no seal".to_owned()));
+        return Ok(Some(WrongSignature::NoSeal));
     };
     let sql = "SELECT what, id, digest, hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
     let sealed = backend.first(sql, &values![file, statement.entry], |row| {
@@ -208,13 +213,14 @@ fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<S
     let again = backend.select(sql, &values![id, &statement.what], |row| {
         Ok(hex(row.get(0)?))
     })?;
-    let (what, entry) = (&statement.what, statement.entry);
-    let file = file.short();
+    let (what, entry) = (statement.what.clone(), statement.entry);
     Ok(match (sealed, again.contains(&statement.digest)) {
         (None, true) => None,
-        (None, false) if again.is_empty() => Some(format!("the seal of {what} {id} was taken out")),
-        _ => Some(format!(
-            "the seal of {what} {id}, entry {entry} of file {file}, is not the one that was signed"
+        (None, false) if again.is_empty() => Some(WrongSignature::SealGone(what, id)),
+        _ => Some(WrongSignature::OtherSeal(
+            what,
+            id,
+            SealPlace { file, entry },
         )),
     })
 }

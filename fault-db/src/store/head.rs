@@ -43,6 +43,9 @@ impl Store {
             known_heads::broken(other.backend(), &known, own)
         };
         let broken = look().map_err(|error| other.failed(DOING, error))?;
-        Ok(broken.into_iter().map(|(_, what)| what).collect())
+        Ok(broken
+            .into_iter()
+            .map(|(_, what)| what.to_string())
+            .collect())
     }
 }

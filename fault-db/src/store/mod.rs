@@ -19,6 +19,7 @@ use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
 use crate::error::StoreError;
 use crate::files::platform::Identity;
 use crate::id::{Id, IdSource};
+use crate::maintenance::Damage;
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::signature::{Signer, sign_new_entries};
@@ -152,7 +153,7 @@ impl Store {
 
     /// Descriptions of objects in this file that this program did not make or that were altered. Opening such
     /// a file for writing is refused; a reader may be warned.
-    pub fn foreign_objects(&self) -> Result<Vec<String>, StoreError> {
+    pub fn foreign_objects(&self) -> Result<Vec<Damage>, StoreError> {
         let Backend::File(conn) = &self.backend else {
             return Ok(Vec::new());
         };
@@ -221,7 +222,8 @@ impl Store {
         let name = name.map_err(|error| self.failed("reading its name", error))?;
         name.ok_or_else(|| StoreError::Altered {
             path: self.path.clone(),
-            what: "the file's own name was taken out of it".to_owned(),
+            what: Damage::NoName,
+            more: 0,
         })
     }
 
@@ -453,10 +455,8 @@ fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreErr
         [] => Ok(()),
         [first, rest @ ..] => Err(StoreError::Altered {
             path: path.to_path_buf(),
-            what: match rest.len() {
-                0 => first.clone(),
-                more => format!("{first}, and {more} more"),
-            },
+            what: first.clone(),
+            more: rest.len(),
         }),
     }
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use rusqlite::config::DbConfig;
 
 use super::Store;
-use crate::error::StoreError;
+use crate::error::{Misplaced, StoreError};
 use crate::files::databases::with_end;
 use crate::files::platform::Identity;
 use crate::id::Id;
@@ -15,8 +15,6 @@ use crate::store::atomic_file::AtomicFile;
 
 /// The whole file is looked at for as long as this; the rows of the run are read whatever it takes.
 const LOOK: Duration = Duration::from_millis(200);
-
-const WRITTEN_OVER: &str = "was written over, and does not hold the run as it was recorded";
 
 impl Store {
     /// Holds the file and its log to be those that have this store's name still, and the file to have no other name.
@@ -28,14 +26,10 @@ impl Store {
             return Ok(());
         };
         let what = match Identity::at(&self.path) {
-            None => "was removed",
-            Some(now) if !opened.is_same(&now) => "was replaced by another file",
-            Some(now) if now.names > 1 && self.has_second_name() => {
-                "has a second name (a hard link); remove that name"
-            }
-            Some(_) if self.has_lost_its_log() => {
-                "lost its log: the file beside it that ends in -wal was removed or replaced"
-            }
+            None => Misplaced::Removed,
+            Some(now) if !opened.is_same(&now) => Misplaced::Replaced,
+            Some(now) if now.names > 1 && self.has_second_name() => Misplaced::SecondName,
+            Some(_) if self.has_lost_its_log() => Misplaced::NoLog,
             Some(_) => return Ok(()),
         };
         Err(self.misplaced(what))
@@ -54,7 +48,7 @@ impl Store {
         self.log.as_ref().is_some_and(|opened| !is_same(opened))
     }
 
-    fn misplaced(&self, what: &'static str) -> StoreError {
+    fn misplaced(&self, what: Misplaced) -> StoreError {
         StoreError::Misplaced {
             path: self.path.clone(),
             what,
@@ -112,7 +106,7 @@ impl Store {
         };
         match is_there()? {
             true => self.check_place(),
-            false => Err(self.misplaced(WRITTEN_OVER)),
+            false => Err(self.misplaced(Misplaced::WrittenOver)),
         }
     }
 

@@ -47,10 +47,13 @@ fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
         )
         .expect("damaged");
     let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
+    let kinds: Vec<_> = problems
+        .iter()
+        .map(|problem| problem.kind.as_str())
+        .collect();
     assert_eq!(kinds, ["foreign_key", "trace", "seal"], "{problems:?}");
     assert!(
-        problems[1].detail.contains(&trace.to_string()),
+        problems[1].detail.to_string().contains(&trace.to_string()),
         "{problems:?}"
     );
     assert!(matches!(store.trace(trace), Err(StoreError::Trace { .. })));

@@ -271,7 +271,7 @@ fn a_recount_does_not_take_a_finding_away() {
     assert!(
         problems
             .iter()
-            .any(|found| found.detail.contains("counted again")),
+            .any(|found| found.detail.to_string().contains("counted again")),
         "{problems:?}"
     );
 }

@@ -78,9 +78,15 @@ fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
     let damage = "PRAGMA foreign_keys = OFF; UPDATE run_note SET run = 99";
     other.execute_batch(damage).expect("damaged");
     let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
+    let kinds: Vec<_> = problems
+        .iter()
+        .map(|problem| problem.kind.as_str())
+        .collect();
     assert_eq!(kinds, ["foreign_key", "seal"], "{problems:?}");
-    assert!(problems[0].detail.contains("run_note"), "{problems:?}");
+    assert!(
+        problems[0].detail.to_string().contains("run_note"),
+        "{problems:?}"
+    );
 }
 
 /// Goal: what somebody saw in a trace is found there by others. Method: notes at two places, given in the wrong order, and one

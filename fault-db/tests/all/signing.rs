@@ -509,8 +509,8 @@ fn rebuild_seals_and_signs_nothing_that_was_changed() {
         let seals = report
             .problems
             .iter()
-            .filter(|problem| problem.kind == "seal");
-        seals.map(|problem| problem.detail.clone()).collect()
+            .filter(|problem| problem.kind.as_str() == "seal");
+        seals.map(|problem| problem.detail.to_string()).collect()
     };
     // All findings stay, and what was counted again is one more.
     let mut after = of_seals(&after);

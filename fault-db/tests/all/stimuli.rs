@@ -112,7 +112,10 @@ fn a_damaged_recording_is_reported_and_never_returned() {
     let error = store.recording(traces[0]).expect_err("damaged");
     assert!(matches!(error, StoreError::Corrupt { .. }), "{error}");
     let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems.iter().map(|problem| problem.kind).collect();
+    let kinds: Vec<_> = problems
+        .iter()
+        .map(|problem| problem.kind.as_str())
+        .collect();
     assert_eq!(
         kinds,
         ["recording", "recording", "seal", "seal"],

@@ -118,10 +118,15 @@ fn damage_in_one_channel_leaves_the_others_readable() {
         let of_trace: Vec<_> = report
             .problems
             .iter()
-            .filter(|p| p.kind == "trace")
+            .filter(|p| p.kind.as_str() == "trace")
             .collect();
         assert_eq!(of_trace.len(), 1, "{report:?}");
-        assert!(of_trace[0].detail.contains(&kept.id.to_string()));
+        assert!(
+            of_trace[0]
+                .detail
+                .to_string()
+                .contains(&kept.id.to_string())
+        );
     }
 }
 

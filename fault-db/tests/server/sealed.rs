@@ -22,7 +22,7 @@ fn a_run_that_was_changed_on_the_server_is_found_by_its_seal() {
         assert_eq!(report.runs, 6);
         let found = report.problems.into_iter();
         found
-            .map(|problem| (problem.kind, problem.detail))
+            .map(|problem| (problem.kind.as_str(), problem.detail.to_string()))
             .collect::<Vec<_>>()
     };
     assert_eq!(problems(), []);

@@ -1,7 +1,7 @@
 //! What the care of the history came to, in words: an exchange with a server, an import, a check.
 
 use fault_db::{
-    CheckReport, Difference, MergeCounts, Refusals, SealHead, StateConflict, SyncOutcome,
+    CheckReport, Difference, MergeCounts, Problem, Refusals, SealHead, StateConflict, SyncOutcome,
     SyncProgress,
 };
 
@@ -97,17 +97,13 @@ pub fn checked(report: &CheckReport, words: &Words) -> Said {
     let problems = report.problems.iter();
     let mut notes: Vec<_> = problems
         .map(|problem| {
-            let (kind, detail) = (words.trouble(problem.kind), words.trouble(&problem.detail));
-            format!("{kind}: {detail}")
+            let Problem { kind, detail, .. } = problem;
+            format!("{}: {}", words.problem_kind(*kind), words.damage(detail))
         })
         .collect();
     let mut advice: Vec<_> = report.problems.iter().map(|one| one.advice).collect();
     advice.dedup();
-    notes.extend(
-        advice
-            .into_iter()
-            .map(|next| words.trouble(next).into_owned()),
-    );
+    notes.extend(advice.into_iter().map(|next| words.advice(next).to_owned()));
     notes.extend(report.head.as_ref().map(|head| chain(head, words)));
     Said { text, notes }
 }

@@ -154,7 +154,7 @@ impl VerifyArguments {
         found.changes = report
             .problems
             .into_iter()
-            .map(|problem| problem.detail)
+            .map(|problem| problem.detail.to_string())
             .collect();
         found.remarks = report.remarks;
         // What this computer's own history has seen of it, by a sync or an import.

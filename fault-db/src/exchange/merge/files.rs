@@ -31,6 +31,7 @@ impl Store {
             Some(what) => Err(StoreError::Altered {
                 path: from.to_path_buf(),
                 what,
+                more: 0,
             }),
             None => self.merge_from(&other),
         }
@@ -102,6 +103,7 @@ impl Store {
             return Err(StoreError::Altered {
                 path: other.path().to_path_buf(),
                 what,
+                more: 0,
             });
         }
         let mut copy = None;

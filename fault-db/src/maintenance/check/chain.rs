@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::seal_entry::{SEALS_PER_BATCH, Seal, clock_error, position_error, seals_after};
 use super::signatures::{KeyUse, KeyUses};
-use super::{Findings, Remarks};
+use super::{Damage, Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
@@ -71,16 +71,10 @@ pub(super) fn check(
             if told.contains(missing) {
                 continue;
             }
-            let what = match missing {
-                (id, None) => format!("trace {id}"),
-                (id, Some(n)) => format!("recording {n} of run {id}"),
-            };
+            let samples = (*missing).into();
             found.add(match came {
-                false => format!("{what} was taken out: no seal says that it was pruned"),
-                true => format!(
-                    "{what} is missing: it was refused when its run came from another file, or taken out, and no \
-                     seal says that it was pruned; import a whole copy of that file, which brings it"
-                ),
+                false => Damage::NoSamples(samples),
+                true => Damage::SamplesLeft(samples),
             });
         }
         check_begun(backend, own, summary.is_begun, &mut found)?;
@@ -113,13 +107,13 @@ fn check_entry(
         remarks.extend(clock_error(backend, seal.origin, seal.ordinal)?);
     }
     match (&seal.what[..], seal.row) {
-        ("run", None) => found.add(format!("{}: its run was taken out", seal.name())),
-        ("event", None) => found.add(format!("{}: its event was taken out", seal.name())),
-        ("note", None) => found.add(format!("{}: its note was taken out", seal.name())),
+        (what @ ("run" | "event" | "note"), None) => {
+            found.add(Damage::Unsealed(seal.place(), what.to_owned()));
+        }
         ("run", Some(run)) => {
             summary.runs += 1;
             if run::digest(backend, run, &seal.payload)? != seal.digest[..] {
-                found.add(format!("run {id} was changed after it was sealed"));
+                found.add(Damage::Changed("run", id));
             }
             let payload = run::RunPayload::of(&seal.payload).unwrap_or_default();
             summary.found += u32::from(payload.found.is_some());
@@ -130,19 +124,19 @@ fn check_entry(
             let payload = EventPayload::of(&seal.payload);
             let fits = event_digest(backend, event, &seal.payload)? == seal.digest[..];
             if !fits || !is_of_its_fault(backend, event, payload.as_ref())? {
-                found.add(format!("event {id} was changed after it was sealed"));
+                found.add(Damage::Changed("event", id));
             }
             summary.found += u32::from(payload.is_some_and(|payload| payload.found.is_some()));
         }
         ("note", Some(note)) => {
             if note_digest(backend, note, &seal.payload)? != seal.digest[..] {
-                found.add(format!("note {id} was changed after it was sealed"));
+                found.add(Damage::Changed("note", id));
             }
             summary.found += u32::from(!seal.payload.is_empty());
         }
         (what, _) => {
             if statement_digest(what, id, &seal.payload) != seal.digest[..] {
-                found.add(format!("{} was changed", seal.name()));
+                found.add(Damage::SealChanged(seal.place()));
             }
             match what {
                 PRUNED => {
@@ -155,13 +149,13 @@ fn check_entry(
                 BEGUN if own == Some(seal.origin) => summary.is_begun = true,
                 SIGNATURE => match read_signature(backend, id, &seal.payload)? {
                     Ok(statement) => summary.keys.add(&statement),
-                    Err(wrong) => found.add(format!("the signature at {}: {wrong}", seal.name())),
+                    Err(wrong) => found.add(Damage::Signature(seal.place(), wrong)),
                 },
                 RECOUNTED => {
                     if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
                         // What another file has counted again is a finding there.
                         match own == Some(seal.origin) {
-                            true => found.add(payload.text()),
+                            true => found.add(Damage::Recounted(payload.at_us, payload.differed)),
                             false => remarks.push(payload.text()),
                         }
                     }
@@ -211,16 +205,14 @@ pub(super) fn check_traces_and_recordings(
                 if hex(&trace::digest(backend, *seq)?) != said.sha256
                     || *recording != said.recording
                 {
-                    found.add(format!("trace {of} was changed after its run was sealed"));
+                    found.add(Damage::TraceChanged(of));
                 }
             }
         }
     }
     for (_, of, _) in &traces {
         if !payload.traces.iter().any(|said| said.id == of.to_string()) {
-            found.add(format!(
-                "trace {of} was put into run {id} after it was sealed"
-            ));
+            found.add(Damage::TraceAdded(*of, id));
         }
     }
     let recordings = trace::recordings(backend, run)?;
@@ -229,9 +221,7 @@ pub(super) fn check_traces_and_recordings(
         if !recordings.contains(&ordinal) {
             summary.missing.insert((id, Some(ordinal)), came);
         } else if hex(&trace::recording_digest(backend, run, ordinal)?) != said.sha256 {
-            found.add(format!(
-                "recording {ordinal} of run {id} was changed after it was sealed"
-            ));
+            found.add(Damage::RecordingChanged(ordinal, id));
         }
     }
     for ordinal in recordings {
@@ -240,9 +230,7 @@ pub(super) fn check_traces_and_recordings(
             .iter()
             .any(|said| said.ordinal == ordinal)
         {
-            found.add(format!(
-                "recording {ordinal} was put into run {id} after it was sealed"
-            ));
+            found.add(Damage::RecordingAdded(ordinal, id));
         }
     }
     Ok(())
@@ -261,14 +249,11 @@ fn check_begun(
         None => false,
     };
     if !is_begun && !is_copy {
-        let missing =
-            "the beginning of this file's own chain of seals is not there: it was taken out";
-        found.add(missing.to_owned());
+        found.add(Damage::NoBeginning);
     }
     for (name, unsealed) in [("events", UNSEALED_EVENTS), ("notes", UNSEALED_NOTES)] {
         backend.each(unsealed, &[], |row| {
-            let id = row.get::<Id>(0)?;
-            found.add(format!("one of the {name}, {id}, has no seal: it was put in by hand, or its seal was taken out"));
+            found.add(Damage::NoSeal(name, row.get(0)?));
             Ok(())
         })?;
     }
@@ -282,21 +267,22 @@ const UNSEALED_NOTES: &str = "SELECT n.id FROM run_note n
 
 /// Finds runs without a seal, and sealed runs without a verdict.
 fn check_unsealed_runs(backend: &Backend, found: &mut Findings<'_>) -> SqlResult<()> {
-    let checks = [
+    type OfRun = fn(Id) -> Damage;
+    let checks: [(OfRun, _); 2] = [
         (
-            "was finished and has no seal: its seal was taken out, or it was put in by hand",
+            Damage::NoSealOfRun,
             "SELECT id FROM run WHERE verdict IS NOT NULL
                 AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run') ORDER BY seq",
         ),
         (
-            "has a seal and no verdict: the verdict was taken away",
+            Damage::NoVerdict,
             "SELECT id FROM run WHERE verdict IS NULL
                 AND EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run') ORDER BY seq",
         ),
     ];
     for (what, sql) in checks {
         backend.each(sql, &[], |row| {
-            found.add(format!("run {} {what}", row.get::<Id>(0)?));
+            found.add(what(row.get(0)?));
             Ok(())
         })?;
     }
@@ -310,9 +296,7 @@ fn check_unsealed_runs(backend: &Backend, found: &mut Findings<'_>) -> SqlResult
         .first(told, &[], |row| row.get::<i64>(0))?
         .unwrap_or(0);
     if gone > 0 {
-        found.add(format!(
-            "{gone} runs that were recorded here are not there any more"
-        ));
+        found.add(Damage::NoRuns(gone));
     }
     Ok(())
 }

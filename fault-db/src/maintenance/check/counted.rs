@@ -5,8 +5,8 @@
 
 use rusqlite::Connection;
 
-use super::Findings;
 use super::derived::faults_that_differ;
+use super::{Damage, Derived, Findings};
 use crate::backend::SqlResult;
 use crate::error::StoreError;
 use crate::history::event_graph::recompute_fault;
@@ -24,22 +24,22 @@ const TABLES: [(&str, Option<&str>); 4] = [
 
 /// Queries that count differing rows. Floating-point sums depend on the order of summation; that much
 /// difference is allowed, relative to the sum of squares.
-const DIFFERENCES: [(&str, &str); 6] = [
+const DIFFERENCES: [(Derived, &str); 6] = [
     (
-        "rows of the table of repairs",
+        Derived::Repairs,
         "SELECT count(DISTINCT event) FROM (
             SELECT * FROM (SELECT * FROM main.repair EXCEPT SELECT * FROM temp.repair)
             UNION ALL SELECT * FROM (SELECT * FROM temp.repair EXCEPT SELECT * FROM main.repair))",
     ),
     (
-        "sums of measured values by day",
+        Derived::Days,
         "SELECT count(*) FROM main.measured_day a FULL JOIN temp.measured_day b USING (name, procedure, day)
          WHERE a.n IS NOT b.n OR a.least IS NOT b.least OR a.most IS NOT b.most
             OR a.not_passed IS NOT b.not_passed
             OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx",
     ),
     (
-        "sums of measured values by month",
+        Derived::Months,
         "SELECT count(*) FROM main.measured_month a FULL JOIN temp.measured_month b USING (name, procedure, month, unit)
          WHERE a.n IS NOT b.n
             OR (a.x - b.x) * (a.x - b.x) > 1e-18 * b.n * b.xx OR abs(a.xx - b.xx) > 1e-9 * b.xx
@@ -47,20 +47,20 @@ const DIFFERENCES: [(&str, &str); 6] = [
             OR (a.tx - b.tx) * (a.tx - b.tx) > 1e-18 * b.tt * b.xx",
     ),
     (
-        "blocks of packed faults",
+        Derived::Packed,
         "SELECT count(*) FROM main.packed a FULL JOIN temp.packed b USING (block)
          WHERE a.block IS NULL OR a.faults IS NOT NULL AND (a.faults, a.occurrences, a.repairs)
             IS NOT (b.faults, b.occurrences, b.repairs)",
     ),
     (
-        "notes on faults that a search does not find, or finds and are not there",
+        Derived::FaultNotes,
         "SELECT (SELECT count(*) FROM fault_event e WHERE e.kind NOT IN ('opened', 'recurred') AND e.body <> ''
                 AND NOT EXISTS (SELECT 1 FROM event_words_docsize w WHERE w.id = e.seq))
             + (SELECT count(*) FROM event_words_docsize w
                 WHERE NOT EXISTS (SELECT 1 FROM fault_event e WHERE e.seq = w.id))",
     ),
     (
-        "notes on runs that a search does not find, or finds and are not there",
+        Derived::RunNotes,
         "SELECT (SELECT count(*) FROM run_note n
                 WHERE NOT EXISTS (SELECT 1 FROM note_words_docsize w WHERE w.id = n.seq))
             + (SELECT count(*) FROM note_words_docsize w
@@ -86,7 +86,7 @@ pub(super) fn in_snapshot(
     })
 }
 
-fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result<()> {
+fn compare(conn: &Connection, mut found: impl FnMut(Damage)) -> rusqlite::Result<()> {
     for (table, named_by) in TABLES {
         conn.execute_batch(&format!(
             "CREATE TEMP TABLE {table} AS SELECT * FROM main.{table} WHERE false"
@@ -101,7 +101,7 @@ fn compare(conn: &Connection, mut found: impl FnMut(String)) -> rusqlite::Result
     for (what, sql) in DIFFERENCES {
         let differ: i64 = conn.query_row(sql, [], |row| row.get(0))?;
         if differ > 0 {
-            found(format!("{differ} {what} are not what the history says"));
+            found(Damage::Miscounted(differ, what));
         }
     }
     Ok(())
@@ -116,7 +116,7 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
     with_sorting_on_disk(conn, || {
         Ok(store.write(DOING, |conn| {
             let mut differed = Vec::new();
-            compare(conn, |detail| differed.push(detail)).map_err(failed)?;
+            compare(conn, |detail| differed.push(detail.to_string())).map_err(failed)?;
             for (table, _) in TABLES {
                 let drop = format!("DROP TABLE temp.{table}");
                 conn.execute_batch(&drop).map_err(failed)?;

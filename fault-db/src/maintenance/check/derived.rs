@@ -2,38 +2,35 @@
 
 use rusqlite::Connection;
 
-use super::{ALTERED, Findings, Problem, REBUILD};
+use super::{Advice, Damage, Findings, Problem, ProblemKind};
 use crate::history::graph_sql::RECOMPUTE_FAULT;
 
+/// What is wrong with the row of an id.
+type Contradiction = fn(String) -> Damage;
+
 /// Queries for contradictions that no sequence of operations explains.
-const CONTRADICTS: [&str; 4] = [
-    "SELECT 'fault ' || lower(hex(f.id)) || ' has a name or a severity that no occurrence of it says'
-     FROM fault f WHERE EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq)
+const CONTRADICTS: [(Contradiction, &str); 4] = [
+    (Damage::FaultNamed, "SELECT lower(hex(f.id)) FROM fault f WHERE EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq)
         AND NOT EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq
-            AND (o.code_name, o.severity) = (f.code_name, f.severity))",
-    "SELECT 'occurrence ' || lower(hex(o.id)) || ' is of another unit, code or part than its fault'
-     FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
-     WHERE (o.unit, o.code, o.lru) <> (f.unit, f.code, f.lru)",
-    "SELECT 'occurrence ' || lower(hex(o.id)) || ' is of another unit or line than its run'
-     FROM fault_occurrence o JOIN run r ON r.seq = o.run WHERE (o.unit, o.line) <> (r.unit, r.line)",
-    "SELECT 'unit ' || u.serial || ' is what no run found it to be'
-     FROM unit u WHERE EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq)
+            AND (o.code_name, o.severity) = (f.code_name, f.severity))"),
+    (Damage::OtherFault, "SELECT lower(hex(o.id)) FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
+     WHERE (o.unit, o.code, o.lru) <> (f.unit, f.code, f.lru)"),
+    (Damage::OtherRun, "SELECT lower(hex(o.id)) FROM fault_occurrence o JOIN run r ON r.seq = o.run WHERE (o.unit, o.line) <> (r.unit, r.line)"),
+    (Damage::UnitNamed, "SELECT u.serial FROM unit u WHERE EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq)
         AND NOT EXISTS (SELECT 1 FROM run r WHERE r.unit = u.seq
-            AND (r.unit_kind, r.unit_config_name, r.sw_versions) = (u.kind, u.config_name, u.sw_versions))",
+            AND (r.unit_kind, r.unit_config_name, r.sw_versions) = (u.kind, u.config_name, u.sw_versions))"),
 ];
 
 /// Runs all checks in one snapshot of the file.
 pub(super) fn check(conn: &Connection, problems: &mut Vec<Problem>) -> rusqlite::Result<()> {
-    let mut found = Findings::new(problems, "fault", ALTERED);
-    for sql in CONTRADICTS {
-        super::each_text(conn, sql, |detail| found.add(detail))?;
+    let mut found = Findings::new(problems, ProblemKind::Fault, Advice::Altered);
+    for (damage, sql) in CONTRADICTS {
+        super::each_text(conn, sql, |of| found.add(damage(of)))?;
     }
     drop(found);
-    let mut found = Findings::new(problems, "count", REBUILD);
+    let mut found = Findings::new(problems, ProblemKind::Count, Advice::Rebuild);
     faults_that_differ(conn, |_, id| {
-        found.add(format!(
-            "fault {id} is not as its occurrences and events say: state, times, line or counts"
-        ));
+        found.add(Damage::FaultDerived(id));
     })
 }
 

@@ -2,11 +2,14 @@
 
 mod chain;
 mod counted;
+mod damage;
 mod derived;
 mod seal_entry;
 mod server;
 mod signatures;
 mod verify;
+
+use std::sync::Arc;
 
 use rusqlite::Connection;
 use serde::Serialize;
@@ -19,6 +22,9 @@ use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::seal::SealHead;
 use crate::store::Store;
+pub use damage::{
+    Advice, Damage, Derived, ProblemKind, Samples, SchemaObject, SealPlace, WrongSignature,
+};
 pub use signatures::KeyUse;
 pub use verify::Verification;
 pub(crate) use verify::has_its_traces;
@@ -48,38 +54,27 @@ type Remarks = Vec<String>;
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// integrity, schema, foreign_key, count, fault, trace, recording, seal or derived.
-    pub kind: &'static str,
+    /// What it is of.
+    pub kind: ProblemKind,
     /// Where it is, and what is wrong.
-    pub detail: String,
+    pub detail: Damage,
     /// What to do about it.
-    pub advice: &'static str,
+    pub advice: Advice,
 }
 
 /// Problems listed of each kind; SQLite's own check stops there, too.
 const MAX_FINDINGS: u32 = 100;
 
-const FROM_BACKUP: &str = "keep this file as it is and go on with a backup; other laptops and the server may \
-    have what was recorded since";
-const LOST: &str =
-    "it cannot be brought back here; a backup, another laptop or the server may have it";
-const ALTERED: &str = "somebody has changed the file by hand: what no line names can still be trusted as far as its \
-    seal is the one on a test sheet, in a backup or on the server; no command takes this finding away";
-const FOREIGN_OBJECT: &str = "nothing is written to such a file; keep a copy of it as it is, then go on with a backup, or \
-    take out by hand what is not of this program and check it again";
-const REBUILD: &str = "a row may have been changed by hand: hold the file against a backup or the server first; then \
-    `db rebuild` derives it again from the other rows, and what differed stays on record";
-
 /// Collects problems of one kind, up to the limit.
 struct Findings<'a> {
     problems: &'a mut Vec<Problem>,
-    kind: &'static str,
-    advice: &'static str,
+    kind: ProblemKind,
+    advice: Advice,
     found: u32,
 }
 
 impl<'a> Findings<'a> {
-    fn new(problems: &'a mut Vec<Problem>, kind: &'static str, advice: &'static str) -> Self {
+    fn new(problems: &'a mut Vec<Problem>, kind: ProblemKind, advice: Advice) -> Self {
         Self {
             problems,
             kind,
@@ -88,14 +83,14 @@ impl<'a> Findings<'a> {
         }
     }
 
-    fn add(&mut self, detail: String) {
+    fn add(&mut self, detail: Damage) {
         self.found += 1;
         if self.found <= MAX_FINDINGS {
             self.say(detail);
         }
     }
 
-    fn say(&mut self, detail: String) {
+    fn say(&mut self, detail: Damage) {
         self.problems.push(Problem {
             kind: self.kind,
             detail,
@@ -108,7 +103,7 @@ impl Drop for Findings<'_> {
     fn drop(&mut self) {
         let more = self.found.saturating_sub(MAX_FINDINGS);
         if more > 0 {
-            self.say(format!("and {more} more of this kind"));
+            self.say(Damage::More(more));
         }
     }
 }
@@ -129,10 +124,10 @@ impl Store {
         let failed = |error| self.failed("checking", error);
 
         let integrity = format!("PRAGMA integrity_check({MAX_FINDINGS})");
-        let mut found = Findings::new(&mut problems, "integrity", FROM_BACKUP);
+        let mut found = Findings::new(&mut problems, ProblemKind::Integrity, Advice::FromBackup);
         each_text(conn, &integrity, |detail| {
             if detail != "ok" {
-                found.add(detail);
+                found.add(Damage::Told(detail));
             }
         })
         .map_err(failed)?;
@@ -152,9 +147,9 @@ impl Store {
             Err(StoreError::Stopped) => return Err(StoreError::Stopped),
             // SQLite's findings are worth more than the place where reading failed.
             Err(error) if is_damaged => report.problems.push(Problem {
-                kind: "integrity",
-                detail: format!("the rest could not be looked at: {error}"),
-                advice: FROM_BACKUP,
+                kind: ProblemKind::Integrity,
+                detail: Damage::Rest(Arc::new(error)),
+                advice: Advice::FromBackup,
             }),
             done => done?,
         }
@@ -164,18 +159,18 @@ impl Store {
     fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
         let failed = |error| self.failed("checking", error);
         let problems = &mut report.problems;
-        let mut found = Findings::new(problems, "schema", FOREIGN_OBJECT);
+        let mut found = Findings::new(problems, ProblemKind::Schema, Advice::ForeignObject);
         let foreign_objects = guard::foreign_objects(conn, SCHEMA_VERSION).map_err(failed)?;
         foreign_objects
             .into_iter()
             .for_each(|detail| found.add(detail));
         drop(found);
 
-        let mut found = Findings::new(problems, "foreign_key", FROM_BACKUP);
-        each_text(conn, FOREIGN, |detail| found.add(detail)).map_err(failed)?;
+        let mut found = Findings::new(problems, ProblemKind::ForeignKey, Advice::FromBackup);
+        no_parents(conn, |detail| found.add(detail)).map_err(failed)?;
         drop(found);
 
-        let mut found = Findings::new(problems, "trace", LOST);
+        let mut found = Findings::new(problems, ProblemKind::Trace, Advice::Lost);
         for id in trace_ids(conn).map_err(failed)? {
             report.traces += 1;
             match self.trace(id) {
@@ -183,24 +178,26 @@ impl Store {
                 // Another program may prune meanwhile.
                 Err(StoreError::NotFound { .. }) => report.traces -= 1,
                 Err(StoreError::Stopped) => return Err(StoreError::Stopped),
-                Err(error) => found.add(error.to_string()),
+                Err(error) => found.add(Damage::Unread(Arc::new(error))),
             }
         }
         drop(found);
 
-        let mut found = Findings::new(problems, "recording", LOST);
+        let mut found = Findings::new(problems, ProblemKind::Recording, Advice::Lost);
         let (recordings, wrong) = check_recordings(conn).map_err(failed)?;
         report.recordings = recordings;
-        wrong.into_iter().for_each(|detail| found.add(detail));
+        wrong
+            .into_iter()
+            .for_each(|detail| found.add(Damage::Told(detail)));
         drop(found);
 
-        let found = Findings::new(problems, "seal", ALTERED);
+        let found = Findings::new(problems, ProblemKind::Seal, Advice::Altered);
         let runs = chain::check(self.backend(), found, &mut report.remarks);
         (report.runs, report.signed) =
             runs.map_err(|error| self.failed("checking seals", error))?;
         report.head = self.head()?;
 
-        let found = Findings::new(problems, "derived", REBUILD);
+        let found = Findings::new(problems, ProblemKind::Derived, Advice::Rebuild);
         counted::check(conn, found).map_err(failed)?;
         counted::in_snapshot(conn, || derived::check(conn, &mut report.problems)).map_err(failed)
     }
@@ -214,8 +211,15 @@ impl Store {
     }
 }
 
-const FOREIGN: &str = "SELECT coalesce('row ' || rowid, 'a row') || ' of ' || \"table\"
-    || ' points at a missing row of ' || parent FROM pragma_foreign_key_check";
+fn no_parents(conn: &Connection, mut take: impl FnMut(Damage)) -> rusqlite::Result<()> {
+    let sql = "SELECT rowid, \"table\", parent FROM pragma_foreign_key_check";
+    let mut select = conn.prepare(sql)?;
+    let mut rows = select.query([])?;
+    while let Some(row) = rows.next()? {
+        take(Damage::NoParent(row.get(0)?, row.get(1)?, row.get(2)?));
+    }
+    Ok(())
+}
 
 fn each_text(conn: &Connection, sql: &str, mut take: impl FnMut(String)) -> rusqlite::Result<()> {
     let mut select = conn.prepare(sql)?;

@@ -1,5 +1,6 @@
 //! Reads the entries of the chains in order, and checks each one's position and hash.
 
+use super::damage::{Damage, SealPlace, time};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::seal::chained;
@@ -20,7 +21,7 @@ pub(super) struct Seal {
 }
 
 /// The error in a seal's position or hash, if any; `before` is the seal before it in the same chain.
-pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<String> {
+pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Damage> {
     let expected = before.map_or(1, |before| before.ordinal + 1);
     if seal.ordinal != expected {
         let last = seal.ordinal - 1;
@@ -29,20 +30,10 @@ pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Strin
         } else {
             expected.to_string()
         };
-        return Some(format!(
-            "{}: before it seals were taken out, number {missing}",
-            seal.name()
-        ));
+        return Some(Damage::NoSeals(seal.place(), missing));
     }
     let hash = chained(before.map(|before| &before.hash[..]), &seal.digest);
-    (hash != seal.hash[..]).then(|| {
-        format!(
-            "{} ({} {}) does not fit the one before: it was changed",
-            seal.name(),
-            seal.what,
-            seal.id
-        )
-    })
+    (hash != seal.hash[..]).then(|| Damage::Unchained(seal.place(), seal.what.clone(), seal.id))
 }
 
 /// Times of one clock may differ by so much from the order in which they are sealed, µs.
@@ -67,10 +58,6 @@ pub(super) fn clock_error(
     let [(this, name, Some(at)), (_, earlier, Some(before))] = &last[..] else {
         return Ok(None);
     };
-    let time = |at_us: i64| {
-        let at = chrono::DateTime::from_timestamp_micros(at_us).unwrap_or_default();
-        at.format("%Y-%m-%d %H:%M:%S UTC").to_string()
-    };
     let is_back = *this == ordinal && at.saturating_add(IN_ORDER_US) < *before;
     Ok(is_back.then(|| {
         format!(
@@ -82,8 +69,11 @@ pub(super) fn clock_error(
 }
 
 impl Seal {
-    pub fn name(&self) -> String {
-        format!("seal {} of file {}", self.ordinal, self.origin.short())
+    pub fn place(&self) -> SealPlace {
+        SealPlace {
+            file: self.origin,
+            entry: self.ordinal,
+        }
     }
 }
 

@@ -1,16 +1,12 @@
 //! What can be checked of a server from a client: the seals of its runs, and the triggers that make its
 //! tables append-only.
 
-use super::{CheckReport, Findings, chain};
+use super::{Advice, CheckReport, Damage, Findings, ProblemKind, chain};
 use crate::backend::SqlResult;
 use crate::error::StoreError;
 use crate::store::Store;
 
 const DOING: &str = "checking the server";
-
-const SEALS: &str = "hold it against the test sheet or the laptop that recorded it; who owns the tables has changed them by hand";
-const GUARDS: &str =
-    "let who looks after the server find out who took them off, and put them back from a backup";
 
 /// Triggers that are missing or disabled.
 const OFF: &str = "
@@ -32,17 +28,22 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
         signed: Vec::new(),
     };
     let backend = store.backend();
-    let mut found = Findings::new(&mut report.problems, "schema", GUARDS);
+    let mut found = Findings::new(
+        &mut report.problems,
+        ProblemKind::Schema,
+        Advice::GuardsOfServer,
+    );
     let looked = backend.each(OFF, &[], |row| -> SqlResult<()> {
-        let (table, trigger): (&str, &str) = (row.get(0)?, row.get(1)?);
-        found.add(format!(
-            "trigger {trigger} of table {table} is off or gone: its rows can be changed"
-        ));
+        found.add(Damage::NoGuard(row.get(1)?, row.get(0)?));
         Ok(())
     });
     looked.map_err(|error| store.failed(DOING, error))?;
     drop(found);
-    let found = Findings::new(&mut report.problems, "seal", SEALS);
+    let found = Findings::new(
+        &mut report.problems,
+        ProblemKind::Seal,
+        Advice::SealsOfServer,
+    );
     let checked = chain::check(backend, found, &mut report.remarks);
     (report.runs, report.signed) = checked.map_err(|error| store.failed(DOING, error))?;
     Ok(report)

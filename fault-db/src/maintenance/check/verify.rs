@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::chain::{ChainSummary, check_traces_and_recordings};
 use super::seal_entry::clock_error;
-use super::{ALTERED, Findings};
+use super::{Advice, Findings, ProblemKind};
 use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
@@ -179,12 +179,12 @@ impl<'a> Look<'a> {
     fn traces(&mut self, payload: &run::RunPayload) -> SqlResult<()> {
         let mut problems = Vec::new();
         let mut summary = ChainSummary::default();
-        let mut findings = Findings::new(&mut problems, "seal", ALTERED);
+        let mut findings = Findings::new(&mut problems, ProblemKind::Seal, Advice::Altered);
         let of = (self.id, self.run, false);
         check_traces_and_recordings(self.backend, of, payload, &mut summary, &mut findings)?;
         drop(findings);
         for problem in problems {
-            self.change(problem.detail);
+            self.change(problem.detail.to_string());
         }
         for (id, recording) in summary.missing() {
             self.missing(id, recording)?;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fault_db::{CheckReport, SealHead, Store, StoreError};
+use fault_db::{Advice, CheckReport, ProblemKind, SealHead, Store, StoreError};
 
 use crate::cli::{Database, Json, answered};
 use ptu_runs::clock;
@@ -90,9 +90,9 @@ pub(super) fn sealed(head: &SealHead) -> String {
 /// All problems, and once for each kind what to do about it.
 fn text(report: &CheckReport) -> String {
     let mut table = Table::new(&["KIND", "WHAT"]);
-    let mut advice: Vec<(&str, &str)> = Vec::new();
+    let mut advice: Vec<(ProblemKind, Advice)> = Vec::new();
     for problem in &report.problems {
-        table.row([problem.kind.into(), problem.detail.clone()]);
+        table.row([problem.kind.to_string(), problem.detail.to_string()]);
         let next = (problem.kind, problem.advice);
         if !advice.contains(&next) {
             advice.push(next);

@@ -3,6 +3,7 @@
 use crate::common::is_english;
 use crate::common::window::{Window, settings};
 use crate::common::{Place, list, record_bad_unit, scripts};
+use fault_db::ProblemKind;
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
 use ptu_window::Settings;
@@ -124,7 +125,7 @@ fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
         assert_eq!(commands, None);
         let of_seals: Vec<_> = told
             .iter()
-            .filter(|text| text.contains(&*words.trouble("seal")))
+            .filter(|text| text.contains(words.problem_kind(ProblemKind::Seal)))
             .collect();
         assert!(!of_seals.is_empty(), "{told:#?}");
         let english = told.iter().find(|text| is_english(text));

@@ -2,6 +2,7 @@
 
 mod conclusion;
 pub(super) mod condition;
+mod damage;
 mod diagnosis;
 mod drive;
 mod finding;
