@@ -74,7 +74,7 @@ pub enum StoreError {
         /// The database file.
         path: PathBuf,
         /// The first finding.
-        what: Damage,
+        what: Box<Damage>,
         /// How many more there are.
         more: usize,
     },

@@ -222,7 +222,7 @@ impl Store {
         let name = name.map_err(|error| self.failed("reading its name", error))?;
         name.ok_or_else(|| StoreError::Altered {
             path: self.path.clone(),
-            what: Damage::NoName,
+            what: Box::new(Damage::NoName),
             more: 0,
         })
     }
@@ -455,7 +455,7 @@ fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreErr
         [] => Ok(()),
         [first, rest @ ..] => Err(StoreError::Altered {
             path: path.to_path_buf(),
-            what: first.clone(),
+            what: Box::new(first.clone()),
             more: rest.len(),
         }),
     }

@@ -30,7 +30,7 @@ impl Store {
         match other.foreign_objects()?.into_iter().next() {
             Some(what) => Err(StoreError::Altered {
                 path: from.to_path_buf(),
-                what,
+                what: Box::new(what),
                 more: 0,
             }),
             None => self.merge_from(&other),
@@ -102,7 +102,7 @@ impl Store {
         if let Some((_, what)) = broken.into_iter().next() {
             return Err(StoreError::Altered {
                 path: other.path().to_path_buf(),
-                what,
+                what: Box::new(what),
                 more: 0,
             });
         }
