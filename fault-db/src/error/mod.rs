@@ -21,7 +21,6 @@ pub use server::ServerReason;
 
 /// An error of the store. Nothing committed before it is lost.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum StoreError {
     /// Another connection holds the file for longer than the busy timeout.
     #[error("database busy: {} is locked by another program; close it or choose another file", .path.display())]

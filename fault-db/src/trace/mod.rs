@@ -144,7 +144,6 @@ impl TraceData {
 
 /// A trace that cannot be stored, or a stored one that cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum TraceError {
     /// The numbers of channels and columns differ.
     #[error("{channels} channels but {columns} columns")]

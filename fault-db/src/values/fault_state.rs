@@ -39,6 +39,15 @@ pub enum FaultAction {
 }
 
 impl FaultAction {
+    /// What a person can do with a fault, in the order in which it is offered.
+    pub const BY_A_PERSON: [Self; 5] = [
+        Self::Acknowledge,
+        Self::Repair,
+        Self::Verify,
+        Self::Close,
+        Self::Reopen,
+    ];
+
     /// The action that leads to `state`.
     pub fn towards(state: FaultState) -> Self {
         match state {
@@ -95,8 +104,7 @@ impl FaultState {
 }
 
 fn choices(from: FaultState) -> String {
-    use FaultAction::{Acknowledge, Close, Reopen, Repair, Verify};
-    let words: Vec<_> = [Acknowledge, Repair, Verify, Close, Reopen]
+    let words: Vec<_> = FaultAction::BY_A_PERSON
         .into_iter()
         .filter(|action| from.next(*action).is_ok())
         .map(FaultAction::event_kind)

@@ -135,7 +135,12 @@ fn different<'a>(all: &'a [Difference], words: &'a Words) -> impl Iterator<Item 
 fn refused(refused: &Refusals, words: &Words) -> Vec<String> {
     let named = refused.named.iter();
     let mut all: Vec<_> = named
-        .map(|one| fill(words.care.refused, &[("what", &words.trouble(&one.what))]))
+        .map(|one| {
+            fill(
+                words.care.refused,
+                &[("what", &words.stored_row(&one.what))],
+            )
+        })
         .collect();
     let more = refused.count.saturating_sub(refused.named.len() as u64);
     if more > 0 {

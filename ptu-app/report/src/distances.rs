@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fault_db::read_regular_file;
 use ptu_runs::clock::Span;
@@ -27,60 +27,127 @@ struct Reading {
     km: f64,
 }
 
+/// Why readings are not taken.
+#[derive(Debug, thiserror::Error)]
+pub enum DistancesError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {reason}", .file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// Something in it is wrong.
+    #[error("{}: {what}", .file.display())]
+    Wrong {
+        /// The file.
+        file: PathBuf,
+        /// What.
+        what: ReadingError,
+    },
+}
+
+/// Where a file of readings is wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadingError {
+    /// Its first line.
+    #[error("line 1: the columns train, date and km are expected")]
+    Heading,
+    /// A line, from 1, has more or fewer values.
+    #[error("line {0}: three values are expected")]
+    Values(u32),
+    /// A value.
+    #[error("line {line}, column {} ({}): {what}", column + 1, COLUMNS[*column])]
+    Cell {
+        /// From 1.
+        line: u32,
+        /// From 0.
+        column: usize,
+        /// What is wrong with it.
+        what: WrongCell,
+    },
+}
+
+/// How a value is not what it should be.
+#[derive(Debug, thiserror::Error)]
+pub enum WrongCell {
+    /// Nothing stands there.
+    #[error("there is no value")]
+    Empty,
+    /// This.
+    #[error("\"{0}\" is no date like 2026-03-21")]
+    NoDate(String),
+    /// This.
+    #[error("\"{0}\" is no number of kilometres")]
+    NoDistance(String),
+    /// There is one of the same train and day before it.
+    #[error("the train has another reading of this day")]
+    Twice,
+    /// The distance, km.
+    #[error("{0} does not fit the train's other readings: an odometer never goes back")]
+    GoesBack(f64),
+}
+
+impl From<DistancesError> for Failure {
+    fn from(error: DistancesError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
+
 impl Distances {
     /// Reads a file of comma-separated values with the columns train, date and km in its first line.
     ///
     /// # Errors
     /// It cannot be read, or a value is not what it should be: the message names its line and column.
-    pub fn read(file: &Path) -> Result<Self, Failure> {
-        let shown = file.display();
-        let text = read_regular_file(file, LONGEST_FILE)
-            .map_err(|error| Failure::usage(format!("cannot read {shown}: {error}")))?;
+    pub fn read(file: &Path) -> Result<Self, DistancesError> {
+        let text = read_regular_file(file, LONGEST_FILE).map_err(|error| {
+            let (file, reason) = (file.to_path_buf(), error.to_string());
+            DistancesError::Unreadable { file, reason }
+        })?;
         let text = String::from_utf8_lossy(&text);
-        Self::parse(&text).map_err(|why| Failure::usage(format!("{shown}: {why}")))
+        Self::parse(&text).map_err(|what| DistancesError::Wrong {
+            file: file.to_path_buf(),
+            what,
+        })
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
+    fn parse(text: &str) -> Result<Self, ReadingError> {
         let text = text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines());
         let heading = lines.next().map(|(_, line)| cells(line));
         if heading != Some(COLUMNS.map(str::to_owned).to_vec()) {
-            return Err("line 1: the columns train, date and km are expected".to_owned());
+            return Err(ReadingError::Heading);
         }
         let mut all = Self::default();
         for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-            let wrong = |column: usize, what: String| {
-                let name = COLUMNS[column];
-                format!("line {number}, column {} ({name}): {what}", column + 1)
+            let wrong = |column, what| ReadingError::Cell {
+                line: number,
+                column,
+                what,
             };
             let cells = cells(line);
             let Ok([train, date, km]) = <[String; 3]>::try_from(cells) else {
-                return Err(format!("line {number}: three values are expected"));
+                return Err(ReadingError::Values(number));
             };
             if train.is_empty() {
-                return Err(wrong(0, "there is no value".to_owned()));
+                return Err(wrong(0, WrongCell::Empty));
             }
-            let at_us = day_us(&date)
-                .ok_or_else(|| wrong(1, format!("\"{date}\" is no date like 2026-03-21")))?;
+            let at_us = day_us(&date).ok_or_else(|| wrong(1, WrongCell::NoDate(date)))?;
             let read = km.parse::<f64>().ok();
             let read = read.filter(|km| (0.0..=FARTHEST_KM).contains(km));
-            let km =
-                read.ok_or_else(|| wrong(2, format!("\"{km}\" is no number of kilometres")))?;
+            let km = read.ok_or_else(|| wrong(2, WrongCell::NoDistance(km)))?;
             let of_train = all.0.entry(train).or_default();
             let place = of_train.partition_point(|known| known.at_us < at_us);
             let after = of_train.get(place);
             if after.is_some_and(|after| after.at_us == at_us) {
-                let what = "the train has another reading of this day";
-                return Err(wrong(1, what.to_owned()));
+                return Err(wrong(1, WrongCell::Twice));
             }
             let before = place.checked_sub(1).and_then(|before| of_train.get(before));
             let goes_back = before.is_some_and(|before| before.km > km)
                 || after.is_some_and(|after| after.km < km);
             if goes_back {
-                let what = format!(
-                    "{km} does not fit the train's other readings: an odometer never goes back"
-                );
-                return Err(wrong(2, what));
+                return Err(wrong(2, WrongCell::GoesBack(km)));
             }
             of_train.insert(place, Reading { at_us, km });
         }
@@ -148,7 +215,7 @@ mod tests {
     fn what_is_wrong_is_told_by_line_and_column() {
         let of = |lines: &str| {
             let text = format!("train,date,km\n{lines}");
-            Distances::parse(&text).expect_err("wrong")
+            Distances::parse(&text).expect_err("wrong").to_string()
         };
         for (lines, said) in [
             ("612,2026-06-01", "line 2: three values"),
@@ -174,6 +241,7 @@ mod tests {
             assert!(why.starts_with(said), "{lines}: {why}");
         }
         let heading = Distances::parse("Zug;Tag;km\n").expect_err("wrong");
+        let heading = heading.to_string();
         assert!(heading.starts_with("line 1: "), "{heading}");
         assert!(Distances::parse("").is_err());
     }

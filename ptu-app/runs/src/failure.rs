@@ -1,8 +1,10 @@
 //! Failures reported to the user, each with its exit code.
 
 use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
 
-use fault_db::{StoreError, TraceError};
+use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
 use crate::stdio;
@@ -35,18 +37,96 @@ impl Exit {
     }
 }
 
+/// What went wrong, as data where a window has words of its own for it. Its text is that of a command line.
+#[derive(Clone, Debug)]
+pub enum Trouble {
+    /// The history.
+    Store(Arc<StoreError>),
+    /// A run that the history does not hold.
+    NotStored {
+        /// The run.
+        run: Id,
+        /// Why.
+        error: Arc<StoreError>,
+        /// Its last traces, which are lost.
+        left_out: usize,
+        /// The file that has it; none if it is lost.
+        kept: Option<PathBuf>,
+    },
+    /// An instrument of the bench whose calibration does not hold, and nothing was driven.
+    Uncalibrated {
+        /// What it is.
+        kind: String,
+        /// Which.
+        serial_no: String,
+        /// The day it was due; none: it was never calibrated.
+        due: Option<String>,
+    },
+    /// In words.
+    Told(String),
+}
+
+impl<T: Into<String>> From<T> for Trouble {
+    fn from(words: T) -> Self {
+        Self::Told(words.into())
+    }
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Store(error) => f.write_str(&store_message(error)),
+            Self::NotStored {
+                run,
+                error,
+                left_out,
+                kept,
+            } => {
+                let (run, why) = (run.short(), store_message(error));
+                let Some(kept) = kept.as_ref().map(|kept| kept.display()) else {
+                    return write!(f, "run {run} is not in the history, and lost: {why}");
+                };
+                write!(f, "run {run} is not in the history: ")?;
+                if *left_out > 0 {
+                    write!(f, "the last {left_out} of its traces are lost: ")?;
+                }
+                let again = "bring it in with `ptu db import";
+                write!(f, "{why}; it is kept in {kept}: {again} {kept}`")
+            }
+            Self::Uncalibrated {
+                kind,
+                serial_no,
+                due,
+            } => {
+                match due {
+                    Some(due) => {
+                        write!(f, "the calibration of {kind} {serial_no} was due on {due}")
+                    }
+                    None => write!(f, "{kind} {serial_no} was never calibrated"),
+                }?;
+                write!(
+                    f,
+                    "; nothing was driven. `ptu instrument calibrate {serial_no}` states a new calibration, \
+                     --uncalibrated goes on without one, and the sheet says so"
+                )
+            }
+            Self::Told(words) => f.write_str(words),
+        }
+    }
+}
+
 /// An error for a person: what happened, to which thing, what to do next.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.
     pub exit: Exit,
     /// The message.
-    pub message: String,
+    pub message: Trouble,
 }
 
 impl Failure {
     /// The command or a script is wrong.
-    pub fn usage(message: impl Into<String>) -> Self {
+    pub fn usage(message: impl Into<Trouble>) -> Self {
         Self {
             exit: Exit::Usage,
             message: message.into(),
@@ -54,7 +134,7 @@ impl Failure {
     }
 
     /// The bench, the link or the database does not work.
-    pub fn bench(message: impl Into<String>) -> Self {
+    pub fn bench(message: impl Into<Trouble>) -> Self {
         Self {
             exit: Exit::Bench,
             message: message.into(),
@@ -71,7 +151,7 @@ impl Failure {
         let failed = done.into_iter().filter_map(Result::err);
         let all = failed.reduce(|first, next| Self {
             exit: first.exit,
-            message: format!("{first}\n{next}"),
+            message: format!("{first}\n{next}").into(),
         });
         all.map_or(Ok(()), Err)
     }
@@ -84,7 +164,7 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
+        self.message.fmt(f)
     }
 }
 
@@ -123,7 +203,7 @@ impl From<StoreError> for Failure {
         };
         Self {
             exit,
-            message: store_message(&error),
+            message: Trouble::Store(Arc::new(error)),
         }
     }
 }

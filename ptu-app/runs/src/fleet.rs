@@ -186,7 +186,7 @@ mod tests {
             ("[[train]]\n".to_owned(), "train"),
         ] {
             let failure = records(&format!("{good}{other}")).expect_err("refused");
-            assert!(failure.message.contains(said), "{}", failure.message);
+            assert!(failure.to_string().contains(said), "{failure}");
         }
     }
 }

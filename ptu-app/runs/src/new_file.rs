@@ -331,7 +331,7 @@ mod tests {
         let told = |place: &Path| {
             NewFile::begin(place, kind::OWN)
                 .expect_err("refused")
-                .message
+                .to_string()
         };
         assert!(told(folder.path()).ends_with("it is a folder"));
         assert!(told(&folder.path().join("no/where.csv")).contains("there is no folder"));
@@ -339,7 +339,7 @@ mod tests {
         let place = folder.path().join("a.csv");
         written(&place, "1").finish().expect("finished");
         let failure = NewFile::begin_new(&place, kind::CSV).expect_err("there already");
-        assert!(failure.message.contains("--force"), "{}", failure.message);
+        assert!(failure.to_string().contains("--force"), "{failure}");
     }
 
     #[test]

@@ -325,7 +325,7 @@ impl RunArguments {
         console.finish();
         let (store, outcome) = result?;
         if let Some(lost) = &outcome.lost {
-            Failure::bench(lost).tell();
+            Failure::bench(lost.clone()).tell();
         }
         let answer = self.diagnosis(&store, directory, &outcome);
         let proofs = match outcome.exit {

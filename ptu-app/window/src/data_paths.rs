@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fault_db::{Address, Store, StoreError};
+use fault_db::{Address, Misplaced, Store, StoreError};
 
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
@@ -68,10 +68,8 @@ impl DataPaths {
             return Err(StoreError::ReadOnly { path }.into());
         }
         if self.is_gone() {
-            return Err(Failure::bench(format!(
-                "the database {} is gone",
-                self.database.display()
-            )));
+            let (path, what) = (self.database.clone(), Misplaced::Gone);
+            return Err(StoreError::Misplaced { path, what }.into());
         }
         owner_only::folder_of(&self.database)?;
         Ok(self.seen(Store::open(&self.database, clock::open_options())?))

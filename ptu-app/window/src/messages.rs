@@ -2,6 +2,7 @@
 
 use fault_db::Id;
 use ptu_runs::clock;
+use ptu_runs::failure::Trouble;
 
 /// The latest messages, oldest first.
 #[derive(Debug, Default)]
@@ -38,8 +39,8 @@ pub enum About {
 pub struct Message {
     /// In the language chosen when it happened.
     pub text: String,
-    /// Technical detail, told as the window tells of trouble.
-    pub detail: String,
+    /// What went wrong; empty if the text says it all.
+    pub detail: Trouble,
     /// Whether it reports trouble.
     pub bad: bool,
     /// µs since 1970.
@@ -61,7 +62,7 @@ const KEPT: usize = 100;
 
 impl Messages {
     /// Adds a message that something went wrong.
-    pub fn trouble(&mut self, text: impl Into<String>, detail: impl Into<String>) {
+    pub fn trouble(&mut self, text: impl Into<String>, detail: impl Into<Trouble>) {
         self.trouble_about(None, text, detail);
     }
 
@@ -74,14 +75,14 @@ impl Messages {
         &mut self,
         about: impl Into<Option<About>>,
         text: impl Into<String>,
-        detail: impl Into<String>,
+        detail: impl Into<Trouble>,
     ) {
         self.push(text.into(), detail.into(), true, about.into());
     }
 
     /// As [`note`](Self::note), until what it is about is over.
     pub fn note_about(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
-        self.push(text.into(), String::new(), false, about.into());
+        self.push(text.into(), "".into(), false, about.into());
     }
 
     /// Tells what was written, which can be undone for [`UNDO_S`].
@@ -168,7 +169,7 @@ impl Messages {
         self.unread = None;
     }
 
-    fn push(&mut self, text: String, detail: String, bad: bool, about: Option<About>) {
+    fn push(&mut self, text: String, detail: Trouble, bad: bool, about: Option<About>) {
         if self.all.len() == KEPT {
             self.all.remove(0);
             self.unread = self.unread.and_then(|place| place.checked_sub(1));

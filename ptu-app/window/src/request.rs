@@ -1,5 +1,7 @@
 //! The state of requests to the query worker, as a page keeps it from frame to frame.
 
+use ptu_runs::failure::Trouble;
+
 use super::query_worker::Pending;
 
 /// The state of one request to the query worker.
@@ -11,7 +13,7 @@ pub enum Request<T> {
     Pending(Pending<T>),
     Ready(T),
     /// Why there is no response.
-    Failed(String),
+    Failed(Trouble),
 }
 
 impl<T> Request<T> {

@@ -31,7 +31,7 @@ impl Sheet {
             steps,
             faults,
         };
-        let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.message);
+        let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.to_string());
         let parts = (directory.faults().ok())
             .map(|catalogue| catalogue.lrus)
             .unwrap_or_default();

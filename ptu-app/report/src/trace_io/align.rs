@@ -253,7 +253,7 @@ mod tests {
         let import = file(&[9_000_000, 9_050_000], &[1.0, 2.0], false);
         let told = align(import, trace(&[1.0; 6]), 0)
             .expect_err("apart")
-            .message;
+            .to_string();
         for word in ["9.000 to 9.050 s", "-0.100 to 0.150 s", "--shift"] {
             assert!(told.contains(word), "{told}");
         }

@@ -346,7 +346,7 @@ mod tests {
             let dated = super::read(&path, &[plain("speed")], &asked).expect("dates");
             assert!(dated.is_utc && dated.tables[0].times_us == [1_000, 2_000]);
             let wrong = super::read(&path, &[plain("seen")], &Columns::default());
-            let wrong = wrong.expect_err("no signal").message;
+            let wrong = wrong.expect_err("no signal").to_string();
             assert!(wrong.contains("column \"seen\""), "{wrong}");
         }
     }

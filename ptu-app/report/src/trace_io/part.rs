@@ -187,7 +187,7 @@ mod tests {
 
     fn rows(span: &str) -> Result<Range<usize>, String> {
         let span: Seconds = span.parse()?;
-        span.rows(&head()).map_err(|failure| failure.message)
+        span.rows(&head()).map_err(|failure| failure.to_string())
     }
 
     #[test]

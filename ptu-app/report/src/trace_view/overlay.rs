@@ -97,7 +97,7 @@ impl Overlay {
         };
         let (found, trouble) = match compare(came, self.view.data(), &rule, &[]) {
             Ok(found) => (Some(found), None),
-            Err(failure) => (None, Some(failure.message)),
+            Err(failure) => (None, Some(failure.to_string())),
         };
         let deviations = found.map_or_else(Vec::new, |found: Comparison| found.deviations);
         FirstDifference {

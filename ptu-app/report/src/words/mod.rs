@@ -22,7 +22,6 @@ mod say;
 mod signals;
 mod statistics;
 mod traces;
-mod trouble;
 
 pub use bench::Bench;
 pub use care::Care;

@@ -2,6 +2,7 @@
 
 use btu_rig::procedure::UnitEvent;
 
+use crate::failure::Trouble;
 use crate::run::{Outcome, SessionEvent};
 
 /// One thing that happened on the bench. What a running procedure emits is passed on as it is.
@@ -13,7 +14,7 @@ pub enum BenchEvent {
         serial: String,
     },
     /// The unit could not be reached or is not the expected one: the reason.
-    NotConnected(String),
+    NotConnected(Trouble),
     /// The unit was released.
     Disconnected {
         /// Whether safe outputs were confirmed and the unit was disarmed.
@@ -48,5 +49,5 @@ pub enum BenchEvent {
     /// The run has ended and is recorded.
     RunEnded(Outcome),
     /// The run could not be started or recorded: the reason.
-    RunFailed(String),
+    RunFailed(Trouble),
 }

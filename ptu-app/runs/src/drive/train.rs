@@ -164,7 +164,7 @@ mod tests {
         for wrong in [268_000.0, 429_000.0, f64::NAN] {
             let failure = load(&mut cars, Some(wrong), None).unwrap_err();
             assert!(
-                failure.message.contains("268807 kg .. 428807 kg"),
+                failure.to_string().contains("268807 kg .. 428807 kg"),
                 "{failure}"
             );
         }

@@ -98,7 +98,7 @@ fn a_killed_shard_goes_on_and_what_it_lacks_is_listed() {
     // Runs 2, 9, … 37 are the third shard's, six of them; 6, 13, … 34 the seventh's, five.
     assert_eq!(of, [(3, 1, 6), (7, 5, 5)]);
     assert!(lacks.damage[0].contains("shard-3-7: record"), "{lacks:?}");
-    let refused = merge(&files).map(drop).expect_err("not whole").message;
+    let refused = merge(&files).map(drop).expect_err("not whole").to_string();
     assert!(
         refused.contains("shard-3-7: record 7, the last"),
         "{refused}"
@@ -144,7 +144,7 @@ fn a_file_that_does_not_belong_to_the_others_is_named_with_what_to_do() {
         (changed, "its run run 3 has another result than in"),
     ] {
         files.push(alien.clone());
-        let refused = merge(&files).map(drop).expect_err("refused").message;
+        let refused = merge(&files).map(drop).expect_err("refused").to_string();
         assert!(refused.contains(words), "{refused}");
         assert!(refused.contains(&alien.display().to_string()), "{refused}");
         files.pop();
@@ -163,7 +163,7 @@ fn a_run_is_kept_for_its_name_alone_and_for_its_scripts_alone() {
         assert!(appended.append(&of_run(head.plan.name(number), &result(number))));
     }
     let twice = open(&head).map(drop).expect_err("two at once");
-    assert!(twice.message.contains("another campaign"), "{twice}");
+    assert!(twice.to_string().contains("another campaign"), "{twice}");
     drop(kept);
     // Another plan of the same scripts finds the runs that it has in common with this one.
     let mut read = open(&self::head("a", 12)).expect("read");
@@ -173,7 +173,12 @@ fn a_run_is_kept_for_its_name_alone_and_for_its_scripts_alone() {
     }
     drop(read);
     let other = open(&self::head("b", 9)).map(drop);
-    assert!(other.expect_err("others").message.contains("other scripts"));
+    assert!(
+        other
+            .expect_err("others")
+            .to_string()
+            .contains("other scripts")
+    );
     std::fs::write(&file, "no such file").expect("written");
     assert!(open(&head).is_err());
     let left = std::fs::read(&file).expect("its bytes");

@@ -189,21 +189,23 @@ mod tests {
         assert!(
             new("12345")
                 .expect_err("too short")
-                .message
+                .to_string()
                 .contains("at least 6")
         );
         let made = new("123456").expect("made");
         assert!(
             new("123456")
                 .expect_err("there")
-                .message
+                .to_string()
                 .contains("there already")
         );
         let key = KeyFile::read(&path).expect("read");
         assert_eq!(*key.entry(), made);
         assert_eq!(key.open("123456").expect("opens").public_key(), made.key);
         let wrong = key.open("123457").expect_err("wrong");
-        assert!(wrong.message.contains("the PIN of") && wrong.exit == crate::failure::Exit::Usage);
+        assert!(
+            wrong.to_string().contains("the PIN of") && wrong.exit == crate::failure::Exit::Usage
+        );
         assert_eq!(
             KeyList::read(dir.path()).expect("read").keys,
             std::slice::from_ref(&made)
@@ -216,7 +218,7 @@ mod tests {
             .expect("read")
             .open("123456")
             .expect_err("changed");
-        assert!(told.message.contains("damaged"), "{told}");
+        assert!(told.to_string().contains("damaged"), "{told}");
         for text in ["", "who = 'x'", &text[..text.len() / 2]] {
             std::fs::write(&path, text).expect("written");
             assert!(
@@ -228,7 +230,7 @@ mod tests {
         assert!(
             KeyFile::read(&dir.path().join("no.key"))
                 .expect_err("none")
-                .message
+                .to_string()
                 .contains("ptu key new")
         );
     }

@@ -15,6 +15,7 @@ use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use super::whole_run::RunStart;
 use crate::failure::Exit;
+use crate::failure::Trouble;
 use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
@@ -50,7 +51,7 @@ pub struct Outcome {
     /// Exit code that goes with it.
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
-    pub lost: Option<String>,
+    pub lost: Option<Trouble>,
     /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,
 }

@@ -76,7 +76,7 @@ impl BenchSetup {
         if stop.presses() > 0 {
             return Err(Failure {
                 exit: Exit::Aborted,
-                message: format!("{}: stopped before the unit was reached", self.endpoint),
+                message: format!("{}: stopped before the unit was reached", self.endpoint).into(),
             });
         }
         let identity = identity?;

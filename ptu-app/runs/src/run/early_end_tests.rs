@@ -324,8 +324,8 @@ fn a_full_disk_stops_the_bench_and_is_no_pass() {
         at_most: slowly.clone(),
     };
     let kept = run(&mut plan, setup, store, &stop, &mut busy);
-    let (kept, outcome) = kept.unwrap_or_else(|failure| panic!("{}", failure.message));
-    let lost = outcome.lost.expect("told");
+    let (kept, outcome) = kept.unwrap_or_else(|failure| panic!("{failure}"));
+    let lost = outcome.lost.expect("told").to_string();
     assert!(lost.contains("no room"), "{lost}");
     assert_ne!(outcome.exit, Exit::Passed);
     let steps = kept.run(outcome.id).expect("kept").steps.len();
@@ -383,7 +383,7 @@ fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     let Err(failure) = run(&mut plan, setup, store, &stop, &mut ()) else {
         panic!("there is no unit")
     };
-    assert_eq!(failure.exit, Exit::Aborted, "{}", failure.message);
+    assert_eq!(failure.exit, Exit::Aborted, "{failure}");
     let store = Store::open_read_only(&folder.path().join("history.db")).expect("the database");
     let runs = store.runs(&fault_db::RunFilter::default()).expect("runs");
     let verdicts: Vec<_> = runs.iter().map(|run| run.verdict).collect();

@@ -8,7 +8,7 @@ use fault_db::{Instrument, Store};
 use super::bench_setup::BenchSetup;
 use super::plan::Task;
 use crate::clock;
-use crate::failure::Failure;
+use crate::failure::{Failure, Trouble};
 use crate::link::Endpoint;
 
 /// The instruments of this bench that a run on a port uses: all that are registered and not retired. A simulated unit is
@@ -27,7 +27,7 @@ pub(super) fn of_run(
     let used = store.instruments()?;
     let today = clock::local_day(clock::now_us());
     match used.iter().find(|used| !used.is_calibrated_on(&today)) {
-        Some(over) if !uncalibrated => Err(Failure::bench(over_text(over))),
+        Some(over) if !uncalibrated => Err(Failure::bench(not_calibrated(over))),
         _ => Ok(used),
     }
 }
@@ -69,16 +69,11 @@ fn shift(limit: &mut Operand, by: f64) {
     }
 }
 
-fn over_text(instrument: &Instrument) -> String {
-    let Instrument {
-        kind, serial_no, ..
-    } = instrument;
-    let what = match (&instrument.calibrated, &instrument.due) {
-        (Some(_), Some(due)) => format!("the calibration of {kind} {serial_no} was due on {due}"),
-        _ => format!("{kind} {serial_no} was never calibrated"),
-    };
-    format!(
-        "{what}; nothing was driven. `ptu instrument calibrate {serial_no}` states a new calibration, --uncalibrated \
-         goes on without one, and the sheet says so"
-    )
+fn not_calibrated(instrument: &Instrument) -> Trouble {
+    let due = instrument.due.clone();
+    Trouble::Uncalibrated {
+        kind: instrument.kind.clone(),
+        serial_no: instrument.serial_no.clone(),
+        due: due.filter(|_| instrument.calibrated.is_some()),
+    }
 }

@@ -5,6 +5,7 @@ mod beside;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -15,7 +16,7 @@ use fault_db::{
 };
 
 use self::beside::{keep_beside, keep_rest};
-use crate::failure::{Failure, store_message};
+use crate::failure::{Failure, Trouble, store_message};
 use crate::stop::Stop;
 
 /// Entries that may wait for the disk; beyond that the bench waits for the writer.
@@ -80,7 +81,7 @@ impl Lines {
 /// The sender's side of the writer thread.
 pub struct RunStore {
     entries: SyncSender<Entry>,
-    thread: JoinHandle<Result<(Store, Option<String>), Failure>>,
+    thread: JoinHandle<Result<(Store, Option<Trouble>), Failure>>,
     /// The run's id.
     pub id: Id,
 }
@@ -168,7 +169,7 @@ impl RunStore {
     ///
     /// # Errors
     /// The first error of writing.
-    pub fn finish(self, end: RunEnd) -> Result<(Store, Option<String>), Failure> {
+    pub fn finish(self, end: RunEnd) -> Result<(Store, Option<Trouble>), Failure> {
         self.send(Entry::Finish(end));
         drop(self.entries);
         let ended = self.thread.join();
@@ -183,7 +184,7 @@ fn write(
     mut kept: RecordedIds,
     begun: &SyncSender<Id>,
     (busy_timeout, stop): (BusyTimeout, &Stop),
-) -> Result<Option<(Store, String)>, Failure> {
+) -> Result<Option<(Store, Trouble)>, Failure> {
     // Nothing is lost yet: a file that is locked, or has two names, is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
@@ -195,7 +196,7 @@ fn write(
     stop.press_because(store_message(&error));
     if !matches!(error, StoreError::Locked { .. }) {
         kept.hold_all(at_hand.map(|entry| *entry).into_iter().chain(entries));
-        return keep_beside((store, &writer), record, kept, &error).map(Some);
+        return keep_beside((store, &writer), record, kept, Arc::new(error)).map(Some);
     }
     kept.before = kept.occurrences.len();
     let rest = keep_rest(&mut writer, kept, record, at_hand, entries);

@@ -91,7 +91,7 @@ fn reach(
                 &OutsideStep {
                     place: Outside::Bench,
                     verdict: from_stored(verdict),
-                    finding: Finding::Told(failure.message.clone()),
+                    finding: Finding::Told(failure.to_string()),
                     at: Instant::ZERO,
                 },
                 0,

@@ -238,9 +238,9 @@ fn channels_are_read_each_and_not_without_end() {
     std::fs::write(&path, bytes).expect("another rate");
     let refused = read(&path, &unit, FULL_SCALE_MV).expect_err("no recording");
     assert!(
-        refused.message.contains("2000000000 Hz"),
+        refused.to_string().contains("2000000000 Hz"),
         "{}",
-        refused.message
+        refused.to_string()
     );
 }
 
@@ -399,7 +399,11 @@ fn what_is_no_such_signal_is_said() {
     for text in [&b""[..], b"RIFF", b"not a recording", &bytes[..30]] {
         std::fs::write(&path, text).expect("written");
         let refused = read(&path, &unit, FULL_SCALE_MV).expect_err("no recording");
-        assert!(refused.message.contains("x.wav"), "{}", refused.message);
+        assert!(
+            refused.to_string().contains("x.wav"),
+            "{}",
+            refused.to_string()
+        );
     }
 }
 

@@ -120,10 +120,11 @@ fn of_named_file(file: &Path, error: StoreError) -> Failure {
         return Failure::bench(format!("there is no database {file}; name another file"));
     }
     let mut failure = Failure::from(error);
-    if failure.message.contains(&file.display().to_string()) {
-        failure.message = failure
-            .message
-            .replace("choose another file with --db", "name another file");
+    let said = failure.to_string();
+    if said.contains(&file.display().to_string()) {
+        failure.message = said
+            .replace("choose another file with --db", "name another file")
+            .into();
     }
     failure
 }

@@ -29,7 +29,7 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>) -> Vec<Finding> 
         Err(failure) => {
             return vec![Finding::wrong(
                 SUBJECT,
-                failure.message,
+                failure.to_string(),
                 "name another with --scripts",
             )];
         }
@@ -49,7 +49,7 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>) -> Vec<Finding> 
             ),
         ),
         Ok((suite, _)) => Finding::wrong(SUBJECT, suite.errors.join("; "), remedy),
-        Err(failure) => Finding::wrong(SUBJECT, failure.message, remedy),
+        Err(failure) => Finding::wrong(SUBJECT, failure.to_string(), remedy),
     };
     let mut findings = vec![first];
     let replacing = directory.replacing().unwrap_or_default();
@@ -71,7 +71,7 @@ pub(super) fn ports() -> Vec<Finding> {
         Err(failure) => {
             return vec![Finding::warning(
                 SUBJECT,
-                failure.message,
+                failure.to_string(),
                 "name a port with --unit serial:PATH",
             )];
         }

@@ -115,7 +115,7 @@ impl TestBench {
         let path = place.path("history.db");
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&mut plan, setup, store, &Stop::default(), &mut ());
-        let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{}", failure.message));
+        let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{failure}"));
         let mut first_candidate = String::new();
         if is_diagnosed {
             let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");

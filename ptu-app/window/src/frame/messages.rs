@@ -29,7 +29,7 @@ impl Undo {
         }
         let frame = &context.words.frame;
         match std::mem::take(&mut self.under_way) {
-            Request::Failed(why) => context.messages.trouble(frame.not_undone, why),
+            Request::Failed(why) => context.messages.trouble(frame.not_undone, why.clone()),
             Request::Ready(written) => {
                 let said = fill(frame.undone, &[("what", &self.what)]);
                 context.messages.tell_taken_back(said, written);
@@ -132,7 +132,8 @@ fn said(ui: &mut Ui, message: &Message, words: &Words) {
     };
     let text = format!("{mark}{}", message.text);
     ui.label(RichText::new(text).color(colour).strong());
-    if !message.detail.is_empty() {
-        ui.label(&*words.trouble(&message.detail));
+    let detail = words.trouble(&message.detail);
+    if !detail.is_empty() {
+        ui.label(&*detail);
     }
 }

@@ -92,7 +92,7 @@ impl Job {
                 true
             }
             Request::Failed(why) => {
-                context.messages.trouble(failed, why);
+                context.messages.trouble(failed, why.clone());
                 false
             }
             Request::Idle | Request::Pending(_) => false,

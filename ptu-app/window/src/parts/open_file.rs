@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn a_desktop_without_an_opener_is_said_with_the_file() {
         let failure = open_with(("no-such-opener", &[]), Path::new("/a/sheet.pdf"));
-        let said = failure.expect_err("there is none").message;
+        let said = failure.expect_err("there is none").to_string();
         assert!(
             said.contains("no-such-opener") && said.contains("/a/sheet.pdf"),
             "{said}"

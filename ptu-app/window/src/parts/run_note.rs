@@ -49,7 +49,7 @@ impl RunNoteForm {
         }
         match std::mem::take(&mut self.under_way) {
             Request::Failed(why) => {
-                messages.trouble(words.report.note_not_saved, why);
+                messages.trouble(words.report.note_not_saved, why.clone());
                 None
             }
             Request::Ready(noted) => {

@@ -14,7 +14,7 @@ use crate::request::Request;
 use ptu_report::coverage_text;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder, Wake};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 
 /// Entries of a unit's log that are shown.
@@ -338,7 +338,7 @@ impl UnitMessages<'_> {
         &mut self,
         about: impl Into<Option<About>>,
         text: impl Into<String>,
-        detail: impl Into<String>,
+        detail: impl Into<Trouble>,
     ) {
         let text = self.named(text);
         self.messages.trouble_about(about, text, detail);

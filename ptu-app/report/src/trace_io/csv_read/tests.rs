@@ -19,7 +19,7 @@ fn read_as(text: &[u8], asked: &Columns) -> Result<(Table, bool), String> {
     };
     let known = KnownSignals::of(&[&[mode, speed]]);
     let read = read_table(Path::new("x.csv"), text, &known, asked);
-    read.map_err(|failure| failure.message)
+    read.map_err(|failure| failure.to_string())
 }
 
 fn read(text: &str) -> Result<Table, String> {

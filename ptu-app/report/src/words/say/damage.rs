@@ -4,7 +4,8 @@ use fault_db::{Advice, Damage, Derived, ProblemKind, Samples, SignatureError, Wr
 use fault_db::{SchemaObject, SealPlace};
 use ptu_runs::clock;
 
-use super::super::{KOREAN, Language, Words};
+use super::super::{Language, Words};
+use super::trouble::{noun, store};
 
 impl Words {
     /// What a problem is of.
@@ -48,6 +49,14 @@ impl Words {
         self.of_two(english, korean)
     }
 
+    /// A row that was refused, by its table and id.
+    pub fn stored_row(&self, row: &str) -> String {
+        match (self.language, row.rsplit_once(' ')) {
+            (Language::Korean, Some((table, id))) => format!("{} {id}", noun(table)),
+            _ => row.to_owned(),
+        }
+    }
+
     fn of_two(&self, english: &'static str, korean: &'static str) -> &'static str {
         match self.language {
             Language::English => english,
@@ -57,13 +66,13 @@ impl Words {
 }
 
 #[rustfmt::skip]
-fn korean(damage: &Damage) -> String {
+pub(super) fn korean(damage: &Damage) -> String {
     use Damage as D;
     match damage {
         D::Told(words) => words.clone(),
         D::More(n) => format!("같은 종류 {n}건 더 있음"),
-        D::Rest(why) => format!("나머지는 검사하지 못함: {}", KOREAN.trouble(&why.to_string())),
-        D::Unread(why) => KOREAN.trouble(&why.to_string()).into_owned(),
+        D::Rest(why) => format!("나머지는 검사하지 못함: {}", store(why)[1]),
+        D::Unread(why) => store(why)[1].clone(),
         D::NoParent(Some(row), table, parent) => format!("{table} 테이블의 행 {row}이(가) {parent} 테이블의 없는 행을 가리킴"),
         D::NoParent(None, table, parent) => format!("{table} 테이블의 행이 {parent} 테이블의 없는 행을 가리킴"),
         D::Foreign(object) => format!("이 프로그램의 것이 아님: {}", named(object)),
@@ -147,21 +156,6 @@ fn when(seen_at_us: i64) -> String {
     match seen_at_us {
         0 => "여기에서".to_owned(),
         at_us => format!("{}에", clock::local(at_us)),
-    }
-}
-
-/// What the store names a thing, in Korean; a name of another program stays.
-fn noun(english: &str) -> &str {
-    match english {
-        "run" => "시험",
-        "event" | "events" => "이벤트",
-        "note" | "notes" => "메모",
-        "instrument" => "계측기",
-        "table" => "테이블",
-        "index" => "인덱스",
-        "view" => "뷰",
-        "trigger" => "트리거",
-        other => other,
     }
 }
 

@@ -7,6 +7,7 @@ mod diagnosis;
 mod drive;
 mod finding;
 mod reasons;
+mod trouble;
 
 use std::borrow::Cow;
 

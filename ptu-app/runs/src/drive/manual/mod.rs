@@ -122,7 +122,7 @@ impl Request {
             Failure::usage(format!(
                 "{}: {}",
                 source.file,
-                failure.message.trim_start_matches("--")
+                failure.to_string().trim_start_matches("--")
             ))
         })?;
         Ok(kg.unwrap_or(0.0))

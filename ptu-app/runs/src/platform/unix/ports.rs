@@ -148,9 +148,9 @@ mod tests {
             let told = format!("process {}", std::process::id());
             let knows = Path::new("/proc/locks").exists();
             assert!(
-                !knows || refused.message.contains(&told),
+                !knows || refused.to_string().contains(&told),
                 "{}",
-                refused.message
+                refused.to_string()
             );
             drop(first);
         }

@@ -1,13 +1,14 @@
 //! What becomes of a run that its history does not hold at the end: a file beside, which is named.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use fault_db::{Id, RunRecord, RunWriter, Store, StoreError};
 
 use super::{Entry, RecordedIds, keep};
 use crate::clock;
-use crate::failure::{Failure, store_message};
+use crate::failure::{Failure, Trouble};
 
 /// Records the rest of a run in a file of its own, beside the one that stays busy; none if that fails, too.
 pub(super) fn keep_rest(
@@ -51,34 +52,34 @@ pub(super) fn keep_beside(
     (store, writer): (&Store, &RunWriter<'_>),
     record: &RunRecord,
     mut kept: RecordedIds,
-    error: &StoreError,
-) -> Result<(Store, String), Failure> {
-    let (run, why) = (writer.id(), store_message(error));
+    error: Arc<StoreError>,
+) -> Result<(Store, Trouble), Failure> {
+    let run = writer.id();
     let beside = beside(store.path(), run);
     let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
     let made = [beside, elsewhere].into_iter().find_map(|path| {
         // What the open file holds is more than the run, if it can be read still.
-        let copied = match error {
+        let copied = match *error {
             StoreError::Misplaced { .. } => copy_with_run(store, run, &path),
             _ => None,
         };
-        let made = copied.map(|copy| (copy, String::new()));
+        let made = copied.map(|copy| (copy, 0));
         let made = made.or_else(|| write_again((store, writer), record, &mut kept, &path))?;
         Some((path, made))
     });
-    let Some((path, (made, cut))) = made else {
-        return Err(Failure::bench(format!(
-            "run {} is not in the history, and lost: {why}",
-            run.short()
-        )));
+    let (kept_in, made) = made.unzip();
+    let (made, left_out) = made.unzip();
+    let trouble = Trouble::NotStored {
+        run,
+        error,
+        left_out: left_out.unwrap_or_default(),
+        kept: kept_in,
+    };
+    let Some(made) = made else {
+        return Err(Failure::bench(trouble));
     };
     kept.lines.stored();
-    let said = format!(
-        "run {} is not in the history: {cut}{why}; it is kept in {path}: bring it in with `ptu db import {path}`",
-        run.short(),
-        path = path.display()
-    );
-    Ok((made, said))
+    Ok((made, trouble))
 }
 
 /// A copy of the open file, if it holds the run whole.
@@ -102,7 +103,7 @@ fn write_again(
     record: &RunRecord,
     kept: &mut RecordedIds,
     path: &Path,
-) -> Option<(Store, String)> {
+) -> Option<(Store, usize)> {
     if path.exists() || kept.is_too_long() {
         return None;
     }
@@ -115,11 +116,7 @@ fn write_again(
     }
     again.flush().ok()?;
     drop(again);
-    let cut = match kept.left_out {
-        0 => String::new(),
-        n => format!("the last {n} of its traces are lost: "),
-    };
-    Some((made, cut))
+    Some((made, kept.left_out))
 }
 
 /// The file beside a history that takes a run of it.

@@ -135,7 +135,7 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     run.step(step(1));
     other.execute_batch("ROLLBACK").expect("released");
     let (store, lost) = run.finish(end(Verdict::Error)).expect("recorded");
-    assert_eq!(lost, None);
+    assert!(lost.is_none(), "{lost:?}");
     let found = store.run(id).expect("there");
     assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
     assert_eq!(found.run.verdict, Some(Verdict::Error));
@@ -167,7 +167,7 @@ fn records_that_a_busy_database_refuses_can_be_imported_later() {
         "ptu db import",
         &rest.display().to_string(),
     ] {
-        assert!(failure.message.contains(said), "{}", failure.message);
+        assert!(failure.to_string().contains(said), "{failure}");
     }
     other.execute_batch("ROLLBACK").expect("released");
     drop(other);

@@ -58,7 +58,7 @@ impl Repair {
         let words = &context.words.case;
         match std::mem::take(&mut self.saving) {
             Request::Failed(why) => {
-                context.messages.trouble(words.not_recorded, why);
+                context.messages.trouble(words.not_recorded, why.clone());
                 false
             }
             Request::Ready(written) => {

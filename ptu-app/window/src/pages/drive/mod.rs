@@ -57,7 +57,7 @@ impl DrivePage {
             Request::Failed(why) => {
                 let said = RichText::new(words.drive.cannot_list).color(Palette::of(ui).bad);
                 ui.label(said.strong());
-                ui.label(why);
+                ui.label(&*words.trouble(why));
                 if ui.button(words.common.refresh).clicked() {
                     self.offered = Request::Idle;
                 }
@@ -74,7 +74,7 @@ impl DrivePage {
         match &self.pages {
             Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
             }
             Request::Pending(_) => {
                 ui.label(words.common.loading);

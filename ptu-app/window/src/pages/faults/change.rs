@@ -85,7 +85,7 @@ impl Change {
             Request::Failed(why) => {
                 context
                     .messages
-                    .trouble(context.words.faults.not_changed, why);
+                    .trouble(context.words.faults.not_changed, why.clone());
                 None
             }
             Request::Ready(changed) => {

@@ -278,7 +278,9 @@ impl ProceduresPage {
                 }
                 Request::Failed(why) => {
                     let run = About::Run(ordered.unit);
-                    context.messages.trouble_about(run, words.not_begun, why);
+                    context
+                        .messages
+                        .trouble_about(run, words.not_begun, why.clone());
                 }
                 order => self.orders.push(PendingOrder { order, ..ordered }),
             }

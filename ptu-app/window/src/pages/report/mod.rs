@@ -210,7 +210,7 @@ impl ReportPage {
                 }
                 Request::Failed(why) => context
                     .messages
-                    .trouble(context.words.report.not_written, why),
+                    .trouble(context.words.report.not_written, why.clone()),
                 Request::Idle | Request::Pending(_) => {}
             }
         }

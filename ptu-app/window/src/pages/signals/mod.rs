@@ -63,7 +63,7 @@ impl SignalsPage {
             self.offered = Request::Pending(context.queries.run(move |paths| {
                 Ok(Offered {
                     unit: Arc::new(paths.scripts.unit_config(&unit_config)?.content),
-                    devices: sound::devices().map_err(|failure| failure.message),
+                    devices: sound::devices().map_err(|failure| failure.to_string()),
                 })
             }));
         }
@@ -84,7 +84,7 @@ impl SignalsPage {
         let offered = match &self.offered {
             Request::Ready(offered) => offered,
             Request::Failed(why) => {
-                ui.label(RichText::new(why).color(Palette::of(ui).bad));
+                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
                 if ui.button(words.common.refresh).clicked() {
                     self.offered = Request::Idle;
                 }

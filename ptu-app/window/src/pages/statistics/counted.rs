@@ -7,7 +7,7 @@ use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
 
 use crate::DataPaths;
 use crate::parts::look_back::since_us;
-use ptu_report::distances::Distances;
+use ptu_report::distances::{Distances, DistancesError};
 use ptu_report::fault_months::{Month, OnTheWay, by_month, on_the_way};
 use ptu_report::naming::PartNames;
 use ptu_runs::clock;
@@ -37,7 +37,7 @@ pub struct Counted {
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
     /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
-    pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, String>>,
+    pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, DistancesError>>,
     pub parts: PartNames,
 }
 
@@ -79,7 +79,7 @@ impl Counted {
         if asked.unit.is_none() && !asked.distances.is_empty() {
             counted.on_the_way = match Distances::read(Path::new(&asked.distances)) {
                 Ok(known) => Some(Ok(on_the_way(&store, &query, &known)?)),
-                Err(failure) => Some(Err(failure.message)),
+                Err(error) => Some(Err(error)),
             };
         }
         Ok(counted)

@@ -36,7 +36,7 @@ impl OverlayRequest {
                 Request::Failed(why) => {
                     context
                         .messages
-                        .trouble(context.words.traces.cannot_overlay, why);
+                        .trouble(context.words.traces.cannot_overlay, why.clone());
                     self.against = None;
                 }
                 other => self.overlay = other,

@@ -32,6 +32,7 @@ use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
+use ptu_runs::failure::Trouble;
 use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
@@ -48,7 +49,7 @@ pub struct TracesPage {
     list: TraceList,
     opening: Option<Pending<(OpenTrace, String)>>,
     scene: Option<TracePlot>,
-    trouble: Option<String>,
+    trouble: Option<Trouble>,
     behind: OverlayRequest,
     export: Export,
     record: RecordComparison,
@@ -111,7 +112,7 @@ impl TracesPage {
                     self.scene = None;
                     context
                         .messages
-                        .trouble(context.words.traces.cannot_open, &failure.message);
+                        .trouble(context.words.traces.cannot_open, failure.message.clone());
                     self.trouble = Some(failure.message);
                 }
             }
@@ -129,7 +130,7 @@ impl TracesPage {
             match &self.trouble {
                 _ if self.opening.is_some() => ui.label(words.common.loading),
                 Some(why) => {
-                    let text = format!("{}: {why}", words.traces.cannot_open);
+                    let text = format!("{}: {}", words.traces.cannot_open, words.trouble(why));
                     ui.label(RichText::new(text).color(Palette::of(ui).bad))
                 }
                 None => ui.label(words.traces.choose_one),
