@@ -1,7 +1,7 @@
 //! A unit on a serial port or a TCP socket, by the clock, or on a pseudo-terminal in lock step.
 
-use std::io::{ErrorKind, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use ato_under_test::serve::{PORT_WAITS, SerialEnd};
@@ -177,18 +177,26 @@ fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialP
     Ok(port)
 }
 
+/// The first of these addresses at which somebody listens: a unit at 127.0.0.1 is at `localhost`, whose first address may
+/// be another.
+fn connect_to(addresses: impl Iterator<Item = SocketAddr>) -> io::Result<TcpStream> {
+    let mut tried = Err(io::Error::other("the name has no address"));
+    for address in addresses {
+        tried = TcpStream::connect_timeout(&address, CONNECT);
+        if tried.is_ok() {
+            break;
+        }
+    }
+    tried
+}
+
 fn connect(address: &str) -> Result<Port, Failure> {
     let cannot = |error: std::io::Error| {
         Failure::bench(format!(
             "cannot connect to {address}: {error}; check that the unit is served there"
         ))
     };
-    let target = address
-        .to_socket_addrs()
-        .map_err(cannot)?
-        .next()
-        .ok_or_else(|| Failure::bench(format!("{address} names no host")))?;
-    let stream = TcpStream::connect_timeout(&target, CONNECT).map_err(cannot)?;
+    let stream = connect_to(address.to_socket_addrs().map_err(cannot)?).map_err(cannot)?;
     stream.set_nonblocking(true).map_err(cannot)?;
     stream.set_nodelay(true).map_err(cannot)?;
     Ok(Port::Tcp(stream))
@@ -288,4 +296,26 @@ fn is_nothing(error: &std::io::Error) -> bool {
         error.kind(),
         ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use super::*;
+
+    #[test]
+    fn a_unit_is_found_at_any_address_of_its_name() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let unit = listener.local_addr().expect("bound");
+        let closed = TcpListener::bind("127.0.0.1:0").and_then(|port| port.local_addr());
+        let closed = closed.expect("a port that was let go");
+        for addresses in [&[unit][..], &[closed, unit], &[unit, closed]] {
+            let stream = connect_to(addresses.iter().copied()).expect("there is a unit");
+            assert_eq!(stream.peer_addr().expect("connected"), unit);
+        }
+        for nobody in [&[][..], &[closed]] {
+            connect_to(nobody.iter().copied()).expect_err("nobody listens");
+        }
+    }
 }

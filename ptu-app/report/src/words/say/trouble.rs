@@ -118,7 +118,7 @@ pub(super) fn store(error: &StoreError) -> Both {
         ],
         S::Corrupt { path, detail } => [
             format!("{} is damaged ({detail}); check the history, then go on with a backup", path.display()),
-            format!("파일이 손상되었습니다: {} ({detail}). 이력을 검사한 후 백업으로 계속하십시오", path.display()),
+            format!("파일이 손상되었습니다: {} ({}). 이력을 검사한 후 백업으로 계속하십시오", path.display(), damaged(detail)),
         ],
         S::NotFound { what, asked } => [format!("no {what} {asked:?}"), format!("{} {asked:?}이(가) 없습니다", noun(what))],
         S::TraceMissing { asked, run } => same(format!("시험 {run}의 신호 기록 {asked:?}이(가) 없습니다: 정리되었거나, 제거되었거나, 봉인과 맞지 않아 받지 않은 것입니다. 기록한 파일의 전체 사본을 가져오면 복구됩니다")),
@@ -185,6 +185,14 @@ pub(super) fn store(error: &StoreError) -> Both {
         ],
         S::Server { path, source, .. } => same(format!("서버 오류: {} ({source})", path.display())),
         S::Sqlite { path, source, .. } => same(format!("데이터베이스 오류: {} ({source})", path.display())),
+    }
+}
+
+/// What SQLite says of a damaged file.
+fn damaged(detail: &str) -> &str {
+    match detail {
+        "database disk image is malformed" => "데이터베이스 내용이 손상됨",
+        other => other,
     }
 }
 
@@ -265,5 +273,76 @@ pub(super) fn noun(english: &str) -> &str {
         "recording" => "기록",
         "the name of who says it" => "작성자 이름",
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn what_is_known_is_told_without_commands_and_in_korean() {
+        let path = || "/h.db".into();
+        let id = fault_db::Id::from_bytes([7; 16]);
+        let error = || Arc::new(StoreError::Locked { path: path() });
+        for (trouble, english, korean) in [
+            (
+                Trouble::Store(Arc::new(StoreError::Corrupt {
+                    path: path(),
+                    detail: "database disk image is malformed".to_owned(),
+                })),
+                "/h.db is damaged (database disk image is malformed); check the history",
+                "파일이 손상되었습니다: /h.db (데이터베이스 내용이 손상됨). ",
+            ),
+            (
+                Trouble::NotStored {
+                    run: id,
+                    error: error(),
+                    left_out: 2,
+                    kept: Some("/k.db".into()),
+                },
+                "the last 2 of its traces are lost: ",
+                "마지막 기록 2개 없음. ",
+            ),
+            (
+                Trouble::NotStored {
+                    run: id,
+                    error: error(),
+                    left_out: 0,
+                    kept: None,
+                },
+                "is not in the history, and lost: ",
+                "이력에 없고 보관하지도 못했습니다: ",
+            ),
+            (
+                Trouble::Uncalibrated {
+                    kind: "tachometer".to_owned(),
+                    serial_no: "T7".to_owned(),
+                    due: None,
+                },
+                "tachometer T7 was never calibrated; nothing was driven. Have it calibrated",
+                "교정한 적이 없습니다: tachometer T7. ",
+            ),
+            (
+                Trouble::from("what another program said"),
+                "what another program said",
+                "what another program said",
+            ),
+        ] {
+            let told =
+                Language::ALL.map(|language| language.words().trouble(&trouble).into_owned());
+            assert!(
+                told[0].contains(english) && told[1].contains(korean),
+                "{told:?}"
+            );
+            assert!(
+                !told
+                    .iter()
+                    .any(|told| told.contains('`') || told.contains("--")),
+                "{told:?}"
+            );
+        }
     }
 }
