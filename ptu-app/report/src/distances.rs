@@ -12,7 +12,7 @@ use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::Failure;
 
 /// The columns, in their order.
-const COLUMNS: [&str; 3] = ["train", "date", "km"];
+pub(crate) const COLUMNS: [&str; 3] = ["train", "date", "km"];
 /// No odometer has run farther, km.
 const FARTHEST_KM: f64 = 1e8;
 

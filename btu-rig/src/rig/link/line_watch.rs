@@ -29,6 +29,9 @@ const SETTLES: Duration = Duration::from_ms(2_200);
 const CLOCK_OFF: Duration = Duration::from_ms(60);
 /// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
 const CLOCK_SHARE: u64 = 100;
+/// Silence of all these channels that loses frames: longer than a link holds bytes back, shorter than the time in which a
+/// partner of the unit gives it up.
+const OVERDUE: Duration = Duration::from_ms(300);
 /// Channels no part of the unit damages.
 const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
 
@@ -58,6 +61,10 @@ pub struct LineWatch {
     /// What had been counted by then.
     base: Counts,
     counts: Counts,
+    /// When the last frame came, and how many had come then.
+    heard: (Instant, u64),
+    /// Frames that should have come since: at least one each cycle. Their numbers count them once others come again.
+    overdue: u64,
     /// Count of rejected frames in the unit's last status.
     rejected_by_unit: Option<u16>,
     /// When the line had settled, and the unit's clock then, ms.
@@ -81,6 +88,8 @@ impl LineWatch {
             before: Counters::default(),
             base: Counts::default(),
             counts: Counts::default(),
+            heard: (Instant::ZERO, 0),
+            overdue: 0,
             rejected_by_unit: None,
             clock: None,
             clock_is_right: true,
@@ -107,6 +116,7 @@ impl LineWatch {
     /// lost here. Neither is counted against the line.
     pub fn note_stalled(&mut self, now: Instant) {
         self.settles_until = self.settles_until.map(|_| now + SETTLES);
+        self.heard.0 = now;
         self.clock = None;
         self.rate = ClockRate::default();
         self.past.clear();
@@ -148,10 +158,18 @@ impl LineWatch {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        let heard = WHOLE.iter().any(|&channel| counters.accepted(channel) > 0);
-        if self.settles_until.is_none() && heard {
+        let heard = taken(counters);
+        if self.settles_until.is_none() && heard > 0 {
             self.settles_until = Some(now + SETTLES);
         }
+        if heard != self.heard.1 {
+            self.heard = (now, heard);
+        }
+        let silence = now.since(self.heard.0);
+        self.overdue = match self.settled(now) && silence > OVERDUE {
+            true => silence.as_us() / CYCLE.as_us(),
+            false => 0,
+        };
         if self.settled(now) {
             let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
             let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
@@ -192,9 +210,10 @@ impl LineWatch {
             .past
             .front()
             .map_or(0, |(_, counts)| counts.lost_or_damaged());
+        let all = self.counts.lost_or_damaged() + self.overdue;
         LineState {
-            lost_or_damaged: self.counts.lost_or_damaged(),
-            lost_or_damaged_lately: self.counts.lost_or_damaged().saturating_sub(before),
+            lost_or_damaged: all,
+            lost_or_damaged_lately: all.saturating_sub(before),
         }
     }
 

@@ -94,6 +94,29 @@ fn a_bad_line_is_an_error_of_the_line() {
     );
 }
 
+/// Lets nothing pass any more once the unit has been brought up, which takes fewer bytes than this.
+fn falls_silent() -> Change {
+    let mut passed = 0;
+    Box::new(move |bytes| {
+        passed += bytes.len();
+        if passed > 40_000 {
+            Vec::new()
+        } else {
+            bytes.to_vec()
+        }
+    })
+}
+
+/// Goal: a cable that is pulled, which closes no connection, is no fault of the unit, whichever partner misses it first.
+#[test]
+fn a_cable_pulled_in_mid_run_blames_nobody() {
+    for to_unit in [unchanged(), falls_silent()] {
+        let unit = Unit::on_tcp(&[]);
+        let address = proxy(&unit, to_unit, falls_silent());
+        blames_nobody(&address, &["unit silent for"]);
+    }
+}
+
 #[test]
 fn a_log_that_is_never_answered() {
     let unit = Unit::on_tcp(&[]);

@@ -256,7 +256,7 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
         window.click(said.read_odometers);
         let wrong = match language {
             Language::English => "line 3, column 3 (km): \"many\" is no number of kilometres",
-            Language::Korean => "3행 3 (km)열: \"many\"은(는) 거리(km) 값이 아닙니다",
+            Language::Korean => "3행 3열(km): \"many\"은(는) 거리(km) 값이 아닙니다",
         };
         window.wait_for_part(wrong);
         // The rest of the page is as it was.

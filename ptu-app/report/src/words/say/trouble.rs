@@ -11,7 +11,7 @@ use ptu_runs::failure::Trouble;
 use super::super::{KOREAN, Language, Words};
 use super::damage;
 use super::diagnosis::Both;
-use crate::distances::{DistancesError, ReadingError, WrongCell};
+use crate::distances::{COLUMNS, DistancesError, ReadingError, WrongCell};
 
 impl Words {
     /// What went wrong.
@@ -243,7 +243,7 @@ fn distances(error: &DistancesError) -> Both {
         DistancesError::Wrong { file, what } => same(format!("{}: {}", file.display(), match what {
             ReadingError::Heading => "1행에 train, date, km 열이 있어야 합니다".to_owned(),
             ReadingError::Values(line) => format!("{line}행에 값 세 개가 있어야 합니다"),
-            ReadingError::Cell { line, column, what } => format!("{line}행 {}열: {}", column + 1, match what {
+            ReadingError::Cell { line, column, what } => format!("{line}행 {}열({}): {}", column + 1, COLUMNS[*column], match what {
                 WrongCell::Empty => "값이 없습니다".to_owned(),
                 WrongCell::NoDate(value) => format!("{value:?}은(는) 2026-03-21 형식의 날짜가 아닙니다"),
                 WrongCell::NoDistance(value) => format!("{value:?}은(는) 거리(km) 값이 아닙니다"),
