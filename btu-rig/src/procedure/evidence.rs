@@ -29,6 +29,8 @@ pub struct LineState {
     pub lost_or_damaged: u64,
     /// In the last seconds.
     pub lost_or_damaged_lately: u64,
+    /// Nothing comes now: the line is lost, or the unit starts again.
+    pub silent: bool,
 }
 
 /// After which stamps of the unit that which is new in a scan happened, ms of its clock.
@@ -88,17 +90,26 @@ impl Default for Evidence {
 impl Evidence {
     /// Whether frames that did not get through may be why the unit or TCMS logged this.
     pub fn explains(&self, event: Option<Event>, parameter: i32) -> bool {
-        self.line.lost_or_damaged_lately > 0
-            && event.is_some_and(|event| match event {
-                Event::InputsLost
-                | Event::FramesRejected
-                | Event::TwcLost
-                | Event::TcmsLost
-                | Event::AtcSilent
-                | Event::AtcFramesRefused
-                | Event::AtoInputAbsurd => true,
-                Event::AtoFailed => parameter == i32::from(AtoFailure::Inputs.code()),
-                _ => false,
-            })
+        self.line.lost_or_damaged_lately > 0 && of_lost_frames(event, parameter)
     }
+
+    /// Whether it shows only later if this is an event of the unit or of the line.
+    pub fn leaves_open(&self, event: Option<Event>, parameter: i32) -> bool {
+        self.line.silent && of_lost_frames(event, parameter)
+    }
+}
+
+/// Whether this is logged when frames do not come.
+fn of_lost_frames(event: Option<Event>, parameter: i32) -> bool {
+    event.is_some_and(|event| match event {
+        Event::InputsLost
+        | Event::FramesRejected
+        | Event::TwcLost
+        | Event::TcmsLost
+        | Event::AtcSilent
+        | Event::AtcFramesRefused
+        | Event::AtoInputAbsurd => true,
+        Event::AtoFailed => parameter == i32::from(AtoFailure::Inputs.code()),
+        _ => false,
+    })
 }

@@ -100,6 +100,8 @@ pub struct Runner {
     self_test: SelfTest,
     /// The unit has restarted by itself, as its log says.
     restarted: bool,
+    /// What partners of the unit logged since nothing comes from it.
+    left_open: Vec<UnitEvent>,
     /// Reported events that no step provoked.
     reported: usize,
     /// Those that were not, because there were too many.
@@ -146,6 +148,7 @@ impl Runner {
             not_kept_before: None,
             self_test: SelfTest::empty(),
             restarted: false,
+            left_open: Vec::new(),
             reported: 0,
             not_reported: 0,
             leaving: false,

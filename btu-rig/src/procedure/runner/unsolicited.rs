@@ -37,6 +37,12 @@ impl Runner {
     /// Only while steps run: power-up, making safe and what the last procedure left behind cause
     /// events of their own. A restart of the unit by itself counts at any time.
     pub(super) fn take_unit_events(&mut self, events: &[UnitEvent], now: Instant) {
+        let evidence = &self.evidence;
+        let is_open =
+            |entry: &UnitEvent| evidence.leaves_open(Event::from_code(entry.code), entry.parameter);
+        let all = self.left_open.drain(..).chain(events.iter().copied());
+        let (open, events): (Vec<_>, Vec<_>) = all.partition(is_open);
+        self.left_open = open;
         let restarts =
             |entry: &&UnitEvent| Event::from_code(entry.code).is_some_and(Event::restarts_unit);
         let pause = self.after_pause(now);
@@ -53,7 +59,7 @@ impl Runner {
             step.note_restart();
         }
         let mut outside = Vec::new();
-        for entry in events {
+        for entry in &events {
             let known = Event::from_code(entry.code);
             if let (Some(step), Some(event)) = (live.as_mut(), known) {
                 step.note_event(event, entry.parameter);

@@ -29,9 +29,9 @@ const SETTLES: Duration = Duration::from_ms(2_200);
 const CLOCK_OFF: Duration = Duration::from_ms(60);
 /// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
 const CLOCK_SHARE: u64 = 100;
-/// Silence of all these channels that loses frames: longer than a link holds bytes back, shorter than the time in which a
-/// partner of the unit gives it up.
-const OVERDUE: Duration = Duration::from_ms(300);
+/// Silence of all these channels that is of the line or of a start: longer than a link holds bytes back, shorter than the
+/// time in which a partner of the unit gives it up.
+const SILENT: Duration = Duration::from_ms(150);
 /// Channels no part of the unit damages.
 const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
 
@@ -63,8 +63,7 @@ pub struct LineWatch {
     counts: Counts,
     /// When the last frame came, and how many had come then.
     heard: (Instant, u64),
-    /// Frames that should have come since: at least one each cycle. Their numbers count them once others come again.
-    overdue: u64,
+    silent: bool,
     /// Count of rejected frames in the unit's last status.
     rejected_by_unit: Option<u16>,
     /// When the line had settled, and the unit's clock then, ms.
@@ -89,7 +88,7 @@ impl LineWatch {
             base: Counts::default(),
             counts: Counts::default(),
             heard: (Instant::ZERO, 0),
-            overdue: 0,
+            silent: false,
             rejected_by_unit: None,
             clock: None,
             clock_is_right: true,
@@ -165,11 +164,7 @@ impl LineWatch {
         if heard != self.heard.1 {
             self.heard = (now, heard);
         }
-        let silence = now.since(self.heard.0);
-        self.overdue = match self.settled(now) && silence > OVERDUE {
-            true => silence.as_us() / CYCLE.as_us(),
-            false => 0,
-        };
+        self.silent = self.settled(now) && now.since(self.heard.0) > SILENT;
         if self.settled(now) {
             let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
             let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
@@ -210,10 +205,10 @@ impl LineWatch {
             .past
             .front()
             .map_or(0, |(_, counts)| counts.lost_or_damaged());
-        let all = self.counts.lost_or_damaged() + self.overdue;
         LineState {
-            lost_or_damaged: all,
-            lost_or_damaged_lately: all.saturating_sub(before),
+            lost_or_damaged: self.counts.lost_or_damaged(),
+            lost_or_damaged_lately: self.counts.lost_or_damaged().saturating_sub(before),
+            silent: self.silent,
         }
     }
 
