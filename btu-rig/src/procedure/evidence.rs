@@ -93,7 +93,7 @@ impl Evidence {
         self.line.lost_or_damaged_lately > 0 && of_lost_frames(event, parameter)
     }
 
-    /// Whether it shows only later if this is an event of the unit or of the line.
+    /// Whether only later frames show if the unit or the line caused this event.
     pub fn leaves_open(&self, event: Option<Event>, parameter: i32) -> bool {
         self.line.silent && of_lost_frames(event, parameter)
     }

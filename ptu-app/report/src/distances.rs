@@ -35,7 +35,7 @@ pub enum DistancesError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What the system said.
+        /// The words of the operating system.
         reason: String,
     },
     /// Something in it is wrong.
@@ -43,7 +43,7 @@ pub enum DistancesError {
     Wrong {
         /// The file.
         file: PathBuf,
-        /// What.
+        /// Where it is wrong, and how.
         what: ReadingError,
     },
 }
@@ -75,16 +75,16 @@ pub enum WrongCell {
     /// Nothing stands there.
     #[error("there is no value")]
     Empty,
-    /// This.
+    /// A text that is no date.
     #[error("\"{0}\" is no date like 2026-03-21")]
     NoDate(String),
-    /// This.
+    /// A text that is no number of kilometres an odometer can show.
     #[error("\"{0}\" is no number of kilometres")]
     NoDistance(String),
     /// There is one of the same train and day before it.
     #[error("the train has another reading of this day")]
     Twice,
-    /// The distance, km.
+    /// A distance, km, beside smaller ones after it or greater ones before it.
     #[error("{0} does not fit the train's other readings: an odometer never goes back")]
     GoesBack(f64),
 }

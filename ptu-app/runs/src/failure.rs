@@ -55,7 +55,7 @@ pub enum Trouble {
     },
     /// An instrument of the bench whose calibration does not hold, and nothing was driven.
     Uncalibrated {
-        /// What it is.
+        /// Its kind, as "tachometer".
         kind: String,
         /// Which.
         serial_no: String,

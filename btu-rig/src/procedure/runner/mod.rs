@@ -100,7 +100,7 @@ pub struct Runner {
     self_test: SelfTest,
     /// The unit has restarted by itself, as its log says.
     restarted: bool,
-    /// What partners of the unit logged since nothing comes from it.
+    /// Events that TCMS and the wayside logged while nothing comes from the unit: not yet the unit's, nor the line's.
     left_open: Vec<UnitEvent>,
     /// Reported events that no step provoked.
     reported: usize,

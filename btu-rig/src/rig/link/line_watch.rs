@@ -29,11 +29,11 @@ const SETTLES: Duration = Duration::from_ms(2_200);
 const CLOCK_OFF: Duration = Duration::from_ms(60);
 /// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
 const CLOCK_SHARE: u64 = 100;
-/// Silence of all these channels that is of the line or of a start: longer than a link holds bytes back, shorter than the
-/// time in which a partner of the unit gives it up.
-const SILENT: Duration = Duration::from_ms(150);
 /// Channels no part of the unit damages.
 const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
+/// When all channels of [`WHOLE`] are silent for longer, the line is lost or the unit starts again: longer than a link holds
+/// bytes back, shorter than the time after which TCMS, the wayside or the unit misses the other.
+const SILENT: Duration = Duration::from_ms(150);
 
 /// Counts since the line has settled.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,6 +63,7 @@ pub struct LineWatch {
     counts: Counts,
     /// When the last frame came, and how many had come then.
     heard: (Instant, u64),
+    /// Nothing has come for longer than [`SILENT`].
     silent: bool,
     /// Count of rejected frames in the unit's last status.
     rejected_by_unit: Option<u16>,

@@ -155,7 +155,7 @@ pub enum WrongSignature {
 }
 
 text_enum! {
-    /// What a problem is of.
+    /// The part of a history that has a problem.
     ProblemKind {
         /// Damage that SQLite itself finds.
         Integrity = "integrity",
@@ -197,7 +197,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What to do about a problem.
+    /// The next move after a problem.
     Advice {
         /// The file is damaged.
         FromBackup = "keep this file as it is and go on with a backup; other laptops and the server may have what was recorded since",

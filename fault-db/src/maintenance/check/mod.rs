@@ -54,11 +54,11 @@ type Remarks = Vec<String>;
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// What it is of.
+    /// The part of the history that has it.
     pub kind: ProblemKind,
     /// Where it is, and what is wrong.
     pub detail: Damage,
-    /// What to do about it.
+    /// The next move.
     pub advice: Advice,
 }
 

@@ -8,10 +8,10 @@ use super::super::{Language, Words};
 use super::trouble::{noun, store};
 
 impl Words {
-    /// What a problem is of.
+    /// The kind of a problem that a check found.
     pub fn problem_kind(&self, kind: ProblemKind) -> &'static str {
         use ProblemKind as K;
-        let [english, korean] = match kind {
+        self.choose(match kind {
             K::Integrity => ["integrity", "손상"],
             K::Schema => ["schema", "구조"],
             K::ForeignKey => ["foreign key", "참조"],
@@ -21,11 +21,10 @@ impl Words {
             K::Recording => ["recording", "기록"],
             K::Seal => ["seal", "봉인"],
             K::Derived => ["derived", "집계"],
-        };
-        self.of_two(english, korean)
+        })
     }
 
-    /// What was found.
+    /// Where a check found damage, and which.
     pub fn damage(&self, damage: &Damage) -> String {
         match self.language {
             Language::English => damage.to_string(),
@@ -33,11 +32,11 @@ impl Words {
         }
     }
 
-    /// What to do about it.
+    /// The next move after a problem.
     #[rustfmt::skip]
     pub fn advice(&self, advice: Advice) -> &'static str {
         use Advice as A;
-        let [english, korean] = match advice {
+        self.choose(match advice {
             A::FromBackup => ["keep this file as it is and go on with a backup; other laptops and the server may have what was recorded since", "이 파일을 그대로 보관하고 백업으로 계속하십시오. 그 후의 기록은 다른 노트북이나 서버에 있을 수 있습니다"],
             A::Lost => ["it cannot be brought back here; a backup, another laptop or the server may have it", "여기서는 복구할 수 없습니다. 백업, 다른 노트북 또는 서버에 있을 수 있습니다"],
             A::Altered => ["somebody has changed the file by hand: what no line names can still be trusted as far as its seal is the one on a test sheet, in a backup or on the server; this finding stays", "파일이 임의로 변경되었습니다. 위에 없는 내용은 봉인이 성적서, 백업 또는 서버의 것과 같으면 믿을 수 있습니다. 이 결과는 없앨 수 없습니다"],
@@ -45,8 +44,7 @@ impl Words {
             A::Rebuild => ["a row may have been changed by hand: compare the file with a backup or the server, and ask who looks after the history", "행이 임의로 변경되었을 수 있습니다. 먼저 백업이나 서버와 비교하고, 이력 담당자에게 문의하십시오"],
             A::SealsOfServer => ["hold it against the test sheet or the laptop that recorded it; who owns the tables has changed them by hand", "성적서나 기록한 노트북과 비교하십시오. 테이블 소유자가 임의로 변경했습니다"],
             A::GuardsOfServer => ["let who looks after the server find out who took them off, and put them back from a backup", "서버 담당자가 누가 껐는지 확인하고 백업에서 복구해야 합니다"],
-        };
-        self.of_two(english, korean)
+        })
     }
 
     /// A row that was refused, by its table and id.
@@ -54,13 +52,6 @@ impl Words {
         match (self.language, row.rsplit_once(' ')) {
             (Language::Korean, Some((table, id))) => format!("{} {id}", noun(table)),
             _ => row.to_owned(),
-        }
-    }
-
-    fn of_two(&self, english: &'static str, korean: &'static str) -> &'static str {
-        match self.language {
-            Language::English => english,
-            Language::Korean => korean,
         }
     }
 }

@@ -14,7 +14,7 @@ use super::reasons::{fault_text, logged, step_expected, step_found, told, warned
 pub(super) type Both = [String; 2];
 
 impl Words {
-    fn choose(&self, [english, korean]: Both) -> String {
+    pub(super) fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
         match self.language {
             Language::English => english,
             Language::Korean => korean,

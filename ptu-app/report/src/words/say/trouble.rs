@@ -8,30 +8,23 @@ use fault_db::{
 };
 use ptu_runs::failure::Trouble;
 
-use super::super::{KOREAN, Language, Words};
+use super::super::{KOREAN, Words};
 use super::damage;
 use super::diagnosis::Both;
 use crate::distances::{COLUMNS, DistancesError, ReadingError, WrongCell};
 
 impl Words {
-    /// What went wrong.
+    /// Why something could not be done, and the next move.
     pub fn trouble<'a>(&self, trouble: &'a Trouble) -> Cow<'a, str> {
         if let Trouble::Told(text) = trouble {
             return self.content(text);
         }
-        self.one_of(both(trouble)).into()
+        self.choose(both(trouble)).into()
     }
 
     /// Why a file of odometer readings is not read.
     pub fn distances_error(&self, error: &DistancesError) -> String {
-        self.one_of(distances(error))
-    }
-
-    fn one_of(&self, [english, korean]: Both) -> String {
-        match self.language {
-            Language::English => english,
-            Language::Korean => korean,
-        }
+        self.choose(distances(error))
     }
 }
 
@@ -280,7 +273,78 @@ pub(super) fn noun(english: &str) -> &str {
 mod tests {
     use std::sync::Arc;
 
+    use super::super::super::Language;
     use super::*;
+
+    const SOURCE: &str = include_str!("trouble.rs");
+    const ERRORS: &str = include_str!("../../../../../fault-db/src/error/mod.rs");
+
+    fn names_a_command(text: &str) -> bool {
+        ["`", "--", "ptu ", "db ", "createdb"]
+            .iter()
+            .any(|command| text.contains(command))
+    }
+
+    /// Goal: words with a command, or with English in the Korean, fail. Method: all texts of the sources.
+    #[test]
+    fn no_text_names_a_command_and_the_korean_is_korean() {
+        let sources = [SOURCE, include_str!("damage.rs")];
+        let told = sources.map(|source| source.split("#[cfg(test)]").next().unwrap_or(source));
+        let lines = told.iter().flat_map(|source| source.lines());
+        // What SQLite says is compared, not told.
+        let lines = lines.filter(|line| !line.contains("disk image is malformed"));
+        for text in lines.flat_map(|line| line.split('"').skip(1).step_by(2)) {
+            assert!(!names_a_command(text), "{text}");
+            if !text.contains(|letter: char| ('가'..='힣').contains(&letter)) {
+                continue;
+            }
+            // What stands before a closing brace is a place.
+            let parts = text
+                .split('{')
+                .map(|part| part.rsplit('}').next().unwrap_or(part));
+            let mut words = parts.flat_map(|part| part.split(|c: char| !c.is_ascii_lowercase()));
+            let of_files = [
+                "postgres",
+                "sslmode",
+                "disable",
+                "sslrootcert",
+                "wal",
+                "train",
+                "date",
+            ];
+            let english = words.find(|word| word.len() > 2 && !of_files.contains(word));
+            assert_eq!(english, None, "{text}");
+        }
+    }
+
+    /// Goal: an error whose own English names a command, and that has no other English here, fails.
+    #[test]
+    fn what_the_store_says_with_a_command_is_said_without() {
+        let mut all = 0;
+        for error in ERRORS.split("#[error(").skip(1) {
+            let (english, variant) = error.split_once(")]\n    ").expect("a variant");
+            if !names_a_command(english) {
+                continue;
+            }
+            let name = variant.split([' ', '(', ',']).next().expect("a name");
+            let arm = SOURCE.split_once(&format!("S::{name} {{"));
+            let (_, told) = arm.and_then(|arm| arm.1.split_once("=> ")).expect("an arm");
+            assert!(!told.starts_with("same("), "{name}");
+            all += 1;
+        }
+        assert!(all > 8, "{all}");
+    }
+
+    #[test]
+    fn an_error_keeps_its_file_and_loses_its_option() {
+        let failure = ptu_runs::failure::Failure::from(StoreError::Missing {
+            path: "/data/history.db".into(),
+        });
+        assert_eq!(
+            Language::English.words().trouble(&failure.message),
+            "there is no database /data/history.db; a first run creates it, or choose another file"
+        );
+    }
 
     #[test]
     fn what_is_known_is_told_without_commands_and_in_korean() {
@@ -294,7 +358,7 @@ mod tests {
                     detail: "database disk image is malformed".to_owned(),
                 })),
                 "/h.db is damaged (database disk image is malformed); check the history",
-                "파일이 손상되었습니다: /h.db (데이터베이스 내용이 손상됨). ",
+                "파일이 손상되었습니다: /h.db (데이터베이스 내용이 손상됨). 이력을 검사한 후 백업으로 계속하십시오",
             ),
             (
                 Trouble::NotStored {
