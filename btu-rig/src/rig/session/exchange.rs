@@ -192,8 +192,9 @@ impl Exchange {
             return;
         }
         let armed = state.armed == 1;
-        let asked = self.current.is_some() || self.quiet;
-        if !armed && self.armed() && !asked {
+        let current = self.current.as_ref().map(|current| &current.request);
+        let asked = matches!(current, Some(Request::Arm { .. } | Request::Disarm));
+        if !armed && self.armed() && !asked && !self.quiet {
             self.ended = Some(state.refusal);
         }
         self.armed_at = armed.then_some(now);

@@ -159,28 +159,36 @@ fn a_procedure_of_a_bench_is_not_run_on_a_train() {
 }
 
 /// Goal: what people do to a unit on a train while it is tested is reported, once, and is not taken for what a bench
-/// did. Method: the unit ends the session; then it is powered off and on.
+/// did. Method: the unit ends the session, also while a request waits for its answer; then it is powered off and on.
 #[test]
 fn what_others_do_to_the_unit_is_told() {
     let mut bench = reached(Harness::Auto, aboard());
-    assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    assert_eq!(bench.rig_mut().take_intervention(), None);
-    let session = bench.link().session.expect("armed");
-    bench.link_mut().session = None;
-    let notice = ArmState {
-        session,
-        armed: 0,
-        refusal: ArmRefusal::KeyOff,
-    };
-    let now = bench.now();
-    let mut frame = Vec::new();
-    bench.link_mut().link.send(now, &notice.into(), &mut frame);
-    bench.rig_mut().receive(now, &frame);
-    assert_eq!(
-        bench.rig_mut().take_intervention().as_deref(),
-        Some("the unit ended test mode by itself: the maintenance key was turned off")
-    );
-    assert_eq!(bench.rig_mut().take_intervention(), None);
+    for asks in [false, true] {
+        assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
+        assert_eq!(bench.rig_mut().take_intervention(), None);
+        if asks {
+            bench.link_mut().dead = vec![Channel::Ptu];
+            bench.apply(Stimulus::PtuRelease);
+            bench.run_ms(100);
+            bench.link_mut().dead.clear();
+        }
+        let session = bench.link().session.expect("armed");
+        bench.link_mut().session = None;
+        let notice = ArmState {
+            session,
+            armed: 0,
+            refusal: ArmRefusal::KeyOff,
+        };
+        let now = bench.now();
+        let mut frame = Vec::new();
+        bench.link_mut().link.send(now, &notice.into(), &mut frame);
+        bench.rig_mut().receive(now, &frame);
+        assert_eq!(
+            bench.rig_mut().take_intervention().as_deref(),
+            Some("the unit ended test mode by itself: the maintenance key was turned off")
+        );
+        assert_eq!(bench.rig_mut().take_intervention(), None);
+    }
     bench.link_mut().restart();
     bench.link_mut().harness = false;
     bench.run_ms(4000);
