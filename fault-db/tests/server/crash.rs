@@ -18,6 +18,7 @@ use crate::counts::{self, Counts};
 use crate::laptop::{Laptop, connect, day, record};
 use crate::private::{Cluster, NO_HURRY, name_of, shared, signal};
 use crate::proxy::{When, Wire};
+use fuzzing::draw;
 
 const FILE: &str = "PTU_TEST_KILLED_FILE";
 const ADDRESS: &str = "PTU_TEST_KILLED_ADDRESS";
@@ -186,13 +187,13 @@ fn a_client_killed_at_any_commit_or_a_connection_cut_anywhere_loses_and_duplicat
     println!(
         "rows on the server: run, step, occurrence, event, note, trace; then after the next sync"
     );
-    for commit in 1..=commits {
+    for commit in draw::drawn(1..=commits, 3) {
         case.kill_client(When::BeforeCommit(commit));
         case.kill_client(When::AfterCommit(commit));
         case.cut(When::BeforeCommit(commit));
         case.cut(When::AfterCommit(commit));
     }
-    for bytes in [1, 200, 40_000, 60_000, 120_000] {
+    for bytes in draw::drawn([1, 200, 40_000, 60_000, 120_000], 3) {
         case.cut(When::AfterBytes(bytes));
     }
 }
@@ -207,7 +208,7 @@ fn a_sync_continues_after_the_server_was_killed_at_any_commit() {
         history: &history,
         whole: &whole,
     };
-    for commit in 2..=commits {
+    for commit in draw::drawn(2..=commits, 3) {
         for when in [When::BeforeCommit(commit), When::AfterCommit(commit)] {
             let address = cluster.database();
             let folder = tempfile::tempdir().expect("a folder");

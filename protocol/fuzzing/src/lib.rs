@@ -1,4 +1,5 @@
-//! Feeds a reader of bytes from outside with damaged ones: no panic, no hang, bounded memory.
+//! Feeds a reader of bytes from outside with damaged ones: no panic, no hang, bounded memory. Draws what a check tests
+//! a part of ([`draw`]).
 //!
 //! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
 //! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
@@ -12,6 +13,7 @@
     reason = "says what a search for panics found"
 )]
 
+pub mod draw;
 mod mutate;
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -20,7 +22,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use mutate::Mutator;
+use mutate::Dice;
 
 /// Longer than this no reader may take for one input.
 const HANG: Duration = Duration::from_secs(10);
@@ -86,14 +88,13 @@ impl Fuzz {
     /// # Panics
     /// The reader did, or took too much memory. Ends the process if it takes too long.
     pub fn run(self, runs: u64, mut read: impl FnMut(&[u8])) {
-        let is_whole = std::env::var("CHECK_SEED").is_ok_and(|seed| seed == "all");
         let runs = match set("CAMPAIGN") {
             Some(times) => runs * times,
-            None if is_whole => runs,
+            None if draw::draws_all() => runs,
             None => runs.div_ceil(PART_OF_A_CHECK),
         };
         let seed = seed();
-        let mut mutator = Mutator::new(seed, &self.name);
+        let mut dice = Dice::new(seed, &self.name);
         let watch = Watch::begin(&self.name);
         let began = Instant::now();
         let mut input = Vec::new();
@@ -102,7 +103,7 @@ impl Fuzz {
         for run in 0..corpus + runs {
             match usize::try_from(run).ok().and_then(|at| self.corpus.get(at)) {
                 Some(example) => input.clone_from(example),
-                None => mutator.next(&self.corpus, self.longest, &mut input),
+                None => dice.damaged(&self.corpus, self.longest, &mut input),
             }
             watch.begins(&input);
             let mut fed = Ok(());

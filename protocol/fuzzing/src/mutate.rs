@@ -39,12 +39,12 @@ const WORDS: [&[u8]; 30] = [
 /// Most kinds of damage in one input.
 const MOST: usize = 6;
 
-/// Makes damaged inputs, the same for the same seed.
-pub struct Mutator {
+/// Chance, the same for the same seed.
+pub struct Dice {
     state: u64,
 }
 
-impl Mutator {
+impl Dice {
     pub fn new(seed: u64, name: &str) -> Self {
         let mut hasher = DefaultHasher::new();
         (seed, name).hash(&mut hasher);
@@ -63,7 +63,7 @@ impl Mutator {
     }
 
     /// Below `end`; 0 of nothing.
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         match end {
             0 => 0,
             _ => (self.bits() % end as u64) as usize,
@@ -71,7 +71,7 @@ impl Mutator {
     }
 
     /// The next input: one of the corpus, damaged, of at most `longest` bytes.
-    pub fn next(&mut self, corpus: &[Vec<u8>], longest: usize, input: &mut Vec<u8>) {
+    pub fn damaged(&mut self, corpus: &[Vec<u8>], longest: usize, input: &mut Vec<u8>) {
         input.clone_from(&corpus[self.below(corpus.len())]);
         for _ in 0..1 + self.below(MOST) {
             self.damage(corpus, input);

@@ -1,6 +1,7 @@
 //! Adaptive runs: few steps to the part that failed, and no acceptance of a unit by a part of the suite.
 
 use crate::common::{Place, has, list};
+use fuzzing::draw;
 use serde_json::Value;
 
 #[test]
@@ -44,14 +45,24 @@ fn a_search_that_finds_nothing_is_no_acceptance() {
 /// likely would leave them out.
 #[test]
 fn a_search_overlooks_no_unsafe_mode() {
-    for mode in [
-        "atp_cpu.door_bar_dead",
-        "atp_cpu.jog_guard_dead",
-        "atp_cpu.key_guard_dead",
-        "atp_cpu.release_guard_dead",
-        "atp_cpu.start_bar_dead",
-    ] {
+    for mode in draw::drawn(
+        [
+            "atp_cpu.door_bar_dead",
+            "atp_cpu.jog_guard_dead",
+            "atp_cpu.key_guard_dead",
+            "atp_cpu.release_guard_dead",
+            "atp_cpu.start_bar_dead",
+        ],
+        2,
+    ) {
         let place = Place::new();
-        place.ptu(&["run", "--adaptive", "--inject", mode]).exits(1);
+        let said = place.ptu(&["run", "--adaptive", "--inject", mode]);
+        assert_eq!(
+            said.code,
+            Some(1),
+            "{} {mode}: {}",
+            draw::told(),
+            said.all()
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! Automatic operation through the frames, with every controller: each section of each line, empty
 //! and full, and stops when something is not as it should be.
 
-use crate::common::{Place, draw, list, number, text};
+use crate::common::{Place, list, number, text};
+use fuzzing::draw;
 use serde_json::Value;
 
 const CONTROLLERS: [&str; 4] = ["servo", "pi", "fuzzy", "pss"];

@@ -236,7 +236,7 @@ fn locked_by_another_writer() {
 fn two_runs_at_once_are_both_recorded() {
     let place = Place::new();
     place.recorded_run();
-    let arguments = ["run", "--inject", "rs485_link.receiver_errors"];
+    let arguments = ["run", "tcms", "--inject", "rs485_link.receiver_errors"];
     let runs = [(); 2].map(|()| {
         let mut command = place.command(&arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());

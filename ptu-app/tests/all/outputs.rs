@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
+use fuzzing::draw;
 use serde_json::Value;
 
 use crate::common::{Place, Said, list, record_bad_unit, relay_fault, text};
@@ -31,20 +32,23 @@ fn on(place: &Place, history: &str, command: &str) -> Said {
 #[test]
 #[cfg(unix)]
 fn no_output_is_ever_the_history() {
-    for (ending, command) in [
-        ("jsonl", "run tcms/link --events"),
-        ("mcap", "run tcms/link --mcap"),
-        ("json", "run tcms/link --report"),
-        ("pdf", "report latest --out"),
-        ("html", "report FAULT --case --out"),
-        ("junit.xml", "runs show latest --report"),
-        ("csv", "trace export latest --force --out"),
-        ("parquet", "trace export latest --force --out"),
-        ("html", "faults trend eb_reaction --plot"),
-        ("zst", "campaign --faults eb_relay.slow --out"),
-        ("zst", "campaign --faults eb_relay.slow --runs"),
-        ("wav", "signal make code 55"),
-    ] {
+    for (ending, command) in draw::drawn(
+        [
+            ("jsonl", "run tcms/link --events"),
+            ("mcap", "run tcms/link --mcap"),
+            ("json", "run tcms/link --report"),
+            ("pdf", "report latest --out"),
+            ("html", "report FAULT --case --out"),
+            ("junit.xml", "runs show latest --report"),
+            ("csv", "trace export latest --force --out"),
+            ("parquet", "trace export latest --force --out"),
+            ("html", "faults trend eb_reaction --plot"),
+            ("zst", "campaign --faults eb_relay.slow --out"),
+            ("zst", "campaign --faults eb_relay.slow --runs"),
+            ("wav", "signal make code 55"),
+        ],
+        3,
+    ) {
         let [history, soft, hard] = ["h", "soft", "hard"].map(|name| format!("{name}.{ending}"));
         let place = named(&history);
         let fault = on(&place, &history, "faults list --part eb_relay --json").exits(0);
@@ -107,21 +111,24 @@ fn an_existing_file_of_another_kind_is_refused() {
     let fault = text(&relay_fault(&place)["id"]).to_owned();
     let runs = place.run_ids().join(" ");
     std::fs::create_dir(place.path("man1")).expect("a folder");
-    for (name, command) in [
-        ("a.jsonl", "run tcms/link --events a.jsonl"),
-        ("a.mcap", "run tcms/link --mcap a.mcap"),
-        ("a.json", "run tcms/link --report a.json"),
-        ("a.junit.xml", "report latest --out a.junit.xml"),
-        ("a.pdf", "report latest --out a.pdf"),
-        ("a.csv", "report latest --out a.csv"),
-        ("a.html", "report FAULT --case --out a.html"),
-        ("a.json", "runs compare RUNS --report a.json"),
-        ("a.html", "faults trend eb_reaction --plot a.html"),
-        ("a.html", "drive --line line8 --section 61 --report a.html"),
-        ("a.csv", "drive --line line8 --section 61 --report a.csv"),
-        ("a.wav", "signal make code 55 --seconds 1 a.wav"),
-        ("man1/ptu.1", "help-files ."),
-    ] {
+    for (name, command) in draw::drawn(
+        [
+            ("a.jsonl", "run tcms/link --events a.jsonl"),
+            ("a.mcap", "run tcms/link --mcap a.mcap"),
+            ("a.json", "run tcms/link --report a.json"),
+            ("a.junit.xml", "report latest --out a.junit.xml"),
+            ("a.pdf", "report latest --out a.pdf"),
+            ("a.csv", "report latest --out a.csv"),
+            ("a.html", "report FAULT --case --out a.html"),
+            ("a.json", "runs compare RUNS --report a.json"),
+            ("a.html", "faults trend eb_reaction --plot a.html"),
+            ("a.html", "drive --line line8 --section 61 --report a.html"),
+            ("a.csv", "drive --line line8 --section 61 --report a.csv"),
+            ("a.wav", "signal make code 55 --seconds 1 a.wav"),
+            ("man1/ptu.1", "help-files ."),
+        ],
+        3,
+    ) {
         let command = command.replace("FAULT", &fault).replace("RUNS", &runs);
         for notes in ["my notes\n", "{\"mine\": 1}\n", "a,b\n1,2\n"] {
             place.write(name, notes);
@@ -232,7 +239,7 @@ fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
             std::fs::write(folder.join("h.db"), "").expect("emptied");
         }),
     ];
-    for (is_lost, deed) in deeds {
+    for (is_lost, deed) in draw::drawn(deeds, 2) {
         let place = named("h.db");
         std::fs::copy(place.path("h.db"), place.path("old.db")).expect("copied");
         let run = under_way(&place, "h.db");

@@ -3,7 +3,8 @@
 //!
 //! A thousand seeds take minutes, so here are ten, of which the check draws four; `ptu campaign` counts the rest.
 
-use crate::common::{Place, draw, list, normalised};
+use crate::common::{Place, list, normalised};
+use fuzzing::draw;
 
 /// 312 has a spurious pulse just before the alarm of a code, 1574 one beside
 /// the first pulse after standing, 78 slow valves.

@@ -2,7 +2,6 @@
 
 #![allow(dead_code, reason = "each of the test programs uses its part")]
 
-pub mod draw;
 pub mod made_plans;
 pub mod made_runs;
 pub mod proxy;

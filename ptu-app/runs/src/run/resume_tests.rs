@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Runner, Verdict};
 use btu_rig::rig::Rig;
+use fuzzing::draw;
 use protocol::{Duration, Instant};
 
 use super::workers::{TO_THE_END, run_on_fresh};
@@ -110,11 +111,16 @@ fn every_step_can_be_repeated_once_it_is_under_way() {
 fn every_step_repeated(after: u32) {
     let mut setup = setup(&[]);
     let mut wrong = Vec::new();
-    for procedure in procedures(&setup) {
+    for procedure in draw::drawn(procedures(&setup), 3) {
         let said = amiss(&mut setup, &procedure, after);
         if !said.is_empty() {
             wrong.push(format!("{}: {said:#?}", procedure.id));
         }
     }
-    assert!(wrong.is_empty(), "{after} scans: {}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} {after} scans: {}",
+        draw::told(),
+        wrong.join("\n")
+    );
 }

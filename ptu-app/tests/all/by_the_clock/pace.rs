@@ -16,7 +16,7 @@ const BESIDE_S: f64 = 2.0;
 /// A computer that stands still makes a run longer and never shorter, so the shortest tells.
 #[test]
 fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
-    for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
+    let judged = |unit: Unit| {
         let place = Place::new();
         place.write("short.star", SHORT);
         let beside_s = || {
@@ -33,7 +33,12 @@ fn a_run_on_a_port_takes_little_more_than_its_bench_time() {
             "{after_another:?} s on {}",
             unit.address
         );
-    }
+    };
+    std::thread::scope(|scope| {
+        for unit in [Unit::on_tcp(&[]), Unit::on_pty(&[])] {
+            scope.spawn(move || judged(unit));
+        }
+    });
 }
 
 #[test]
@@ -111,17 +116,16 @@ fn a_log_without_end_is_read_within_its_time_and_bounded() {
 
 #[test]
 fn a_tester_slower_than_the_unit_is_told() {
-    let unit = Unit::on_pty(&[]);
-    let place = Place::new();
-    place.write("short.star", SHORT);
-    Running::start(&place, &unit, &["short.star", "--slower", "2"])
-        .finish()
-        .exits(3)
-        .explains(&["times as fast", "slow both"]);
-    let as_slow = Unit::on_pty(&["--slower", "2"]);
-    Running::start(&place, &as_slow, &["short.star", "--slower", "2"])
-        .finish()
-        .exits(0);
+    let slower_on = |unit: &[&str]| {
+        let (unit, place) = (Unit::on_pty(unit), Place::new());
+        place.write("short.star", SHORT);
+        Running::start(&place, &unit, &["short.star", "--slower", "2"]).finish()
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(|| slower_on(&["--slower", "2"]).exits(0));
+        let said = slower_on(&[]).exits(3);
+        said.explains(&["times as fast", "slow both"]);
+    });
 }
 
 #[test]

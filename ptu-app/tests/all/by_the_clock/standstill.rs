@@ -161,5 +161,5 @@ fn killed_in_a_step_of_the_test_board(share: f64) {
     }
     drop(observer);
     assert_eq!(place.json("runs list --json")[0]["state"], "interrupted");
-    passes(&place, &unit, "ptu/twc");
+    passes(&place, &unit, "ptu/markers");
 }

@@ -13,7 +13,8 @@ mod runs;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-use crate::common::{Place, draw, has_shape, list, normalised, text};
+use crate::common::{Place, has_shape, list, normalised, text};
+use fuzzing::draw;
 use glob::Pattern;
 use protocol::injection::{FaultKind, FaultMode};
 use protocol::signal::Signal;
@@ -172,7 +173,7 @@ fn a_fault_is_found_through_the_program_as_in_process() {
     let found = run_program(&mode.id, &BTreeSet::new());
     assert_eq!(problems(mode, &found), [""; 0]);
     is_the_same(&mode.id, found, bench.run(mode));
-    for id in THROUGH_THE_PROGRAM {
+    for id in draw::drawn(THROUGH_THE_PROGRAM, 3) {
         let mode = mode_of(id);
         let procedures = procedures_of(mode);
         let found = run_program(id, &procedures);

@@ -2,7 +2,8 @@
 
 use crate::common::is_english;
 use crate::common::window::{Window, settings};
-use crate::common::{Place, draw, scripts};
+use crate::common::{Place, scripts};
+use fuzzing::draw;
 use protocol::signal::Signal;
 use ptu_options::Page;
 use ptu_report::words::Language;

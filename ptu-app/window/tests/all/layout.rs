@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::common::window::{Window, settings};
-use crate::common::{Place, draw, record_bad_unit, scripts};
+use crate::common::{Place, record_bad_unit, scripts};
 use eframe::egui::accessibility::is_input;
 use eframe::egui::epaint::ClippedShape;
 use eframe::egui::{Rect, Role, Shape, WidgetRect};
 use egui_kittest::kittest::{NodeT, Queryable};
+use fuzzing::draw;
 use ptu_options::Page;
 use ptu_report::words::{Language, Words};
 use ptu_window::Density;

@@ -18,6 +18,7 @@ use crate::pool;
 use crate::run::{BenchChoice, BenchSetup};
 use crate::stop::Stop;
 use crate::test_support::{scripts, setup};
+use fuzzing::draw;
 
 const PROTECTION: &str = include_str!("../../../../../docs/protection.md");
 
@@ -116,14 +117,21 @@ fn minutes_of_a_unit_that_stops_and_proceeds_show_no_hazard() {
 #[test]
 fn a_protection_that_is_taken_away_shows() {
     use Hazard::*;
-    shows("fsb_output.dead", &[OverLimit, MovesUnderStop]);
-    shows("eb_relay.welded", &[MovesWithDoorOpen, RolledBack]);
-    shows(
-        "io_board.door_enable_stuck",
-        &[EnabledMoving, EnabledWrongSide],
-    );
-    shows("atp_receiver.unselective", &[Crosstalk]);
-    shows("atp_cpu.wheel_guard_dead", &[WrongWheels]);
+    for (mode, hazards) in draw::drawn(
+        [
+            ("fsb_output.dead", &[OverLimit, MovesUnderStop][..]),
+            ("eb_relay.welded", &[MovesWithDoorOpen, RolledBack]),
+            (
+                "io_board.door_enable_stuck",
+                &[EnabledMoving, EnabledWrongSide],
+            ),
+            ("atp_receiver.unselective", &[Crosstalk]),
+            ("atp_cpu.wheel_guard_dead", &[WrongWheels]),
+        ],
+        2,
+    ) {
+        shows(mode, hazards);
+    }
 }
 
 #[test]

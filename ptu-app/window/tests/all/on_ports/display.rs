@@ -5,7 +5,8 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::common::display::{Display, Picture, Shown};
-use crate::common::{Place, draw, has, list};
+use crate::common::{Place, has, list};
+use fuzzing::draw;
 use ptu_options::Page;
 use ptu_runs::run::BenchChoice;
 use ptu_window::Settings;

@@ -3,10 +3,12 @@
 use std::path::Path;
 use std::process::Command;
 
-use protocol::Random;
+use crate::mutate::Dice;
 
-/// Names the seed of a draw; "all" draws everything.
+/// Names the seed of a draw, or [`ALL`].
 const SEED: &str = "CHECK_SEED";
+/// As a seed: everything is drawn.
+const ALL: &str = "all";
 
 /// One in so many of what there is, one at least; a test that fails says the [`seed`] by which the same are drawn again.
 pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
@@ -14,22 +16,34 @@ pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
     let Ok(number) = seed().parse() else {
         return waiting;
     };
-    let mut random = Random::new(number);
+    let mut dice = Dice::new(number, "draw");
     (0..waiting.len().div_ceil(one_in))
-        .map(|_| waiting.swap_remove(random.below(waiting.len())))
+        .map(|_| waiting.swap_remove(dice.below(waiting.len())))
         .collect()
 }
 
-/// What `CHECK_SEED` says, or a number that follows from the last commit; without Git 0.
+/// The check is asked to test all of it.
+pub fn draws_all() -> bool {
+    asked().is_some_and(|seed| seed == ALL)
+}
+
+/// What `CHECK_SEED` says.
 ///
 /// # Panics
-/// If the variable is neither a number nor "all".
+/// If the variable is neither a number nor [`ALL`].
+fn asked() -> Option<String> {
+    let asked = std::env::var(SEED).ok()?;
+    let known = asked == ALL || asked.parse::<u64>().is_ok();
+    assert!(known, "{SEED} is a number or \"{ALL}\", not {asked:?}");
+    Some(asked)
+}
+
+/// What `CHECK_SEED` says, or a number that follows from the last commit; without Git 0.
 pub fn seed() -> String {
-    if let Ok(asked) = std::env::var(SEED) {
-        let known = asked == "all" || asked.parse::<u64>().is_ok();
-        assert!(known, "{SEED} is a number or \"all\", not {asked:?}");
-        return asked;
-    }
+    asked().unwrap_or_else(of_the_last_commit)
+}
+
+fn of_the_last_commit() -> String {
     let mut git = Command::new("git");
     git.args(["rev-parse", "HEAD"])
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")));
