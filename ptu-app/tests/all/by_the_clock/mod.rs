@@ -1,4 +1,4 @@
-//! What judges times by the clock: one after the other, when nothing else runs.
+//! What judges times by the clock, when nothing else runs.
 
 mod acceptance;
 mod pace;
