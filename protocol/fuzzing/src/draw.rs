@@ -10,10 +10,13 @@ const SEED: &str = "CHECK_SEED";
 /// As a seed: everything is drawn.
 const ALL: &str = "all";
 
-/// One in so many of what there is, one at least; a test that fails says the [`seed`] by which the same are drawn again.
+/// One in so many of what there is, one at least. Prints the seed by which the same are drawn again: a test that fails shows
+/// what was printed.
 pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
     let mut waiting: Vec<T> = all.into_iter().collect();
-    let Ok(number) = seed().parse() else {
+    let seed = seed();
+    println!("{SEED}={seed}");
+    let Ok(number) = seed.parse() else {
         return waiting;
     };
     let mut dice = Dice::new(number, "draw");
@@ -38,8 +41,8 @@ fn asked() -> Option<String> {
     Some(asked)
 }
 
-/// What `CHECK_SEED` says, or a number that follows from the last commit; without Git 0.
-pub fn seed() -> String {
+/// What was asked for, or a number that follows from the last commit; without Git 0.
+fn seed() -> String {
     asked().unwrap_or_else(of_the_last_commit)
 }
 
@@ -57,9 +60,4 @@ fn of_the_last_commit() -> String {
     });
     let number = digits.and_then(|digits| u64::from_str_radix(&digits, 16).ok());
     number.unwrap_or_default().to_string()
-}
-
-/// The line that begins a list of what failed among what was drawn.
-pub fn told() -> String {
-    format!("{SEED}={}", seed())
 }

@@ -117,10 +117,5 @@ fn every_step_repeated(after: u32) {
             wrong.push(format!("{}: {said:#?}", procedure.id));
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "{} {after} scans: {}",
-        draw::told(),
-        wrong.join("\n")
-    );
+    assert!(wrong.is_empty(), "{after} scans: {}", wrong.join("\n"));
 }

@@ -36,7 +36,7 @@ fn every_page_can_be_read_and_clicked_at_every_size() {
             wrong.extend(found.map(|said| format!("{size:?} {language:?} {what}: {said}")));
         });
     }
-    assert!(wrong.is_empty(), "{}: {wrong:#?}", draw::told());
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 /// Goal: the pages are in one line in the window as it first opens. Method: the places of their names in the operator's view, in
