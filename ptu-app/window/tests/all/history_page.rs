@@ -99,9 +99,9 @@ fn faults_are_closed_by_a_reason_and_opened_again() {
     assert_eq!(states(&window.place), BTreeSet::from(["\"open\"".into()]));
     window.write(said.close_looked, "contacts clean");
     window.click(&close);
-    window.wait_for("closed");
-    assert_eq!(states(&window.place), BTreeSet::from(["\"closed\"".into()]));
+    // The page is read again once all of them are written.
     window.wait_for_part("no fault found in the part: contacts clean");
+    assert_eq!(states(&window.place), BTreeSet::from(["\"closed\"".into()]));
     window.click(said.reopen);
     window.wait_for(said.close);
     assert_eq!(states(&window.place), BTreeSet::from(["\"open\"".into()]));
@@ -381,6 +381,7 @@ fn a_double_click_changes_a_fault_once() {
     };
     window.wait_for("Acknowledge");
     window.double_click("Acknowledge");
+    window.until("an acknowledgement", |window| !states(window).is_empty());
     window.wait_for("acknowledged");
     assert_eq!(states(&window), ["acknowledged"]);
     // Neither serial number nor word: nobody could tell later what was repaired.
