@@ -2,11 +2,14 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 
 use crate::mutate::Dice;
 
 /// Names the seed of a draw, or [`ALL`].
 const SEED: &str = "CHECK_SEED";
+/// Of the last commit; asked for once.
+static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
 /// As a seed: everything is drawn.
 const ALL: &str = "all";
 
@@ -43,7 +46,7 @@ fn asked() -> Option<String> {
 
 /// What was asked for, or a number that follows from the last commit; without Git 0.
 fn seed() -> String {
-    asked().unwrap_or_else(of_the_last_commit)
+    asked().unwrap_or_else(|| OF_THE_LAST_COMMIT.clone())
 }
 
 fn of_the_last_commit() -> String {

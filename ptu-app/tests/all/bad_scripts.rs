@@ -2,6 +2,7 @@
 //! driven.
 
 use crate::common::{Place, list, scripts, text};
+use fuzzing::draw;
 use quick_junit::{Report, TestCaseStatus};
 
 const HEAD: &str = "procedure(title = \"Test\", title_ko = \"시험\", suspect = \"atp_cpu\")\n";
@@ -32,37 +33,34 @@ fn a_script_that_asks_for_more_than_a_machine_has_is_refused() {
     let deep = "    x = []\n    for i in range(200000):\n        x = [x]\n    return str(x)\n";
     let double = "    x = \"x\"\n    for i in range(60):\n        x = x + x\n    return x\n";
     let conditions = "    c = is_(alarm, True)\n    for i in range(300):\n        c = any_of(c, c)\n    return c\n";
-    for (command, body, words) in [
+    let bodies = [
         (
-            "",
-            "x = [0] * 1000000000\n",
+            "x = [0] * 1000000000\n".to_owned(),
             "needs more than 512 MB of memory",
         ),
         (
-            "--check",
-            "x = list(range(2000000000))\n",
+            "x = list(range(2000000000))\n".to_owned(),
             "wrong.star:1:1: ",
         ),
         (
-            "--list",
-            &format!("def f():\n{double}x = f()\n"),
+            format!("def f():\n{double}x = f()\n"),
             "needs more than 512 MB of memory",
         ),
         (
-            "--check",
-            &format!("def f():\n{deep}x = f()\n"),
+            format!("def f():\n{deep}x = f()\n"),
             "holds values within values too deeply",
         ),
         (
-            "",
-            &format!("def f():\n{conditions}step(\"a\", expect = becomes(f()))\n"),
+            format!("def f():\n{conditions}step(\"a\", expect = becomes(f()))\n"),
             "wrong.star:1:1: ",
         ),
-    ] {
+    ];
+    for (body, words) in draw::drawn(bodies, 2) {
+        does_not_load(&body, &[words]);
         let place = Place::new();
         place.write("wrong.star", &format!("{HEAD}{body}"));
-        let said = place.ptu(&format!("run {command} wrong.star"));
-        said.exits(2).explains(&["wrong.star:1:1: ", words]);
+        let list = place.ptu("run --list wrong.star");
+        list.exits(2).explains(&["wrong.star:1:1: ", words]);
     }
 }
 

@@ -1,0 +1,139 @@
+//! Each error of the store in both languages.
+
+use std::sync::Arc;
+
+use super::super::super::Language;
+use super::*;
+
+const SOURCE: &str = include_str!("../trouble.rs");
+const ERRORS: &str = include_str!("../../../../../../fault-db/src/error/mod.rs");
+
+fn names_a_command(text: &str) -> bool {
+    ["`", "--", "ptu ", "db ", "createdb"]
+        .iter()
+        .any(|command| text.contains(command))
+}
+
+/// Goal: words with a command, or with English in the Korean, fail. Method: all texts of the sources.
+#[test]
+fn no_text_names_a_command_and_the_korean_is_korean() {
+    let sources = [SOURCE, include_str!("../damage.rs")];
+    let told = sources.map(|source| source.split("#[cfg(test)]").next().unwrap_or(source));
+    let lines = told.iter().flat_map(|source| source.lines());
+    // What SQLite says is compared, not told.
+    let lines = lines.filter(|line| !line.contains("disk image is malformed"));
+    for text in lines.flat_map(|line| line.split('"').skip(1).step_by(2)) {
+        assert!(!names_a_command(text), "{text}");
+        if !text.contains(|letter: char| ('가'..='힣').contains(&letter)) {
+            continue;
+        }
+        // What stands before a closing brace is a place.
+        let parts = text
+            .split('{')
+            .map(|part| part.rsplit('}').next().unwrap_or(part));
+        let mut words = parts.flat_map(|part| part.split(|c: char| !c.is_ascii_lowercase()));
+        let of_files = [
+            "postgres",
+            "sslmode",
+            "disable",
+            "sslrootcert",
+            "wal",
+            "train",
+            "date",
+        ];
+        let english = words.find(|word| word.len() > 2 && !of_files.contains(word));
+        assert_eq!(english, None, "{text}");
+    }
+}
+
+/// Goal: an error whose own English names a command, and that has no other English here, fails.
+#[test]
+fn what_the_store_says_with_a_command_is_said_without() {
+    let mut all = 0;
+    for error in ERRORS.split("#[error(").skip(1) {
+        let (english, variant) = error.split_once(")]\n    ").expect("a variant");
+        if !names_a_command(english) {
+            continue;
+        }
+        let name = variant.split([' ', '(', ',']).next().expect("a name");
+        let arm = SOURCE.split_once(&format!("S::{name} {{"));
+        let (_, told) = arm.and_then(|arm| arm.1.split_once("=> ")).expect("an arm");
+        assert!(!told.starts_with("same("), "{name}");
+        all += 1;
+    }
+    assert!(all > 8, "{all}");
+}
+
+#[test]
+fn an_error_keeps_its_file_and_loses_its_option() {
+    let failure = ptu_runs::failure::Failure::from(StoreError::Missing {
+        path: "/data/history.db".into(),
+    });
+    assert_eq!(
+        Language::English.words().trouble(&failure.message),
+        "there is no database /data/history.db; a first run creates it, or choose another file"
+    );
+}
+
+#[test]
+fn what_is_known_is_told_without_commands_and_in_korean() {
+    let path = || "/h.db".into();
+    let id = fault_db::Id::from_bytes([7; 16]);
+    let error = || Arc::new(StoreError::Locked { path: path() });
+    for (trouble, english, korean) in [
+        (
+            Trouble::Store(Arc::new(StoreError::Corrupt {
+                path: path(),
+                detail: "database disk image is malformed".to_owned(),
+            })),
+            "/h.db is damaged (database disk image is malformed); check the history",
+            "파일이 손상되었습니다: /h.db (데이터베이스 내용이 손상됨). 이력을 검사한 후 백업으로 계속하십시오",
+        ),
+        (
+            Trouble::NotStored {
+                run: id,
+                error: error(),
+                left_out: 2,
+                kept: Some("/k.db".into()),
+            },
+            "the last 2 of its traces are lost: ",
+            "마지막 기록 2개 없음. ",
+        ),
+        (
+            Trouble::NotStored {
+                run: id,
+                error: error(),
+                left_out: 0,
+                kept: None,
+            },
+            "is not in the history, and lost: ",
+            "이력에 없고 보관하지도 못했습니다: ",
+        ),
+        (
+            Trouble::Uncalibrated {
+                kind: "tachometer".to_owned(),
+                serial_no: "T7".to_owned(),
+                due: None,
+            },
+            "tachometer T7 was never calibrated; nothing was driven. Have it calibrated",
+            "교정한 적이 없습니다: tachometer T7. ",
+        ),
+        (
+            Trouble::from("what another program said"),
+            "what another program said",
+            "what another program said",
+        ),
+    ] {
+        let told = Language::ALL.map(|language| language.words().trouble(&trouble).into_owned());
+        assert!(
+            told[0].contains(english) && told[1].contains(korean),
+            "{told:?}"
+        );
+        assert!(
+            !told
+                .iter()
+                .any(|told| told.contains('`') || told.contains("--")),
+            "{told:?}"
+        );
+    }
+}
