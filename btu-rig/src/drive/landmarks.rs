@@ -45,8 +45,6 @@ pub enum Mark {
     Stop,
     /// The unit or TCMS logged an event.
     Logged(LoggedEvent),
-    /// A step of a run by hand was done, as the sequence writes it.
-    Done(String),
 }
 
 impl Display for Mark {
@@ -64,7 +62,6 @@ impl Display for Mark {
                 };
                 write!(f, "{source}: {}", described(entry.code, entry.parameter))
             }
-            Self::Done(what) => f.write_str(what),
         }
     }
 }

@@ -10,13 +10,11 @@
 //! * `figure`: figures with the names and units that reports use;
 //! * `metrics`: figures of a run, from its rows;
 //! * `landmarks`: what happened where, from its rows and the unit's log;
-//! * `scatter`: how trains and days differ, drawn for many runs;
-//! * [`manual`]: the same train driven by hand, by a sequence of notches and switches.
+//! * `scatter`: how trains and days differ, drawn for many runs.
 
 mod figure;
 pub mod landmarks;
 mod log_text;
-pub mod manual;
 pub mod metrics;
 mod plan;
 mod recording;
@@ -38,7 +36,7 @@ pub use figure::Figure;
 pub use landmarks::{Landmark, Mark};
 pub use metrics::Metrics;
 pub use plan::{Codes, DrivePlan, Load, PlanError, code_in_antenna};
-pub use row::{PAIRS, Row};
+pub use row::Row;
 pub use scatter::{Scatter, ScatterDraw};
 
 use recording::Recording;

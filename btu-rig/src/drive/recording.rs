@@ -45,9 +45,7 @@ impl Recording {
             t_s: now.as_secs(),
             x_m: truth.position_m,
             speed_kmh: truth.speed_mps * 3.6,
-            lever: rig.lever(),
             power_w,
-            pairs: rig.pair_efforts(),
             sliding: truth.sliding,
         });
     }

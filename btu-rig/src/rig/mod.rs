@@ -44,7 +44,7 @@ pub use bench::{Bench, LinkFailure, UnitLink};
 pub use link::Harness;
 pub use session::{ExpectedIdentity, LogSession, StoredData, TimeOfDay, UnitRecord};
 pub use tcms::PAIR_DEMANDS;
-pub use train_side::{Misplaced, PairEfforts, TrueMotion, check_places};
+pub use train_side::{Misplaced, TrueMotion, check_places};
 
 use link::{HarnessWatch, LatestSample, LineWatch, LinkWatch};
 use rolling::weight_shares;

@@ -3,13 +3,12 @@
 use protocol::{Duration, Random, SCAN};
 
 use crate::conditions::{Conditions, Sensors};
-use crate::lever::Lever;
 use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 use super::Rig;
 use super::tcms::pair_cars;
-use super::train_side::{PairEfforts, TrueMotion};
+use super::train_side::TrueMotion;
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);
@@ -72,26 +71,6 @@ impl Rig {
             air_brake_n: state.air_brake_n,
             sliding: state.sliding,
         }
-    }
-
-    /// What the equipment of the first four MT pairs gives at the scan's end; nothing while generators
-    /// turn the wheels.
-    pub fn pair_efforts(&self) -> [PairEfforts; 4] {
-        if !self.train_driven {
-            return Default::default();
-        }
-        let equipment = self.train.equipment();
-        self.pair_cars.map(|(motors, trailers)| PairEfforts {
-            traction_n: motors.sum(&equipment.traction_n),
-            electric_n: motors.sum(&equipment.electric_n),
-            air_trailers_n: trailers.sum(&equipment.air_n),
-            air_motors_n: motors.sum(&equipment.air_n),
-        })
-    }
-
-    /// Position of the master controller.
-    pub(crate) fn lever(&self) -> Lever {
-        self.desk.lever
     }
 
     /// Turns the wheels through one scan.

@@ -4,7 +4,7 @@
 //! * [`link`]: links to the embedded unit and to units on ports;
 //! * [`run`]: runs procedures on benches, and stores and forwards their events;
 //! * [`bench_worker`]: one unit under test and its bench thread, for the window;
-//! * [`drive`]: automatic runs from station to station, and manual runs;
+//! * [`drive`]: automatic runs from station to station;
 //! * [`train_server`]: serves the unit aboard a train on a port;
 //! * [`replay`]: repeats recorded stimuli and compares traces;
 //! * [`field`]: imports a unit's own event log into the fault history;

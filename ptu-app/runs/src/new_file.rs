@@ -43,7 +43,6 @@ pub mod kind {
         "{\"runs\":",
         "{\"line\":",
         "{\"cases\":",
-        "{\"sequence\":",
     ];
     /// Results of tests.
     pub const JUNIT: Kind<'_> = &["<?xmlversion=\"1.0\"encoding=\"UTF-8\"?><testsuites"];
@@ -61,8 +60,6 @@ pub mod kind {
     pub const DICTIONARY: Kind<'_> = &["(\u{fffd}/\u{fffd}"];
     /// Runs that are kept.
     pub const RUNS: Kind<'_> = &["\u{fffd}PTURUN1"];
-    /// Sequences of notches.
-    pub const SEQUENCE: Kind<'_> = &["title="];
     /// What the program keeps for itself, at a place of its own.
     pub const OWN: Kind<'_> = &[""];
 }

@@ -1,7 +1,6 @@
 //! JSON Schemas of the data files, made of the types that read them, for editors that complete and check while one writes.
 
 use btu_rig::bench_scatter::BenchScatter;
-use btu_rig::drive::manual::file_schema as sequence;
 use btu_rig::drive::scatter::Scatter;
 use btu_rig::train::TrainData;
 use diagnosis::Settings;
@@ -48,7 +47,6 @@ pub fn all() -> Vec<FileSchema> {
         ),
         file("line", &["lines/*.toml"], protocol::line::file_schema()),
         file("train", &["trains/*.toml"], of::<TrainData>()),
-        file("sequence", &["manual/*.toml"], sequence()),
         file("scatter", &["scatter.toml"], of::<Scatter>()),
         file(
             "bench_scatter",

@@ -52,15 +52,6 @@ pub fn draws() -> bool {
     stderr().is_terminal()
 }
 
-/// Replaces the last line of the terminal.
-pub fn redraw(line: &str) {
-    let mut terminal = stderr().lock();
-    let _ = write!(terminal, "{CLEAR}{}", display_text::line(line)).and_then(|()| terminal.flush());
-}
-
-/// What clears the line from its beginning.
-const CLEAR: &str = "\r\x1b[K";
-
 /// The text without control characters, its lines cut to [`WIDEST`].
 fn readable(text: &str) -> String {
     let text = display_text::lines(text);

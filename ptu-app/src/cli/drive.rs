@@ -1,31 +1,27 @@
-//! `ptu drive`: station-to-station automatic runs, and runs by hand.
+//! `ptu drive`: station-to-station automatic runs.
 
 use std::path::{Path, PathBuf};
 
 use btu_rig::conditions::Disturbance;
-use btu_rig::drive::{Ending, Load, Scatter, manual};
+use btu_rig::drive::{Ending, Load, Scatter};
 use clap::Args;
 use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
 use super::{Json, ScriptsOption, answered, made_by};
 use ptu_report::drive::{self as report, Outcomes, Results, Target};
-use ptu_runs::data::{ScriptsDirectory, check_writable, read, write};
-use ptu_runs::drive::manual::{KEYS, ManualRun, drive_by_hand};
+use ptu_runs::data::{ScriptsDirectory, read};
 use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
 use ptu_runs::failure::{Exit, Failure, did_you_mean};
-use ptu_runs::new_file::kind;
 use ptu_runs::pool::cores;
-use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 
-/// Drive from station to station and measure the stop, or drive by hand
+/// Drive from station to station and measure the stop
 ///
 /// Exit codes: 0 the train stopped within the door tolerance, 1 it did not. With --monte-carlo, 0 if 99.9 %
-/// of the runs did and none went more than 1 m too far; with --manual, 0 if all steps were done and ATP did not
-/// brake.
+/// of the runs did and none went more than 1 m too far.
 ///
 /// Examples:
 ///   ptu drive                                   line 8 section 61, empty line 6 train
@@ -35,28 +31,15 @@ use ptu_runs::stop::Stop;
 ///   ptu drive --monte-carlo 10000 --json
 ///   ptu drive --monte-carlo 10000 --shard 3/64 --runs shard-3.zst
 ///   ptu drive --set ato.servo.s_curve_s=12 --set 'ato.controller="pss"'
-///   ptu drive --manual figure7 --report figure7.html
-///   ptu drive --manual keys --load full --out mine.toml
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DriveArguments {
-    /// Line, lines/NAME.toml [default: line8; by hand the sequence's, or test_track]
+    /// Line, lines/NAME.toml [default: line8]
     #[arg(long, value_name = "NAME")]
     line: Option<String>,
-    /// Sections: a number, A-B or all [default: 61; by hand the sequence's, or the line's first]
+    /// Sections: a number, A-B or all [default: 61]
     #[arg(long, value_name = "N")]
     section: Option<SectionChoice>,
-    /// By hand: a sequence of notches and switches, manual/NAME.toml or a file ending in .toml, or
-    /// keys on this terminal
-    #[arg(
-        long,
-        value_name = "NAME|FILE|keys",
-        conflicts_with_all = ["monte_carlo", "compare", "controller", "scattered", "jobs"]
-    )]
-    manual: Option<String>,
-    /// Write what was driven by keys as a sequence, to be driven again with --manual FILE
-    #[arg(long, value_name = "FILE", requires = "manual")]
-    out: Option<PathBuf>,
     /// Speed controller: servo, fuzzy, pi or pss [default: the configuration's]
     #[arg(long, value_name = "NAME", value_parser = controller)]
     controller: Option<ControllerKind>,
@@ -74,7 +57,7 @@ pub struct DriveArguments {
         allow_negative_numbers = true
     )]
     mass: Option<f64>,
-    /// Passengers: a mass, empty or full [default: empty, or the sequence's]
+    /// Passengers: a mass, empty or full [default: empty]
     #[arg(long, value_name = "KG|empty|full", allow_negative_numbers = true)]
     load: Option<Load>,
     /// Force against the train: none, s1 or AMP@HZ in N·s/m and Hz
@@ -129,9 +112,6 @@ impl DriveArguments {
             target.check()?;
         }
         self.keep.check(self.monte_carlo.is_some())?;
-        if let Some(source) = &self.manual {
-            return self.by_hand(&directory, source);
-        }
         let mut cases = self.request()?.cases(&directory)?;
         let stop = Stop::default();
         stop.listen();
@@ -164,49 +144,6 @@ impl DriveArguments {
             made: Some(made_by()),
         };
         self.answer(&results, &stop)
-    }
-
-    /// A sequence, or keys.
-    fn by_hand(&self, directory: &ScriptsDirectory, source: &str) -> Result<Exit, Failure> {
-        if let Some(file) = &self.out {
-            if source != KEYS {
-                return Err(Failure::usage("--out goes with --manual keys"));
-            }
-            if file.extension().is_none_or(|ending| ending != "toml") {
-                return Err(Failure::usage(
-                    "--out: a sequence is a file ending in .toml",
-                ));
-            }
-            check_writable(file, kind::SEQUENCE)?;
-        }
-        let case = self.request()?.manual(directory, source)?;
-        let stop = Stop::default();
-        let outcome = if case.plan.by_hand {
-            stop.listen();
-            drive_by_hand(&case, &stop)?
-        } else {
-            case.play()
-        };
-        let run = ManualRun { case, outcome };
-        let done = !run.outcome.done.is_empty();
-        let save = self
-            .out
-            .as_ref()
-            .map(|file| (file, run.sequence().to_toml()));
-        let answer = self.answer(
-            &Results {
-                outcomes: Outcomes::ByHand(Box::new(run)),
-                list: false,
-                made: Some(made_by()),
-            },
-            &stop,
-        );
-        match save {
-            Some((file, sequence)) if done => write(file, kind::SEQUENCE, sequence)?,
-            Some(_) => stdio::note("nothing was done: nothing saved"),
-            None => {}
-        }
-        answer
     }
 
     fn request(&self) -> Result<Request, Failure> {
@@ -251,25 +188,14 @@ impl DriveArguments {
                 let mut endings = runs.iter().map(|run| &run.outcome.ending);
                 let lost =
                     |ending: &&Ending| matches!(ending, Ending::LinkLost(_) | Ending::Refused(_));
-                no_bench_failure(endings.find(lost))?;
+                if let Some(ending) = endings.find(lost) {
+                    return Err(Failure::bench(ending.to_string()));
+                }
                 runs.iter().all(Driven::aligned)
-            }
-            Outcomes::ByHand(run) => {
-                use manual::Ending::{LinkLost, Refused};
-                let ending = Some(&run.outcome.ending);
-                no_bench_failure(
-                    ending.filter(|ending| matches!(ending, LinkLost(_) | Refused(_))),
-                )?;
-                run.passed()
             }
         };
         answered(told, if passed { Exit::Passed } else { Exit::Failed })
     }
-}
-
-/// Fails with an ending that is the bench's doing, if there is one.
-fn no_bench_failure(ending: Option<&impl ToString>) -> Result<(), Failure> {
-    ending.map_or(Ok(()), |ending| Err(Failure::bench(ending.to_string())))
 }
 
 fn scatter(directory: &ScriptsDirectory, file: Option<&Path>) -> Result<Scatter, Failure> {

@@ -145,7 +145,6 @@ fn pipes_and_devices_are_refused_wherever_a_file_is_named() {
         &["run", "--check", "--scripts", "scripts"],
         &["run", "--train", "p.toml"],
         &["run", "--scattered=p.toml", "tcms/link"],
-        &["drive", "--manual", "p.toml"],
         &["drive", "--train", "p.toml"],
         &["matrix", "p.json"],
         &["matrix", "/dev/zero"],

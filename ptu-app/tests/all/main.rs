@@ -16,7 +16,6 @@ mod diagnose;
 
 mod documents;
 mod drive;
-mod drive_by_hand;
 mod event_lines;
 mod fault_months;
 mod faults;

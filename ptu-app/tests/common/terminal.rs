@@ -7,9 +7,7 @@ use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 use rustix::fs::{Mode, OFlags};
-use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::OpenptFlags;
-use rustix::termios::{LocalModes, Termios, tcgetattr};
 
 /// Longest time anything here takes to come about, also on a machine that is held up.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -57,10 +55,6 @@ impl Terminal {
             .expect("it starts")
     }
 
-    pub fn settings(&self) -> Termios {
-        tcgetattr(&self.line).expect("settings")
-    }
-
     /// Passes over what was written, so that the writer goes on.
     pub fn read(&self) {
         let mut screen = File::from(self.screen.try_clone().expect("a copy"));
@@ -93,22 +87,6 @@ impl Terminal {
     pub fn type_line(&self, line: &str) {
         let mut keys = File::from(self.screen.try_clone().expect("a copy"));
         writeln!(keys, "{line}").expect("typed");
-    }
-
-    /// Waits until it takes keys as they are typed.
-    pub fn until_keys_are_taken(&self) {
-        let began = Instant::now();
-        while self.settings().local_modes.contains(LocalModes::ICANON) {
-            assert!(began.elapsed() < PATIENCE, "no keys are taken");
-            self.read();
-            std::thread::sleep(Duration::from_millis(20));
-        }
-    }
-
-    /// Sends a signal and gives the exit code.
-    pub fn told(&self, mut program: Child, signal: Signal) -> Option<i32> {
-        kill_process(Pid::from_child(&program), signal).expect("a signal");
-        ended(&mut program, || self.read())
     }
 }
 

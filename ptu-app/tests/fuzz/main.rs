@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::drive::Load;
 use btu_rig::drive::Scatter;
-use btu_rig::drive::manual::Sequence;
 use btu_rig::train::TrainData;
 use common::Place;
 use diagnosis::matrix::{Matrix, read_outcomes};
@@ -202,14 +201,6 @@ fn trains_scatter_and_sequences() {
         |text| {
             let read = toml::from_str::<DiagnosisSettings>(text);
             let _ = read.map(|settings| settings.check());
-        },
-    );
-    fuzz_text(
-        "sequence",
-        shipped("manual", "toml").into_values(),
-        4_000,
-        |text| {
-            let _ = Sequence::from_toml(text).map(|sequence| sequence.to_toml());
         },
     );
 }

@@ -18,5 +18,5 @@ pub use motion::Motion;
 pub use tacho::{MAX_AGE_US, Tacho};
 pub use tcms_port::{TcmsPort, TrainSeen};
 pub use train_faults::{Injected, Misplaced, TrainFaults, check_places};
-pub use true_motion::{PairEfforts, SpeedHistory, TrueMotion};
+pub use true_motion::{SpeedHistory, TrueMotion};
 pub use wheel::Wheel;

@@ -23,26 +23,6 @@ pub struct TrueMotion {
     pub sliding: bool,
 }
 
-/// What the equipment of one MT pair gives, N, sizes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PairEfforts {
-    /// Traction of its inverters.
-    pub traction_n: f64,
-    /// Electric brake of its inverters (EFM of S3).
-    pub electric_n: f64,
-    /// Air of its trailers, by their cylinders' pressure.
-    pub air_trailers_n: f64,
-    /// Air of its motor cars.
-    pub air_motors_n: f64,
-}
-
-impl PairEfforts {
-    /// All brakes of the pair, N.
-    pub fn brake_n(&self) -> f64 {
-        self.electric_n + self.air_trailers_n + self.air_motors_n
-    }
-}
-
 /// Scans the mean acceleration is taken over: 50 ms.
 const ACCEL_SCANS: usize = 5;
 /// Scans the jerk is taken over: 200 ms.

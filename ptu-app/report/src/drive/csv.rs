@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use btu_rig::drive::{Metrics, PAIRS, Row};
-use btu_rig::rig::PAIR_DEMANDS;
+use btu_rig::drive::{Metrics, Row};
 use protocol::signal::Signal;
 
 use super::{Outcomes, Results};
@@ -12,11 +11,9 @@ use ptu_runs::drive::monte_carlo::MonteCarlo;
 
 /// A column of a cycle: its name and its value.
 type Column = (&'static str, fn(&Row) -> f64);
-/// A column of an MT pair, behind `pair1_` to `pair4_`.
-type PairColumn = (&'static str, fn(&Row, usize) -> f64);
 
 /// Columns of an automatic run.
-const AUTOMATIC: [Column; 15] = [
+const COLUMNS: [Column; 15] = [
     ("t_s", |r| r.t_s),
     ("x_m", |r| r.x_m),
     ("speed_kmh", |r| r.speed_kmh),
@@ -34,74 +31,26 @@ const AUTOMATIC: [Column; 15] = [
     ("sliding", |r| f64::from(u8::from(r.sliding))),
 ];
 
-/// Columns of a run by hand.
-const BY_HAND: [Column; 14] = [
-    ("t_s", |r| r.t_s),
-    ("x_m", |r| r.x_m),
-    ("speed_kmh", |r| r.speed_kmh),
-    ("limit_kmh", |r| r.value(Signal::Limit)),
-    ("accel_m_s2", |r| r.value(Signal::TrainAccel)),
-    ("jerk_m_s3", |r| r.value(Signal::TrainJerk)),
-    ("lever", |r| r.lever.number()),
-    ("tcms_value", |r| r.value(Signal::TcmsValue)),
-    ("motor_demand_n", |r| r.value(Signal::MotorDemand)),
-    ("brake_demand_n", |r| r.value(Signal::BrakeDemand)),
-    ("te_n", |r| r.value(Signal::Traction)),
-    ("electric_n", |r| r.value(Signal::ElectricBrake)),
-    ("air_n", |r| r.value(Signal::AirBrake)),
-    ("sliding", |r| f64::from(u8::from(r.sliding))),
-];
-
-/// Columns of each MT pair of a run by hand.
-const OF_PAIR: [PairColumn; 7] = [
-    ("motor_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][0])),
-    ("te_n", |r, pair| r.pairs[pair].traction_n),
-    ("electric_n", |r, pair| r.pairs[pair].electric_n),
-    ("air_t_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][1])),
-    ("air_t_n", |r, pair| r.pairs[pair].air_trailers_n),
-    ("air_m_demand_n", |r, pair| r.value(PAIR_DEMANDS[pair][2])),
-    ("air_m_n", |r, pair| r.pairs[pair].air_motors_n),
-];
-
 pub fn csv(results: &Results) -> String {
     let mut text = MARK.to_owned();
     match &results.outcomes {
         Outcomes::Single(runs) => {
-            text += &format!("section,controller,{}\n", names(&AUTOMATIC));
+            let names: Vec<_> = COLUMNS.iter().map(|column| column.0).collect();
+            text += &format!("section,controller,{}\n", names.join(","));
             for run in runs {
                 let controller = run.case.controller.name();
                 let before = format!("{},{controller},", run.case.plan.section.section);
-                cycles(&mut text, &before, &run.outcome.rows, &AUTOMATIC, &[]);
+                cycles(&mut text, &before, &run.outcome.rows);
             }
         }
         Outcomes::Many(many) => text += &trials(many),
-        Outcomes::ByHand(run) => {
-            let name = |pair| {
-                OF_PAIR
-                    .map(|column| format!(",pair{pair}_{}", column.0))
-                    .concat()
-            };
-            let pairs: String = (1..=PAIRS).map(name).collect();
-            text += &format!("{}{pairs}\n", names(&BY_HAND));
-            cycles(&mut text, "", &run.outcome.rows, &BY_HAND, &OF_PAIR);
-        }
     }
     text
 }
 
-fn names(columns: &[Column]) -> String {
-    let names: Vec<_> = columns.iter().map(|column| column.0).collect();
-    names.join(",")
-}
-
-fn cycles(text: &mut String, before: &str, rows: &[Row], train: &[Column], pair: &[PairColumn]) {
+fn cycles(text: &mut String, before: &str, rows: &[Row]) {
     for row in rows {
-        let cells = train.iter().map(|column| (column.1)(row));
-        let of_pair = |at| pair.iter().map(move |column| (column.1)(row, at));
-        let cells: Vec<_> = cells
-            .chain((0..PAIRS).flat_map(of_pair))
-            .map(cell)
-            .collect();
+        let cells = COLUMNS.map(|column| cell((column.1)(row)));
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{before}{}", cells.join(","));
     }

@@ -3,7 +3,6 @@
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::Outcome;
 
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::Trial;
 use ptu_runs::drive::{Case, Driven};
 
@@ -106,29 +105,6 @@ pub fn conditions(case: &Case) -> Vec<Fact> {
         ));
     }
     found
-}
-
-/// What was driven by hand on what.
-pub fn by_hand(run: &ManualRun) -> Vec<Fact> {
-    let plan = &run.case.plan;
-    let cars = &plan.train.cars;
-    let mass_kg = cars.iter().map(|car| car.empty_kg).sum::<f64>() + plan.load_kg;
-    let mut facts = Vec::from(loaded(&plan.train.name, mass_kg, plan.load_kg));
-    facts.extend([
-        (
-            "Line",
-            format!("{} section {}", run.case.line, plan.section.section),
-        ),
-        (
-            "Speed code",
-            format!("{}, {:.0} km/h", plan.code, plan.limit_kmh),
-        ),
-    ]);
-    let added = plan.conditions.gradient_offset_permille;
-    if added != 0.0 {
-        facts.push(("Gradient", format!("{added:+.1} ‰ added")));
-    }
-    facts
 }
 
 #[cfg(test)]

@@ -2,14 +2,11 @@
 //! Carlo one object for one case, `{"cases": [...]}` where several were.
 
 use btu_rig::conditions::{Conditions, Disturbance};
-use btu_rig::drive::manual::Figures;
 use btu_rig::drive::{Figure, Landmark, Metrics};
 use protocol::line::Section;
 use serde_json::{Value, json};
 
-use super::tables::{StepResult, step_results};
 use super::{Outcomes, Results};
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::{MonteCarlo, Trial, percentile};
 use ptu_runs::drive::{Case, DriveBench, Driven};
 
@@ -35,7 +32,6 @@ pub fn json(results: &Results) -> Value {
             [one] if !results.list => many_json(one),
             many => json!({"cases": many.iter().map(many_json).collect::<Vec<_>>()}),
         },
-        Outcomes::ByHand(run) => by_hand_json(run),
     }
 }
 
@@ -61,43 +57,6 @@ fn run_json(run: &Driven) -> Value {
         day_json(case.plan.load_kg, &case.plan.conditions, case.seed),
         events_json(&outcome.landmarks),
     ])
-}
-
-fn by_hand_json(run: &ManualRun) -> Value {
-    let (case, outcome) = (&run.case, &run.outcome);
-    let plan = &case.plan;
-    object([
-        json!({"sequence": case.name, "title": plan.sequence.title}),
-        place_json(&case.bench, &plan.section),
-        bench_json(&case.bench, &plan.train.name),
-        json!({"code": plan.code}),
-        day_json(plan.load_kg, &plan.conditions, case.seed),
-        json!({"ending": outcome.ending.to_string(), "passed": run.passed()}),
-        figures_json(Figures::ALL, Some(&outcome.figures)),
-        json!({"steps": step_results(run).iter().map(step_json).collect::<Vec<_>>()}),
-        events_json(&outcome.landmarks),
-    ])
-}
-
-fn step_json(result: &StepResult<'_>) -> Value {
-    let pair = result.pair.map(|pair| {
-        json!({
-            "te_n": pair.traction_n,
-            "electric_n": pair.electric_n,
-            "air_t_n": pair.air_trailers_n,
-            "air_m_n": pair.air_motors_n,
-            "brake_n": pair.brake_n(),
-        })
-    });
-    json!({
-        "t_s": result.done.t_s,
-        "x_m": result.done.x_m,
-        "speed_kmh": result.done.speed_kmh,
-        "what": result.done.what(),
-        "brake_settled_s": result.settled.map(|settled| settled.after_s),
-        "brake_worst_share": result.settled.map(|settled| settled.worst),
-        "pair1_later": pair,
-    })
 }
 
 fn figures_json<F>(table: &[Figure<F>], of: Option<&F>) -> Value {

@@ -1,5 +1,5 @@
-//! Reports of drive runs: plain text, JSON, CSV, and a sheet with plots; of automatic runs, of many of them, and of
-//! runs by hand. `facts` and `tables` are what text and sheet share. `paper` makes the blocks of the sheet, in either
+//! Reports of drive runs: plain text, JSON, CSV, and a sheet with plots; of automatic runs and of many
+//! of them. `facts` and `tables` are what text and sheet share. `paper` makes the blocks of the sheet, in either
 //! language, which the HTML page and the window are made from.
 
 mod csv;
@@ -20,7 +20,6 @@ use crate::words::Language;
 use crate::{json_text, run};
 use ptu_runs::data;
 use ptu_runs::drive::Driven;
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{Kind, kind};
@@ -52,8 +51,6 @@ pub enum Outcomes {
     Single(Vec<Driven>),
     /// Cases, each many times.
     Many(Vec<MonteCarlo>),
-    /// A sequence, or keys.
-    ByHand(Box<ManualRun>),
 }
 
 /// A report to write.

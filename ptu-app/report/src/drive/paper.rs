@@ -1,11 +1,10 @@
 //! Runs as printed blocks, which page and window show: verdict, train and day, figures, plots, and what happened.
 
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::drive::{Case, DriveBench, Driven};
 
-use super::facts::{Fact, by_hand, conditions, off, title};
-use super::plots::{plots, plots_by_hand, plots_of_many};
+use super::facts::{Fact, conditions, off, title};
+use super::plots::{plots, plots_of_many};
 use super::{Outcomes, Results, tables};
 use crate::plot::Plot;
 use crate::run::block::{Block, Tone, sentence};
@@ -26,7 +25,6 @@ impl Printed for Results {
                 let seed = case.map_or(0, |case| case.seed);
                 (said.many, case.map(|case| &case.bench), seed)
             }
-            Outcomes::ByHand(run) => (said.by_hand, Some(&run.case.bench), run.case.seed),
         };
         let unit = words.report.simulated_unit;
         let mut blocks = vec![Block::Title(name.into(), unit.into())];
@@ -44,7 +42,6 @@ impl Printed for Results {
             Outcomes::Many(many) => {
                 blocks.extend(many.iter().flat_map(|many| of_many(many, words)));
             }
-            Outcomes::ByHand(run) => blocks.extend(of_run_by_hand(run, words)),
         }
         if let Some(made) = &self.made {
             blocks.push(Block::Text(Tone::Soft, made.clone()));
@@ -143,36 +140,6 @@ fn of_many(many: &MonteCarlo, words: &Words) -> Vec<Block> {
             "Repeat one with --scattered --seed SEED in place of --monte-carlo.".into(),
         ),
         Block::Table(tables::worst(many).printed(words)),
-    ]);
-    blocks
-}
-
-fn of_run_by_hand(run: &ManualRun, words: &Words) -> Vec<Block> {
-    let (case, outcome) = (&run.case, &run.outcome);
-    let tone = if run.passed() { Tone::Good } else { Tone::Bad };
-    let mut known = vec![("Sequence", case.name.clone())];
-    known.extend(by_hand(run));
-    known.extend(made_of(&case.bench, case.seed));
-    let mut blocks = vec![
-        Block::Heading(case.plan.sequence.title.clone()),
-        Block::Verdict(
-            tone,
-            sentence(&words.ended_by_hand(&outcome.ending)),
-            String::new(),
-        ),
-        Block::Facts(in_language(known, words)),
-    ];
-    let figures = tables::of_run_by_hand(run);
-    blocks.extend(measured(&figures, plots_by_hand(run), words));
-    blocks.extend([
-        Block::Heading("What was done".into()),
-        Block::Table(tables::steps(run).printed(words)),
-        Block::Text(
-            Tone::Soft,
-            "Efforts are those of MT pair 1, 3 s later or before the next step.".into(),
-        ),
-        Block::Heading(words.drive.on_the_way.into()),
-        Block::Table(tables::events(&outcome.landmarks, words).printed(words)),
     ]);
     blocks
 }

@@ -1,13 +1,11 @@
-//! The plots of automatic runs as the papers have them, of runs by hand as S3's figures 5 to 7, and of many runs.
+//! The plots of automatic runs as the papers have them, and of many runs.
 
 use btu_rig::drive::{Mark, Row, ScatterDraw};
-use btu_rig::rig::PAIR_DEMANDS;
 use protocol::signal::Signal;
 
 use super::facts::off;
 use crate::plot::{Place, Plot, Series, Style};
 use ptu_runs::drive::Driven;
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 
 /// Way before the stop point that is shown larger, m.
@@ -16,8 +14,6 @@ const LAST_M: f64 = 12.0;
 const BEYOND: f64 = 0.01;
 /// Way past the stop point, m.
 const PAST_M: f64 = 1.0;
-/// Full effort as a value of TCMS.
-const FULL: f64 = 1024.0;
 /// Bars of the histogram.
 const BARS: usize = 60;
 /// Dots of a scatter plot at most: more hide each other.
@@ -217,86 +213,6 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<Place> {
         .map(|(i, x)| (x, format!("PSM{i}")));
     let all = markers.chain([(section.stop_m, "stop".into())]);
     all.map(|(x, name)| Place { x, name }).collect()
-}
-
-/// Speed, order, inverter and air of MT pair 1, and the train, over time.
-pub fn plots_by_hand(run: &ManualRun) -> Vec<Plot> {
-    use Style::{Dashed, Line};
-    const TOTAL: usize = 0;
-    const AIR: usize = 1;
-    const ELECTRIC: usize = 2;
-    const MOTOR_AIR: usize = 3;
-    const DEMAND: usize = 4;
-
-    let rows = &run.outcome.rows;
-    let plot = |title: &str, y_label: &str, y_reach, curves: &[Curve<'_>]| Plot {
-        title: title.into(),
-        x_label: "Time since the sequence began, s".into(),
-        y_label: y_label.into(),
-        x_range: Some((0.0, rows.last().map_or(1.0, |row| row.t_s))),
-        y_reach: Some(y_reach),
-        series: curves
-            .iter()
-            .map(|curve| series(rows, TIME, *curve))
-            .collect(),
-        places: (run.outcome.done.iter())
-            .map(|done| Place {
-                x: done.t_s,
-                name: done.what(),
-            })
-            .collect(),
-        ..Plot::default()
-    };
-    let speed: [Curve<'_>; 2] = [
-        ("limit", DEMAND, Dashed, |r| r.value(Signal::Limit)),
-        ("actual", TOTAL, Line, |r| r.speed_kmh),
-    ];
-    let order: [Curve<'_>; 1] = [("order", TOTAL, Line, |r| {
-        100.0 * r.value(Signal::TcmsValue) / FULL
-    })];
-    let inverter: [Curve<'_>; 3] = [
-        ("TE", TOTAL, Line, |r| r.pairs[0].traction_n / 1e3),
-        ("electric brake", ELECTRIC, Line, |r| {
-            -r.pairs[0].electric_n / 1e3
-        }),
-        ("demand", DEMAND, Dashed, |r| {
-            r.value(PAIR_DEMANDS[0][0]) / 1e3
-        }),
-    ];
-    let air: [Curve<'_>; 4] = [
-        ("T cars", AIR, Line, |r| r.pairs[0].air_trailers_n / 1e3),
-        ("M cars", MOTOR_AIR, Line, |r| r.pairs[0].air_motors_n / 1e3),
-        ("demands", DEMAND, Dashed, |r| {
-            r.value(PAIR_DEMANDS[0][1]) / 1e3
-        }),
-        ("demands", DEMAND, Dashed, |r| {
-            r.value(PAIR_DEMANDS[0][2]) / 1e3
-        }),
-    ];
-    let train: [Curve<'_>; 4] = [
-        ("electric", ELECTRIC, Line, ELECTRIC_KN),
-        ("air", AIR, Line, AIR_KN),
-        ("total", TOTAL, Line, |r| r.brake_n() / 1e3),
-        ("demand", DEMAND, Dashed, |r| {
-            r.value(Signal::BrakeDemand) / 1e3
-        }),
-    ];
-    let percent = "% of full power, full service";
-    let (up, both, full) = ((0.0, 1.0), (-1.0, 1.0), (-100.0, 100.0));
-    let mut plots = vec![
-        plot("Speed", "km/h", up, &speed),
-        plot(
-            "Order of TCMS to inverters and brakes",
-            percent,
-            full,
-            &order,
-        ),
-        plot("MT pair 1: inverter", "kN, brake negative", both, &inverter),
-        plot("MT pair 1: air brake", "kN", up, &air),
-        plot("Whole train: brake", "kN", up, &train),
-    ];
-    plots[0].shade_slides(rows, |row| row.sliding, TIME);
-    plots
 }
 
 /// How stop errors lie, and what they go with.

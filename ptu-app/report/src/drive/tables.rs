@@ -1,19 +1,14 @@
 //! The tables of a report, the same in text and on printed pages.
 
-use btu_rig::drive::manual::{StepDone, settled};
 use btu_rig::drive::{Figure, Landmark, Metrics};
-use btu_rig::rig::PairEfforts;
 
 use super::facts::{conditions, off, stop};
 use crate::run::block::{self, Align, Column, RowKind};
 use crate::words::Words;
 use ptu_runs::drive::Driven;
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::{MonteCarlo, percentile};
 use ptu_runs::table;
 
-/// Time after which the efforts after a step are reported, s: jerk limit and lags are over.
-const LATER_S: f64 = 3.0;
 /// Percentiles that are shown.
 const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
 /// Letters for which a printed column has room at least.
@@ -129,15 +124,6 @@ pub fn of_runs(runs: &[Driven]) -> Table {
     table
 }
 
-/// Figures of a run by hand.
-pub fn of_run_by_hand(run: &ManualRun) -> Table {
-    let found = &run.outcome.figures;
-    one_run(figures(
-        btu_rig::drive::manual::Figures::ALL,
-        &[Some(found)],
-    ))
-}
-
 /// How figures of many runs lie.
 pub fn of_many(many: &MonteCarlo) -> Table {
     let row = |name: String, values: &[f64], shown: &dyn Fn(f64) -> String| {
@@ -203,77 +189,6 @@ pub fn events(landmarks: &[Landmark], words: &Words) -> Table {
     };
     Table {
         rows: landmarks.iter().map(row).collect(),
-        ..Table::new(&headings, [2])
-    }
-}
-
-/// A step of a run by hand with what it did to MT pair 1, the pair that S3 plots.
-pub struct StepResult<'a> {
-    pub done: &'a StepDone,
-    pub settled: Option<btu_rig::drive::manual::Settled>,
-    /// MT pair 1 a few seconds later, or just before the next step.
-    pub pair: Option<PairEfforts>,
-}
-
-/// Results of all steps of a run.
-pub fn step_results(run: &ManualRun) -> Vec<StepResult<'_>> {
-    let outcome = &run.outcome;
-    let ends = outcome.done.iter().skip(1).map(|next| next.t_s);
-    let steps = outcome.done.iter().zip(ends.chain([f64::INFINITY]));
-    steps
-        .map(|(done, until_s)| {
-            let at_s = (done.t_s + LATER_S).min(until_s);
-            let row = outcome.row_at(at_s).filter(|row| row.t_s > done.t_s);
-            StepResult {
-                done,
-                settled: settled(&outcome.rows, done.t_s, until_s),
-                pair: row.map(|row| row.pairs[0]),
-            }
-        })
-        .collect()
-}
-
-/// Steps of a run by hand with their results.
-pub fn steps(run: &ManualRun) -> Table {
-    let headings = [
-        ("TIME s", "Time s"),
-        ("km/h", "km/h"),
-        ("DONE", "Done"),
-        ("WITHIN 2 % s", "Brake within 2 % after s"),
-        ("TE kN", "TE kN"),
-        ("EL kN", "Electric kN"),
-        ("AIR T kN", "Air T kN"),
-        ("AIR M kN", "Air M kN"),
-        ("BRAKE kN", "Brake kN"),
-    ];
-    let efforts: [fn(&PairEfforts) -> f64; 5] = [
-        |pair| pair.traction_n,
-        |pair| pair.electric_n,
-        |pair| pair.air_trailers_n,
-        |pair| pair.air_motors_n,
-        PairEfforts::brake_n,
-    ];
-    let row = |result: &StepResult<'_>| {
-        // Adding nothing takes the sign off a nothing.
-        let kn = |of: fn(&PairEfforts) -> f64| {
-            let pair = result.pair.as_ref();
-            pair.map_or(UNKNOWN.into(), |pair| {
-                format!("{:.2}", of(pair) / 1000.0 + 0.0)
-            })
-        };
-        let settled = result
-            .settled
-            .map(|settled| format!("{:.2}", settled.after_s));
-        let first = [
-            format!("{:.2}", result.done.t_s),
-            format!("{:.1}", result.done.speed_kmh),
-            result.done.what(),
-            settled.unwrap_or(UNKNOWN.into()),
-        ];
-        first.into_iter().chain(efforts.map(kn)).collect()
-    };
-    Table {
-        rows: step_results(run).iter().map(row).collect(),
         ..Table::new(&headings, [2])
     }
 }

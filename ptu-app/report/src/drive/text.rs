@@ -2,11 +2,10 @@
 
 use btu_rig::drive::Metrics;
 
-use super::facts::{Fact, by_hand, conditions, ending, off, title};
+use super::facts::{Fact, conditions, ending, off, title};
 use super::{Outcomes, Results, tables};
 use crate::words::Language;
 use ptu_runs::drive::Driven;
-use ptu_runs::drive::manual::ManualRun;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::table::Table;
 
@@ -22,7 +21,6 @@ pub fn text(results: &Results) -> String {
             let blocks: Vec<_> = many.iter().map(monte_carlo).collect();
             blocks.join("\n\n")
         }
-        Outcomes::ByHand(run) => one_by_hand(run),
     }
 }
 
@@ -46,17 +44,6 @@ fn one(run: &Driven) -> String {
     }
     blocks.push(tables::events(&run.outcome.landmarks, Language::English.words()).text());
     blocks.join("\n\n")
-}
-
-fn one_by_hand(run: &ManualRun) -> String {
-    let outcome = &run.outcome;
-    [
-        heading(&run.case.name, &outcome.ending.to_string(), by_hand(run)),
-        tables::of_run_by_hand(run).text(),
-        tables::steps(run).text() + "\n(efforts of MT pair 1, 3 s later)",
-        tables::events(&outcome.landmarks, Language::English.words()).text(),
-    ]
-    .join("\n\n")
 }
 
 fn several(runs: &[Driven]) -> String {

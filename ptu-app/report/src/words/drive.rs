@@ -31,7 +31,6 @@ wordings! {
         cannot_drive: "It cannot be driven", "주행할 수 없습니다";
         report: "Report of automatic runs", "자동 주행 보고서";
         many: "Monte Carlo of automatic runs", "자동 주행 몬테카를로 보고서";
-        by_hand: "Report of a run by hand", "수동 운전 보고서";
         section_of: "{line}, section {section}", "{line} 노선 {section} 구간";
         before_within: "{error} before the stop point, within ±{tolerance} cm", "정위치 {error} 미달, 허용 ±{tolerance} cm 이내";
         before_outside: "{error} before the stop point, outside ±{tolerance} cm", "정위치 {error} 미달, 허용 ±{tolerance} cm 초과";

@@ -23,9 +23,9 @@ const DEFAULT_SECTION: SectionChoice = SectionChoice::One(61);
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// Line, `lines/NAME.toml`; none = line8, or the sequence's own.
+    /// Line, `lines/NAME.toml`; none = line8.
     pub line: Option<String>,
-    /// Its sections; none = 61, or the sequence's own.
+    /// Its sections; none = 61.
     pub sections: Option<SectionChoice>,
     /// Controllers; none = the configuration's.
     pub controllers: Vec<ControllerKind>,
@@ -125,7 +125,7 @@ impl Request {
     }
 
     /// A bench for each controller.
-    pub(super) fn benches(
+    fn benches(
         &self,
         directory: &ScriptsDirectory,
         train: &TrainData,
@@ -194,7 +194,7 @@ impl Driven {
 }
 
 /// The line called `name`, level for a train on which gradients do not act.
-pub(super) fn track(
+fn track(
     directory: &ScriptsDirectory,
     name: &str,
     train: &TrainData,

@@ -1,15 +1,13 @@
-//! Runs of a whole train on the embedded unit: station to station by ATO in virtual time, or by hand.
+//! Runs of a whole train on the embedded unit: station to station by ATO in virtual time.
 //!
 //! * [`Request`]: what is asked for, as commands name it;
 //! * [`Case`]: one section under one controller, ready to be driven;
 //! * [`monte_carlo`]: a case driven thousands of times, each with another train and day;
-//! * [`manual`]: a sequence of notches and switches, from a file or by keys;
 //! * [`Setting`]: unit configuration keys changed for the purpose.
 
 mod bench;
 mod case;
 mod choice;
-pub mod manual;
 pub mod monte_carlo;
 mod settings;
 pub mod train;

@@ -27,5 +27,5 @@ pub(crate) use system::files::{keep_to_owner, make_folder, real_path, same_file}
 pub(crate) use system::limits::{ended_by_time, limit_memory, limit_time, without_window};
 pub(crate) use system::pipes::shorten_pipe;
 pub(crate) use system::ports::{holder, open_alone};
+pub(crate) use system::process::in_foreground;
 pub(crate) use system::signals::StopSignals;
-pub(crate) use system::terminal::{KeyTerminal, columns, in_foreground};

@@ -1,16 +1,14 @@
-//! What a person in the cab says: one order a line. Beside the orders of its own a line takes each key of a sequence
-//! file for `ptu drive --manual`, with its value behind it.
+//! What a person in the cab says: one order a line, or a key of the desk with its value behind it.
 
 use std::fmt;
 
 use btu_rig::drive::code_in_antenna;
-use btu_rig::drive::manual::{key_names, stimulus, words};
 use btu_rig::stimulus::Stimulus;
 use protocol::Speed;
 use protocol::config::UnitConfig;
 use protocol::message::ModeSwitch;
-use toml::Value;
 
+use super::keys::{self, on_or_off, stimulus, words};
 use crate::aboard::MAX_PUSH_KMH;
 
 /// Something done in the cab, on the track, or to the unit's supply.
@@ -64,7 +62,7 @@ impl Cab {
         if parts.next().is_some() {
             return Err(format!("\"{line}\" is more than a word and a value"));
         }
-        let on_off = || on_or_off(value).ok_or_else(|| wrong("on or off"));
+        let on_off = || value.and_then(on_or_off).ok_or_else(|| wrong("on or off"));
         let alone = |order| value.is_none().then_some(order).ok_or(wrong("no value"));
         Ok(match word {
             "key" => Order::Do(Stimulus::MaintenanceKey { on: on_off()? }),
@@ -96,11 +94,10 @@ impl Cab {
                     .and_then(|name| code_in_antenna(&self.config, name))
                     .ok_or_else(|| wrong(&format!("{} or off", self.codes())))?,
             }),
-            key if key_names().any(|known| known == key) => {
-                let value = value.ok_or_else(|| wrong("a value"))?;
-                Order::Do(stimulus(key, &toml_value(value))?)
-            }
-            _ => return Err(format!("\"{line}\" is no order; {}", help())),
+            key => match stimulus(key, value) {
+                Some(done) => Order::Do(done.map_err(wrong)?),
+                None => return Err(format!("\"{line}\" is no order; {}", help())),
+            },
         })
     }
 
@@ -114,26 +111,8 @@ impl Cab {
 pub fn help() -> String {
     format!(
         "orders, a line each: key on|off, mode {}, cab on|off, doors open|closed, ack, start, move KMH, stop, \
-         code NAME|off, power on|off, quit; and keys of a sequence file, as lever B7: {}",
+         code NAME|off, power on|off, quit; and keys with their value, as lever B7: {}",
         ModeSwitch::LABELS.join("|"),
-        key_names().collect::<Vec<_>>().join(", ")
+        keys::names().collect::<Vec<_>>().join(", ")
     )
-}
-
-fn on_or_off(value: Option<&str>) -> Option<bool> {
-    match value {
-        Some("on") => Some(true),
-        Some("off") => Some(false),
-        _ => None,
-    }
-}
-
-/// A value as a sequence file has it, without its quotes.
-fn toml_value(text: &str) -> Value {
-    match (text, text.parse()) {
-        ("on" | "true", _) => Value::Boolean(true),
-        ("off" | "false", _) => Value::Boolean(false),
-        (_, Ok(number)) => Value::Integer(number),
-        _ => Value::String(text.to_owned()),
-    }
 }

@@ -5,6 +5,7 @@
 //! * `service`: sections driven before the port is opened, in virtual time.
 
 mod cab;
+mod keys;
 mod service;
 #[cfg(test)]
 mod tests;

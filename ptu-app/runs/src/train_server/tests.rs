@@ -64,8 +64,10 @@ fn what_is_no_order_is_refused_with_what_is_one() {
         ("move 300", "km/h up to 100"),
         ("move nan", "km/h up to 100"),
         ("ack now", "ack takes no value"),
-        ("lever B9", "no lever position"),
-        ("lever", "lever takes a value"),
+        ("lever B9", "lever takes EB, B7 to B1"),
+        ("lever", "lever takes EB, B7 to B1"),
+        ("brake_cut_out T1", "takes the number of a car"),
+        ("dead_man maybe", "takes on or off"),
         ("key on now", "more than a word and a value"),
         ("fly", "orders, a line each"),
     ] {

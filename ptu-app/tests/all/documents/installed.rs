@@ -14,7 +14,7 @@ use fuzzing::draw;
 use serde_json::Value;
 
 /// What is read and not run, by what its line has, and why.
-const NOT_RUN: [(&str, &str); 21] = [
+const NOT_RUN: [(&str, &str); 20] = [
     ("serial:", "a unit on a port"),
     ("tcp:", "a unit on a network"),
     ("lockstep:", "a unit on a port"),
@@ -26,7 +26,6 @@ const NOT_RUN: [(&str, &str); 21] = [
     ("ptu signal play ", "a sound card"),
     ("ptu signal record ", "a sound card"),
     ("ptu signal calibrate ", "a sound card"),
-    ("--manual keys", "a person at the keys"),
     ("ptu campaign", "hours, or what others counted in hours"),
     ("--monte-carlo ", "hours"),
     (

@@ -373,7 +373,7 @@ fn the_readers_of_documents_tell_right_from_wrong() {
     ] {
         assert!(wrong(line, true) && wrong(line, false), "{line}");
     }
-    for line in ["ptu diagnose", "ptu drive --manual"] {
+    for line in ["ptu diagnose", "ptu drive --section"] {
         assert!(wrong(line, true) && !wrong(line, false), "{line}");
     }
     for line in [

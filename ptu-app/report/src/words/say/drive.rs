@@ -1,6 +1,5 @@
-//! How automatic runs and runs by hand end, and what happens on the way.
+//! How automatic runs end, and what happens on the way.
 
-use btu_rig::drive::manual::{AtpBrake, Ending as ByHand};
 use btu_rig::drive::{Ending, Mark};
 use btu_rig::procedure::describe::meanings;
 use btu_rig::procedure::event_text;
@@ -16,14 +15,6 @@ impl Words {
         match self.language {
             Language::English => ending.to_string(),
             Language::Korean => korean(ending),
-        }
-    }
-
-    /// How a run by hand ended.
-    pub fn ended_by_hand(&self, ending: &ByHand) -> String {
-        match self.language {
-            Language::English => ending.to_string(),
-            Language::Korean => by_hand(ending),
         }
     }
 
@@ -72,27 +63,6 @@ fn korean(ending: &Ending) -> String {
     }
 }
 
-fn by_hand(ending: &ByHand) -> String {
-    match ending {
-        ByHand::Played => "모든 단계 완료".to_owned(),
-        ByHand::ByHand => "수동으로 종료".to_owned(),
-        ByHand::Refused(why) => format!("시험대가 거부함: {}", told(why)),
-        ByHand::NeverReady(why) => format!("출발 준비 안 됨: {}", told(why)),
-        ByHand::Atp(AtpBrake::FullService(cause)) => behind(
-            "ATP가 상용전제동을 체결함",
-            cause.map(|cause| told(cause.label())),
-        ),
-        ByHand::Atp(AtpBrake::Emergency(cause)) => behind(
-            "ATP가 비상제동을 체결함",
-            cause.map(|cause| told(cause.label())),
-        ),
-        ByHand::NotReached { line, what } => format!("{line}행: 시간 안에 도달하지 못함: {what}"),
-        ByHand::NeverStood => "마지막 단계 후 시간 안에 정차하지 않음".to_owned(),
-        ByHand::TimeLimit => "제한 시간 초과".to_owned(),
-        ByHand::LinkLost(why) => format!("통신 두절: {}", told(why)),
-    }
-}
-
 fn passed(mark: &Mark) -> String {
     match mark {
         Mark::Psm(psm) => format!("PSM{psm} 통과"),
@@ -118,6 +88,5 @@ fn passed(mark: &Mark) -> String {
                 }
             }
         }
-        Mark::Done(what) => what.clone(),
     }
 }

@@ -1,8 +1,12 @@
 //! This computer, this process and others.
 
+use std::io::{IsTerminal as _, stdin};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use rustix::process::getpgrp;
+use rustix::termios::tcgetpgrp;
 
 /// What this computer is called.
 pub fn computer_name() -> String {
@@ -17,6 +21,11 @@ pub fn running_program() -> PathBuf {
         true => running.to_owned(),
         false => std::env::current_exe().unwrap_or_default(),
     }
+}
+
+/// Whether reading standard input would not stop this process: it is no terminal, or this process is in front of it.
+pub fn in_foreground() -> bool {
+    !stdin().is_terminal() || tcgetpgrp(stdin()).is_ok_and(|group| group == getpgrp())
 }
 
 /// Terminals need nothing before control sequences.

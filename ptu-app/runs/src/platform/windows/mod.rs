@@ -7,4 +7,3 @@ pub mod pipes;
 pub mod ports;
 pub mod process;
 pub mod signals;
-pub mod terminal;

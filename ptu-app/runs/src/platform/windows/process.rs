@@ -16,6 +16,11 @@ pub fn running_program() -> PathBuf {
     std::env::current_exe().unwrap_or_default()
 }
 
+/// Reading a console stops no process.
+pub fn in_foreground() -> bool {
+    true
+}
+
 /// Consoles of Windows 10 act on control sequences once that is switched on.
 pub fn ready_output() {
     let _ = anstyle_query::windows::enable_ansi_colors();
