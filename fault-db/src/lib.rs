@@ -70,7 +70,7 @@ pub use query::{
 pub use schema::views::VIEWS_PAGE;
 pub use schema::{APPLICATION_ID, SCHEMA_VERSION};
 pub use seal::{RunSealed, SealHead};
-pub use server::{Address, Claim, MOST_TRIES, Queue, SERVER_SCHEMA_VERSION, ServerSetup};
+pub use server::{Address, SERVER_SCHEMA_VERSION, ServerSetup};
 pub use signature::{About, Places, SignatureError, Signed, Signer, Statement, canonical_json};
 pub use store::Store;
 pub use store::atomic_file::AtomicFile;

@@ -5,12 +5,10 @@ mod address_in_text;
 mod bounded;
 mod connect;
 mod password;
-mod queue;
 pub(crate) mod schema;
 mod setup;
 mod tls;
 
 pub use address::Address;
-pub use queue::{Claim, MOST_TRIES, Queue};
 pub use schema::SERVER_SCHEMA_VERSION;
 pub use setup::ServerSetup;

@@ -1,10 +1,6 @@
 //! Many runs divided among machines: campaigns and drives in shards, put together again.
 
-use std::process::{Child, Stdio};
-use std::time::Duration;
-
 use crate::common::{Place, Said};
-use crate::server::owner_only::{name_of, shared};
 
 const SHARDS: usize = 3;
 
@@ -111,7 +107,7 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
     place
         .ptu("drive --runs a.zst")
         .exits(2)
-        .explains(&["go with --monte-carlo"]);
+        .explains(&["goes with --monte-carlo"]);
     // A file of drives does not belong to a campaign.
     let one = ["--shard", "1/12", "--runs"];
     said(&place, &DRIVE, &[&one[..], &["drives.zst"]].concat()).exits(0);
@@ -123,97 +119,4 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
         .ptu("campaign merge suite.zst drives.zst --out m.zst")
         .exits(2)
         .explains(&["drives.zst: ", "unlike those of suite.zst", "leave one"]);
-}
-
-/// Goal: workers that are killed lose no run and change none. Method: 20 workers, four at a time, on one queue; each tenth is
-/// killed while it has a run; the result is that of one process.
-#[test]
-fn a_queue_whose_workers_are_killed_gives_what_one_process_gives() {
-    let place = Place::new();
-    let command = [
-        "drive",
-        "--monte-carlo",
-        "60",
-        "--seed",
-        "40",
-        "--compare",
-        "servo,pi",
-    ];
-    let whole = said(&place, &command, &["--runs", "whole.zst"]);
-    let queue = shared().empty();
-    let options = ["--queue", &queue, "--lease", "2", "--jobs", "1"];
-    let worker = || -> Child {
-        let mut worker = place.command(&[&command[..], &options].concat());
-        let worker = worker.stdout(Stdio::null()).stderr(Stdio::null());
-        worker.spawn().expect("started")
-    };
-    let mut client = shared().client(name_of(&queue));
-    let mut count = |what: &str| {
-        let rows = client.query(&format!("SELECT 1 FROM ptu_queue.run WHERE {what}"), &[]);
-        // Before the first worker there is no table.
-        rows.map_or(0, |rows| rows.len())
-    };
-    let lent = "record IS NULL AND lent_until > now()";
-    for killed in 1..=2 {
-        let before = count(lent);
-        let mut worker = worker();
-        while count(lent) <= before {
-            let over = worker.try_wait().expect("asked");
-            assert!(over.is_none(), "it left no run to be killed at");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        worker.kill().expect("killed");
-        worker.wait().expect("over");
-        assert!(
-            count("tries > 0 AND record IS NULL") > 0,
-            "killed {killed} after its run"
-        );
-    }
-    for _ in 0..4 {
-        let mut four: Vec<_> = (0..4).map(|_| worker()).collect();
-        for worker in &mut four {
-            assert!(worker.wait().expect("over").success());
-        }
-    }
-    assert_eq!(count("record IS NULL"), 0);
-    assert!(count("tries > 1") > 0, "no run was lent twice");
-    let last = said(
-        &place,
-        &command,
-        &[&options[..], &["--runs", "queue.zst"]].concat(),
-    );
-    assert_eq!((last.code, last.out), (whole.code, whole.out));
-    let bytes = |name: &str| std::fs::read(place.path(name)).expect("a file of runs");
-    assert!(bytes("queue.zst") == bytes("whole.zst"));
-}
-
-/// Goal: a run that ends every worker ends the queue with its name, and does not go round for ever. Method: a run whose
-/// workers all were lost, as the table says.
-#[test]
-fn a_run_that_never_comes_back_is_named() {
-    let place = Place::new();
-    let queue = shared().empty();
-    let on_queue = ["--queue", &queue];
-    said(&place, &DRIVE, &on_queue)
-        .exits(0)
-        .prints(&["12 of them from here"]);
-    let mut client = shared().client(name_of(&queue));
-    let lost =
-        "UPDATE ptu_queue.run SET record = NULL, tries = 5, lent_until = now() WHERE number = 7";
-    client.batch_execute(lost).expect("changed");
-    said(&place, &DRIVE, &on_queue).exits(3).explains(&[
-        "run 7 of the queue (section 61 pi seed 41)",
-        "5 times",
-        "--lease",
-    ]);
-    // Records that another program wrote are not taken for runs.
-    let damaged = "UPDATE ptu_queue.run SET record = 'no record' WHERE record IS NULL";
-    client.batch_execute(damaged).expect("changed");
-    let whole = said(&place, &DRIVE, &["--runs", "whole.zst"]);
-    let last = said(
-        &place,
-        &DRIVE,
-        &[&on_queue[..], &["--runs", "queue.zst"]].concat(),
-    );
-    assert_eq!((last.code, last.out), (whole.code, whole.out));
 }

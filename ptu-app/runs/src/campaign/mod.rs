@@ -142,7 +142,7 @@ pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode
 pub enum Ran {
     /// All of it.
     All(Box<Outcome>),
-    /// The runs of its shard are kept, or those of a queue, so many here; a dictionary is made of all.
+    /// The runs of its shard are kept, so many; a dictionary is made of all.
     Part(usize),
     /// It was stopped.
     Stopped,

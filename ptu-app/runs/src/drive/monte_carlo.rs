@@ -54,7 +54,7 @@ struct KeptTrial {
 pub enum Ran {
     /// The results of each case; fewer than were asked for after a stop.
     All(Vec<MonteCarlo>),
-    /// The runs of a shard are kept, or those of a queue, so many here; the results are of all.
+    /// The runs of a shard are kept, so many; the results are of all.
     Part(usize),
 }
 

@@ -11,7 +11,7 @@ use fault_db::{open_regular_file, read_regular_file};
 use serde::de::{DeserializeOwned, IgnoredAny};
 
 use super::Head;
-use super::record::{Found, head_record, in_order, run_of};
+use super::record::{Found, head_record, in_order};
 use crate::data;
 use crate::failure::Failure;
 use crate::new_file::kind;
@@ -110,18 +110,6 @@ impl<R: DeserializeOwned> KeptRuns<R> {
                 state: Mutex::new((file, None)),
             }),
         })
-    }
-
-    /// Adds runs that were made elsewhere, by their records; a damaged one is left out.
-    pub fn take_in(&mut self, records: &[Vec<u8>]) {
-        for record in records {
-            let Some((name, run)) = run_of(record) else {
-                continue;
-            };
-            if !self.has(&name) && self.file().is_none_or(|file| file.append(record)) {
-                self.put(name, run);
-            }
-        }
     }
 }
 

@@ -9,7 +9,6 @@
 mod file;
 mod merge;
 mod plan;
-mod queue;
 mod record;
 mod shard;
 #[cfg(test)]
@@ -23,7 +22,6 @@ use serde::de::DeserializeOwned;
 use file::{KeptRuns, RunsFile};
 pub use merge::{Merged, Missing, ShardMissing, merge, missing};
 pub use plan::{Head, Plan};
-pub use queue::QueueAt;
 pub use shard::Shard;
 
 use crate::failure::Failure;
@@ -37,8 +35,6 @@ pub struct Keep {
     pub file: Option<PathBuf>,
     /// The part of all runs that is made here; none = all.
     pub shard: Option<Shard>,
-    /// Queue on a server that the runs are taken from, beside other workers.
-    pub queue: Option<QueueAt>,
 }
 
 impl Keep {
@@ -52,7 +48,7 @@ impl Keep {
 pub enum Made<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),
-    /// So many runs: those of the shard, made now or before; or those of the queue that were made here.
+    /// So many runs, those of the shard, made now or before.
     Part(usize),
     /// It was stopped; the runs there are, in the plan's order.
     Stopped(Vec<Option<R>>),
@@ -75,17 +71,6 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         Some(file) => KeptRuns::open(file, &head)?,
         None => KeptRuns::default(),
     };
-    if let Some(queue) = &keep.queue {
-        let worked = queue::work(queue, &head, (jobs, stop), tell, &run)?;
-        let Some(records) = worked.records else {
-            return Ok(Made::Stopped(Vec::new()));
-        };
-        if keep.file.is_none() {
-            return Ok(Made::Part(worked.made));
-        }
-        // Then nothing is left to make here.
-        known.take_in(&records);
-    }
     let plan = &head.plan;
     let ours: Vec<usize> = keep.ours(plan.len()).collect();
     let missing: Vec<usize> = ours

@@ -44,14 +44,6 @@ pub(super) fn of_run(name: String, run: &impl Serialize) -> Vec<u8> {
     record(&Content::Run { name, run })
 }
 
-/// The run of a record, if it is whole.
-pub(super) fn run_of<R: DeserializeOwned>(record: &[u8]) -> Option<(String, R)> {
-    match unpacked(content(record)?.0)? {
-        Content::Run { name, run } => Some((name, run)),
-        Content::Head(_) => None,
-    }
-}
-
 /// A record of the file.
 fn record(content: &Content<impl Serialize>) -> Vec<u8> {
     // Maps with texts for keys, numbers and texts, packed in memory: neither can fail.

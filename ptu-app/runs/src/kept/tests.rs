@@ -24,7 +24,6 @@ fn made(file: &Path, head: &Head, shard: Option<Shard>) -> Result<Made<Vec<Strin
     let keep = Keep {
         file: Some(file.to_owned()),
         shard,
-        queue: None,
     };
     let stop = Stop::default();
     make(&keep, head.clone(), (3, &stop), &mut |_| {}, |number| {
