@@ -6,16 +6,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
 
 use btu_rig::procedure::loader::load;
-use btu_rig::procedure::{Procedure, RunOptions};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fault_db::Store;
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::run::{self, BenchChoice, BenchSetup, Outcome, RunPlan, Task};
+use ptu_runs::run::{self, BenchChoice, BenchSetup, Outcome, RunPlan};
 use ptu_runs::stop::Stop;
 
 const STEPS: usize = 5000;
@@ -40,27 +38,9 @@ fn run(texts: &BTreeMap<String, String>, setup: &BenchSetup, folder: &Path) -> O
         &setup.train,
     );
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
-    let task = |procedure| Task {
-        procedure,
-        options: RunOptions::default(),
-    };
-    let mut plan = RunPlan {
-        tasks: loaded
-            .procedures
-            .into_iter()
-            .filter(|p: &Arc<Procedure>| !p.on_request)
-            .map(task)
-            .collect(),
-        jobs: 1,
-        stop_on_fail: false,
-        operator: String::new(),
-        train: String::new(),
-        symptom: None,
-        scripts_sha256: String::new(),
-        adaptive: None,
-        continues: None,
-        measuring: Default::default(),
-    };
+    let mut procedures = loaded.procedures;
+    procedures.retain(|procedure| !procedure.on_request);
+    let mut plan = RunPlan::of(procedures);
     let store = Store::open(&folder.join("history.db"), clock::open_options()).expect("store");
     let stop = Stop::default();
     let (store, outcome) = run::run(&mut plan, setup.clone(), store, &stop, &mut ()).expect("run");

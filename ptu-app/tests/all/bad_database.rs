@@ -344,14 +344,7 @@ fn a_full_disk() {
 fn absurd_times_are_shown_without_delay() {
     let place = Place::new();
     let db = place.text_path("absurd.db");
-    let slow = [
-        "run",
-        "atp/overspeed",
-        "--inject",
-        "eb_relay.slow",
-        "--db",
-        &db,
-    ];
+    let slow = format!("run atp/overspeed --inject eb_relay.slow --db {db}");
     place.ptu(&slow).exits(1);
     let connection = Connection::open(&db).expect("a database");
     // In place of a signal's rows beside what was expected, why there is none.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use crate::common::{Place, copy_folder, has_shape, list, number, scripts, text};
+use crate::common::{Place, copy_folder, list, number, scripts, text};
 use serde_json::Value;
 
 /// Parts whose fault modes look different enough that a whole run at the default seed must tell them.
@@ -16,26 +16,7 @@ const TOLD: [(&str, &str); 4] = [
 
 fn diagnosis(place: &Place) -> Value {
     let said = place.json("diagnose latest --json");
-    has_shape(
-        &said,
-        &[
-            ("candidates", "list"),
-            ("conclusion", "text"),
-            ("finding", "text"),
-            ("warnings", "list"),
-        ],
-    );
     for candidate in list(&said["candidates"]) {
-        has_shape(
-            candidate,
-            &[
-                ("part", "text"),
-                ("fault", "text"),
-                ("probability", "number"),
-                ("for", "list"),
-                ("against", "list"),
-            ],
-        );
         let p = number(&candidate["probability"]);
         assert!((0.0..=1.0).contains(&p), "{candidate}");
     }

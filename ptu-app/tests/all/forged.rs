@@ -1,7 +1,7 @@
 //! Attacks on signed sheets, keys and the register of instruments, by somebody without Kim's key.
 
 use crate::common::{Place, text};
-use crate::signing::{SIGN, verify, with_key};
+use crate::signing::{signed, verify, with_key};
 
 /// What stands before the certificate in a page.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
@@ -11,18 +11,16 @@ const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 #[test]
 fn a_sheet_takes_no_other_content() {
     let place = with_key();
-    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
-    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
-    let note = ["runs", "note", "latest", "clicks late", "--who", "Kim"];
-    place.ptu(&[&note[..], &SIGN].concat()).exits(0);
-    let report = ["report", "latest", "--out", "sheet.html"];
-    place.ptu(&[&report[..], &SIGN].concat()).exits(0);
+    let run = "run atp/overspeed --inject eb_relay.slow";
+    signed(&place, run).exits(1);
+    let note = "runs note latest 'clicks late' --who Kim";
+    signed(&place, note).exits(0);
+    let report = "report latest --out sheet.html";
+    signed(&place, report).exits(0);
     place
         .ptu(&["runs", "certificate", "latest", "--out", "a.ptucert"])
         .exits(0);
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link").exits(0);
     place
         .ptu(&["runs", "certificate", "latest", "--out", "b.ptucert"])
         .exits(0);
@@ -98,20 +96,13 @@ fn a_sheet_takes_no_other_content() {
 #[test]
 fn a_sheet_allows_no_script_and_no_request() {
     let place = with_key();
-    let report = ["--report", "sheet.html"];
-    place
-        .ptu(&[&["run", "tcms/link"][..], &report, &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link --report sheet.html").exits(0);
     place.ptu(&["run", "tcms/link"]).exits(0);
     let runs = place.run_ids();
-    place.ptu(&[
-        "runs",
-        "compare",
-        &runs[0],
-        &runs[1],
-        "--report",
-        "compared.html",
-    ]);
+    let [second, first] = [&runs[0], &runs[1]];
+    place.ptu(&format!(
+        "runs compare {second} {first} --report compared.html"
+    ));
     for name in ["sheet.html", "compared.html"] {
         let page = place.read(name);
         let head = page.split_once("<style>").expect("a head").0;
@@ -127,9 +118,7 @@ fn a_sheet_allows_no_script_and_no_request() {
 #[test]
 fn what_has_no_signature_is_told_as_such() {
     let place = with_key();
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link").exits(0);
     for name in ["a.pdf", "a.csv", "a.json", "a.junit.xml"] {
         place.ptu(&["report", "latest", "--out", name]).exits(0);
         verify(&place, name)
@@ -144,9 +133,7 @@ fn a_technician_does_not_sign_as_a_bench() {
     let place = with_key();
     let key = place.read("kim.key").replace("\"technician\"", "\"bench\"");
     place.write("kim.key", &key);
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link").exits(0);
     verify(&place, "latest")
         .exits(1)
         .prints(&["NOT VERIFIED", "Kim (technician)"]);
@@ -159,9 +146,7 @@ fn a_technician_does_not_sign_as_a_bench() {
 #[test]
 fn a_key_that_the_list_ended_stays_ended() {
     let place = with_key();
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link").exits(0);
     let depot = place.path("depot");
     std::fs::create_dir(&depot).expect("a folder");
     let list = place.read("depot.keys");
@@ -196,9 +181,7 @@ fn a_signature_of_next_year_is_doubted() {
     let place = with_key();
     let store = fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options())
         .expect("opens");
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
+    signed(&place, "run tcms/link").exits(0);
     let path = place.path("kim.key");
     let signer = ptu_runs::keys::KeyFile::read(&path)
         .expect("read")
@@ -223,18 +206,11 @@ fn a_signature_of_next_year_is_doubted() {
 #[test]
 fn an_unsigned_note_on_a_signed_run_is_marked() {
     let place = with_key();
-    place
-        .ptu(&[&["run", "tcms/link"][..], &SIGN].concat())
-        .exits(0);
-    let note = |text: &str, key: &[&str]| {
-        place
-            .ptu(&[&["runs", "note", "latest", text, "--who", "Kim"][..], key].concat())
-            .exits(0);
-    };
-    note("mine", &SIGN);
+    signed(&place, "run tcms/link").exits(0);
+    signed(&place, "runs note latest mine --who Kim").exits(0);
     place.ptu(&["report", "latest", "--out", "a.html"]).exits(0);
     assert!(!place.read("a.html").contains("unsigned"));
-    note("not mine", &[]);
+    place.ptu("runs note latest 'not mine' --who Kim").exits(0);
     let shown = place.ptu(&["runs", "show", "latest"]).exits(0);
     let marked: Vec<&str> = shown
         .out
@@ -266,8 +242,8 @@ fn an_unsigned_note_on_a_signed_run_is_marked() {
 #[test]
 fn an_unsigned_note_on_a_trace_is_marked() {
     let place = with_key();
-    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
-    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
+    let run = "run atp/overspeed --inject eb_relay.slow";
+    signed(&place, run).exits(1);
     let store = fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options())
         .expect("opens");
     let trace = store.resolve_trace("latest").expect("a trace");
@@ -284,21 +260,19 @@ fn an_unsigned_note_on_a_trace_is_marked() {
 #[test]
 fn a_key_signs_no_sheet_that_it_cannot_vouch_for() {
     let place = with_key();
-    let run = ["run", "atp/overspeed", "--inject", "eb_relay.slow"];
-    place.ptu(&[&run[..], &SIGN].concat()).exits(1);
-    let case = ["report", "latest", "--case", "--out", "case.html"];
-    place
-        .ptu(&[&case[..], &SIGN].concat())
+    let run = "run atp/overspeed --inject eb_relay.slow";
+    signed(&place, run).exits(1);
+    let case = "report latest --case --out case.html";
+    signed(&place, case)
         .exits(2)
         .explains(&["a case", "carries no signature"]);
-    let report = ["report", "latest", "--out", "sheet.html"];
-    place.ptu(&[&report[..], &SIGN].concat()).exits(0);
+    let report = "report latest --out sheet.html";
+    signed(&place, report).exits(0);
     let conn = rusqlite::Connection::open(place.path("history.db")).expect("opens");
     conn.execute_batch("UPDATE step SET verdict = 'passed' WHERE verdict = 'failed'")
         .expect("changed");
     drop(conn);
-    place
-        .ptu(&[&report[..], &SIGN].concat())
+    signed(&place, report)
         .exits(3)
         .explains(&["was changed", "ptu verify"]);
 }
@@ -315,22 +289,15 @@ fn keys_pins_and_names_that_protect_nothing_are_refused() {
                 .expect("set")
         };
         rights(0o644);
-        let run = place.ptu(&[&["run", "tcms/link"][..], &SIGN].concat());
+        let run = signed(&place, "run tcms/link");
         run.exits(2).explains(&[name, "open to others", "chmod"]);
         rights(0o600);
     }
     place.write("spaces.txt", "      \n");
     let new = |who: &str, pin: &str| {
-        place.ptu(&[
-            "key",
-            "new",
-            "--who",
-            who,
-            "--out",
-            "new.key",
-            "--pin-file",
-            pin,
-        ])
+        place.ptu(&format!(
+            "key new --who '{who}' --out new.key --pin-file {pin}"
+        ))
     };
     new("Lee", "spaces.txt").exits(2).explains(&["at least 6"]);
     for name in [

@@ -52,17 +52,6 @@ fn a_measurement_is_shown_over_time() {
 fn a_trace_is_shown_and_exported() {
     let place = history();
     let trace = place.json("trace show latest --json");
-    has_shape(
-        &trace,
-        &[
-            ("id", "text"),
-            ("period_ms", "number"),
-            ("rows", "number"),
-            ("trigger_row", "number"),
-            ("partial", "bool"),
-            ("signals", "list"),
-        ],
-    );
     let two = place.json("trace show latest --signal speed,eb --json");
     let names: Vec<_> = list(&two["signals"])
         .iter()

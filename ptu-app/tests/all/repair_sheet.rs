@@ -14,33 +14,18 @@ fn repaired() -> (Place, String) {
     let place = Place::new();
     record_bad_unit(&place);
     let fault = text(&relay_fault(&place)["id"]).to_owned();
-    let repair = [
-        "faults", "repair", &fault, "--part", "eb_relay", "--who", "Kim",
-    ];
-    let parts = [
-        "--old",
-        "SN-41",
-        "--new",
-        "SN-77",
-        "--note",
-        "contacts burnt",
-    ];
-    place.ptu(&[&repair[..], &parts].concat()).exits(0);
+    let repair = format!(
+        "faults repair {fault} --part eb_relay --who Kim --old SN-41 --new SN-77 --note 'contacts burnt'"
+    );
+    place.ptu(&repair).exits(0);
     (place, fault)
 }
 
 /// The same, with the run that proves the repair.
 fn proved() -> (Place, String) {
     let (place, fault) = repaired();
-    let run = [
-        "run",
-        "atp/overspeed",
-        "--serial-no",
-        "BAD-1",
-        "--who",
-        "Lee",
-    ];
-    let said = place.ptu(&run).exits(0).out;
+    let run = "run atp/overspeed --serial-no BAD-1 --who Lee";
+    let said = place.ptu(run).exits(0).out;
     assert!(said.contains("the repair is verified"), "{said}");
     (place, fault)
 }

@@ -41,9 +41,7 @@ fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
     assert!(page.matches("<figure").count() >= 2, "no trace is drawn");
     let again = ["b.html", "b.pdf", "b.csv"].map(|name| place.text_path(name));
     let [html, pdf, csv] = again.each_ref().map(String::as_str);
-    let show = [
-        "runs", "show", "latest", "--report", html, "--report", pdf, "--report", csv,
-    ];
+    let show = format!("runs show latest --report {html} --report {pdf} --report {csv}");
     place.ptu(&show).exits(0);
     for ending in ["html", "pdf", "csv"] {
         let bytes =
@@ -57,16 +55,7 @@ fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
 fn a_passing_run_has_a_korean_sheet() {
     let place = Place::new();
     let (html, pdf) = (place.text_path("sheet.html"), place.text_path("sheet.pdf"));
-    let run = [
-        "run",
-        "tcms/link",
-        "--lang",
-        "ko",
-        "--report",
-        &html,
-        "--report",
-        &pdf,
-    ];
+    let run = format!("run tcms/link --lang ko --report {html} --report {pdf}");
     place.ptu(&run).exits(0);
     let page = place.read("sheet.html");
     for word in [

@@ -126,26 +126,12 @@ pub fn kept(place: &Place, trace: &TraceData) -> Id {
     let run = RunRecord {
         unit: UnitRecord {
             serial: "BTU-7".into(),
-            kind: "ATC".into(),
-            config_name: "default".into(),
-            sw_versions: BTreeMap::new(),
+            ..UnitRecord::default()
         },
         line: "line6".into(),
-        train: String::new(),
-        seed: 1,
-        operator: "Kim".into(),
         source: "sim".into(),
         started_at_us: T0_US,
-        app_version: String::new(),
-        scripts_sha256: String::new(),
-        unit_config_sha256: String::new(),
-        injected: None,
-        owner: String::new(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
-        scripts: Vec::new(),
+        ..RunRecord::default()
     };
     let mut writer = RunWriter::begin(&store, &run).expect("begun");
     let id = writer.trace(&[], trace).expect("stored");
@@ -242,10 +228,8 @@ fn a_part_has_its_signals_and_its_span() {
         );
     }
     // A part that does not have the trigger.
-    let late = [
-        "trace", "export", "latest", "--out", "late.csv", "--window", "5..6",
-    ];
-    place.ptu(&late).exits(0);
+    let late = "trace export latest --out late.csv --window 5..6";
+    place.ptu(late).exits(0);
     let said = place.ptu(&["trace", "diff", "latest", "late.csv"]).exits(0);
     assert!(said.out.contains("no signal differs"), "{}", said.out);
     assert!(
@@ -253,9 +237,7 @@ fn a_part_has_its_signals_and_its_span() {
         "{}",
         said.out
     );
-    let shown = place.ptu(&[
-        "trace", "show", "latest", "--window", "5..6", "--signal", "eb",
-    ]);
+    let shown = place.ptu("trace show latest --window 5..6 --signal eb");
     assert!(shown.exits(0).out.contains("1.1 s, without the trigger"));
 }
 
@@ -285,15 +267,11 @@ fn a_file_that_is_there_stays_unless_force_is_said() {
         .exits(2)
         .explains(&["none/t.csv"]);
     place
-        .ptu(&[
-            "trace", "export", "latest", "--out", "x.mcap", "--window", "7..9",
-        ])
+        .ptu("trace export latest --out x.mcap --window 7..9")
         .exits(2)
         .explains(&["no row in that span", "-10.000 to 4.950 s"]);
     place
-        .ptu(&[
-            "trace", "export", "latest", "--out", "x.mcap", "--window", "9..7",
-        ])
+        .ptu("trace export latest --out x.mcap --window 9..7")
         .exits(2)
         .explains(&["9..7", "ends before it begins"]);
     let left: Vec<_> = std::fs::read_dir(place.path(""))

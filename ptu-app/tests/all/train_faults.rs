@@ -54,34 +54,3 @@ fn faults_of_the_train_work_around_a_unit_on_a_port() {
         .exits(2)
         .explains(&["--inject", "ato-under-test --inject"]);
 }
-
-#[test]
-fn parts_and_modes_of_the_train_are_in_the_catalogue() {
-    let place = Place::new();
-    let parts = place.json("catalog parts --json");
-    let modes = place.json("catalog faults --json");
-    for part in [
-        "inverter",
-        "brake_unit",
-        "brake_cylinder",
-        "master_controller",
-        "door_contact",
-        "head_control_relay",
-        "tcms",
-    ] {
-        let known = list(&parts).iter().any(|lru| lru["id"] == part);
-        let broken = list(&modes).iter().any(|mode| mode["part"] == part);
-        assert!(known && broken, "{part}");
-    }
-    let weak = list(&modes)
-        .iter()
-        .find(|mode| mode["id"] == "brake_cylinder.weak");
-    assert_eq!(weak.map(|mode| &mode["car"]), Some(&Value::from(5)));
-    let relay = list(&modes)
-        .iter()
-        .find(|mode| mode["id"] == "eb_relay.open");
-    assert_eq!(
-        relay.map(|mode| (&mode["car"], &mode["on"])),
-        Some((&Value::Null, &Value::from("unit")))
-    );
-}

@@ -3,7 +3,7 @@
 use btu_rig::procedure::{Procedure, Verdict};
 use diagnosis::{Dictionary, Mode};
 use protocol::Duration;
-use ptu_runs::run::{BenchContents, MeasuringRules, RunPlan, Task};
+use ptu_runs::run::BenchContents;
 use serde_json::{from_value, json};
 
 /// What stands in a step's name behind its mark.
@@ -32,21 +32,6 @@ pub fn contents() -> BenchContents {
         "realtime": false,
     }))
     .expect("contents")
-}
-
-pub fn plan(tasks: Vec<Task>) -> RunPlan {
-    RunPlan {
-        tasks,
-        jobs: 1,
-        stop_on_fail: false,
-        operator: String::new(),
-        train: String::new(),
-        symptom: None,
-        scripts_sha256: String::new(),
-        adaptive: None,
-        continues: None,
-        measuring: MeasuringRules::default(),
-    }
 }
 
 fn procedure(id: &str, names: impl Iterator<Item = String>) -> Procedure {

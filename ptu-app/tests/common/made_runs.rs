@@ -26,7 +26,7 @@ use ptu_runs::run::{
 use ptu_runs::stop::Stop;
 use ptu_runs::stored::stored;
 
-use super::made_plans::{Chance, contents, known, likeliest, own, plan};
+use super::made_plans::{Chance, contents, known, likeliest, own};
 use super::told::{marks, sorted, value_and_limits};
 
 /// How a run goes.
@@ -210,7 +210,7 @@ impl<'a> Making<'a> {
             procedure: Arc::new(procedure),
         };
         Self {
-            plan: plan(procedures.into_iter().map(task).collect()),
+            plan: RunPlan::of(procedures.into_iter().map(task)),
             seed,
             kind,
             dictionary,

@@ -85,7 +85,7 @@ fn run() -> RunRecord {
             serial: HOSTILE.into(),
             kind: "atc".into(),
             config_name: "sg100".into(),
-            sw_versions: Default::default(),
+            ..UnitRecord::default()
         },
         line: "line8".into(),
         seed: 7,
@@ -96,16 +96,12 @@ fn run() -> RunRecord {
         app_version: "1.2.3".into(),
         scripts_sha256: "ab".repeat(32),
         unit_config_sha256: "cd".repeat(32),
-        injected: None,
         owner: "nobody".into(),
-        continues: None,
-        connection: None,
-        symptom: None,
-        evidence: None,
         scripts: vec![ScriptRecord {
             path: "atp/overspeed.star".into(),
             sha256: "ef".repeat(32),
         }],
+        ..RunRecord::default()
     }
 }
 
@@ -156,9 +152,7 @@ fn fault(index: u32) -> FaultRecord {
         at_us: 2_000_000,
         bench_us: i64::from(index) * 1_000_000,
         step_index: Some(index),
-        findings: None,
-        message: String::new(),
-        freeze: Vec::new(),
+        ..FaultRecord::default()
     }
 }
 

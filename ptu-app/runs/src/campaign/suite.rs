@@ -1,7 +1,7 @@
 //! Runs the whole suite on one embedded unit in memory and keeps only what diagnosis reads.
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{RunEvent, Verdict};
 use btu_rig::rig::Harness;
 use diagnosis::{CheckName, Dictionary, Model, Observation};
 use protocol::LruId;
@@ -75,12 +75,7 @@ impl Suite {
         Ok(Self {
             setup,
             connection,
-            tasks: procedures
-                .map(|procedure| Task {
-                    procedure,
-                    options: RunOptions::default(),
-                })
-                .collect(),
+            tasks: procedures.map(Task::from).collect(),
             structure: Structure::load(directory, &catalogue)?,
             catalogue,
         })

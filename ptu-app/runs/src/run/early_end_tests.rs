@@ -16,7 +16,7 @@ use protocol::Instant;
 
 use super::{
     BenchSetup, Connected, Listener, Outcome, RunControl, RunPlan, RunStart, SessionEvent, Suite,
-    Task, run, run_on,
+    run, run_on,
 };
 use crate::clock;
 use crate::failure::Exit;
@@ -73,25 +73,6 @@ fn store() -> (tempfile::TempDir, Store) {
     (folder, store.expect("a database"))
 }
 
-fn plan(procedures: impl IntoIterator<Item = Arc<Procedure>>) -> RunPlan {
-    let task = |procedure| Task {
-        procedure,
-        options: Default::default(),
-    };
-    RunPlan {
-        tasks: procedures.into_iter().map(task).collect(),
-        jobs: 1,
-        stop_on_fail: false,
-        operator: String::new(),
-        train: String::new(),
-        symptom: None,
-        scripts_sha256: String::new(),
-        adaptive: None,
-        continues: None,
-        measuring: Default::default(),
-    }
-}
-
 /// Procedures of these texts, in their order.
 fn plan_of(texts: &[&str]) -> RunPlan {
     let setup = setup(&[]);
@@ -100,7 +81,7 @@ fn plan_of(texts: &[&str]) -> RunPlan {
     let (config, line) = (&setup.config.content, &setup.line.content);
     let loaded = loader::load(&texts, config, line, &setup.train);
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
-    plan(loaded.procedures)
+    RunPlan::of(loaded.procedures)
 }
 
 /// Runs the plan under a run control; the outcome and the stored run.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Measurement, Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
 use btu_rig::rig::{Bench, Harness, LinkFailure, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::frame::Decoder;
@@ -171,10 +171,7 @@ impl Laptop {
 
     fn run(&self, id: &str, session: &mut Session<Line>) -> Came {
         let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
-        let task = Task {
-            procedure: procedure.clone(),
-            options: RunOptions::default(),
-        };
+        let task = Task::from(procedure.clone());
         let mut came = Came::default();
         let mut sink = |event| match event {
             SessionEvent::Run(RunEvent::Measured { measurement, .. }) => {

@@ -45,6 +45,34 @@ pub struct RunPlan {
     pub measuring: MeasuringRules,
 }
 
+impl From<Arc<Procedure>> for Task {
+    /// The whole procedure, once.
+    fn from(procedure: Arc<Procedure>) -> Self {
+        Self {
+            procedure,
+            options: RunOptions::default(),
+        }
+    }
+}
+
+impl RunPlan {
+    /// These tasks one after the other on one bench, and nothing else asked for or known.
+    pub fn of(tasks: impl IntoIterator<Item = impl Into<Task>>) -> Self {
+        Self {
+            tasks: tasks.into_iter().map(Into::into).collect(),
+            jobs: 1,
+            stop_on_fail: false,
+            operator: String::new(),
+            train: String::new(),
+            symptom: None,
+            scripts_sha256: String::new(),
+            adaptive: None,
+            continues: None,
+            measuring: MeasuringRules::default(),
+        }
+    }
+}
+
 /// What a run makes of the instruments of its bench.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeasuringRules {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Runner, Verdict};
+use btu_rig::procedure::{Procedure, RunEvent, Runner, Verdict};
 use btu_rig::rig::Rig;
 use fuzzing::draw;
 use protocol::{Duration, Instant};
@@ -63,10 +63,7 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
         seen: Mutex::default(),
     });
     setup.run_control = Some(stands_still.clone());
-    let task = Task {
-        procedure: procedure.clone(),
-        options: RunOptions::default(),
-    };
+    let task = Task::from(procedure.clone());
     let mut said = Vec::new();
     let mut sink = |event| match event {
         SessionEvent::Run(event) => {

@@ -1,7 +1,7 @@
 //! Runs on a bad line or with an untrustworthy unit: the embedded unit behind a link that
 //! harms what passes.
 
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{Procedure, RunEvent, Verdict};
 use btu_rig::rig::{LinkFailure, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
@@ -132,10 +132,7 @@ impl FaultyBench {
 
     fn run(&self, id: &str, wrong: LinkFault, seed: u64) -> ProcedureEnd {
         let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
-        let task = Task {
-            procedure: procedure.clone(),
-            options: RunOptions::default(),
-        };
+        let task = Task::from(procedure.clone());
         let mut session = self
             .setup
             .sim_session_by(id, &Stop::default(), |link| FaultyLink {

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use crate::common::{Place, list, scripts};
-use btu_rig::procedure::{Procedure, RunOptions};
+use btu_rig::procedure::Procedure;
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_report::run_json;
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::run::{self, BenchChoice, BenchSetup, RunPlan, Suite, Task};
+use ptu_runs::run::{self, BenchChoice, BenchSetup, RunPlan, Suite};
 use ptu_runs::run_diagnosis::diagnose_run;
 use ptu_runs::stop::Stop;
 use serde_json::Value;
@@ -94,23 +94,8 @@ impl TestBench {
             ..self.setup.clone()
         };
         let asked_for = self.suite.procedures.iter().filter(|p| is_run(p));
-        let mut plan = RunPlan {
-            tasks: asked_for
-                .map(|procedure| Task {
-                    procedure: procedure.clone(),
-                    options: RunOptions::default(),
-                })
-                .collect(),
-            jobs: 1,
-            stop_on_fail: false,
-            operator: String::new(),
-            train: String::new(),
-            symptom: None,
-            scripts_sha256: self.suite.sha256.clone(),
-            adaptive: None,
-            continues: None,
-            measuring: Default::default(),
-        };
+        let mut plan = RunPlan::of(asked_for.cloned());
+        plan.scripts_sha256 = self.suite.sha256.clone();
         let place = Place::new();
         let path = place.path("history.db");
         let store = Store::open(&path, clock::open_options()).expect("a database");

@@ -19,13 +19,14 @@ use snapbox::{Assert, Data};
 use crate::common::{Place, record_bad_unit, scripts, workspace};
 
 /// What differs from one time to the next.
-const DIFFERS: [(&str, &str); 7] = [
+const DIFFERS: [(&str, &str); 8] = [
     (
         "[ID]",
         "[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}",
     ),
     ("[SHORT]", r"\b[0-9a-f]{8}\b"),
     ("[HASH]", r"\b[0-9a-f]{64}\b"),
+    ("$1[KEY]", r"((?:key|seal|technician) +|: )[0-9a-f]{16}\b"),
     (
         "[TIME]",
         r"20\d\d-\d\d-\d\d[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?",
@@ -53,6 +54,8 @@ sessions! {
     diagnoses,
     drives,
     history,
+    instruments,
+    keys,
     life_of_a_fault,
     life_of_a_part,
     matrices,

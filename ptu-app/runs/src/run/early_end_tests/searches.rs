@@ -6,7 +6,7 @@ use crate::run::BenchChoice;
 /// A search for a part among these procedures.
 fn search(procedures: &[String], setup: &BenchSetup) -> RunPlan {
     let suite = Suite::load(&scripts(), procedures, setup).expect("the suite");
-    let mut plan = plan(suite.procedures.into_iter().filter(|p| !p.on_request));
+    let mut plan = RunPlan::of(suite.procedures.into_iter().filter(|p| !p.on_request));
     let choice = BenchChoice::default();
     let bench = run_diagnosis::Bench {
         unit_config_sha256: &setup.config.sha256,

@@ -120,21 +120,9 @@ fn workers_start_only_a_limited_number_of_procedures_ahead() {
     let procedures = loaded(&directory, &setup);
     let mut named = procedures.iter();
     let link = named.find(|p| p.id == "tcms/link").expect("it");
-    let task = || Task {
-        procedure: link.clone(),
-        options: RunOptions::default(),
-    };
     let plan = RunPlan {
-        tasks: (0..5_000).map(|_| task()).collect(),
         jobs: JOBS,
-        stop_on_fail: false,
-        operator: String::new(),
-        train: String::new(),
-        symptom: None,
-        scripts_sha256: String::new(),
-        adaptive: None,
-        continues: None,
-        measuring: Default::default(),
+        ..RunPlan::of((0..5_000).map(|_| link.clone()))
     };
     let stop = Stop::default();
     let first_failure = FirstFailure::new(false);

@@ -7,7 +7,7 @@ use super::*;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::LiveState;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::run::{RunPlan, Suite, Task};
+use ptu_runs::run::{RunPlan, Suite};
 
 /// Longest time anything here takes to come about.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -43,22 +43,10 @@ impl Drop for ReleaseOnDrop {
 fn order(database: &std::path::Path, setup: &BenchSetup) -> RunOrder {
     let chosen = ["door/interlocks".to_owned()];
     let suite = Suite::load(&scripts(), &chosen, setup).expect("the suite");
-    let task = |procedure| Task {
-        procedure,
-        options: Default::default(),
-    };
     RunOrder {
         plan: RunPlan {
-            tasks: suite.procedures.into_iter().map(task).collect(),
-            jobs: 1,
-            stop_on_fail: false,
-            operator: String::new(),
-            train: String::new(),
-            symptom: None,
             scripts_sha256: suite.sha256,
-            adaptive: None,
-            continues: None,
-            measuring: Default::default(),
+            ..RunPlan::of(suite.procedures)
         },
         store: fault_db::Store::open(database, ptu_runs::clock::open_options())
             .expect("a database"),
