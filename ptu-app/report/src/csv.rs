@@ -3,12 +3,11 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-use btu_rig::procedure::Outside;
 use fault_db::{MeasurementRecord, RunDetail, StepRecord};
 use protocol::display_text;
 
 use ptu_runs::clock::rfc3339;
-use ptu_runs::stored::{STEP, outside_of};
+use ptu_runs::stored::kind_of;
 
 /// Names of the columns.
 const COLUMNS: [&str; 17] = [
@@ -69,7 +68,7 @@ fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord
         text(&step.procedure),
         Cell::Number(step.index.to_string()),
         text(&step.name),
-        text(outside_of(step).map_or(STEP, Outside::name)),
+        text(kind_of(step)),
         text(step.verdict.as_str()),
         number(Some(step.bench_time_us as f64 / 1e6)),
         text(&step.message),

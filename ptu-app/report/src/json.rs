@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use btu_rig::procedure::Outside;
 use fault_db::{
     FaultSummary, MeasurementRecord, RunDetail, RunFault, RunSummary, Statement, StepRecord,
 };
@@ -16,7 +15,7 @@ use ptu_runs::clock::rfc3339;
 use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::failure::Failure;
 use ptu_runs::run::Evidence;
-use ptu_runs::stored::{STEP, findings, outside_of};
+use ptu_runs::stored::{findings, kind_of};
 
 /// A run with its steps, faults, notes and seal.
 pub fn run_json(run: &RunDetail) -> Value {
@@ -115,7 +114,7 @@ fn step_json(step: &StepRecord, evidence: Option<&Evidence>) -> Value {
     json!({
         "procedure": step.procedure,
         "name": step.name,
-        "kind": outside_of(step).map_or(STEP, Outside::name),
+        "kind": kind_of(step),
         "verdict": step.verdict.as_str(),
         "bench_time_s": seconds(step.bench_time_us),
         "measurements": step.measurements.iter().map(|one| measurement_json(one, evidence)).collect::<Vec<_>>(),

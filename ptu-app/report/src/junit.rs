@@ -12,7 +12,7 @@ use crate::coverage::{count_text, coverage_text};
 use crate::words::Language;
 use ptu_runs::coverage::Coverage;
 use ptu_runs::failure::Failure;
-use ptu_runs::stored::{STEP, WHOLE_RUN, by_procedure, outside_of};
+use ptu_runs::stored::{WHOLE_RUN, by_procedure, kind_of};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
 ///
@@ -79,7 +79,7 @@ fn of_whole(run: &RunDetail) -> Option<TestCase> {
 fn case(results: &[&StepRecord], began_us: i64) -> TestCase {
     let stands = results.iter().rev().max_by_key(|step| rank(step.verdict));
     let step = stands.unwrap_or(&results[0]);
-    let kind = outside_of(step).map_or(STEP, Outside::name);
+    let kind = kind_of(step);
     let mut status = status(step.verdict, kind, &step.message);
     let others = results.iter().filter(|other| other.index != step.index);
     for attempt in others.filter(|other| other.verdict != Verdict::Passed) {

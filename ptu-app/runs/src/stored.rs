@@ -81,8 +81,10 @@ pub fn whole_run() -> Procedure {
     }
 }
 
-/// The kind of a record that is a step of a script.
-pub const STEP: &str = "step";
+/// What a record among the steps of a run is, in a word: `step`, `attempt`, or where outside steps it failed.
+pub fn kind_of(step: &StepRecord) -> &'static str {
+    outside_of(step).map_or(step.kind.as_str(), Outside::name)
+}
 
 /// What failed outside the steps of a procedure as it is stored: among the steps, so that whoever reads these reads it,
 /// without a line of a script.

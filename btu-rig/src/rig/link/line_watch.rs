@@ -43,11 +43,19 @@ struct Counts {
     from_unit: u64,
     /// Refused by the unit.
     to_unit: u64,
+    /// Either way, shortly after this bench's computer stood still: no fault of the line, but a reason for what the
+    /// unit and TCMS log.
+    after_stall: u64,
 }
 
 impl Counts {
+    /// Counted against the line.
     fn lost_or_damaged(self) -> u64 {
         self.from_unit + self.to_unit
+    }
+
+    fn of_any_cause(self) -> u64 {
+        self.lost_or_damaged() + self.after_stall
     }
 }
 
@@ -56,6 +64,8 @@ pub struct LineWatch {
     /// Frames lost within [`SPAN`] that make a line bad.
     bad_at: u64,
     settles_until: Option<Instant>,
+    /// When this bench's own computer did not keep up last, since the unit was first heard or started again.
+    stalled_at: Option<Instant>,
     /// What the rig's own counters said when the line had settled.
     before: Counters,
     /// What had been counted by then.
@@ -85,6 +95,7 @@ impl LineWatch {
         Self {
             bad_at: u64::from(bad_at.max(1)),
             settles_until: None,
+            stalled_at: None,
             before: Counters::default(),
             base: Counts::default(),
             counts: Counts::default(),
@@ -107,6 +118,7 @@ impl LineWatch {
     /// The unit was started again.
     pub fn note_restart(&mut self, now: Instant) {
         self.settles_until = Some(now + SETTLES);
+        self.stalled_at = None;
         self.rejected_by_unit = None;
         self.clock = None;
         self.rate = ClockRate::default();
@@ -115,11 +127,13 @@ impl LineWatch {
     /// This bench's own computer did not keep up: its frames left late and the unit's frames waited or were
     /// lost here. Neither is counted against the line.
     pub fn note_stalled(&mut self, now: Instant) {
-        self.settles_until = self.settles_until.map(|_| now + SETTLES);
+        if self.settles_until.is_some() {
+            self.settles_until = Some(now + SETTLES);
+            self.stalled_at = Some(now);
+        }
         self.heard.0 = now;
         self.clock = None;
         self.rate = ClockRate::default();
-        self.past.clear();
         self.past.push_back((now, self.counts));
     }
 
@@ -148,8 +162,13 @@ impl LineWatch {
             .map_or(0, |before| refused.wrapping_sub(before));
         // A count that falls is of a unit that was started again.
         let fallen = more > u16::MAX / 2;
-        if !fallen && self.clock_is_right && self.settled(now) && now >= self.on_purpose_until {
+        if fallen || !self.clock_is_right || now < self.on_purpose_until {
+            return;
+        }
+        if self.settled(now) {
             self.counts.to_unit += u64::from(more);
+        } else if self.stalled_at.is_some() {
+            self.counts.after_stall += u64::from(more);
         }
     }
 
@@ -166,15 +185,18 @@ impl LineWatch {
             self.heard = (now, heard);
         }
         self.silent = self.settled(now) && now.since(self.heard.0) > SILENT;
-        if self.settled(now) {
-            let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
-            let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
-            let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
+        let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
+        let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
+        let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
+        let counts = &mut self.counts;
+        if self.settles_until.is_some_and(|until| now >= until) {
             // Modems may catch up with what they may have damaged: what was counted stays counted.
-            let counts = &mut self.counts;
             counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
             counts.taken = self.base.taken + sum(taken);
         } else {
+            if self.stalled_at.is_some() {
+                counts.after_stall += from_unit;
+            }
             self.before = *counters;
             self.base = self.counts;
         }
@@ -205,17 +227,20 @@ impl LineWatch {
         let before = self
             .past
             .front()
-            .map_or(0, |(_, counts)| counts.lost_or_damaged());
+            .map_or(0, |(_, counts)| counts.of_any_cause());
         LineState {
             lost_or_damaged: self.counts.lost_or_damaged(),
-            lost_or_damaged_lately: self.counts.lost_or_damaged().saturating_sub(before),
+            lost_or_damaged_lately: self.counts.of_any_cause().saturating_sub(before),
             silent: self.silent,
         }
     }
 
     /// What is wrong with the line, if it is bad.
     pub fn error(&self, now: Instant) -> Option<String> {
-        let within = |(at, _): &&(Instant, Counts)| now.since(*at) <= SPAN;
+        // What the line lost before a stall may have been lost by the stall.
+        let within = |(at, _): &&(Instant, Counts)| {
+            now.since(*at) <= SPAN && self.stalled_at.is_none_or(|stalled| *at >= stalled)
+        };
         let before = self
             .past
             .iter()

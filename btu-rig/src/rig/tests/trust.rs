@@ -104,6 +104,26 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
     }
 }
 
+/// Goal: what the unit or TCMS logs because of a bad line is not blamed on a part of the unit when the bench's computer
+/// stands still meanwhile; what is lost by the standstill is not counted against the line.
+#[test]
+fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
+    let mut bench = on_bad_line(LineDisturbance::Flips, true, true);
+    (0..400).for_each(|_| bench.tick().unwrap());
+    let lately = |bench: &Bench<BadLine>| bench.rig().evidence().line.lost_or_damaged_lately;
+    let before = lately(&bench);
+    assert!(before > 0);
+    let now = bench.now();
+    bench.rig_mut().note_stalled(now);
+    assert!(lately(&bench) >= before, "what was lost is known still");
+    assert_eq!(bench.rig().link_error(), None);
+    let against_the_line = bench.rig().evidence().line.lost_or_damaged;
+    (0..100).for_each(|_| bench.tick().unwrap());
+    assert!(lately(&bench) > before, "what is lost after is known, too");
+    let line = bench.rig().evidence().line;
+    assert_eq!(line.lost_or_damaged, against_the_line);
+}
+
 /// Goal: nothing that a unit or a bench does on a good line looks like a bad one. Method: everything that
 /// makes frames fail, fall silent or start again on purpose.
 #[test]
