@@ -2,7 +2,7 @@
 //! program that started it, however that ends.
 
 use std::fs;
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::os::unix::fs::chown;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
@@ -347,7 +347,30 @@ pub fn give_away(path: &Path) {
     }
 }
 
-pub fn free_port() -> u16 {
+/// An address at which nothing listens, nor will while this lives: the near end of a connection.
+pub struct Nobody {
+    _listener: TcpListener,
+    connection: TcpStream,
+}
+
+impl Nobody {
+    pub fn there() -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let at = listener.local_addr().expect("its number");
+        let connection = TcpStream::connect(at).expect("a connection");
+        let _listener = listener;
+        Self {
+            _listener,
+            connection,
+        }
+    }
+
+    pub fn address(&self) -> SocketAddr {
+        self.connection.local_addr().expect("its number")
+    }
+}
+
+fn free_port() -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
     listener.local_addr().expect("its number").port()
 }

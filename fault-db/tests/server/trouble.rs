@@ -6,18 +6,15 @@ use std::time::Instant;
 use fault_db::{Id, StoreError};
 
 use crate::laptop::{Laptop, connect, day, read_only};
-use crate::private::{free_port, name_of, shared};
+use crate::private::{Nobody, name_of, shared};
 
 #[test]
 fn an_unreachable_server_is_reported_with_the_reason() {
-    let nobody = format!(
-        "postgres://ptu:secret@127.0.0.1:{}/h?sslmode=disable",
-        free_port()
-    );
-    let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let port = silent.local_addr().expect("its number").port();
-    let silent =
-        format!("postgres://ptu:secret@127.0.0.1:{port}/h?sslmode=disable&connect_timeout=1");
+    let away = Nobody::there();
+    let nobody = format!("postgres://ptu:secret@{}/h?sslmode=disable", away.address());
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let silent_at = listener.local_addr().expect("its number");
+    let silent = format!("postgres://ptu:secret@{silent_at}/h?sslmode=disable&connect_timeout=1");
     let unknown = "postgres://ptu:secret@no-such-host.invalid/h?sslmode=disable&connect_timeout=5";
     for (address, words) in [
         (nobody.as_str(), "nothing listens"),

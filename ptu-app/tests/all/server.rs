@@ -4,7 +4,7 @@
 #[allow(dead_code, reason = "the tests of fault-db use the rest of it")]
 pub(crate) mod owner_only;
 
-use self::owner_only::{free_port, shared};
+use self::owner_only::{Nobody, shared};
 use crate::common::{Place, list, record_bad_unit, record_bad_unit_anew, relay_fault, text};
 use serde_json::Value;
 
@@ -71,7 +71,8 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
 fn a_server_that_cannot_be_used_is_named_with_the_exit_code_of_the_contract() {
     let place = Place::new();
     place.recorded_run();
-    let away = format!("postgres://kim@127.0.0.1:{}/h?sslmode=disable", free_port());
+    let nobody = Nobody::there();
+    let away = format!("postgres://kim@{}/h?sslmode=disable", nobody.address());
     let empty = shared().empty();
     let refused = shared().address("no_such_database");
     for (arguments, code, words) in [
