@@ -73,7 +73,7 @@ pub struct LineWatch {
     counts: Counts,
     /// When the last frame came, and how many had come then.
     heard: (Instant, u64),
-    /// Nothing has come for longer than [`SILENT`].
+    /// Nothing has come for longer than [`SILENT`], or since this bench's own computer did not keep up.
     silent: bool,
     /// Count of rejected frames in the unit's last status.
     rejected_by_unit: Option<u16>,
@@ -119,6 +119,7 @@ impl LineWatch {
     pub fn note_restart(&mut self, now: Instant) {
         self.settles_until = Some(now + SETTLES);
         self.stalled_at = None;
+        self.silent = false;
         self.rejected_by_unit = None;
         self.clock = None;
         self.rate = ClockRate::default();
@@ -130,6 +131,7 @@ impl LineWatch {
         if self.settles_until.is_some() {
             self.settles_until = Some(now + SETTLES);
             self.stalled_at = Some(now);
+            self.silent = true;
         }
         self.heard.0 = now;
         self.clock = None;
@@ -183,8 +185,10 @@ impl LineWatch {
         }
         if heard != self.heard.1 {
             self.heard = (now, heard);
+            self.silent = false;
+        } else if self.settled(now) || self.stalled_at.is_some() {
+            self.silent |= now.since(self.heard.0) > SILENT;
         }
-        self.silent = self.settled(now) && now.since(self.heard.0) > SILENT;
         let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
         let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
         let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);

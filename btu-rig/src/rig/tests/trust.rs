@@ -124,6 +124,26 @@ fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
     assert_eq!(line.lost_or_damaged, against_the_line);
 }
 
+/// Goal: what TCMS misses right after a standstill is left open until the unit is heard, as on a line that was pulled
+/// meanwhile.
+#[test]
+fn a_line_is_silent_from_a_standstill_until_the_unit_is_heard() {
+    let mut bench = bench(FakeUnit::default());
+    bench.run_ms(4_000);
+    let silent = |bench: &Bench<FakeUnit>| bench.rig().evidence().line.silent;
+    assert!(!silent(&bench));
+    let now = bench.now();
+    bench.rig_mut().note_stalled(now);
+    assert!(silent(&bench));
+    bench.run_ms(100);
+    assert!(!silent(&bench), "the unit is there");
+    bench.link_mut().dead = Channel::ALL.to_vec();
+    let now = bench.now();
+    bench.rig_mut().note_stalled(now);
+    bench.run_ms(500);
+    assert!(silent(&bench), "the line was pulled");
+}
+
 /// Goal: nothing that a unit or a bench does on a good line looks like a bad one. Method: everything that
 /// makes frames fail, fall silent or start again on purpose.
 #[test]
