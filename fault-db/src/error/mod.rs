@@ -147,6 +147,12 @@ pub enum StoreError {
         /// The error of the system.
         reason: String,
     },
+    /// SQLite cannot follow the file's pages.
+    #[error("{} is damaged; run `db check`, then go on with a backup", .path.display())]
+    Malformed {
+        /// The database file.
+        path: PathBuf,
+    },
     /// The file's content contradicts itself.
     #[error("{} is damaged ({detail}); run `db check`, then go on with a backup", .path.display())]
     Corrupt {

@@ -230,7 +230,7 @@ fn a_half_copied_file_is_named_and_left_as_it_is() {
             ours.import(&path).expect_err("nor to merge"),
         ] {
             assert!(
-                matches!(error, StoreError::Corrupt { .. }),
+                matches!(error, StoreError::Malformed { .. }),
                 "{part}: {error}"
             );
             let text = error.to_string();

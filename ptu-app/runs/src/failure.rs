@@ -1,7 +1,7 @@
 //! Failures reported to the user, each with its exit code.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fault_db::{Id, StoreError, TraceError};
@@ -53,6 +53,13 @@ pub enum Trouble {
         /// The file that has it; none if it is lost.
         kept: Option<PathBuf>,
     },
+    /// The history did not become free: what was measured since is kept in a file.
+    RestKept {
+        /// Of the history.
+        error: Arc<StoreError>,
+        /// The file.
+        rest: PathBuf,
+    },
     /// An instrument of the bench whose calibration does not hold, and nothing was driven.
     Uncalibrated {
         /// Its kind, as "tachometer".
@@ -92,6 +99,14 @@ impl fmt::Display for Trouble {
                 }
                 let again = "bring it in with `ptu db import";
                 write!(f, "{why}; it is kept in {kept}: {again} {kept}`")
+            }
+            Self::RestKept { error, rest } => {
+                let (why, rest) = (store_message(error), rest.display());
+                write!(
+                    f,
+                    "{why}; what was measured since is kept in {rest}: bring it in with `ptu db import {rest}` when \
+                     the database is free"
+                )
             }
             Self::Uncalibrated {
                 kind,
@@ -210,17 +225,25 @@ impl From<StoreError> for Failure {
 
 /// The message of a database error. Where its next move is another database, the flag that names one is added.
 pub fn store_message(error: &StoreError) -> String {
+    match in_place_of(error) {
+        Some(_) => format!("{error} with --db"),
+        None => error.to_string(),
+    }
+}
+
+/// The file in whose place an error says to choose another.
+pub fn in_place_of(error: &StoreError) -> Option<&Path> {
     match error {
-        StoreError::Locked { .. }
-        | StoreError::Full { .. }
-        | StoreError::ReadOnly { .. }
-        | StoreError::NotADatabase { .. }
-        | StoreError::ForeignDatabase { .. }
-        | StoreError::NewerSchema { .. }
-        | StoreError::Missing { .. }
-        | StoreError::CannotOpen { .. }
-        | StoreError::NotAFile { .. } => format!("{error} with --db"),
-        other => other.to_string(),
+        StoreError::Locked { path }
+        | StoreError::Full { path }
+        | StoreError::ReadOnly { path }
+        | StoreError::NotADatabase { path }
+        | StoreError::ForeignDatabase { path, .. }
+        | StoreError::NewerSchema { path, .. }
+        | StoreError::Missing { path }
+        | StoreError::CannotOpen { path, .. }
+        | StoreError::NotAFile { path } => Some(path),
+        _ => None,
     }
 }
 

@@ -33,7 +33,7 @@ fn the_database_is_checked_copied_merged_and_asked() {
     for file in ["notes.txt", "missing.db"] {
         let said = place.ptu(&["db", "import", file]).exits(3);
         assert!(!said.err.contains("--db"), "{}", said.all());
-        said.explains(&[file, "; name another file"]);
+        said.explains(&[file, "; choose another file"]);
     }
 
     let said = place.ptu("db export depot.db").exits(0);

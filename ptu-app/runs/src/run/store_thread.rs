@@ -203,12 +203,10 @@ fn write(
     // Empties the queue so that no sender blocks.
     entries.iter().for_each(drop);
     Err(match rest {
-        Some(rest) => Failure::bench(format!(
-            "{}; what was measured since is kept in {rest}: bring it in with `ptu db import {rest}` when the \
-             database is free",
-            store_message(&error),
-            rest = rest.display()
-        )),
+        Some(rest) => {
+            let error = Arc::new(error);
+            Failure::bench(Trouble::RestKept { error, rest })
+        }
         None => error.into(),
     })
 }

@@ -13,7 +13,7 @@ use crate::cli::{Database, Json, answered, print_json, print_out, since_argument
 use ptu_options::only_file;
 use ptu_report::history_files::{Exported, export_history};
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, in_place_of};
 use ptu_runs::stdio;
 
 /// Which traces may be deleted; those of faults that are not closed never are.
@@ -113,20 +113,16 @@ pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
     print_out(&said)
 }
 
-/// An error with the advice for a file that was not named with --db, if it is of that file.
+/// An error of a file that was not named with --db has no advice to name another one so.
 fn of_named_file(file: &Path, error: StoreError) -> Failure {
-    if matches!(&error, StoreError::Missing { path } if path == file) {
-        let file = file.display();
-        return Failure::bench(format!("there is no database {file}; name another file"));
+    match &error {
+        StoreError::Missing { path } if path == file => {
+            let file = file.display();
+            Failure::bench(format!("there is no database {file}; choose another file"))
+        }
+        of_it if in_place_of(of_it) == Some(file) => Failure::bench(of_it.to_string()),
+        _ => error.into(),
     }
-    let mut failure = Failure::from(error);
-    let said = failure.to_string();
-    if said.contains(&file.display().to_string()) {
-        failure.message = said
-            .replace("choose another file with --db", "name another file")
-            .into();
-    }
-    failure
 }
 
 /// What a merge did, and what it left as it was, with the next move.

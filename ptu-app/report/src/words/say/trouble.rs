@@ -50,6 +50,13 @@ fn both(trouble: &Trouble) -> Both {
                 ],
             }
         }
+        Trouble::RestKept { error, rest } => {
+            let ([why, why_ko], rest) = (store(error), rest.display());
+            [
+                format!("{why}; what was measured since is kept in {rest}: import that file when the database is free"),
+                format!("{why_ko}. 그 후의 측정은 {rest}에 보관했으니 데이터베이스를 쓸 수 있게 되면 그 파일을 가져오십시오"),
+            ]
+        }
         Trouble::Uncalibrated { kind, serial_no, due: Some(day) } => [
             format!("the calibration of {kind} {serial_no} was due on {day}; nothing was driven. Have it calibrated and its new calibration registered"),
             format!("교정 기한이 지났습니다: {kind} {serial_no} ({day}). 아무것도 구동하지 않았습니다. 교정한 후 새 교정을 등록하십시오"),
@@ -109,9 +116,13 @@ pub(super) fn store(error: &StoreError) -> Both {
             format!("reading or writing {} failed ({reason}); check the disk, then the history", path.display()),
             format!("읽기 또는 쓰기에 실패했습니다: {} ({reason}). 디스크를 점검한 후 이력을 검사하십시오", path.display()),
         ],
+        S::Malformed { path } => [
+            format!("{} is damaged; check the history, then go on with a backup", path.display()),
+            format!("파일이 손상되었습니다: {}. 이력을 검사한 후 백업으로 계속하십시오", path.display()),
+        ],
         S::Corrupt { path, detail } => [
             format!("{} is damaged ({detail}); check the history, then go on with a backup", path.display()),
-            format!("파일이 손상되었습니다: {} ({}). 이력을 검사한 후 백업으로 계속하십시오", path.display(), damaged(detail)),
+            format!("파일이 손상되었습니다: {} ({detail}). 이력을 검사한 후 백업으로 계속하십시오", path.display()),
         ],
         S::NotFound { what, asked } => [format!("no {what} {asked:?}"), format!("{} {asked:?}이(가) 없습니다", noun(what))],
         S::TraceMissing { asked, run } => same(format!("시험 {run}의 신호 기록 {asked:?}이(가) 없습니다: 정리되었거나, 제거되었거나, 봉인과 맞지 않아 받지 않은 것입니다. 기록한 파일의 전체 사본을 가져오면 복구됩니다")),
@@ -178,14 +189,6 @@ pub(super) fn store(error: &StoreError) -> Both {
         ],
         S::Server { path, source, .. } => same(format!("서버 오류: {} ({source})", path.display())),
         S::Sqlite { path, source, .. } => same(format!("데이터베이스 오류: {} ({source})", path.display())),
-    }
-}
-
-/// What SQLite says of a damaged file.
-fn damaged(detail: &str) -> &str {
-    match detail {
-        "database disk image is malformed" => "데이터베이스 내용이 손상됨",
-        other => other,
     }
 }
 

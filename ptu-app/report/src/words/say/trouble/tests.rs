@@ -20,8 +20,6 @@ fn no_text_names_a_command_and_the_korean_is_korean() {
     let sources = [SOURCE, include_str!("../damage.rs")];
     let told = sources.map(|source| source.split("#[cfg(test)]").next().unwrap_or(source));
     let lines = told.iter().flat_map(|source| source.lines());
-    // What SQLite says is compared, not told.
-    let lines = lines.filter(|line| !line.contains("disk image is malformed"));
     for text in lines.flat_map(|line| line.split('"').skip(1).step_by(2)) {
         assert!(!names_a_command(text), "{text}");
         if !text.contains(|letter: char| ('가'..='힣').contains(&letter)) {
@@ -82,12 +80,17 @@ fn what_is_known_is_told_without_commands_and_in_korean() {
     let error = || Arc::new(StoreError::Locked { path: path() });
     for (trouble, english, korean) in [
         (
-            Trouble::Store(Arc::new(StoreError::Corrupt {
-                path: path(),
-                detail: "database disk image is malformed".to_owned(),
-            })),
-            "/h.db is damaged (database disk image is malformed); check the history",
-            "파일이 손상되었습니다: /h.db (데이터베이스 내용이 손상됨). 이력을 검사한 후 백업으로 계속하십시오",
+            Trouble::Store(Arc::new(StoreError::Malformed { path: path() })),
+            "/h.db is damaged; check the history",
+            "파일이 손상되었습니다: /h.db. 이력을 검사한 후 백업으로 계속하십시오",
+        ),
+        (
+            Trouble::RestKept {
+                error: error(),
+                rest: "/r.db".into(),
+            },
+            "what was measured since is kept in /r.db: import that file",
+            "그 후의 측정은 /r.db에 보관했으니",
         ),
         (
             Trouble::NotStored {
