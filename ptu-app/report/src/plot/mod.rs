@@ -145,12 +145,17 @@ impl Plot {
         (width, self.height.unwrap_or(HEIGHT))
     }
 
+    /// What is left beside it: room for the names of its lanes.
+    pub fn left(&self) -> f64 {
+        let names = self.names.iter().map(|name| room(&name.1) + BESIDE_TICKS);
+        names.fold(self.beside.unwrap_or(LEFT), f64::max)
+    }
+
     /// All there is to draw, from back to front.
     pub fn marks(&self, width: f64) -> Vec<Mark> {
         let (width, height) = self.size(width);
-        let names = self.names.iter().map(|name| room(&name.1) + BESIDE_TICKS);
         let edges = Edges {
-            left: names.fold(self.beside.unwrap_or(LEFT), f64::max),
+            left: self.left(),
             right: width - RIGHT,
             top: TOP,
             bottom: height - BOTTOM,

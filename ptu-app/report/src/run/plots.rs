@@ -105,11 +105,10 @@ pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
             x: 0.0,
             name: report.trigger.into(),
         }],
-        beside: Some(BESIDE),
         ..Plot::default()
     };
     let mut all = Vec::new();
-    let series = speeds(trace, &time);
+    let series = speeds(trace, &time, words);
     if !series.is_empty() {
         all.push(Plot {
             y_reach: Some((0.0, 1.0)),
@@ -135,10 +134,15 @@ pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
         }
         all.push(drawing);
     }
+    // Below each other, on the same time.
+    let left = all.iter().map(Plot::left).fold(BESIDE, f64::max);
+    for plot in &mut all {
+        plot.beside = Some(left);
+    }
     all
 }
 
-fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64) -> Vec<Series> {
+fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64, words: &Words) -> Vec<Series> {
     let known = |name: &str| {
         let column = trace.column(name)?;
         column.iter().any(|value| !value.is_nan()).then_some(column)
@@ -148,7 +152,7 @@ fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64) -> Vec<Series> {
         .filter_map(|(name, colour, style)| {
             let steps = steps(known(name)?).into_iter();
             Some(Series {
-                name: (*name).into(),
+                name: words.signal(name).into_owned(),
                 colour: *colour,
                 style: *style,
                 points: steps.map(|(row, value)| (time(row), value)).collect(),
@@ -197,9 +201,8 @@ fn lane(
             });
         }
     }
-    drawing
-        .names
-        .push((place as f64 + 0.35, channel.name.clone()));
+    let name = words.signal(&channel.name).into_owned();
+    drawing.names.push((place as f64 + 0.35, name));
     drawing.series.push(Series {
         name: String::new(),
         colour: place,

@@ -73,7 +73,7 @@ wordings! {
         unit_of_value: "Unit", "단위";
         within: "Within limits", "한계 내 위치";
         source_number: "Src.", "출처";
-        limit_source: "Source", "출처";
+        limit_source: "Source", "내용";
         limit_sources: "Sources of limits", "한계값 출처";
         from_configuration: "unit configuration {key}", "장치 구성 {key}";
         from_track: "track database {key}", "선로 데이터베이스 {key}";
