@@ -82,7 +82,7 @@ pub use values::record::{
     CauseRecord, FaultRecord, FreezeSample, LOG_SOURCE, MeasurementRecord, RepairRecord, RunEnd,
     RunRecord, ScriptRecord, StepKind, StepRecord, UnitRecord, Verdict,
 };
-pub use values::step_counts::{StepCounter, StepCounts, base_name, rank};
+pub use values::step_counts::{StepCounter, StepCounts, rank};
 pub use values::text_enum::UnknownWord;
 pub use values::trace_place::TracePlace;
 pub use values::withdrawal_error::WithdrawalError;

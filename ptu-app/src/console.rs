@@ -7,8 +7,8 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use btu_rig::procedure::{Findings, Measurement, Procedure, RunEvent, Verdict};
-use fault_db::{RunDetail, StepCounts, StepKind};
+use btu_rig::procedure::{Findings, Measurement, Procedure, ResultKind, RunEvent, Verdict};
+use fault_db::{RunDetail, StepCounts, StepKind, StepRecord};
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::{display_text, lru};
 
@@ -135,11 +135,13 @@ impl Listener for Console {
             Shown::RunPosition(cell(&place, BESIDE_BAR))
         };
         let shown = match event {
-            SessionEvent::Run(RunEvent::StepStarted { name, .. }) => present(name.clone()),
+            SessionEvent::Run(RunEvent::StepStarted {
+                name, turn, turns, ..
+            }) => present(Language::English.words().step(name, [*turn, *turns], false)),
             SessionEvent::Run(RunEvent::Waiting { action: what, left }) => {
                 present(format!("{what}, {:.0} s left", left.as_secs()))
             }
-            SessionEvent::Run(RunEvent::StepFinished(result)) if !result.repeated => {
+            SessionEvent::Run(RunEvent::StepFinished(result)) if result.kind != ResultKind::Attempt => {
                 Shown::StepDone
             }
             _ => return,
@@ -159,19 +161,17 @@ impl Listener for Console {
                 Some(format!("        {}", measured(measurement)))
             }
             SessionEvent::Run(RunEvent::StepFinished(result))
-                if result.repeated
+                if result.kind == ResultKind::Attempt
                     || self.detail == Detail::Verbose
                     || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) =>
             {
-                let verdict = match result.repeated {
-                    true => "repeat",
-                    false => result.verdict.label(),
+                let verdict = match result.kind {
+                    ResultKind::Attempt => "repeat",
+                    _ => result.verdict.label(),
                 };
+                let name = Language::English.words().result(result);
                 let more = after_colon(&result.findings);
-                Some(format!(
-                    "{verdict:<7} {}: {}{more}",
-                    procedure.id, result.name
-                ))
+                Some(format!("{verdict:<7} {}: {name}{more}", procedure.id))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict, findings, ..
@@ -227,6 +227,13 @@ fn measured(measurement: &Measurement) -> String {
     text.trim_end().to_owned()
 }
 
+/// The procedure and the step; or where it failed outside of steps, as files name it.
+fn named(step: &StepRecord) -> String {
+    let turn = [step.turn, step.turns];
+    let name = Language::English.words().step(&step.name, turn, step.kind == StepKind::Again);
+    format!("{}: {name}", step.procedure)
+}
+
 /// Attempts at steps that were not tested, and made again.
 fn repeated(run: &RunDetail) -> String {
     let mut table = Table::new(&["REPEATED STEP", "WHY"]);
@@ -238,7 +245,7 @@ fn repeated(run: &RunDetail) -> String {
         return String::new();
     }
     for step in rows {
-        let name = format!("{}: {}", step.procedure, step.name);
+        let name = named(step);
         table.row([name, step.message.clone()]);
     }
     format!("\n\n{}", table.render())
@@ -315,7 +322,7 @@ fn not_passed(run: &RunDetail) -> String {
     }
     let mut table = Table::new(&["VERDICT", "STEP", "WHY"]);
     for step in failed {
-        let name = format!("{}: {}", step.procedure, step.name);
+        let name = named(step);
         table.row([step.verdict.as_str().into(), name, step.message.clone()]);
     }
     format!("\n\n{}", table.render())

@@ -284,6 +284,10 @@ pub enum Finding {
         procedure: String,
         /// Name of the step.
         step: String,
+        /// Which repetition of it, from 1.
+        turn: u32,
+        /// Of so many.
+        turns: u32,
         /// What it found.
         findings: Findings,
     },

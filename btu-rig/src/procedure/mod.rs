@@ -40,7 +40,7 @@ pub use finding::{Finding, Findings};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
-pub use report::{Measurement, Outside, OutsideStep, RunEvent, StepResult};
+pub use report::{Measurement, Outside, OutsideStep, ResultKind, RunEvent, StepResult};
 pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;

@@ -27,19 +27,34 @@ pub struct Measurement {
     pub verdict: Verdict,
 }
 
+/// What a result of a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResultKind {
+    /// It stands.
+    Step,
+    /// The step was not tested because the tester's computer stood still, and is begun again: another result follows.
+    Attempt,
+    /// The step was run again only for the state that it leaves, and shows something else now.
+    Again,
+}
+
 /// Result of one step, or of one repetition of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepResult {
     /// Place in the procedure.
     pub index: usize,
-    /// Name, with ` (2/3)` when it is repeated.
+    /// Its name.
     pub name: String,
+    /// Which repetition, from 1.
+    pub turn: u32,
+    /// Of so many.
+    pub turns: u32,
+    /// Which result of it.
+    pub kind: ResultKind,
     /// Line of the `step()` call in the script, from 1.
     pub line: u32,
     /// Over its expectations and measurements.
     pub verdict: Verdict,
-    /// It was not tested because the tester's computer stood still, and is begun again: another result follows.
-    pub repeated: bool,
     /// Why, when it did not pass; may also be a note.
     pub findings: Findings,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
@@ -147,8 +162,12 @@ pub enum RunEvent {
     StepStarted {
         /// Place in the procedure.
         index: usize,
-        /// Name, with ` (2/3)` when it is repeated.
+        /// Its name.
         name: String,
+        /// Which repetition, from 1.
+        turn: u32,
+        /// Of so many.
+        turns: u32,
         /// Bench time.
         at: Instant,
     },

@@ -168,18 +168,9 @@ impl Dictionary {
         self.places = names.collect();
     }
 
-    /// Index of a check. A repetition, `name (2/3)`, counts as the check `name` if the dictionary does not
-    /// have that repetition.
+    /// Index of a check.
     pub fn place(&self, check: &CheckName) -> Option<usize> {
-        self.places.get(check).copied().or_else(|| {
-            let (step, turn) = check.step.rsplit_once(" (")?;
-            turn.strip_suffix(')')?.split_once('/')?;
-            let plain = CheckName {
-                procedure: check.procedure.clone(),
-                step: step.to_owned(),
-            };
-            self.places.get(&plain).copied()
-        })
+        self.places.get(check).copied()
     }
 
     /// Adds runs of a healthy unit. Must come before any mode.

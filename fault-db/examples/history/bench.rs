@@ -107,6 +107,8 @@ pub fn measured(
         procedure: check.procedure.to_owned(),
         kind: fault_db::StepKind::Step,
         place: Some(index),
+        turn: 1,
+        turns: 1,
         name: check.step.to_owned(),
         verdict,
         started_bench_us: i64::from(index) * 9_000_000,

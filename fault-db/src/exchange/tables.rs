@@ -228,8 +228,8 @@ pub(super) static TABLES: [Table; COUNT] = [
         of: TableId::Step,
         name: "step",
         columns: columns![
-            run Run, step_index Integer, procedure Text, kind Text, place Integer, name Text, verdict Text,
-            started_bench_us Integer, bench_time_us Integer, message Text, findings Text, script_line Integer,
+            run Run, step_index Integer, procedure Text, kind Text, place Integer, name Text, turn Integer,
+            turns Integer, verdict Text, started_bench_us Integer, bench_time_us Integer, message Text, findings Text, script_line Integer,
             limit_source Text,
         ],
         shown: 1,

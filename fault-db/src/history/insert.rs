@@ -91,9 +91,9 @@ pub(crate) fn insert_steps(
     steps: &[StepRecord],
 ) -> rusqlite::Result<()> {
     let mut insert = conn.prepare_cached(
-        "INSERT INTO step(run, step_index, procedure, kind, place, name, verdict, started_bench_us,
+        "INSERT INTO step(run, step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
             bench_time_us, message, findings, script_line, limit_source)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
     )?;
     for step in steps {
         insert.execute(params![
@@ -103,6 +103,8 @@ pub(crate) fn insert_steps(
             step.kind,
             step.place,
             step.name,
+            step.turn,
+            step.turns,
             step.verdict,
             step.started_bench_us,
             step.bench_time_us,

@@ -239,8 +239,8 @@ impl Store {
     fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {
         let mut measurements = self.measurements(run)?;
         self.backend().select(
-            "SELECT step_index, procedure, kind, place, name, verdict, started_bench_us, bench_time_us,
-                message, findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
+            "SELECT step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
+                bench_time_us, message, findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
             |row| {
                 let index = row.get(0)?;
@@ -250,13 +250,15 @@ impl Store {
                     kind: row.get(2)?,
                     place: row.get(3)?,
                     name: row.get(4)?,
-                    verdict: row.get(5)?,
-                    started_bench_us: row.get(6)?,
-                    bench_time_us: row.get(7)?,
-                    message: row.get(8)?,
-                    findings: row.get(9)?,
-                    script_line: row.get(10)?,
-                    limit_source: row.get(11)?,
+                    turn: row.get(5)?,
+                    turns: row.get(6)?,
+                    verdict: row.get(7)?,
+                    started_bench_us: row.get(8)?,
+                    bench_time_us: row.get(9)?,
+                    message: row.get(10)?,
+                    findings: row.get(11)?,
+                    script_line: row.get(12)?,
+                    limit_source: row.get(13)?,
                     measurements: measurements.remove(&index).unwrap_or_default(),
                 })
             },

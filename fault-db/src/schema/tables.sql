@@ -61,9 +61,11 @@ CREATE TABLE step(
   step_index INTEGER NOT NULL,
   procedure TEXT NOT NULL,
   -- what the record is, and the step's place in its procedure; NULL: outside steps
-  kind TEXT NOT NULL CHECK(kind IN ('step','attempt','outside')),
+  kind TEXT NOT NULL CHECK(kind IN ('step','attempt','again','outside')),
   place INTEGER,
   name TEXT NOT NULL,
+  turn INTEGER NOT NULL,                -- which of so many repetitions, from 1
+  turns INTEGER NOT NULL,
   verdict TEXT NOT NULL CHECK(verdict IN ('passed','failed','error','skipped','inconclusive','aborted')),
   started_bench_us INTEGER NOT NULL,
   bench_time_us INTEGER NOT NULL,

@@ -18,7 +18,7 @@ CREATE VIEW steps AS
   SELECT
     lower(hex(substr(r.id, 1, 4)) || '-' || hex(substr(r.id, 5, 2)) || '-' || hex(substr(r.id, 7, 2)) || '-'
       || hex(substr(r.id, 9, 2)) || '-' || hex(substr(r.id, 11))) AS run_id,
-    u.serial AS unit, s.step_index, s.procedure, s.kind, s.name, s.verdict,
+    u.serial AS unit, s.step_index, s.procedure, s.kind, s.name, s.turn, s.turns, s.verdict,
     s.message, s.findings, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
     strftime('%Y-%m-%dT%H:%M:%fZ', r.started_at_us / 1000 / 1000.0, 'unixepoch') AS started_at,
     r.started_at_us

@@ -128,6 +128,8 @@ impl RunDigest {
             step.kind.as_str(),
             step.place,
             &step.name,
+            step.turn,
+            step.turns,
             step.verdict.as_str(),
             step.started_bench_us,
             step.bench_time_us,
@@ -241,8 +243,8 @@ pub(crate) const RUN: &str =
 
 pub(crate) const PARTS: [&str; 3] = [
     "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
-    "SELECT step_index, procedure, kind, place, name, verdict, started_bench_us, bench_time_us, message, findings,
-        script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
+    "SELECT step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us, bench_time_us, message,
+        findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
     "SELECT step_index, ordinal, name, value, unit, low, high, verdict, limit_source FROM measurement
      WHERE run = ?1 ORDER BY step_index, ordinal",
 ];

@@ -107,6 +107,7 @@ BEGIN
       AND is_json(NEW.sw_versions) AND is_json(NEW.evidence) AND is_id(NEW.continues) AND is_name(NEW.connection) AND is_name(NEW.symptom)'],
     ['run_script', 'INSERT', 'is_name(NEW.path) AND is_name(NEW.sha256)'],
     ['step', 'INSERT', 'is_count(NEW.step_index) AND is_name(NEW.procedure) AND is_count(NEW.place) AND is_name(NEW.name)
+      AND is_count(NEW.turn) AND is_count(NEW.turns)
       AND is_span(NEW.started_bench_us) AND is_span(NEW.bench_time_us) AND is_text(NEW.message) AND is_json(NEW.findings)
       AND is_count(NEW.script_line) AND is_text(NEW.limit_source)'],
     ['measurement', 'INSERT', 'is_count(NEW.step_index) AND is_count(NEW.ordinal) AND is_name(NEW.name)

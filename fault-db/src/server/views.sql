@@ -16,7 +16,7 @@ CREATE VIEW runs AS
   FROM run r JOIN unit u ON u.seq = r.unit;
 
 CREATE VIEW steps AS
-  SELECT id_text(r.id) AS run_id, u.serial AS unit, s.step_index, s.procedure, s.kind, s.name, s.verdict,
+  SELECT id_text(r.id) AS run_id, u.serial AS unit, s.step_index, s.procedure, s.kind, s.name, s.turn, s.turns, s.verdict,
     s.message, s.findings, CAST(s.bench_time_us AS DOUBLE PRECISION) / 1e6 AS bench_time_s, s.script_line, s.limit_source,
     time_text(r.started_at_us) AS started_at,
     r.started_at_us

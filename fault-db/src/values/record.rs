@@ -36,6 +36,8 @@ text_enum! {
         Step = "step",
         /// A try at a step that was not tested; another follows.
         Attempt = "attempt",
+        /// A step that was run again only for the state that it leaves, and showed something else.
+        Again = "again",
         /// What failed outside steps; its name says where.
         Outside = "outside",
     }
@@ -128,6 +130,10 @@ pub struct StepRecord {
     pub place: Option<u32>,
     /// Its name.
     pub name: String,
+    /// Which repetition, from 1.
+    pub turn: u32,
+    /// Of so many.
+    pub turns: u32,
     /// The step's verdict.
     pub verdict: Verdict,
     /// Bench time at its start.

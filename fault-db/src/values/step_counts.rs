@@ -110,21 +110,6 @@ pub fn rank(verdict: Verdict) -> u8 {
     }
 }
 
-/// The name of a step without that of its repetition: ` (2/3)`, ` (repeated)`.
-pub fn base_name(name: &str) -> &str {
-    let name = name.strip_suffix(" (repeated)").unwrap_or(name);
-    let repetition = |of: &str| {
-        let (number, all) = of.strip_suffix(')')?.split_once('/')?;
-        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-        (is_number(number) && is_number(all)).then_some(())
-    };
-    let split = name.rsplit_once(" (");
-    match split.and_then(|(base, of)| repetition(of).map(|()| base)) {
-        Some(base) => base,
-        None => name,
-    }
-}
-
 /// [`StepCounts`] of the stored run `r.seq` by the same rule, so that a list of runs reads no steps: a text of numbers in
 /// the order of the fields.
 pub(crate) const COUNTS_OF_RUN: &str = "
@@ -149,28 +134,5 @@ pub(crate) fn counts_of_text(text: &str) -> StepCounts {
         error: next(),
         attempts: next(),
         outside: next(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base_name;
-
-    #[test]
-    fn a_repetition_has_the_name_of_its_step() {
-        for (name, base) in [
-            ("code 25", "code 25"),
-            ("code 25 (2/3)", "code 25"),
-            ("code 25 (12/40) (repeated)", "code 25"),
-            ("code 25 (Repeated)", "code 25 (Repeated)"),
-            ("code (cab)", "code (cab)"),
-            ("code (a/b)", "code (a/b)"),
-            ("code (1/)", "code (1/)"),
-            ("code (1/2/3)", "code (1/2/3)"),
-            ("code (1/2))", "code (1/2))"),
-            ("code (1) (1/2)", "code (1)"),
-        ] {
-            assert_eq!(base_name(name), base);
-        }
     }
 }

@@ -120,6 +120,8 @@ pub fn step(index: u32) -> StepRecord {
         procedure: "atp.overspeed".to_owned(),
         kind: fault_db::StepKind::Step,
         place: Some(index),
+        turn: 1,
+        turns: 1,
         name: format!("step {index}"),
         verdict: Verdict::Passed,
         started_bench_us: i64::from(index) * 50_000,

@@ -10,7 +10,7 @@ use ptu_runs::clock::rfc3339;
 use ptu_runs::stored::kind_of;
 
 /// Names of the columns.
-const COLUMNS: [&str; 17] = [
+const COLUMNS: [&str; 19] = [
     "run",
     "unit_serial",
     "started_at",
@@ -28,6 +28,8 @@ const COLUMNS: [&str; 17] = [
     "high",
     "measurement_verdict",
     "limit_source",
+    "turn",
+    "turns",
 ];
 
 /// What a file of a table begins with: without it, spreadsheets read its UTF-8 in the code page of the system.
@@ -55,7 +57,7 @@ pub fn csv(run: &RunDetail) -> String {
     text
 }
 
-fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 17] {
+fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 19] {
     let text = |text: &str| Cell::Text(text.to_owned());
     let number = |value: Option<f64>| {
         Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
@@ -84,6 +86,8 @@ fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord
                 .as_deref()
                 .unwrap_or_default(),
         ),
+        Cell::Number(step.turn.to_string()),
+        Cell::Number(step.turns.to_string()),
     ]
 }
 

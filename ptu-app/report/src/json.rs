@@ -115,6 +115,8 @@ fn step_json(step: &StepRecord, evidence: Option<&Evidence>) -> Value {
         "procedure": step.procedure,
         "name": step.name,
         "kind": kind_of(step),
+        "turn": step.turn,
+        "turns": step.turns,
         "verdict": step.verdict.as_str(),
         "bench_time_s": seconds(step.bench_time_us),
         "measurements": step.measurements.iter().map(|one| measurement_json(one, evidence)).collect::<Vec<_>>(),

@@ -57,26 +57,26 @@ impl PartNames {
     }
 }
 
-/// Procedure and step of a failed check, and what that found.
-fn place(seen: &Findings) -> Option<(&str, &str, &Findings)> {
+/// Which repetition of this step failed, if what was seen is that one did.
+pub fn failed_turn(seen: &Findings, procedure: &str, step: &str) -> Option<u32> {
     seen.iter().find_map(|found| match &found.finding {
         Finding::CheckFailed {
-            procedure,
-            step,
-            findings,
-        } => Some((&**procedure, &**step, findings)),
+            procedure: of,
+            step: name,
+            turn,
+            ..
+        } if of == procedure && name == step => Some(*turn),
         _ => None,
     })
 }
 
-/// Whether what was seen is that this step failed.
-pub fn is_of_step(seen: &Findings, procedure: &str, step: &str) -> bool {
-    place(seen).is_some_and(|(of, name, _)| of == procedure && name == step)
-}
-
 /// What was seen in few words: the step, the measured value, and its limit, or why else the step failed.
 fn what_failed(seen: &Findings, words: &Words) -> String {
-    let Some((_, step, why)) = place(seen) else {
+    let failed = seen.iter().find_map(|found| match &found.finding {
+        Finding::CheckFailed { step, findings, .. } => Some((step, findings)),
+        _ => None,
+    });
+    let Some((step, why)) = failed else {
         return words.findings(seen);
     };
     let step = words.content(step);
@@ -171,6 +171,8 @@ mod tests {
         Finding::CheckFailed {
             procedure: procedure.into(),
             step: step.into(),
+            turn: 1,
+            turns: 1,
             findings,
         }
         .into()
@@ -224,12 +226,9 @@ mod tests {
             said.contains("TWC 통신 정상 = 꺼짐") && said.contains("프레임"),
             "{said}"
         );
-        assert!(is_of_step(
-            &relay,
-            "atp/overspeed",
-            "code 25: alarm, FSB, EB"
-        ));
-        assert!(!is_of_step(&relay, "atp/overspeed", "another"));
+        let turn = |step| failed_turn(&relay, "atp/overspeed", step);
+        assert_eq!(turn("code 25: alarm, FSB, EB"), Some(1));
+        assert_eq!(turn("another"), None);
         let none = (&None, "brake line at 3.0 km/h");
         assert_eq!(
             PartNames::default().fault("x", none, english),

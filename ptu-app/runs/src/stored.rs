@@ -94,6 +94,8 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
         procedure: procedure.to_owned(),
         kind: StepKind::Outside,
         place: None,
+        turn: 1,
+        turns: 1,
         name: entry.place.name().to_owned(),
         verdict: stored(entry.verdict),
         started_bench_us: bench_us,

@@ -53,6 +53,8 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
         procedure: "atp/overspeed".into(),
         kind: fault_db::StepKind::Step,
         place: Some(0),
+        turn: 1,
+        turns: 1,
         name: "step".into(),
         verdict: Verdict::Passed,
         started_bench_us: 0,

@@ -9,8 +9,8 @@ use Kind::*;
 use btu_rig::procedure::Verdict::{self, Skipped};
 use btu_rig::procedure::finding::LimitMissed;
 use btu_rig::procedure::{
-    Finding, Findings, Measurement, Outside as Place, OutsideStep, Procedure, RunEvent, RunOptions,
-    StepResult,
+    Finding, Findings, Measurement, Outside as Place, OutsideStep, Procedure, ResultKind, RunEvent,
+    RunOptions, StepResult,
 };
 use diagnosis::{Dictionary, Mode};
 use fault_db::{Id, OpenOptions, RunRecord, RunState, Signer, Store, Synchronous, UnitRecord};
@@ -401,15 +401,16 @@ impl<'a> Making<'a> {
             .into(),
             _ => Finding::Told("nothing comes from the unit".into()).into(),
         };
-        let number = [String::new(), format!(" ({}/{repeat})", turn + 1)];
         let most = [3, 1][usize::from(verdict == Skipped || self.of_dictionary)];
         let most = self.chance.below(most);
         StepResult {
             index,
-            name: format!("{}{}", step.name, number[usize::from(repeat > 1)]),
+            name: step.name.clone(),
+            turn: turn as u32 + 1,
+            turns: repeat as u32,
+            kind: ResultKind::Step,
             line: step.line,
             verdict,
-            repeated: false,
             findings: found,
             suspect: None,
             started: Instant::ZERO,
@@ -443,11 +444,11 @@ impl<'a> Making<'a> {
         result: &StepResult,
         to: &mut Collector<'_>,
     ) -> Verdict {
-        let attempt = |index: usize, name: String, verdict: Verdict| StepResult {
+        let attempt = |index: usize, kind: ResultKind, verdict: Verdict| StepResult {
             index,
-            name,
+            name: of.steps[index].name.clone(),
+            kind,
             verdict,
-            repeated: verdict == Skipped,
             findings: Finding::StoodStill {
                 by: Duration::from_ms(300),
                 attempt: 1,
@@ -456,13 +457,13 @@ impl<'a> Making<'a> {
             measurements: Vec::new(),
             ..result.clone()
         };
-        let first = attempt(result.index, result.name.clone(), Skipped);
+        let first = attempt(result.index, ResultKind::Attempt, Skipped);
         self.note(place, first, to);
         if result.index == 0 || self.chance.one_in(2) {
             return Skipped;
         }
-        let name = format!("{} (repeated)", of.steps[result.index - 1].name);
-        self.note(place, attempt(result.index - 1, name, Verdict::Failed), to);
+        let again = attempt(result.index - 1, ResultKind::Again, Verdict::Failed);
+        self.note(place, again, to);
         Verdict::Failed
     }
 
@@ -489,6 +490,8 @@ impl<'a> Making<'a> {
         let finding = Finding::CheckFailed {
             procedure: "made/up".into(),
             step: result.name.clone(),
+            turn: result.turn,
+            turns: result.turns,
             findings: result.findings.clone(),
         };
         to.take(SessionEvent::Run(RunEvent::StepFinished(result)));

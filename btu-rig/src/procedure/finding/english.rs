@@ -242,8 +242,13 @@ impl Display for Finding {
             Self::CheckFailed {
                 procedure,
                 step,
+                turn,
+                turns,
                 findings,
-            } => write!(f, "{procedure}, {step}: {findings}"),
+            } => match turns {
+                1 => write!(f, "{procedure}, {step}: {findings}"),
+                _ => write!(f, "{procedure}, {step} ({turn}/{turns}): {findings}"),
+            },
             Self::More { n } => write!(f, "and {n} more"),
         }
     }

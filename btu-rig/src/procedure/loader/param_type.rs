@@ -20,8 +20,6 @@ pub(super) enum ParamType {
     Text,
     /// A text that names something.
     Name,
-    /// The name of a step.
-    StepName,
     Choice(&'static [&'static str]),
     Signal,
     /// A signal that is compared, or a whole condition.
@@ -58,9 +56,6 @@ impl ParamType {
             Self::Bool => "True or False".into(),
             Self::Text => format!("a text in quotes, at most {LONGEST_TEXT} characters"),
             Self::Name => format!("a name in quotes, at most {LONGEST_NAME} characters"),
-            Self::StepName => format!(
-                "a name in quotes, at most {LONGEST_NAME} characters, without (1/2) or (repeated) at its end"
-            ),
             Self::Choice(words) => format!("one of \"{}\"", words.join("\", \"")),
             Self::Signal | Self::Subject => "a signal such as eb or speed".into(),
             Self::Condition => "a condition such as is_(eb, \"applied\")".into(),
@@ -94,10 +89,6 @@ impl ParamType {
             Self::Bool => matches!(item, Item::Bool(_)),
             Self::Text => return text(item, LONGEST_TEXT),
             Self::Name => return text(item, LONGEST_NAME),
-            Self::StepName => match item {
-                Item::Text(name) if is_of_repetition(name) => false,
-                item => return text(item, LONGEST_NAME),
-            },
             Self::Choice(words) => match item {
                 Item::Text(word) if words.contains(&word.as_str()) => true,
                 Item::Text(word) => {
@@ -144,18 +135,6 @@ impl ParamType {
         };
         if fits { Ok(()) } else { Err(item.found()) }
     }
-}
-
-/// Whether the runner would name a repetition of a step so: results of another step would be counted with it.
-fn is_of_repetition(name: &str) -> bool {
-    let last = name
-        .rsplit_once(" (")
-        .and_then(|(_, end)| end.strip_suffix(')'));
-    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    last.is_some_and(|end| {
-        let of = end.split_once('/');
-        end == "repeated" || of.is_some_and(|(n, all)| is_number(n) && is_number(all))
-    })
 }
 
 /// Whether all of them are sources that exist; `Err` says which is none.

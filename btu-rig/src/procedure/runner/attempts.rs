@@ -18,7 +18,7 @@ use crate::procedure::event_set::EventSet;
 use crate::procedure::evidence::LogState;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::Procedure;
-use crate::procedure::report::{RunEvent, StepResult};
+use crate::procedure::report::{ResultKind, RunEvent, StepResult};
 
 /// How often a step is begun at most.
 pub const ATTEMPTS: u32 = 3;
@@ -181,7 +181,7 @@ impl Runner {
     /// Reports the steps that cannot be run without the one given up as skipped; the place of the next one that can.
     fn after_given_up(&mut self, target: usize, now: Instant) -> Option<usize> {
         let procedure = Arc::clone(&self.procedure);
-        let name = self.schedule[target].name(&procedure.steps[self.schedule[target].index]);
+        let name = &procedure.steps[self.schedule[target].index].name;
         let mut next = target + 1;
         while let Some(turn) = self.schedule.get(next).copied() {
             if !procedure.steps[turn.index].continues {
@@ -205,14 +205,19 @@ impl Runner {
         let last = attempt >= ATTEMPTS;
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
-            name: turn.name(step),
+            name: step.name.clone(),
+            turn: turn.turn,
+            turns: turn.turns,
+            kind: match last {
+                true => ResultKind::Step,
+                false => ResultKind::Attempt,
+            },
             line: step.line,
             verdict: if last {
                 Verdict::Error
             } else {
                 Verdict::Skipped
             },
-            repeated: !last,
             findings: Finding::StoodStill { by, attempt }.into(),
             suspect: None,
             started,

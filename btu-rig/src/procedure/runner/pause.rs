@@ -53,7 +53,7 @@ impl Runner {
     }
 
     /// Whether the next step, called `name`, must wait; says so once.
-    pub(super) fn holds_back(&mut self, name: impl FnOnce() -> String, now: Instant) -> bool {
+    pub(super) fn holds_back(&mut self, name: &str, now: Instant) -> bool {
         if !self.pause.on {
             return false;
         }
@@ -65,7 +65,7 @@ impl Runner {
         if !self.pause.said {
             self.pause.said = true;
             self.out.push(RunEvent::Paused {
-                next: name(),
+                next: name.to_owned(),
                 at: now,
             });
         }

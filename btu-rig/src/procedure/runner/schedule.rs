@@ -1,6 +1,6 @@
 //! The steps to run, in order and with their repetitions.
 
-use crate::procedure::plan::{Procedure, Step};
+use crate::procedure::plan::Procedure;
 
 /// What a prompt does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,18 +46,8 @@ impl Default for RunOptions {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScheduledStep {
     pub index: usize,
-    number: u32,
-    of: u32,
-}
-
-impl ScheduledStep {
-    pub(super) fn name(self, step: &Step) -> String {
-        if self.of == 1 {
-            step.name.clone()
-        } else {
-            format!("{} ({}/{})", step.name, self.number, self.of)
-        }
-    }
+    pub turn: u32,
+    pub turns: u32,
 }
 
 /// The chosen steps, each with its own repetitions, in one of the procedure's, counted from 0.
@@ -73,8 +63,8 @@ pub(super) fn schedule(
         let repeat = procedure.steps[index].repeat;
         turns.extend((1..=repeat).map(|k| ScheduledStep {
             index,
-            number: round * repeat + k,
-            of: options.repeat * repeat,
+            turn: round * repeat + k,
+            turns: options.repeat * repeat,
         }));
     }
     turns

@@ -11,7 +11,7 @@ use crate::procedure::action_run::{ActionRun, Scan};
 use crate::procedure::condition::Answer;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::{Action, OnFail, Step};
-use crate::procedure::report::{RunEvent, StepResult};
+use crate::procedure::report::{ResultKind, RunEvent, StepResult};
 use crate::procedure::step_run::StepRun;
 use crate::procedure::{Driver, Verdict};
 
@@ -36,7 +36,7 @@ impl Runner {
             };
             let step = &procedure.steps[turn.index];
             let idle = live.is_none();
-            if idle && self.holds_back(|| turn.name(step), now) {
+            if idle && self.holds_back(&step.name, now) {
                 return;
             }
             if !idle || self.start_step(step, turn, (now, sample), driver) {
@@ -101,7 +101,9 @@ impl Runner {
         }
         self.out.push(RunEvent::StepStarted {
             index: turn.index,
-            name: turn.name(step),
+            name: step.name.clone(),
+            turn: turn.turn,
+            turns: turn.turns,
             at: now,
         });
         self.provoked = self.provoked.union(step.provoked().collect());
@@ -159,13 +161,15 @@ impl Runner {
         }
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
-            name: match before_target {
-                true => format!("{} (repeated)", turn.name(step)),
-                false => turn.name(step),
+            name: step.name.clone(),
+            turn: turn.turn,
+            turns: turn.turns,
+            kind: match before_target {
+                true => ResultKind::Again,
+                false => ResultKind::Step,
             },
             line: step.line,
             verdict: end.verdict,
-            repeated: false,
             findings: end.findings,
             suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
@@ -182,7 +186,7 @@ impl Runner {
         let step = &self.procedure.steps[turn.index];
         let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
         if stops && verdict != Verdict::Passed {
-            let step = turn.name(step);
+            let step = step.name.clone();
             self.skip_rest(now, &Finding::NotPassed { step }.not_run());
         }
     }
@@ -225,10 +229,12 @@ impl Runner {
         let step = &self.procedure.steps[turn.index];
         self.out.push(RunEvent::StepFinished(StepResult {
             index: turn.index,
-            name: turn.name(step),
+            name: step.name.clone(),
+            turn: turn.turn,
+            turns: turn.turns,
+            kind: ResultKind::Step,
             line: step.line,
             verdict,
-            repeated: false,
             findings: reason.clone().into(),
             suspect: self.suspect(step),
             started: now,

@@ -456,15 +456,3 @@ fn a_dictionary_survives_packing_and_a_damaged_one_is_refused() {
     }
     assert!(Dictionary::from_bytes(&packed[..packed.len() / 2]).is_err());
 }
-
-/// A repetition, `s1 (2/3)`, is the check `s1` again.
-#[test]
-fn repetitions_are_known_by_their_step() {
-    let dictionary = dictionary();
-    assert_eq!(
-        dictionary.place(&name("a", "s1 (2/3)")),
-        dictionary.place(&name("a", "s1"))
-    );
-    assert_eq!(dictionary.place(&name("a", "s9")), None);
-    assert_eq!(dictionary.place(&name("a", "s1 (left)")), None);
-}

@@ -7,7 +7,7 @@
 mod table;
 
 use btu_rig::procedure::{
-    EventSource, Findings, Measurement, Procedure, RunEvent, StepResult, UnitEvent,
+    EventSource, Findings, Measurement, Procedure, ResultKind, RunEvent, StepResult, UnitEvent,
 };
 use protocol::lru;
 use serde_json::{Map, Value, json};
@@ -97,9 +97,15 @@ fn of_runner(event: &RunEvent) -> (&'static str, Value) {
             "procedure_started",
             json!({ "at_us": at.as_us(), "steps": steps }),
         ),
-        RunEvent::StepStarted { index, name, at } => (
+        RunEvent::StepStarted {
+            index,
+            name,
+            turn,
+            turns,
+            at,
+        } => (
             "step_started",
-            json!({ "at_us": at.as_us(), "index": index, "name": name }),
+            json!({ "at_us": at.as_us(), "index": index, "name": name, "turn": turn, "turns": turns }),
         ),
         RunEvent::Paused { next, at } => ("paused", json!({ "at_us": at.as_us(), "next": next })),
         RunEvent::Waiting { action, left } => (
@@ -146,8 +152,9 @@ fn measured(index: usize, measurement: &Measurement) -> Value {
 
 fn of_step(result: &StepResult) -> Value {
     json!({
-        "index": result.index, "name": result.name, "verdict": result.verdict.label(),
-        "message": result.findings.to_string(), "findings": result.findings, "repeated": result.repeated,
+        "index": result.index, "name": result.name, "turn": result.turn, "turns": result.turns,
+        "verdict": result.verdict.label(), "message": result.findings.to_string(), "findings": result.findings,
+        "repeated": result.kind == ResultKind::Attempt, "again": result.kind == ResultKind::Again,
         "suspect": result.suspect.as_ref().map(|part| lru::stored(Some(part))),
         "started_us": result.started.as_us(), "bench_time_us": result.bench_time.as_us(),
         "script_line": result.line,

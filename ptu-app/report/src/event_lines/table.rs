@@ -54,6 +54,8 @@ const VERDICT: (&str, Kind, &str) = (
     "passed, failed, error, skipped, inconclusive or aborted",
 );
 const INDEX: (&str, Kind, &str) = ("index", Whole, "place of the step in the procedure, from 0");
+const TURN: (&str, Kind, &str) = ("turn", Whole, "which repetition of the step, from 1");
+const TURNS: (&str, Kind, &str) = ("turns", Whole, "of so many");
 const LOG: &[(&str, Kind, &str)] = &[
     (
         "source",
@@ -101,7 +103,9 @@ pub const EVENTS: &[EventKeys] = &[
         &[
             AT,
             INDEX,
-            ("name", Text, "its name, with (2/3) where it is repeated"),
+            ("name", Text, "its name"),
+            TURN,
+            TURNS,
         ],
     ),
     (
@@ -156,7 +160,9 @@ pub const EVENTS: &[EventKeys] = &[
         "a step is done",
         &[
             INDEX,
-            ("name", Text, "its name, with (2/3) where it is repeated"),
+            ("name", Text, "its name"),
+            TURN,
+            TURNS,
             VERDICT,
             MESSAGE,
             FINDINGS,
@@ -164,6 +170,11 @@ pub const EVENTS: &[EventKeys] = &[
                 "repeated",
                 Bit,
                 "it was not tested and is begun again; another line follows",
+            ),
+            (
+                "again",
+                Bit,
+                "it was run again only for the state that it leaves, and shows something else",
             ),
             ("suspect", TextOrNull, "part to suspect if it failed"),
             ("started_us", Whole, "bench time at which it began, µs"),

@@ -3,7 +3,6 @@
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
 use ptu_runs::run::uncertainty_of;
-use ptu_runs::stored::outside_of;
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use super::sources::Sources;
@@ -43,10 +42,7 @@ pub fn table<'a>(
 fn rows(step: &StepRecord, sources: &Sources<'_>, words: &Words) -> Vec<Row> {
     let source = sources.number(step.limit_source.as_deref());
     let plain = |text: String| Cell::Text(Tone::Plain, text);
-    let name = match outside_of(step) {
-        Some(place) => words.common.outside(place).to_owned(),
-        None => words.content(&step.name).into_owned(),
-    };
+    let name = words.record(step);
     let mut rows = vec![Row {
         kind: RowKind::Head,
         cells: vec![

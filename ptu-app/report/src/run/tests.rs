@@ -115,6 +115,8 @@ fn step(index: u32, failed: bool) -> StepRecord {
         procedure: format!("atp/part_{}", index / 40),
         kind: fault_db::StepKind::Step,
         place: Some(index),
+        turn: 1,
+        turns: 1,
         name: format!(
             "step no {index} {}",
             "of a very long name ".repeat(index as usize % 9)

@@ -8,14 +8,11 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use fault_db::base_name;
 use protocol::event::Event;
 use serde::Deserialize;
 
 /// The texts that are built in, as their file has them.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
-/// Behind the name of a step that was run again only for the state that it leaves.
-const REPEATED: &str = " (repeated)";
 /// Between texts that were found together.
 const JOINED: &str = "; ";
 
@@ -72,13 +69,6 @@ impl Content {
         }
         if let Some(event) = Event::from_name(text) {
             return Some(event.definition().text_ko.to_owned());
-        }
-        if let Some(step) = text.strip_suffix(REPEATED) {
-            return Some(format!("{} (반복)", self.say(step)?));
-        }
-        let step = base_name(text);
-        if step != text {
-            return Some(self.say(step)? + &text[step.len()..]);
         }
         if !text.contains(JOINED) {
             return None;

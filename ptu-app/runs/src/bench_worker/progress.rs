@@ -5,7 +5,8 @@ use std::time;
 
 use btu_rig::procedure::plan::{Action, Step};
 use btu_rig::procedure::{
-    Findings, Measurement, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict,
+    Findings, Measurement, Outside, OutsideStep, Procedure, ResultKind, RunEvent, StepResult,
+    Verdict,
 };
 use fault_db::{StepCounter, StepCounts};
 use protocol::Duration;
@@ -70,8 +71,10 @@ pub struct RunPosition {
     pub procedure: usize,
     /// Place of the step in its procedure, once one has begun.
     pub step: Option<usize>,
-    /// The step's name, with its repetition.
+    /// The step's name.
     pub name: String,
+    /// Which repetition of it, from 1, of so many.
+    pub turn: [u32; 2],
     /// What is waited for, and until when.
     pub waiting: Option<Waiting<Action>>,
     /// What the operator is asked, and until when.
@@ -236,10 +239,17 @@ impl Progress {
     fn event(&mut self, place: usize, event: &RunEvent) {
         match event {
             RunEvent::ProcedureStarted { .. } => self.present = Some(RunPosition::of(place)),
-            RunEvent::StepStarted { index, name, .. } => {
+            RunEvent::StepStarted {
+                index,
+                name,
+                turn,
+                turns,
+                ..
+            } => {
                 self.present = Some(RunPosition {
                     step: Some(*index),
                     name: name.clone(),
+                    turn: [*turn, *turns],
                     ..RunPosition::of(place)
                 });
             }
@@ -286,8 +296,10 @@ impl Progress {
             self.procedures[place].results.push(StepResult {
                 index: OUTSIDE,
                 name: entry.place.name().to_owned(),
+                turn: 1,
+                turns: 1,
+                kind: ResultKind::Step,
                 line: 0,
-                repeated: false,
                 verdict: entry.verdict,
                 findings: entry.finding.clone().into(),
                 suspect: None,
@@ -300,7 +312,7 @@ impl Progress {
     }
 
     fn step_finished(&mut self, place: usize, result: &StepResult) {
-        self.done += usize::from(!result.repeated);
+        self.done += usize::from(result.kind != ResultKind::Attempt);
         self.counter
             .note((place, result.index), stored(result.verdict));
         if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
@@ -348,6 +360,7 @@ impl RunPosition {
             procedure,
             step: None,
             name: String::new(),
+            turn: [1, 1],
             waiting: None,
             prompt: None,
             paused: None,

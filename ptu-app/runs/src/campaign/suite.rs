@@ -101,16 +101,10 @@ impl Suite {
     pub fn checks(&self) -> Vec<(CheckName, Option<LruId>)> {
         let of_task = |task: &Task| {
             let procedure = task.procedure.clone();
-            let named = procedure.steps.iter().flat_map(|step| {
-                let names = match step.repeat {
-                    1 => vec![step.name.clone()],
-                    n => (1..=n)
-                        .map(|turn| format!("{} ({turn}/{n})", step.name))
-                        .collect(),
-                };
-                names.into_iter().map(|name| (name, step.suspect.clone()))
-            });
-            let named: Vec<_> = named.collect();
+            let steps = procedure.steps.iter();
+            let named: Vec<_> = steps
+                .map(|step| (step.name.clone(), step.suspect.clone()))
+                .collect();
             named.into_iter().map(move |(step, suspect)| {
                 let procedure = procedure.id.clone();
                 (CheckName { procedure, step }, suspect)

@@ -82,6 +82,8 @@ fn step(index: u32, run: &RecordedRun) -> StepRecord {
         procedure: "record".into(),
         kind: fault_db::StepKind::Step,
         place: Some(index),
+        turn: 1,
+        turns: 1,
         name: run.name(),
         verdict: Verdict::Skipped,
         started_bench_us: i64::from(run.at_ms) * 1000,

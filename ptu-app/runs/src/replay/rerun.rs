@@ -272,6 +272,8 @@ fn write(
         procedure: original.procedure.clone(),
         kind: fault_db::StepKind::Step,
         place: Some(0),
+        turn: 1,
+        turns: 1,
         name: format!("replay of trace {}", original.id.short()),
         verdict,
         started_bench_us: began_us,

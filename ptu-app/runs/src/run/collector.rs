@@ -1,7 +1,9 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
-use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
+use btu_rig::procedure::{
+    Finding, Outside, OutsideStep, Procedure, ResultKind, RunEvent, StepResult, Verdict,
+};
 use btu_rig::recorder::RecordedWindow;
 use fault_db::{
     Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepKind, StepRecord,
@@ -273,12 +275,15 @@ impl<'a> Collector<'a> {
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
-            kind: match result.repeated {
-                true => StepKind::Attempt,
-                false => StepKind::Step,
+            kind: match result.kind {
+                ResultKind::Step => StepKind::Step,
+                ResultKind::Attempt => StepKind::Attempt,
+                ResultKind::Again => StepKind::Again,
             },
             place: Some(result.index as u32),
             name: result.name,
+            turn: result.turn,
+            turns: result.turns,
             verdict: stored(result.verdict),
             started_bench_us: (self.before + Duration::from_us(result.started.as_us())).as_us()
                 as i64,

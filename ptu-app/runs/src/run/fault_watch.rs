@@ -133,6 +133,8 @@ pub fn of_step(
         finding: Finding::CheckFailed {
             procedure: procedure.id.clone(),
             step: result.name.clone(),
+            turn: result.turn,
+            turns: result.turns,
             findings: result.findings.clone(),
         },
         freeze: freeze_frame(sample),

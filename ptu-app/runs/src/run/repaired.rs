@@ -51,15 +51,7 @@ fn failed_before_repair(store: &Store, unit: &str) -> Result<BTreeSet<(String, S
     for run in runs {
         let steps = store.run(run)?.steps.into_iter();
         let failed = steps.filter(|step| seen.contains(&(run, step.index)));
-        // A repetition is named by its number, too.
-        checks.extend(failed.map(|step| {
-            let name = step
-                .name
-                .rsplit_once(" (")
-                .filter(|(_, of)| of.contains('/'));
-            let name = name.map_or(step.name.as_str(), |(name, _)| name).to_owned();
-            (step.procedure, name)
-        }));
+        checks.extend(failed.map(|step| (step.procedure, step.name)));
     }
     Ok(checks)
 }

@@ -29,6 +29,11 @@ pub fn short(text: &str) -> Told {
     vec![fact("run", run), fact("planned", planned)]
 }
 
+/// Of what a record says that it is.
+fn is_step(kind: &str) -> bool {
+    ["step", "attempt", "again"].contains(&kind)
+}
+
 /// What the row of a lost link begins with.
 const LOST: &str = "link lost at step ";
 
@@ -111,7 +116,7 @@ pub fn json(run: &Value) -> Told {
     let steps = list(&run["steps"]);
     told.extend(results(steps.iter().map(|step| {
         let [name, verdict, why] = ["name", "verdict", "message"].map(|key| text(&step[key]));
-        (step["kind"] == "step", name, verdict, why)
+        (is_step(text(&step["kind"])), name, verdict, why)
     })));
     let values = steps.iter().flat_map(|step| list(&step["measurements"]));
     told.extend(measured(values.map(|one| {
@@ -158,7 +163,7 @@ pub fn table_of_values(csv: &str) -> Told {
         steps.insert(row[4].parse().expect("a place"), row);
     }
     let all = steps.values();
-    let mut told = results(all.map(|row| (row[6] == "step", &*row[5], &*row[7], &*row[9])));
+    let mut told = results(all.map(|row| (is_step(&row[6]), &*row[5], &*row[7], &*row[9])));
     let values = rows.iter().filter(|row| !row[10].is_empty());
     told.extend(measured(values.map(|row| {
         let numbers = [11, 13, 14].map(|place: usize| row[place].parse::<f64>().ok());
@@ -198,7 +203,7 @@ pub fn junit(xml: &str) -> Told {
     for case in suites.flat_map(|suite| &suite.test_cases) {
         let mut properties = case.properties.iter();
         let kind = properties.find(|property| property.name.as_str() == "kind");
-        let is_step = kind.is_some_and(|kind| kind.value.as_str() == "step");
+        let is_step = kind.is_some_and(|kind| is_step(kind.value.as_str()));
         let (place, reruns) = match &case.status {
             TestCaseStatus::Success { .. } => (Some(0), Vec::new()),
             TestCaseStatus::Skipped { .. } => (None, Vec::new()),

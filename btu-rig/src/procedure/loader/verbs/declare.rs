@@ -47,7 +47,7 @@ pub(super) static VERBS: &[Verb] = &[
     Verb {
         name: "step",
         params: &[
-            needs("name", ParamType::StepName),
+            needs("name", ParamType::Name),
             takes("do", ParamType::Actions),
             takes("expect", ParamType::Expectations),
             takes("measure", ParamType::Measures),

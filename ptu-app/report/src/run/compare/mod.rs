@@ -12,7 +12,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, base_name, rank};
+use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, rank};
 
 use super::steps::passed;
 use ptu_runs::failure::Failure;
@@ -225,7 +225,7 @@ type Key<'a> = (&'a str, &'a str, bool);
 
 fn key(step: &StepRecord) -> Key<'_> {
     let is_step = outside_of(step).is_none();
-    (&step.procedure, base_name(&step.name), is_step)
+    (&step.procedure, &step.name, is_step)
 }
 
 /// The names of the steps in their order, each once.

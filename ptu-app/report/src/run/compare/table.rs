@@ -1,6 +1,6 @@
 //! What was tested twice as a table: before and after with limits, and of two runs the change.
 
-use fault_db::{MeasurementRecord, StepRecord, Verdict, base_name};
+use fault_db::{MeasurementRecord, StepRecord, Verdict};
 use ptu_runs::stored::outside_of;
 
 use super::{Compared, StepPair};
@@ -170,6 +170,6 @@ fn limits(measured: &MeasurementRecord, words: &Words) -> String {
 pub fn name_of(step: &StepRecord, words: &Words) -> String {
     match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),
-        None => words.content(base_name(&step.name)).into_owned(),
+        None => words.content(&step.name).into_owned(),
     }
 }

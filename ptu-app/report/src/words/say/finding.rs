@@ -225,8 +225,13 @@ pub fn korean(finding: &Finding) -> String {
         Finding::CheckFailed {
             procedure,
             step,
+            turn,
+            turns,
             findings: found,
-        } => format!("{procedure}, {}: {}", told(step), findings(found)),
+        } => {
+            let step = KOREAN.step(step, [*turn, *turns], false);
+            format!("{procedure}, {step}: {}", findings(found))
+        }
         Finding::More { n } => format!("그 외 {n}건"),
     }
 }

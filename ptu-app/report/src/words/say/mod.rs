@@ -13,6 +13,9 @@ use std::borrow::Cow;
 
 use btu_rig::procedure::finding::{Finding, Findings};
 use btu_rig::procedure::plan::Action;
+use btu_rig::procedure::{ResultKind, StepResult};
+use fault_db::{StepKind, StepRecord};
+use ptu_runs::bench_worker::outside_place;
 use ptu_runs::stored;
 
 use super::{Language, Words, names};
@@ -45,6 +48,38 @@ impl Words {
             (Action::Settle { .. }, Language::English) => "the motion or request to end".to_owned(),
             (Action::Wait(span), Language::Korean) => format!("{span} 경과"),
             (other, _) => other.to_string(),
+        }
+    }
+
+    /// A step by its name and its turn of so many; perhaps it was run again only for the state that it leaves.
+    pub fn step(&self, name: &str, [turn, turns]: [u32; 2], again: bool) -> String {
+        let mut said = self.content(name).into_owned();
+        if turns > 1 {
+            said += &format!(" ({turn}/{turns})");
+        }
+        if again {
+            said += &format!(" ({})", self.common.run_again);
+        }
+        said
+    }
+
+    /// What is on record: a step, or where something failed that is none.
+    pub fn record(&self, of: &StepRecord) -> String {
+        match stored::outside_of(of) {
+            Some(place) => self.common.outside(place).to_owned(),
+            None => self.step(&of.name, [of.turn, of.turns], of.kind == StepKind::Again),
+        }
+    }
+
+    /// The same of a run that is under way.
+    pub fn result(&self, of: &StepResult) -> String {
+        match outside_place(of) {
+            Some(place) => self.common.outside(place).to_owned(),
+            None => self.step(
+                &of.name,
+                [of.turn, of.turns],
+                of.kind == ResultKind::Again,
+            ),
         }
     }
 

@@ -13,17 +13,13 @@ fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
     plan.tasks[0].options.repeat = 3;
     let (outcome, detail) = recorded(&Arc::new(StopBeforeScan::default()), &plan, setup(&[]));
     assert_eq!(outcome.exit, Exit::Passed, "{:#?}", detail.steps);
-    let names: Vec<_> = detail.steps.iter().map(|step| step.name.as_str()).collect();
-    let rounds = [
-        "off (1/3)",
-        "on (1/3)",
-        "off (2/3)",
-        "on (2/3)",
-        "off (3/3)",
-        "on (3/3)",
-    ];
-    assert_eq!(names[..6], rounds);
-    assert_eq!(names[6..], ["waits"]);
+    let steps = detail.steps.iter();
+    let turns: Vec<_> = steps
+        .map(|step| (step.name.as_str(), step.turn, step.turns))
+        .collect();
+    let rounds = (1..=3).flat_map(|turn| [("off", turn, 3), ("on", turn, 3)]);
+    let rounds: Vec<_> = rounds.chain([("waits", 1, 1)]).collect();
+    assert_eq!(turns, rounds);
 }
 
 /// Goal: repetitions that were still due make a run that was stopped aborted, when the one under way had

@@ -30,6 +30,8 @@ fn step(index: u32) -> StepRecord {
         procedure: "atp/overspeed".into(),
         kind: fault_db::StepKind::Step,
         place: Some(index),
+        turn: 1,
+        turns: 1,
         name: format!("step {index}"),
         verdict: Verdict::Passed,
         started_bench_us: 0,

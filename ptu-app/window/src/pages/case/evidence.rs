@@ -12,7 +12,7 @@ use super::chain::chain;
 use crate::pages::traces::SmallTrace;
 use crate::request::Request;
 use crate::{DataPaths, PageContext, Palette};
-use ptu_report::naming::{PartNames, is_of_step};
+use ptu_report::naming::{PartNames, failed_turn};
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Progress;
@@ -147,7 +147,7 @@ fn read(
     let shows = |seen: &&RunOccurrence| {
         let check = on_way.as_ref().map(|(check, ..)| check);
         check.is_some_and(|check| {
-            is_of_step(&findings(&seen.findings), &check.procedure.id, &check.name)
+            failed_turn(&findings(&seen.findings), &check.procedure.id, &check.name).is_some()
         })
     };
     let seen = store.run_occurrences(run)?;

@@ -89,9 +89,9 @@ fn failures(ui: &mut Ui, words: &Words, run: &Progress) {
     for (place, (procedure, result)) in failed.take(FAILURES).enumerate() {
         ui.horizontal_wrapped(|ui| {
             verdict_chip(ui, result.verdict, words);
-            let name = words.content(&result.name);
+            let name = words.result(result);
             ui.label(match Sizes::of(ui).density {
-                Density::Operator => name.into_owned(),
+                Density::Operator => name,
                 Density::Engineer => format!("{procedure}: {name}"),
             });
             ui.label(words.findings(&result.findings));

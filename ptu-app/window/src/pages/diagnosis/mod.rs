@@ -10,7 +10,7 @@ use fault_db::{Id, RunOccurrence};
 use crate::parts::{FirstHalf, RunList};
 use crate::request::Request;
 use crate::{DataPaths, Destination, PageContext, Palette};
-use ptu_report::naming::{PartNames, is_of_step};
+use ptu_report::naming::{PartNames, failed_turn};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
@@ -75,7 +75,7 @@ impl NamedAnswer {
     fn trace_of(&self, reason: &Reason) -> Option<Id> {
         let check = reason.step()?;
         let mut traced = self.traced.iter();
-        let about = traced.find(|(_, seen)| is_of_step(seen, &check.procedure, &check.step));
+        let about = traced.find(|(_, seen)| failed_turn(seen, &check.procedure, &check.step).is_some());
         about?.0.trace_id
     }
 }

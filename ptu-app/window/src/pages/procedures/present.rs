@@ -34,9 +34,10 @@ pub fn present(
     };
     let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
+    let name = words.step(&present.name, present.turn, false);
     let name = match with_path {
-        true => format!("{}: {}", procedure.id, words.content(&present.name)),
-        false => words.content(&present.name).into_owned(),
+        true => format!("{}: {name}", procedure.id),
+        false => name,
     };
     ui.label(RichText::new(name).strong().size(17.0));
     ui.label(RichText::new(title(procedure, words)).italics());

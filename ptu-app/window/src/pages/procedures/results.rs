@@ -11,7 +11,7 @@ use protocol::lru;
 use crate::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
 use crate::query_worker::QueryWorker;
 use crate::{Density, Destination, Palette, Sizes};
-use ptu_report::naming::{self, PartNames, code, is_of_step};
+use ptu_report::naming::{self, PartNames, code, failed_turn};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, outside_place};
@@ -119,7 +119,7 @@ fn trace_of(
     let mut traced = traced.iter();
     Some(
         traced
-            .find(|(seen, _)| is_of_step(seen, procedure, &result.name))?
+            .find(|(seen, _)| failed_turn(seen, procedure, &result.name) == Some(result.turn))?
             .1,
     )
 }
@@ -136,7 +136,7 @@ fn row(
     let row = ui.horizontal(|ui| {
         verdict_chip(ui, result.verdict, words);
         let id = run.procedures.get(place.0).map(|p| p.procedure.id.as_str());
-        let name = format!("{}: {}", id.unwrap_or_default(), name(result, words));
+        let name = format!("{}: {}", id.unwrap_or_default(), words.result(result));
         let to_trace = has_trace && link(ui, words.faults.to_trace).clicked();
         if ui.selectable_label(on, name).clicked() {
             shown.chosen = (!on).then_some(place);
@@ -149,14 +149,6 @@ fn row(
         to_trace
     });
     row.inner
-}
-
-/// The step's name, or where it failed if that is no step.
-fn name<'a>(result: &'a StepResult, words: &'a Words) -> Cow<'a, str> {
-    match outside_place(result) {
-        Some(place) => words.common.outside(place).into(),
-        None => words.content(&result.name),
-    }
 }
 
 fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a StepResult)> {
@@ -178,7 +170,7 @@ fn details(
         return;
     };
     let procedure = &progress.procedure;
-    let name = name(result, words);
+    let name = words.result(result);
     ui.label(RichText::new(format!("{}: {name}", procedure.id)).strong());
     if !result.findings.is_empty() {
         ui.label(words.findings(&result.findings));
