@@ -1,9 +1,11 @@
-//! What made runs are of: procedures, of their own or of the fault dictionary, and plans.
+//! What made runs are of: procedures, of their own or of the fault dictionary, and plans; and who follows them.
 
 use btu_rig::procedure::{Procedure, Verdict};
 use diagnosis::{Dictionary, Mode};
 use protocol::Duration;
-use ptu_runs::run::BenchContents;
+use ptu_report::event_lines::EventLines;
+use ptu_runs::bench_worker::Progress;
+use ptu_runs::run::{BenchContents, Listener, SessionEvent};
 use serde_json::{from_value, json};
 
 /// What stands in a step's name behind its mark.
@@ -22,6 +24,16 @@ impl Chance {
 
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
+    }
+}
+
+/// What follows a run while it goes on: the stream, its lines, and the window.
+pub struct Heard(pub EventLines, pub Vec<String>, pub Progress);
+
+impl Listener for Heard {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        self.1.extend(self.0.event(procedure, event));
+        self.2.on_event(&procedure.id, event);
     }
 }
 

@@ -20,14 +20,15 @@ use ptu_report::event_lines::EventLines;
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::clock;
 use ptu_runs::run::{
-    CHECK_FAILED, Collector, Evidence, FaultSeen, Listener, MeasuringRules, RunPlan, RunStart,
+    CHECK_FAILED, Collector, Evidence, FaultSeen, MeasuringRules, RunPlan, RunStart,
     RunStore, SessionEvent, Task, different_steps,
 };
 use ptu_runs::stop::Stop;
 use ptu_runs::stored::stored;
 
-use super::made_plans::{Chance, contents, known, likeliest, own};
-use super::told::{marks, sorted, value_and_limits};
+use super::made_elsewhere::read_of_a_unit;
+use super::made_plans::{Chance, Heard, contents, known, likeliest, own};
+use super::told::{Facts, marks, sorted, turn_of, turned, value_and_limits};
 
 /// How a run goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,21 +48,16 @@ pub enum Kind {
     NoSteps,
     Pair,
     Outside,
+    Imported,
+    Pulled,
 }
 
-const KINDS: [Kind; 15] = [
+const KINDS: [Kind; 17] = [
     Passed, Failed, Error, LinkLost, Stopped, Broken, Adaptive, Resumed, Repeated, Retried,
-    OneStep, OnTrain, NoSteps, Pair, Outside,
+    OneStep, OnTrain, NoSteps, Pair, Outside, Imported, Pulled,
 ];
 /// Parts that faults name.
 pub const PARTS: [&str; 4] = ["eb_relay", "tra", "twc_cpu", "speed_sensor_1"];
-/// Facts of a run by their names, as texts.
-#[derive(Default)]
-pub struct Facts {
-    pub of: String,
-    pub known: BTreeMap<String, String>,
-}
-
 /// A run that was made.
 pub struct Made {
     pub seed: u64,
@@ -69,8 +65,8 @@ pub struct Made {
     pub facts: Facts,
     /// Lines of its stream for other programs.
     pub lines: Vec<String>,
-    /// What the window that led it knows.
-    pub live: Progress,
+    /// What the window that led it knows; none if it was read of a unit.
+    pub live: Option<Progress>,
 }
 
 /// Makes runs in a file.
@@ -97,6 +93,17 @@ impl Maker {
     pub fn make(&mut self, seed: u64) -> Made {
         let store = self.store.take().unwrap_or_else(|| self.open());
         let mut making = Making::new(seed, &self.dictionary);
+        if matches!(making.kind, Imported | Pulled) {
+            let (id, facts) = making.read_of_a_unit(&store);
+            self.store = Some(store);
+            return Made {
+                seed,
+                id,
+                facts,
+                lines: Vec::new(),
+                live: None,
+            };
+        }
         let record = making.record(self.earlier);
         let run_store = RunStore::begin(store, record, None, &Stop::default()).expect("begun");
         let (id, began) = (run_store.id, RunStart::now());
@@ -134,7 +141,7 @@ impl Maker {
             id,
             facts,
             lines,
-            live,
+            live: Some(live),
         }
     }
 
@@ -149,16 +156,6 @@ impl Maker {
     /// The store of all that was made.
     pub fn store(mut self) -> Store {
         self.store.take().unwrap_or_else(|| self.open())
-    }
-}
-
-/// What follows a run while it goes on: the stream, its lines, and the window.
-struct Heard(EventLines, Vec<String>, Progress);
-
-impl Listener for Heard {
-    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
-        self.1.extend(self.0.event(procedure, event));
-        self.2.on_event(&procedure.id, event);
     }
 }
 
@@ -183,6 +180,12 @@ struct Making<'a> {
     not_passed: Vec<String>,
     values: Vec<(String, String)>,
     parts: BTreeMap<&'static str, usize>,
+    /// Of faults, by part and code.
+    faults: usize,
+    /// Verdict of what was read of a unit.
+    read_as: Option<&'static str>,
+    /// Which repetition the results are of that did not pass.
+    turns: Vec<String>,
     turn: usize,
     measured: usize,
 }
@@ -224,13 +227,19 @@ impl<'a> Making<'a> {
             not_passed: Vec::new(),
             values: Vec::new(),
             parts: BTreeMap::new(),
+            faults: 0,
+            read_as: None,
+            turns: Vec::new(),
             turn: 0,
             measured: 0,
         }
     }
 
     fn planned(&self) -> usize {
-        different_steps(&self.plan.tasks)
+        match self.kind {
+            Imported | Pulled => self.worst.len(),
+            _ => different_steps(&self.plan.tasks),
+        }
     }
 
     fn record(&self, earlier: Option<Id>) -> RunRecord {
@@ -479,7 +488,11 @@ impl<'a> Making<'a> {
         self.attempts += usize::from(rank > 0);
         self.on_bench += usize::from(result.findings.need_harness());
         if rank > 1 {
-            self.not_passed.extend(marks(&result.name, 's'));
+            let marks = marks(&result.name, 's');
+            let is_again = result.kind == ResultKind::Again;
+            let turn = turn_of(result.turn.into(), result.turns.into(), is_again);
+            self.turns.extend(turned(&marks, &turn));
+            self.not_passed.extend(marks);
         }
         for one in &result.measurements {
             let limits = [one.low, one.high];
@@ -497,6 +510,7 @@ impl<'a> Making<'a> {
         to.take(SessionEvent::Run(RunEvent::StepFinished(result)));
         if rank == 3 {
             let part = PARTS[self.chance.below(PARTS.len())];
+            self.faults += usize::from(!self.parts.contains_key(part));
             *self.parts.entry(part).or_default() += 1;
             to.take(SessionEvent::Fault(FaultSeen {
                 code: CHECK_FAILED,
@@ -512,6 +526,19 @@ impl<'a> Making<'a> {
         self.turn += 1;
     }
 
+    /// What was read of a unit, and told by nobody before.
+    fn read_of_a_unit(mut self, store: &Store) -> (Id, Facts) {
+        let is_log = self.kind == Imported;
+        let read = read_of_a_unit(store, self.seed, is_log, &mut self.chance);
+        self.faults = read.parts.len();
+        for part in read.parts {
+            *self.parts.entry(part).or_default() += 1;
+        }
+        self.worst = (0..read.steps).map(|place| ((0, place), 0)).collect();
+        self.read_as = Some(read.verdict);
+        (read.id, self.facts(read.id))
+    }
+
     /// What the run comes to.
     fn facts(mut self, id: Id) -> Facts {
         let planned = self.planned();
@@ -522,6 +549,7 @@ impl<'a> Making<'a> {
         let verdict = match self.kind {
             Broken => "interrupted",
             Stopped => "aborted",
+            Imported | Pulled => self.read_as.expect("read"),
             LinkLost | NoSteps => "error",
             Outside => "failed",
             _ if failed > 0 => "failed",
@@ -533,7 +561,7 @@ impl<'a> Making<'a> {
         let says_left = self.kind == LinkLost && left > 0;
         let is_silent = self.kind == NoSteps && self.outside == 0;
         self.outside += usize::from(says_left || is_silent || verdict == "inconclusive");
-        let (attempts, outside, faults) = (self.attempts, self.outside, self.parts.len());
+        let (attempts, outside, faults) = (self.attempts, self.outside, self.faults);
         let names = "planned|run|passed|failed|error|not passed|not run|attempts|outside|faults|need the bench";
         let bench = self.on_bench;
         let numbers = [
@@ -546,6 +574,7 @@ impl<'a> Making<'a> {
         known.extend([
             sorted("parts", parts.map(|(part, seen)| format!("{part}={seen}"))),
             sorted("steps that did not pass", self.not_passed),
+            sorted("turns that did not pass", self.turns),
             sorted("values", values),
             sorted("limits", limits),
         ]);

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each of the test programs uses its part")]
 
+pub mod made_elsewhere;
 pub mod made_plans;
 pub mod made_runs;
 pub mod proxy;

@@ -6,7 +6,12 @@ use ptu_report::coverage_text;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::{Progress, outside_place};
 
-use super::made_runs::Facts;
+/// Facts of a run by their names, as texts.
+#[derive(Default)]
+pub struct Facts {
+    pub of: String,
+    pub known: BTreeMap<String, String>,
+}
 
 /// Facts that a surface tells, by their names.
 pub type Told = Vec<(String, String)>;
@@ -66,15 +71,47 @@ pub fn numbers(names: &str, numbers: impl IntoIterator<Item = impl ToString>) ->
     names.map(|(name, number)| fact(name, number)).collect()
 }
 
-/// What records of results come to: of each whether it is a step's, its name, its verdict and why.
-pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>) -> Told {
+/// Which of so many repetitions, and whether for the state alone that the step leaves; empty where it is run once.
+pub fn turn_of(turn: u64, turns: u64, is_again: bool) -> String {
+    let again = ["", " again"][usize::from(is_again)];
+    match turns {
+        1 => again.to_owned(),
+        _ => format!(" {turn}/{turns}{again}"),
+    }
+}
+
+/// The same as it stands behind a name.
+pub fn turn_in(name: &str) -> String {
+    let (name, is_again) = match name.strip_suffix(" (repeated)") {
+        Some(name) => (name, true),
+        None => (name, false),
+    };
+    let inside = name.strip_suffix(')').and_then(|name| name.rsplit_once(" ("));
+    let numbers = inside.and_then(|(_, inside)| inside.split_once('/'));
+    let [turn, turns] = numbers.map_or([1, 1], |(turn, turns)| {
+        [turn, turns].map(|number| number.parse().unwrap_or(1))
+    });
+    turn_of(turn, turns, is_again)
+}
+
+/// Marks with their turn, if there is more than one.
+pub fn turned(marks: &[String], turn: &str) -> Vec<String> {
+    let marks = marks.iter().filter(|_| !turn.is_empty());
+    marks.map(|mark| mark.clone() + turn).collect()
+}
+
+/// What records of results come to: of each whether it is a step's, its name, its verdict, why, and its turn.
+pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str, String)>) -> Told {
     let (mut attempts, mut outside, mut bad, mut link) = (0, 0, Vec::new(), None);
-    for (is_step, name, verdict, why) in all {
+    let mut turns = Vec::new();
+    for (is_step, name, verdict, why, turn) in all {
         let is_bad = !["passed", "skipped"].contains(&verdict);
         attempts += usize::from(is_step && verdict != "skipped");
         outside += usize::from(!is_step && is_bad);
         if is_step && is_bad {
-            bad.extend(marks(name, 's'));
+            let marks = marks(name, 's');
+            turns.extend(turned(&marks, &turn));
+            bad.extend(marks);
         }
         link = link.or(Some(why).filter(|why| why.starts_with("link lost at step ")));
     }
@@ -82,6 +119,7 @@ pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str)>)
         fact("attempts", attempts),
         fact("outside", outside),
         sorted("steps that did not pass", bad),
+        sorted("turns that did not pass", turns),
         fact("link en", link.unwrap_or_default()),
     ]
 }
@@ -315,7 +353,9 @@ pub fn live(run: &Progress, language: Language) -> Told {
         .collect();
     let mut told = results(all.iter().map(|(result, why)| {
         let is_step = outside_place(result).is_none();
-        (is_step, &*result.name, result.verdict.label(), why.as_str())
+        let name = language.words().result(result);
+        let turn = turn_in(&name.replace("(반복)", "(repeated)"));
+        (is_step, &*result.name, result.verdict.label(), why.as_str(), turn)
     }));
     let [run_steps, not_run] = [counts.run(), counts.not_run()];
     told.extend(numbers(

@@ -17,7 +17,7 @@ pub use recorded::RecordedRun;
 pub(crate) use recorded::{Rest, recorded_runs};
 pub use request::{CompareRequest, Compared};
 pub(crate) use section::find_section;
-pub use store::{Pulled, pull_reading};
+pub use store::{Pulled, pull, pull_reading};
 
 #[cfg(test)]
 mod tests;

@@ -19,9 +19,11 @@ pub struct Pulled {
     pub known: usize,
 }
 
-/// Stores what is new of `runs`: a trace for each, and a step that names it. If the database fails, what was stored
-/// stays, and the next pull adds the rest.
-fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pulled, StoreError> {
+/// Stores what is new of `runs`: a trace for each, and a step that names it.
+///
+/// # Errors
+/// The database fails; what was stored stays, and the next pull adds the rest.
+pub fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pulled, StoreError> {
     let mut pulled = Pulled::default();
     for run in runs {
         if store.has_trace(run.id)? {

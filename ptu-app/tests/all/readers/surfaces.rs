@@ -10,7 +10,8 @@ use serde_json::Value;
 
 use super::seen;
 use crate::common::told::{
-    Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted,
+    Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted, turn_in,
+    turn_of, turned,
 };
 use crate::common::{list, number, text};
 
@@ -34,6 +35,12 @@ fn is_step(kind: &str) -> bool {
     ["step", "attempt", "again"].contains(&kind)
 }
 
+/// What stands outside of steps has no turns.
+fn turn_of_keys(of: &Value, is_again: bool) -> String {
+    let [turn, turns] = ["turn", "turns"].map(|key| of[key].as_u64().unwrap_or(1));
+    turn_of(turn, turns, is_again)
+}
+
 /// What the row of a lost link begins with.
 const LOST: &str = "link lost at step ";
 
@@ -42,6 +49,7 @@ pub fn console(table: &str) -> Told {
     let mut recorded = 0;
     let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
+    let mut turns = Vec::new();
     for line in table.lines() {
         let cells = columns(line);
         let mut heads = "PROCEDURE|VERDICT|REPEATED STEP|SKIPPED STEPS|FAULT".split('|');
@@ -55,6 +63,7 @@ pub fn console(table: &str) -> Told {
             *passed.get_or_insert(0) += count(3);
         } else if here == "VERDICT" {
             let name = cells[1].split_once(": ").map_or("", |(_, name)| name);
+            turns.extend(turned(&marks(name, 's'), &turn_in(name)));
             bad.extend(marks(name, 's'));
             let mut places = Outside::ALL.iter();
             outside += usize::from(places.any(|place| place.name() == name));
@@ -84,6 +93,7 @@ pub fn console(table: &str) -> Told {
     }
     told.extend([
         sorted("steps that did not pass", bad),
+        sorted("turns that did not pass", turns),
         fact("outside", outside),
     ]);
     told
@@ -116,7 +126,8 @@ pub fn json(run: &Value) -> Told {
     let steps = list(&run["steps"]);
     told.extend(results(steps.iter().map(|step| {
         let [name, verdict, why] = ["name", "verdict", "message"].map(|key| text(&step[key]));
-        (is_step(text(&step["kind"])), name, verdict, why)
+        let turn = turn_of_keys(step, step["kind"] == "again");
+        (is_step(text(&step["kind"])), name, verdict, why, turn)
     })));
     let values = steps.iter().flat_map(|step| list(&step["measurements"]));
     told.extend(measured(values.map(|one| {
@@ -137,7 +148,8 @@ pub fn stream(lines: &[String]) -> Told {
             _ => return None,
         };
         let [verdict, why] = ["verdict", "message"].map(|key| text(&line[key]));
-        Some((line["event"] == "step_finished", name, verdict, why))
+        let turn = turn_of_keys(line, line["again"] == true);
+        Some((line["event"] == "step_finished", name, verdict, why, turn))
     }));
     let mut parts: BTreeMap<&str, u32> = BTreeMap::new();
     let faults = lines.iter().filter(|line| line["event"] == "fault");
@@ -163,7 +175,11 @@ pub fn table_of_values(csv: &str) -> Told {
         steps.insert(row[4].parse().expect("a place"), row);
     }
     let all = steps.values();
-    let mut told = results(all.map(|row| (is_step(&row[6]), &*row[5], &*row[7], &*row[9])));
+    let mut told = results(all.map(|row| {
+        let [turn, turns] = [17, 18].map(|place: usize| row[place].parse().expect("a number"));
+        let turn = turn_of(turn, turns, row[6] == "again");
+        (is_step(&row[6]), &*row[5], &*row[7], &*row[9], turn)
+    }));
     let values = rows.iter().filter(|row| !row[10].is_empty());
     told.extend(measured(values.map(|row| {
         let numbers = [11, 13, 14].map(|place: usize| row[place].parse::<f64>().ok());
