@@ -103,7 +103,7 @@ events! {
     MemoryFailed = 109 "memory_failed" Minor "ato_cpu" "Stored memory failed: log and run record are lost at power off" "저장 메모리 고장" "";
     InputsLost = 110 "inputs_lost" Critical "io_board" "I/O inputs fell silent" "입력 신호 두절" "";
     InputsRestored = 111 "inputs_restored" Info "-" "I/O inputs are back" "입력 신호 복귀" "";
-    FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 프레임 다수 폐기" "channel number";
+    FramesRejected = 112 "frames_rejected" Minor "rs485_link" "Many frames rejected on one channel" "수신 전문 다수 폐기" "channel number";
     CodeLost = 200 "code_lost" Info "-" "No valid speed code any more: most restrictive limit" "속도 코드 상실" "";
     CodeUnknown = 201 "code_unknown" Minor "atp_receiver" "Signal present but not in the code table" "미등록 속도 코드 수신" "code rate, 0.01 Hz";
     CodeFlickers = 202 "code_flickers" Minor "atp_receiver" "Speed codes do not stay long enough to be detected: the most restrictive one holds" "속도 코드 불안정: 최저 제한속도 적용" "time for which the last one was heard within the hold time, ms";
@@ -194,7 +194,7 @@ events! {
     AtoOrderContradicts = 808 "ato_order_contradicts" Minor "ato_cpu" "TCMS: power, brake and effort of ATO contradict each other" "ATO 지령 모순" "effort";
     AtcSilent = 809 "atc_silent" Major "rs485_link" "TCMS: no frames from the unit" "ATC 통신 두절" "";
     AtcRestored = 810 "atc_restored" Info "-" "TCMS: frames from the unit again" "ATC 통신 복귀" "";
-    AtcFramesRefused = 811 "atc_frames_refused" Minor "rs485_link" "TCMS: frames of the unit refused" "ATC 수신 프레임 폐기" "how many so far";
+    AtcFramesRefused = 811 "atc_frames_refused" Minor "rs485_link" "TCMS: frames of the unit refused" "ATC 수신 전문 폐기" "how many so far";
     MainReservoirLow = 812 "main_reservoir_low" Major "air_supply" "TCMS: main reservoir pressure low" "주공기압 저하" "";
     DeadMan = 813 "dead_man" Info "-" "TCMS: dead man released too long" "데드맨 동작" "";
 }

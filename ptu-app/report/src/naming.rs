@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(what_failed(&lost, english), expected);
         let said = what_failed(&lost, korean);
         assert!(
-            said.contains("TWC 통신 정상 = 꺼짐") && said.contains("프레임"),
+            said.contains("TWC 통신 정상 = 꺼짐") && said.contains("전문"),
             "{said}"
         );
         let turn = |step| failed_turn(&relay, "atp/overspeed", step);

@@ -225,7 +225,7 @@ wordings! {
         unit_bytes: "bytes", "바이트";
         unit_errors: "errors", "오류";
         unit_answers: "answers", "응답";
-        unit_frames: "frames", "프레임";
+        unit_frames: "frames", "전문";
         release_all: "Take test signals away", "시험 신호 제거";
         clear_log: "Clear event log", "이벤트 기록 삭제";
         read_back: "Read back", "회신값";
