@@ -7,6 +7,7 @@ use std::sync::Arc;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
+use crate::link::NoUnit;
 use crate::stdio;
 
 /// Exit codes of the program.
@@ -60,6 +61,8 @@ pub enum Trouble {
         /// The file.
         rest: PathBuf,
     },
+    /// A unit on a port.
+    NoUnit(NoUnit),
     /// An instrument of the bench whose calibration does not hold, and nothing was driven.
     Uncalibrated {
         /// Its kind, as "tachometer".
@@ -125,6 +128,7 @@ impl fmt::Display for Trouble {
                      --uncalibrated goes on without one, and the sheet says so"
                 )
             }
+            Self::NoUnit(why) => why.fmt(f),
             Self::Told(words) => f.write_str(words),
         }
     }

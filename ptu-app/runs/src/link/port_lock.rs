@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serialport::SerialPort;
 
+use super::NoUnit;
 use crate::failure::Failure;
 use crate::platform;
 
@@ -17,13 +18,11 @@ pub(crate) fn open_port(
     waits: Duration,
 ) -> Result<Box<dyn SerialPort>, Failure> {
     platform::open_alone(path, baud, waits).map_err(|error| {
-        Failure::bench(match platform::holder(path) {
-            Some(who) => format!(
-                "another program holds the port {path}: {who}; end it, or choose one of `ptu ports`"
-            ),
-            None => format!(
-                "cannot open port {path}: {error}; check the cable, or choose one of `ptu ports`"
-            ),
-        })
+        let path = path.to_owned();
+        let held = match platform::holder(&path) {
+            Some(who) => NoUnit::PortHeld(path, who),
+            None => NoUnit::PortClosed(path, error.to_string()),
+        };
+        held.into()
     })
 }

@@ -11,6 +11,7 @@ use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
 use super::{Pace, open_port};
+use super::NoUnit;
 use crate::failure::Failure;
 
 /// Baud rate when none is given.
@@ -191,11 +192,7 @@ fn connect_to(addresses: impl Iterator<Item = SocketAddr>) -> io::Result<TcpStre
 }
 
 fn connect(address: &str) -> Result<Port, Failure> {
-    let cannot = |error: std::io::Error| {
-        Failure::bench(format!(
-            "cannot connect to {address}: {error}; check that the unit is served there"
-        ))
-    };
+    let cannot = |error: io::Error| NoUnit::NotServed(address.to_owned(), error.to_string());
     let stream = connect_to(address.to_socket_addrs().map_err(cannot)?).map_err(cannot)?;
     stream.set_nonblocking(true).map_err(cannot)?;
     stream.set_nodelay(true).map_err(cannot)?;

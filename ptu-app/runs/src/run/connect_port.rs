@@ -19,7 +19,7 @@ use super::settle::{READY_WITHIN, started};
 use super::unit_text;
 use crate::clock::{ClockState, now_us};
 use crate::failure::{Exit, Failure};
-use crate::link::{Endpoint, WireLink};
+use crate::link::{Endpoint, NoUnit, WireLink};
 use crate::stop::Stop;
 
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
@@ -122,26 +122,18 @@ impl BenchSetup {
             let identity = bench.rig().identity();
             identity.is_some_and(|identity| wrong(identity) || started(bench))
         });
+        let at = || self.endpoint.clone();
         if let Some(why) = session.bench().rig().turned_away() {
-            return Err(Failure::bench(format!(
-                "{}: {why}; wait until it has left, or end it there",
-                self.endpoint
-            )));
+            return Err(NoUnit::Taken(at(), why).into());
         }
         if let Some(error) = session.link_failure() {
-            return Err(Failure::bench(format!(
-                "{error}; check the cable and that the unit is served there"
-            )));
+            return Err(NoUnit::PortFailed(error.to_owned()).into());
         }
-        if let Some(error) = session.link_error() {
-            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
+        if let Some(why) = session.link_error() {
+            return Err(NoUnit::BadLink(at(), why).into());
         }
         let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
-            return Err(Failure::bench(format!(
-                "{}: the unit answers but does not become ready within {READY_WITHIN}; power it \
-                 off and on",
-                self.endpoint
-            )));
+            return Err(NoUnit::NotReady(at(), READY_WITHIN).into());
         };
         self.check_identity(&identity)?;
         let now = session.now();
@@ -154,8 +146,8 @@ impl BenchSetup {
             let rig = bench.rig();
             rig.evidence().log == LogState::Read || rig.link_error().is_some()
         });
-        if let Some(error) = session.link_error() {
-            return Err(Failure::bench(format!("{}: {error}", self.endpoint)));
+        if let Some(why) = session.link_error() {
+            return Err(NoUnit::BadLink(at(), why).into());
         }
         let failed = session.bench().rig().evidence().self_test;
         if !failed.is_empty() {
@@ -195,27 +187,19 @@ impl BenchSetup {
         if CLOCKS_AGREE.contains(&times_faster) {
             return Ok(());
         }
-        Err(Failure::bench(format!(
-            "{}: the unit's clock goes {times_faster:.1} times as fast as the tester's; slow both ends down alike, \
-             or neither",
-            self.endpoint
-        )))
+        Err(NoUnit::OtherPace(self.endpoint.clone(), times_faster).into())
     }
 
     fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
         let serial = unit_text::serial(identity);
         unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
-        let checks = [
-            ("unit configuration", identity.config_crc, self.config.crc),
-            ("track database", identity.tdb_crc, self.line.crc),
-        ];
-        for (what, unit, ours) in checks {
-            if unit != ours {
-                return Err(Failure::bench(format!(
-                    "the {what} of unit {serial} has checksum {unit:08x}, the tests were loaded \
-                     for {ours:08x}; choose the {what} of that unit"
-                )));
-            }
+        let (unit, ours) = (identity.config_crc, self.config.crc);
+        if unit != ours {
+            return Err(NoUnit::OtherConfiguration(serial, unit, ours).into());
+        }
+        let (unit, ours) = (identity.tdb_crc, self.line.crc);
+        if unit != ours {
+            return Err(NoUnit::OtherTrack(serial, unit, ours).into());
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use protocol::display_text::is_unseen;
 use protocol::message::Identity;
 
 use crate::failure::Failure;
-use crate::link::Endpoint;
+use crate::link::{Endpoint, NoUnit};
 
 /// Stands for a serial number that is not set. It is longer than any field, so that no unit can say it.
 const NO_SERIAL: &str = "(no serial number)";
@@ -35,9 +35,9 @@ pub fn check_expected(
     let serial = serial(identity);
     match expected.filter(|expected| *expected != serial) {
         None => Ok(()),
-        Some(expected) => Err(Failure::bench(format!(
-            "the unit on {endpoint} is {serial}, not {expected}; check the port and the serial number asked for"
-        ))),
+        Some(expected) => {
+            Err(NoUnit::Other(endpoint.clone(), serial, expected.to_owned()).into())
+        }
     }
 }
 

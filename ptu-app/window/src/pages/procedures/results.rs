@@ -1,7 +1,5 @@
 //! Results of the steps, and details of the selected one.
 
-use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use btu_rig::procedure::{Findings, Measurement, StepResult, Verdict};
