@@ -4,6 +4,7 @@ use protocol::signal::{Kind, Sample, Signal};
 use serde::{Deserialize, Serialize};
 
 use super::Driver;
+use super::names::{Name, Part};
 
 /// What a signal is compared with, or a limit: a number in the unit of the thing compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,7 +89,7 @@ pub enum MissingData {
 impl std::fmt::Display for MissingData {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Signal(signal) => write!(f, "no data for {}", signal.name()),
+            Self::Signal(signal) => write!(f, "no data for {}", Part(Name(signal.name()), f.alternate())),
             Self::Measurement => f.write_str("an earlier measurement it refers to has no value"),
         }
     }

@@ -6,6 +6,7 @@ use protocol::event::Event;
 use protocol::message::{Refusals, SelfTest, WordSpec};
 use protocol::signal::{Kind, Sample, Signal};
 
+use super::names::{Name, Part};
 use super::plan::{
     Action, Comparison, Condition, Connection, Expectation, Measure, Operand, Procedure, Step,
     TimeFrom, What,
@@ -88,19 +89,22 @@ impl Step {
 
 impl Display for Condition {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let said = f.alternate();
         match self {
             Self::Compare {
                 signal,
                 comparison,
                 operand,
             } => {
+                let name = Part(Name(signal.name()), said);
                 if let (true, Operand::Literal(bits)) = (comparison.is_bits(), operand) {
                     let bits = *bits as u16;
                     let bits = bit_names(*signal, bits).unwrap_or(format!("bits {bits:#b}"));
-                    return write!(f, "{} {} {bits}", signal.name(), sign(*comparison));
+                    return write!(f, "{name} {} {bits}", sign(*comparison));
                 }
                 let operand = value(*signal, operand);
-                write!(f, "{} {} {operand}", signal.name(), sign(*comparison))?;
+                let operand = Part(Name(&operand), said);
+                write!(f, "{name} {} {operand}", sign(*comparison))?;
                 if let Comparison::Near { tolerance } = comparison {
                     write!(f, " ± {}", number(*tolerance))?;
                 }
@@ -127,8 +131,9 @@ fn sign(comparison: Comparison) -> &'static str {
 }
 
 fn group(f: &mut Formatter<'_>, parts: &[Condition], word: &str) -> fmt::Result {
-    let parts: Vec<_> = parts.iter().map(ToString::to_string).collect();
-    write!(f, "({})", parts.join(word))
+    let said = f.alternate();
+    let parts = parts.iter().map(|part| Part(part, said).to_string());
+    write!(f, "({})", parts.collect::<Vec<_>>().join(word))
 }
 
 /// Bits of a signal by their names: causes, lamps, cars. `None` for a signal that is no set, or
@@ -234,8 +239,8 @@ impl Display for Action {
 }
 
 /// An event's name, and the limits of its parameter where it has any.
-pub(super) fn logged_text(event: Event, [low, high]: [i32; 2]) -> String {
-    let mut text = event.definition().name.to_owned();
+pub(super) fn logged_text(event: Event, [low, high]: [i32; 2], said: bool) -> String {
+    let mut text = Part(Name(event.definition().name), said).to_string();
     if (low, high) != (i32::MIN, i32::MAX) {
         let what = event.definition().parameter;
         text.push_str(&match (low, high) {
@@ -249,13 +254,16 @@ pub(super) fn logged_text(event: Event, [low, high]: [i32; 2]) -> String {
 
 impl Display for Expectation {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let said = f.alternate();
         match self {
-            Self::Becomes { condition, within } => write!(f, "{condition} within {within}"),
+            Self::Becomes { condition, within } => {
+                write!(f, "{} within {within}", Part(condition, said))
+            }
             Self::Holds {
                 condition,
                 duration,
-            } => write!(f, "{condition} held for {duration}"),
-            Self::Never { condition } => write!(f, "never {condition}"),
+            } => write!(f, "{} held for {duration}", Part(condition, said)),
+            Self::Never { condition } => write!(f, "never {}", Part(condition, said)),
             Self::Logs {
                 event,
                 parameter,
@@ -263,9 +271,9 @@ impl Display for Expectation {
             } => write!(
                 f,
                 "log entry {} within {within}",
-                logged_text(*event, *parameter)
+                logged_text(*event, *parameter, said)
             ),
-            Self::NeverLogs { event } => write!(f, "no log entry {}", event.definition().name),
+            Self::NeverLogs { event } => write!(f, "no log entry {}", Part(Name(event.definition().name), said)),
         }
     }
 }

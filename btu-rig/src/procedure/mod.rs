@@ -18,6 +18,7 @@ mod expectation_run;
 pub mod finding;
 mod limit;
 pub mod loader;
+mod names;
 mod measure_run;
 pub mod origin;
 pub mod plan;
@@ -37,6 +38,7 @@ use thiserror::Error;
 
 pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
 pub use finding::{Finding, Findings};
+pub use names::spoken;
 pub use loader::{LoadError, Loaded, Scripts};
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;

@@ -1,6 +1,7 @@
 //! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
 
 use btu_rig::procedure::finding::{Finding, Findings, LimitMissed};
+use btu_rig::procedure::spoken;
 use btu_rig::stimulus::number;
 use protocol::event::Event;
 use protocol::injection::Lru;
@@ -12,8 +13,6 @@ use ptu_runs::stored::findings;
 
 /// Between the parts of a name.
 pub const DOT: &str = " · ";
-/// What is written in capitals wherever it stands.
-const CAPITALS: [&str; 8] = ["eb", "fsb", "atp", "ato", "twc", "psm", "tcms", "tra"];
 
 /// What people call the parts.
 #[derive(Clone, Debug, Default)]
@@ -124,16 +123,6 @@ pub fn signal(name: &str, words: &Words) -> String {
         Language::English => spoken(name),
         Language::Korean => words.signal(name).into_owned(),
     }
-}
-
-/// An identifier as words.
-pub(crate) fn spoken(name: &str) -> String {
-    let word = |word: &str| match CAPITALS.contains(&word) {
-        true => word.to_uppercase(),
-        false => word.to_owned(),
-    };
-    let said: Vec<String> = name.split('_').map(word).collect();
-    said.join(" ")
 }
 
 /// What a fault's code means: the event's text, or the stored name as words for a fault that a tester found.

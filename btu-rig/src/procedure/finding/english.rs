@@ -9,6 +9,7 @@ use super::{Before, Finding, Findings, LimitMissed, LoggedEvent, WaitedFor, WhyN
 use crate::procedure::EventSource;
 use crate::procedure::describe::{bit_names, clock_wrong, limits, logged_text, meanings};
 use crate::procedure::event_text;
+use crate::procedure::names::{Name, Part};
 use crate::procedure::plan::Condition;
 use crate::procedure::runner::ATTEMPTS;
 use crate::stimulus::text::number;
@@ -22,8 +23,9 @@ impl Display for LoggedEvent {
         let named = named.map_or(String::new(), |named| format!(", {named}"));
         write!(
             f,
-            "{} logged {name} ({}{named})",
+            "{} logged {} ({}{named})",
             self.source.who(),
+            Part(Name(name), f.alternate()),
             self.code
         )
     }
@@ -46,6 +48,7 @@ impl Display for Findings {
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let said = f.alternate();
         match self {
             Self::LimitMissed(LimitMissed {
                 measurement,
@@ -57,7 +60,8 @@ impl Display for Finding {
             }) => {
                 let off = uncertainty.map_or(String::new(), |off| format!(" ± {}", number(off)));
                 let (value, limits) = (number(*value), limits(*low, *high));
-                let text = format!("{measurement} = {value}{off}, allowed {limits} {unit}");
+                let name = Part(Name(measurement), said);
+                let text = format!("{name} = {value}{off}, allowed {limits} {unit}");
                 f.write_str(text.trim_end())
             }
             Self::NeverBecame {
@@ -65,25 +69,26 @@ impl Display for Finding {
                 within,
                 seen,
                 missing,
-                said,
+                said: reason,
             } => {
-                write!(f, "{condition} did not come within {within}")?;
+                write!(f, "{} did not come within {within}", Part(condition, said))?;
                 if let Some((signal, names)) = seen.and_then(|bits| named_bits(condition, bits)) {
-                    write!(f, " ({signal} = {names})")?;
+                    write!(f, " ({} = {names})", Part(Name(signal), said))?;
                 }
                 because(f, missing.as_ref())?;
-                because(f, said.as_ref())
+                because(f, reason.as_ref())
             }
             Self::HeldOnlyFor {
                 condition,
                 held,
                 missing,
             } => {
-                write!(f, "{condition} held only for {held}")?;
+                write!(f, "{} held only for {held}", Part(condition, said))?;
                 because(f, missing.as_ref())
             }
-            Self::CameTrue { condition } => write!(f, "{condition} came true"),
+            Self::CameTrue { condition } => write!(f, "{} came true", Part(condition, said)),
             Self::Unknown { condition, missing } => {
+                let (missing, condition) = (Part(missing, said), Part(condition, said));
                 write!(f, "{missing}, so never {condition} cannot be told")
             }
             Self::NotLogged {
@@ -92,14 +97,14 @@ impl Display for Finding {
                 within,
             } => {
                 let who = EventSource::of(*event).who();
-                let entry = logged_text(*event, *parameter);
+                let entry = logged_text(*event, *parameter, said);
                 write!(f, "{who} did not log {entry} within {within}")
             }
             Self::Logged { event } => {
                 let who = EventSource::of(*event).who();
-                write!(f, "{who} logged {}", event.definition().name)
+                write!(f, "{who} logged {}", Part(Name(event.definition().name), said))
             }
-            Self::Unprovoked(event) => write!(f, "{event}, which no step provoked"),
+            Self::Unprovoked(event) => write!(f, "{}, which no step provoked", Part(event, said)),
             Self::BrakeApplied => {
                 f.write_str("the emergency brake was applied, which this step does not ask for")
             }
@@ -111,23 +116,21 @@ impl Display for Finding {
                 others,
                 why,
             } => {
-                f.write_str(measurement)?;
+                Name(measurement).fmt(f)?;
                 if *others > 0 {
                     write!(f, " and {others} more")?;
                 }
                 match why {
-                    WhyNoValue::Missing(missing) => write!(f, ": {missing}"),
+                    WhyNoValue::Missing(missing) => write!(f, ": {}", Part(missing, said)),
                     WhyNoValue::NotMeasured => f.write_str(": no value"),
                     WhyNoValue::NeverEnded(end) => {
-                        write!(f, ": no value, {end} did not come about in time")
+                        write!(f, ": no value, {} did not come about in time", Part(end, said))
                     }
                 }
             }
             Self::LimitUnknown { measurement } => {
-                write!(
-                    f,
-                    "{measurement}: a limit refers to a measurement without a value"
-                )
+                let name = Part(Name(measurement), said);
+                write!(f, "{name}: a limit refers to a measurement without a value")
             }
             Self::Refused { why } | Self::Told(why) => f.write_str(why),
             Self::NotFinished { within } => {
@@ -161,7 +164,7 @@ impl Display for Finding {
                     None => Ok(()),
                     Some(WaitedFor::Actions) => f.write_str(" in its actions"),
                     Some(WaitedFor::Expectation(expectation)) => {
-                        write!(f, " waiting for: {expectation}")
+                        write!(f, " waiting for: {}", Part(expectation, said))
                     }
                 }
             }
@@ -179,18 +182,18 @@ impl Display for Finding {
                 }
             }
             Self::BeforeStandstill(what) => {
-                write!(f, "before the tester's computer stood still: {what}")
+                write!(f, "before the tester's computer stood still: {}", Part(what, said))
             }
-            Self::InSetUp(what) => write!(f, "setup: {what}"),
-            Self::InCleanUp(what) => write!(f, "clean-up: {what}"),
+            Self::InSetUp(what) => write!(f, "setup: {}", Part(what, said)),
+            Self::InCleanUp(what) => write!(f, "clean-up: {}", Part(what, said)),
             Self::CleanUpTooLong { within } => write!(f, "clean-up took longer than {within}"),
             Self::CleanUpCutShort => f.write_str("clean-up cut short by the operator"),
             Self::NotSafe { within } => {
                 write!(f, "outputs are not confirmed safe after {within}")
             }
             Self::Stopped => f.write_str("stopped by the operator"),
-            Self::NotRun(why) => write!(f, "not run, {why}"),
-            Self::NotBegun(why) => write!(f, "not begun, {why}"),
+            Self::NotRun(why) => write!(f, "not run, {}", Part(why, said)),
+            Self::NotBegun(why) => write!(f, "not begun, {}", Part(why, said)),
             Self::NotPassed { step } => write!(f, "\"{step}\" did not pass"),
             Self::NotTestedBefore { step } => {
                 write!(f, "it continues from \"{step}\", which was not tested")
@@ -198,10 +201,10 @@ impl Display for Finding {
             Self::NeedsHarness => {
                 f.write_str("needs the bench harness, and only the maintenance port is connected")
             }
-            Self::ConditionFalse { said } => {
-                f.write_str(said.as_deref().unwrap_or("its condition does not hold"))
+            Self::ConditionFalse { said: reason } => {
+                f.write_str(reason.as_deref().unwrap_or("its condition does not hold"))
             }
-            Self::ConditionUnknown { missing } => write!(f, "its condition: {missing}"),
+            Self::ConditionUnknown { missing } => write!(f, "its condition: {}", Part(missing, said)),
             Self::NoStepToRun => f.write_str("no step to run"),
             Self::NoStepRun => f.write_str("no step was run"),
             Self::ProgramFailed => f.write_str("the program failed in this run"),
@@ -227,7 +230,7 @@ impl Display for Finding {
                     Before::RepeatedStep => "the repetition of a step",
                     Before::Repetition => "the next repetition",
                 };
-                write!(f, "found before {before}: {fault}")
+                write!(f, "found before {before}: {}", Part(Name(fault), said))
             }
             Self::Event {
                 event,
@@ -245,10 +248,13 @@ impl Display for Finding {
                 turn,
                 turns,
                 findings,
-            } => match turns {
-                1 => write!(f, "{procedure}, {step}: {findings}"),
-                _ => write!(f, "{procedure}, {step} ({turn}/{turns}): {findings}"),
-            },
+            } => {
+                let findings = Part(findings, said);
+                match turns {
+                    1 => write!(f, "{procedure}, {step}: {findings}"),
+                    _ => write!(f, "{procedure}, {step} ({turn}/{turns}): {findings}"),
+                }
+            }
             Self::More { n } => write!(f, "and {n} more"),
         }
     }
@@ -276,5 +282,6 @@ fn happened(logged: &LoggedEvent) -> String {
 }
 
 fn because(f: &mut Formatter<'_>, why: Option<&impl Display>) -> fmt::Result {
-    why.map_or(Ok(()), |why| write!(f, ": {why}"))
+    let said = f.alternate();
+    why.map_or(Ok(()), |why| write!(f, ": {}", Part(why, said)))
 }

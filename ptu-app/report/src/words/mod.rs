@@ -158,7 +158,7 @@ impl Words {
     /// message. A text without a translation stays as it was written.
     pub fn content<'a>(&self, text: &'a str) -> Cow<'a, str> {
         match self.language {
-            Language::English => names::english(text),
+            Language::English => Cow::Borrowed(text),
             Language::Korean => content::korean(text),
         }
     }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use btu_rig::procedure::spoken;
 use fault_db::{FaultDetail, FaultEvent, FaultState, FaultSummary, Id, Store, StoreError};
 
 use super::{CaseSheet, Repair, Standing};
-use crate::naming::spoken;
 use crate::run::Sheet;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;

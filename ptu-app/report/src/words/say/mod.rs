@@ -18,13 +18,13 @@ use fault_db::{StepKind, StepRecord};
 use ptu_runs::bench_worker::outside_place;
 use ptu_runs::stored;
 
-use super::{Language, Words, names};
+use super::{Language, Words};
 
 impl Words {
     /// What was found in one place, as a sentence.
     pub fn findings(&self, all: &Findings) -> String {
         match self.language {
-            Language::English => names::english(&all.to_string()).into_owned(),
+            Language::English => format!("{all:#}"),
             Language::Korean => finding::findings(all),
         }
     }
@@ -32,7 +32,7 @@ impl Words {
     /// One finding.
     pub fn finding(&self, one: &Finding) -> String {
         match self.language {
-            Language::English => names::english(&one.to_string()).into_owned(),
+            Language::English => format!("{one:#}"),
             Language::Korean => finding::korean(one),
         }
     }
@@ -40,9 +40,7 @@ impl Words {
     /// What an action waits for.
     pub fn awaited(&self, action: &Action) -> String {
         match (action, self.language) {
-            (Action::Until { condition, .. }, Language::English) => {
-                names::english(&condition.to_string()).into_owned()
-            }
+            (Action::Until { condition, .. }, Language::English) => format!("{condition:#}"),
             (Action::Until { condition, .. }, Language::Korean) => condition::korean(condition),
             (Action::Settle { .. }, Language::Korean) => "동작 또는 요청의 완료".to_owned(),
             (Action::Settle { .. }, Language::English) => "the motion or request to end".to_owned(),

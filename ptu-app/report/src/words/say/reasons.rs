@@ -1,6 +1,6 @@
 //! Why a diagnosis comes to what it does, and what to bear in mind, in both languages.
 
-use btu_rig::procedure::Finding;
+use btu_rig::procedure::{Finding, spoken};
 use diagnosis::{FaultText, Known, Repaired, Sign, StepReason};
 use fault_db::RunDetail;
 use protocol::event::Event;
@@ -57,7 +57,7 @@ pub(super) fn step_found(step: &StepReason, run: &RunDetail) -> Both {
     let first = found.iter().find(missed).or(found.iter().next());
     let [found, found_ko] = match first {
         Some(found) => [
-            names::english(&found.finding.to_string()).into_owned(),
+            format!("{:#}", found.finding),
             finding::korean(&found.finding),
         ],
         None => result(step),
@@ -123,7 +123,7 @@ fn sign_named(sign: &Sign) -> Both {
             event.text_ko.to_owned(),
         ],
         None => {
-            let spoken = crate::naming::spoken(&sign.fault);
+            let spoken = spoken(&sign.fault);
             let korean = content::korean(&spoken).into_owned();
             [spoken, korean]
         }
