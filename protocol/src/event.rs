@@ -173,7 +173,7 @@ events! {
     CabsNotChanged = 417 "cabs_not_changed" Major "tcms" "Turn-back: the cabs were not changed in time, the train stays held" "운전실 교체 실패" "1 = TCMS reads the head control relay as dropped";
     PutAway = 418 "put_away" Info "-" "Train put away" "열차 유치" "";
     WokenUp = 419 "woken_up" Info "-" "Train woken up, self-test done" "열차 기동" "failed items as bits";
-    TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come, their alive counter stands";
+    TcmsLost = 500 "tcms_lost" Major "rs485_link" "TCMS communication lost or stale" "TCMS 통신 두절" "1 = frames come; their alive counter stands";
     TcmsRestored = 501 "tcms_restored" Info "-" "TCMS communication restored" "TCMS 통신 복귀" "";
     AtoFailed = 600 "ato_failed" Major "ato_cpu" "ATO failed" "ATO 고장" "reason, `AtoFailure`";
     AtoNotFollowing = 601 "ato_not_following" Major "ato_cpu" "The train does not do what ATO's effort asks" "목표속도 추종 불량" "speed less what effort should have made, cm/s";

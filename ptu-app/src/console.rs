@@ -141,7 +141,9 @@ impl Listener for Console {
             SessionEvent::Run(RunEvent::Waiting { action: what, left }) => {
                 present(format!("{what}, {:.0} s left", left.as_secs()))
             }
-            SessionEvent::Run(RunEvent::StepFinished(result)) if result.kind != ResultKind::Attempt => {
+            SessionEvent::Run(RunEvent::StepFinished(result))
+                if result.kind != ResultKind::Attempt =>
+            {
                 Shown::StepDone
             }
             _ => return,
@@ -230,7 +232,9 @@ fn measured(measurement: &Measurement) -> String {
 /// The procedure and the step; or where it failed outside of steps, as files name it.
 fn named(step: &StepRecord) -> String {
     let turn = [step.turn, step.turns];
-    let name = Language::English.words().step(&step.name, turn, step.kind == StepKind::Again);
+    let name = Language::English
+        .words()
+        .step(&step.name, turn, step.kind == StepKind::Again);
     format!("{}: {name}", step.procedure)
 }
 

@@ -89,7 +89,11 @@ pub enum MissingData {
 impl std::fmt::Display for MissingData {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Signal(signal) => write!(f, "no data for {}", Part(Name(signal.name()), f.alternate())),
+            Self::Signal(signal) => write!(
+                f,
+                "no data for {}",
+                Part(Name(signal.name()), f.alternate())
+            ),
             Self::Measurement => f.write_str("an earlier measurement it refers to has no value"),
         }
     }

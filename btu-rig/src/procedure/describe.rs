@@ -273,7 +273,11 @@ impl Display for Expectation {
                 "log entry {} within {within}",
                 logged_text(*event, *parameter, said)
             ),
-            Self::NeverLogs { event } => write!(f, "no log entry {}", Part(Name(event.definition().name), said)),
+            Self::NeverLogs { event } => write!(
+                f,
+                "no log entry {}",
+                Part(Name(event.definition().name), said)
+            ),
         }
     }
 }

@@ -14,7 +14,10 @@ pub fn parameter(event: Event, number: i32) -> String {
     if what.is_empty() {
         return String::new();
     }
-    named(event, number).unwrap_or_else(|| measured(what, number))
+    named(event, number).unwrap_or_else(|| {
+        let (what, value) = measured(event, number);
+        format!("{what} {value}")
+    })
 }
 
 /// The same for an event whose parameter stands for a name; `None` for a measured one or none.
@@ -62,15 +65,17 @@ pub fn named(event: Event, number: i32) -> Option<String> {
     })
 }
 
-/// A number under what it is, as `excess, cm/s` or `difference, 0.01 %`.
-fn measured(what: &str, number: i32) -> String {
+/// What a measured parameter is, and its value with its unit: `excess, cm/s` or `difference, 0.01 %`.
+pub fn measured(event: Event, number: i32) -> (&'static str, String) {
+    let what = event.definition().parameter;
     let Some((what, unit)) = what.split_once(", ") else {
-        return format!("{what} {number}");
+        return (what, number.to_string());
     };
+    let unit = unit.split(';').next().unwrap_or_default();
     let scaled = unit.split_once(' ');
     match scaled.and_then(|(scale, unit)| Some((scale.parse::<f64>().ok()?, unit))) {
-        Some((scale, unit)) => format!("{what} {:.2} {unit}", f64::from(number) * scale),
-        None => format!("{what} {number} {unit}"),
+        Some((scale, unit)) => (what, format!("{:.2} {unit}", f64::from(number) * scale)),
+        None => (what, format!("{number} {unit}")),
     }
 }
 

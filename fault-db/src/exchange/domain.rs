@@ -107,8 +107,8 @@ fn integer(column: &str, value: i64) -> Result<(), &'static str> {
         "bench_us" | "t0_bench_us" | "started_bench_us" | "bench_time_us" | "wall_time_us"
         | "place_us" => (SPAN_US, "a length of up to 50 years"),
         "step_index" | "place" | "ordinal" | "script_line" | "row_count" | "trigger_row"
-        | "flags" | "encoding" | "recording" | "turn" | "turns" | "seen" | "occurrences" | "repairs"
-        | "disputed" => (0..=u32::MAX.into(), "a number of 32 bits"),
+        | "flags" | "encoding" | "recording" | "turn" | "turns" | "seen" | "occurrences"
+        | "repairs" | "disputed" => (0..=u32::MAX.into(), "a number of 32 bits"),
         column if column.ends_with("at_us") => (TIME_US, "a time from 1970 to 2199"),
         _ => return Ok(()),
     };

@@ -204,7 +204,7 @@ fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
     let table = place.read("run.csv");
     let mut lines = table.lines();
     let head = "\u{feff}run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
-                measurement,value,unit,low,high,measurement_verdict,limit_source";
+                measurement,value,unit,low,high,measurement_verdict,limit_source,turn,turns";
     assert_eq!(lines.next(), Some(head));
     let steps = report["steps"].as_array().expect("steps");
     let of = |step: &serde_json::Value| step["measurements"].as_array().map_or(0, Vec::len).max(1);

@@ -10,13 +10,14 @@ use ptu_runs::field::{Entry, Source, import};
 use ptu_runs::record::{RecordedRun, pull};
 
 use super::made_plans::Chance;
+use super::made_runs::PARTS;
 
-/// Events of the parts that made faults name.
-const EVENTS: [Event; 4] = [
+/// Events of the parts that made faults name, in their order.
+static EVENTS: [Event; 4] = [
     Event::EbRelayWelded,
-    Event::EbRelayOpen,
+    Event::TraFailed,
+    Event::TwcStationInvalid,
     Event::TachoDead1,
-    Event::TachoNoise1,
 ];
 
 /// Where and of which unit something was read; perhaps not to its end.
@@ -59,11 +60,10 @@ pub fn read_of_a_unit(store: &Store, seed: u64, is_log: bool, chance: &mut Chanc
         let made = pull(store, &source, runs).expect("stored");
         (made.run, "skipped")
     };
-    let parts = ["eb_relay", "eb_relay", "speed_sensor_1", "speed_sensor_1"];
     Read {
         id: id.expect("new"),
         verdict: [judged, "error"][usize::from(broken_off)],
-        parts: parts[..if is_log { count } else { 0 }].to_vec(),
+        parts: PARTS[..if is_log { count } else { 0 }].to_vec(),
         steps: if is_log { 0 } else { count },
     }
 }

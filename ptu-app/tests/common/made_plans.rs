@@ -1,5 +1,6 @@
 //! What made runs are of: procedures, of their own or of the fault dictionary, and plans; and who follows them.
 
+use Kind::*;
 use btu_rig::procedure::{Procedure, Verdict};
 use diagnosis::{Dictionary, Mode};
 use protocol::Duration;
@@ -11,6 +12,32 @@ use serde_json::{from_value, json};
 /// What stands in a step's name behind its mark.
 const NAMES: &str = "| 속도 코드 25: 경보| a;b,\"c\"| <b>&amp;</b>|=1+1| \u{202e}rtl| tab\there| 漢字 😀| \u{fffe}\u{1b}[31m| (cab)| self-test| 1 of 7 steps run, all passed";
 
+/// How a run goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Passed,
+    Failed,
+    Error,
+    LinkLost,
+    Stopped,
+    Broken,
+    Adaptive,
+    Resumed,
+    Repeated,
+    Retried,
+    OneStep,
+    OnTrain,
+    NoSteps,
+    Pair,
+    Outside,
+    Imported,
+    Pulled,
+}
+
+pub const KINDS: [Kind; 17] = [
+    Passed, Failed, Error, LinkLost, Stopped, Broken, Adaptive, Resumed, Repeated, Retried,
+    OneStep, OnTrain, NoSteps, Pair, Outside, Imported, Pulled,
+];
 /// Numbers of a seed (splitmix64).
 pub struct Chance(pub u64);
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use Kind::*;
+use super::made_plans::Kind::{self, *};
 use btu_rig::procedure::Verdict::{self, Skipped};
 use btu_rig::procedure::finding::LimitMissed;
 use btu_rig::procedure::{
@@ -20,44 +20,19 @@ use ptu_report::event_lines::EventLines;
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::clock;
 use ptu_runs::run::{
-    CHECK_FAILED, Collector, Evidence, FaultSeen, MeasuringRules, RunPlan, RunStart,
-    RunStore, SessionEvent, Task, different_steps,
+    CHECK_FAILED, Collector, Evidence, FaultSeen, MeasuringRules, RunPlan, RunStart, RunStore,
+    SessionEvent, Task, different_steps,
 };
 use ptu_runs::stop::Stop;
 use ptu_runs::stored::stored;
 
 use super::made_elsewhere::read_of_a_unit;
-use super::made_plans::{Chance, Heard, contents, known, likeliest, own};
+use super::made_plans::{Chance, Heard, KINDS, contents, known, likeliest, own};
 use super::told::{Facts, marks, sorted, turn_of, turned, value_and_limits};
 
-/// How a run goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Passed,
-    Failed,
-    Error,
-    LinkLost,
-    Stopped,
-    Broken,
-    Adaptive,
-    Resumed,
-    Repeated,
-    Retried,
-    OneStep,
-    OnTrain,
-    NoSteps,
-    Pair,
-    Outside,
-    Imported,
-    Pulled,
-}
-
-const KINDS: [Kind; 17] = [
-    Passed, Failed, Error, LinkLost, Stopped, Broken, Adaptive, Resumed, Repeated, Retried,
-    OneStep, OnTrain, NoSteps, Pair, Outside, Imported, Pulled,
-];
 /// Parts that faults name.
 pub const PARTS: [&str; 4] = ["eb_relay", "tra", "twc_cpu", "speed_sensor_1"];
+
 /// A run that was made.
 pub struct Made {
     pub seed: u64,
@@ -415,8 +390,8 @@ impl<'a> Making<'a> {
         StepResult {
             index,
             name: step.name.clone(),
-            turn: turn as u32 + 1,
-            turns: repeat as u32,
+            turn: turn + 1,
+            turns: repeat,
             kind: ResultKind::Step,
             line: step.line,
             verdict,
@@ -466,13 +441,19 @@ impl<'a> Making<'a> {
             measurements: Vec::new(),
             ..result.clone()
         };
-        let first = attempt(result.index, ResultKind::Attempt, Skipped);
-        self.note(place, first, to);
+        self.note(
+            place,
+            attempt(result.index, ResultKind::Attempt, Skipped),
+            to,
+        );
         if result.index == 0 || self.chance.one_in(2) {
             return Skipped;
         }
-        let again = attempt(result.index - 1, ResultKind::Again, Verdict::Failed);
-        self.note(place, again, to);
+        self.note(
+            place,
+            attempt(result.index - 1, ResultKind::Again, Verdict::Failed),
+            to,
+        );
         Verdict::Failed
     }
 
@@ -489,8 +470,8 @@ impl<'a> Making<'a> {
         self.on_bench += usize::from(result.findings.need_harness());
         if rank > 1 {
             let marks = marks(&result.name, 's');
-            let is_again = result.kind == ResultKind::Again;
-            let turn = turn_of(result.turn.into(), result.turns.into(), is_again);
+            let [turn, turns] = [result.turn, result.turns].map(u64::from);
+            let turn = turn_of(turn, turns, result.kind == ResultKind::Again);
             self.turns.extend(turned(&marks, &turn));
             self.not_passed.extend(marks);
         }

@@ -86,7 +86,9 @@ pub fn turn_in(name: &str) -> String {
         Some(name) => (name, true),
         None => (name, false),
     };
-    let inside = name.strip_suffix(')').and_then(|name| name.rsplit_once(" ("));
+    let inside = name
+        .strip_suffix(')')
+        .and_then(|name| name.rsplit_once(" ("));
     let numbers = inside.and_then(|(_, inside)| inside.split_once('/'));
     let [turn, turns] = numbers.map_or([1, 1], |(turn, turns)| {
         [turn, turns].map(|number| number.parse().unwrap_or(1))
@@ -355,7 +357,13 @@ pub fn live(run: &Progress, language: Language) -> Told {
         let is_step = outside_place(result).is_none();
         let name = language.words().result(result);
         let turn = turn_in(&name.replace("(반복)", "(repeated)"));
-        (is_step, &*result.name, result.verdict.label(), why.as_str(), turn)
+        (
+            is_step,
+            &*result.name,
+            result.verdict.label(),
+            why.as_str(),
+            turn,
+        )
     }));
     let [run_steps, not_run] = [counts.run(), counts.not_run()];
     told.extend(numbers(

@@ -102,7 +102,11 @@ impl Display for Finding {
             }
             Self::Logged { event } => {
                 let who = EventSource::of(*event).who();
-                write!(f, "{who} logged {}", Part(Name(event.definition().name), said))
+                write!(
+                    f,
+                    "{who} logged {}",
+                    Part(Name(event.definition().name), said)
+                )
             }
             Self::Unprovoked(event) => write!(f, "{}, which no step provoked", Part(event, said)),
             Self::BrakeApplied => {
@@ -124,7 +128,11 @@ impl Display for Finding {
                     WhyNoValue::Missing(missing) => write!(f, ": {}", Part(missing, said)),
                     WhyNoValue::NotMeasured => f.write_str(": no value"),
                     WhyNoValue::NeverEnded(end) => {
-                        write!(f, ": no value, {} did not come about in time", Part(end, said))
+                        write!(
+                            f,
+                            ": no value, {} did not come about in time",
+                            Part(end, said)
+                        )
                     }
                 }
             }
@@ -182,7 +190,11 @@ impl Display for Finding {
                 }
             }
             Self::BeforeStandstill(what) => {
-                write!(f, "before the tester's computer stood still: {}", Part(what, said))
+                write!(
+                    f,
+                    "before the tester's computer stood still: {}",
+                    Part(what, said)
+                )
             }
             Self::InSetUp(what) => write!(f, "setup: {}", Part(what, said)),
             Self::InCleanUp(what) => write!(f, "clean-up: {}", Part(what, said)),
@@ -204,7 +216,9 @@ impl Display for Finding {
             Self::ConditionFalse { said: reason } => {
                 f.write_str(reason.as_deref().unwrap_or("its condition does not hold"))
             }
-            Self::ConditionUnknown { missing } => write!(f, "its condition: {}", Part(missing, said)),
+            Self::ConditionUnknown { missing } => {
+                write!(f, "its condition: {}", Part(missing, said))
+            }
             Self::NoStepToRun => f.write_str("no step to run"),
             Self::NoStepRun => f.write_str("no step was run"),
             Self::ProgramFailed => f.write_str("the program failed in this run"),

@@ -12,7 +12,13 @@ use super::stand_in::{HEAD, OFF, ON, Outcome, World, run};
 fn attempts(outcome: &Outcome) -> Vec<(&str, Verdict, bool)> {
     let steps = outcome.steps().into_iter();
     steps
-        .map(|step| (step.name.as_str(), step.verdict, step.kind == ResultKind::Attempt))
+        .map(|step| {
+            (
+                step.name.as_str(),
+                step.verdict,
+                step.kind == ResultKind::Attempt,
+            )
+        })
         .collect()
 }
 

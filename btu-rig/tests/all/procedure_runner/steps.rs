@@ -59,7 +59,10 @@ fn every_repetition_must_pass() {
         turns.collect()
     };
     let [passed, failed] = [Verdict::Passed, Verdict::Failed];
-    assert_eq!(turns(&outcome), [(1, 3, passed), (2, 3, failed), (3, 3, passed)]);
+    assert_eq!(
+        turns(&outcome),
+        [(1, 3, passed), (2, 3, failed), (3, 3, passed)]
+    );
     assert_eq!(outcome.finished().0, Verdict::Failed);
 
     // The second of two repetitions of the procedure.
@@ -68,7 +71,10 @@ fn every_repetition_must_pass() {
         ..RunOptions::default()
     };
     let outcome = run_round(&script, options, 1, |_| {});
-    assert_eq!(turns(&outcome), [(4, 6, passed), (5, 6, passed), (6, 6, passed)]);
+    assert_eq!(
+        turns(&outcome),
+        [(4, 6, passed), (5, 6, passed), (6, 6, passed)]
+    );
     assert_eq!(outcome.fake.applied, [ON, OFF], "set-up and clean-up");
 }
 

@@ -100,13 +100,7 @@ pub const EVENTS: &[EventKeys] = &[
     (
         "step_started",
         "a step begins",
-        &[
-            AT,
-            INDEX,
-            ("name", Text, "its name"),
-            TURN,
-            TURNS,
-        ],
+        &[AT, INDEX, ("name", Text, "its name"), TURN, TURNS],
     ),
     (
         "paused",

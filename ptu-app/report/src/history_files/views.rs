@@ -65,6 +65,8 @@ pub(super) const VIEWS: &[View] = &[
             ("procedure", Text),
             ("kind", Text),
             ("name", Text),
+            ("turn", Whole),
+            ("turns", Whole),
             ("verdict", Text),
             ("message", Text),
             ("findings", Text),

@@ -35,9 +35,7 @@ pub enum NoUnit {
     )]
     OtherPace(Endpoint, f64),
     /// There is one with this serial number, and another is expected.
-    #[error(
-        "the unit on {0} is {1}, not {2}; check the port and the serial number asked for"
-    )]
+    #[error("the unit on {0} is {1}, not {2}; check the port and the serial number asked for")]
     Other(Endpoint, String, String),
     /// Its configuration has this checksum, that of the tests another.
     #[error(

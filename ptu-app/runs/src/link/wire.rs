@@ -10,8 +10,8 @@ use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
-use super::{Pace, open_port};
 use super::NoUnit;
+use super::{Pace, open_port};
 use crate::failure::Failure;
 
 /// Baud rate when none is given.

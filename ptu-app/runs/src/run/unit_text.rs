@@ -35,9 +35,7 @@ pub fn check_expected(
     let serial = serial(identity);
     match expected.filter(|expected| *expected != serial) {
         None => Ok(()),
-        Some(expected) => {
-            Err(NoUnit::Other(endpoint.clone(), serial, expected.to_owned()).into())
-        }
+        Some(expected) => Err(NoUnit::Other(endpoint.clone(), serial, expected.to_owned()).into()),
     }
 }
 

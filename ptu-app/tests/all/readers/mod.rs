@@ -4,8 +4,8 @@ mod surfaces;
 
 use std::collections::BTreeMap;
 
-use fuzzing::draw;
 use fault_db::{RunDetail, Signed, SqlValue, Statement, Store};
+use fuzzing::draw;
 use ptu_app::console::{failures, verdict_table};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 use ptu_report::run::page::pages;
@@ -21,7 +21,9 @@ use self::surfaces::{
 };
 use crate::common::made_runs::{Made, Maker, PARTS};
 use crate::common::served::{Running, Unit};
-use crate::common::told::{Facts, Monitor, fact, id, live, measured, numbers, results, sheet, sorted, turn_of};
+use crate::common::told::{
+    Facts, Monitor, fact, id, live, measured, numbers, results, sheet, sorted, turn_of,
+};
 use crate::common::{Place, list, scripts, text};
 
 /// Seed of a run without steps.
@@ -34,8 +36,9 @@ struct Stored<'a> {
     scripts: &'a ScriptsDirectory,
 }
 
-/// Goal: nobody is told one thing of a run here and another there. Method: 200 runs of all kinds, of which a check draws a third,
-/// made from seeds and recorded as a bench's or read of a unit; every surface, in both languages, is read by a small reader of its own, and held to the run.
+/// Goal: nobody is told one thing of a run here and another there. Method: 200 runs of all kinds, of which a check draws a
+/// third, made from seeds and recorded as a bench's or read of a unit; every surface, in both languages, is read by a small
+/// reader of its own, and held to the run.
 #[test]
 fn every_reader_tells_the_same_of_every_run() {
     let place = Place::new();
@@ -246,13 +249,11 @@ fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
         let of = run.id.to_string();
         let [run_row, steps, values, parts] =
             [&runs, &steps, &values, &parts].map(|all| all.get(&of).map_or(&[][..], |rows| rows));
-        let steps = steps
-            .iter()
-            .map(|row| {
-                let [turn, turns] = [5, 6].map(|place: usize| row[place].parse().expect("a number"));
-                let turn = turn_of(turn, turns, row[4] == "again");
-                (row[4] != "outside", &*row[1], &*row[2], &*row[3], turn)
-            });
+        let steps = steps.iter().map(|row| {
+            let [turn, turns] = [5, 6].map(|place: usize| row[place].parse().expect("a number"));
+            let turn = turn_of(turn, turns, row[4] == "again");
+            (row[4] != "outside", &*row[1], &*row[2], &*row[3], turn)
+        });
         let values = values.iter().map(|row| {
             let numbers = [2, 3, 4].map(|place: usize| row[place].parse::<f64>().ok());
             (row[1].clone(), numbers)

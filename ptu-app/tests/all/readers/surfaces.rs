@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::seen;
 use crate::common::told::{
-    Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted, turn_in,
-    turn_of, turned,
+    Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted,
+    turn_in, turn_of, turned,
 };
 use crate::common::{list, number, text};
 

@@ -165,7 +165,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     let mut window = Window::with(Place::new(), scripts(), settings);
     let words = Language::Korean.words();
     window.click(words.procedures.none);
-    window.click("atp/overspeed");
+    window.click("과속에 따른 ATP 제동 체결");
     window.click(words.frame.connect);
     window.wait_for("SIM-0001");
     window.click(words.procedures.run);

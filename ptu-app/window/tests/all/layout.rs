@@ -151,7 +151,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     armed(&mut window, words);
     look(&mut window, "armed");
     window.page(Page::Procedures);
-    window.wait_for("atp/overspeed");
+    window.wait_for(match words.language {
+        Language::English => "Overspeed: alarm, service brake, emergency brake",
+        Language::Korean => "과속에 따른 ATP 제동 체결",
+    });
     look(&mut window, "procedures");
     window.click(words.procedures.live_signals);
     window.step();

@@ -46,7 +46,7 @@ fn a_run_is_followed_by_its_signals() {
     window.click("Live signals");
     window.wait_for_part("Plot: speed 0.0 km/h");
     window.click("None");
-    window.click("atp/overspeed");
+    window.click("Overspeed: alarm, service brake, emergency brake");
     window.click("Run");
     window.until("speed in the plot", |window| {
         let shown = window.shown();
@@ -326,7 +326,7 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     let mut window = Window::with(Place::new(), &folder, settings(Page::Procedures));
     window.click("Connect");
     window.wait_for("SIM-0001");
-    window.wait_for("own/own");
+    window.wait_for("Wait");
     std::fs::write(folder.join("own/own.star"), "procedure(title = \n").expect("written");
     window.click("Run");
     window.wait_for_part("The scripts have errors");

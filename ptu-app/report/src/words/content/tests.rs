@@ -83,3 +83,21 @@ fn korean_is_korean() {
         assert!(hangul || !is_said, "{english}: {korean}");
     }
 }
+
+/// Goal: what an event of a log says besides its text is told in Korean. Method: all events, with every code and bit.
+#[test]
+fn parameters_of_events_are_korean() {
+    let numbers = (-1..20).chain((5..16).map(|bit| 1 << bit));
+    for (event, number) in Event::ALL
+        .iter()
+        .flat_map(|event| numbers.clone().map(move |number| (*event, number)))
+    {
+        let said = super::super::KOREAN.parameter(event, number);
+        let mut words = said.split(|c: char| !c.is_ascii_lowercase());
+        assert_eq!(
+            words.find(|word| word.len() > 2),
+            None,
+            "{event:?} {number}: {said}"
+        );
+    }
+}

@@ -1,8 +1,8 @@
 //! Conditions, expectations and states in Korean: `eb = applied` with the names of the signal and of its state.
 
-use btu_rig::procedure::EventSource;
 use btu_rig::procedure::describe::bit_names;
 use btu_rig::procedure::plan::{Comparison, Condition, Expectation, Operand};
+use btu_rig::procedure::{EventSource, event_text};
 use protocol::event::Event;
 use protocol::signal::{Kind, Signal};
 
@@ -85,6 +85,18 @@ pub fn logged(event: Event, [low, high]: [i32; 2]) -> String {
     }
 }
 
+/// What an event's parameter says; empty for an event that has none.
+pub fn parameter(event: Event, number: i32) -> String {
+    if event.definition().parameter.is_empty() {
+        return String::new();
+    }
+    let Some(name) = event_text::named(event, number) else {
+        let (what, value) = event_text::measured(event, number);
+        return format!("{} {value}", content::korean(what));
+    };
+    content::korean(&name).into_owned()
+}
+
 /// What a signal is called in few words.
 pub fn signal(name_of: &str) -> Option<String> {
     Signal::from_name(name_of).map(name)
@@ -104,6 +116,7 @@ pub fn state(of: &str, label: &str) -> Option<String> {
     let operand = match signal.definition().kind {
         Kind::Enum(labels) => labels.iter().position(|known| *known == label)? as f64,
         Kind::Bit => f64::from(u8::from(label == "on")),
+        Kind::Number { .. } if label == "none" => 0.0,
         Kind::Number { .. } => {
             let one = |name: &str| {
                 (0..BITS).find(|bit| bit_names(signal, 1 << bit).as_deref() == Some(name))

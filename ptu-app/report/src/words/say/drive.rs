@@ -2,7 +2,6 @@
 
 use btu_rig::drive::{Ending, Mark};
 use btu_rig::procedure::describe::meanings;
-use btu_rig::procedure::event_text;
 use protocol::event::Event;
 use protocol::message::Refusals;
 
@@ -75,16 +74,13 @@ fn passed(mark: &Mark) -> String {
             let Some(event) = entry.event() else {
                 return format!("{who}: 알 수 없는 이벤트 {}", entry.code);
             };
-            let said = event_text::parameter(event, entry.parameter);
+            let said = condition::parameter(event, entry.parameter);
             match event {
-                Event::ModeChanged => {
-                    let mode = condition::state("mode", &said).unwrap_or(said);
-                    format!("{who}: 운전 모드 {mode}")
-                }
+                Event::ModeChanged => format!("{who}: 운전 모드 {said}"),
                 event => {
                     let text = event.definition().text_ko;
                     let said = Some(said).filter(|said| !said.is_empty());
-                    behind(&format!("{who}: {text}"), said.map(|said| told(&said)))
+                    behind(&format!("{who}: {text}"), said)
                 }
             }
         }

@@ -296,9 +296,9 @@ fn happened(entry: &LoggedEvent) -> String {
         return format!("알 수 없는 이벤트 {} (값 {})", entry.code, entry.parameter);
     };
     let text = event.definition().text_ko;
-    match event_text::parameter(event, entry.parameter) {
+    match condition::parameter(event, entry.parameter) {
         said if said.is_empty() => text.to_owned(),
-        said => format!("{text} ({})", told(&said)),
+        said => format!("{text} ({said})"),
     }
 }
 

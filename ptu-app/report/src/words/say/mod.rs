@@ -13,8 +13,9 @@ use std::borrow::Cow;
 
 use btu_rig::procedure::finding::{Finding, Findings};
 use btu_rig::procedure::plan::Action;
-use btu_rig::procedure::{ResultKind, StepResult};
+use btu_rig::procedure::{ResultKind, StepResult, event_text};
 use fault_db::{StepKind, StepRecord};
+use protocol::event::Event;
 use ptu_runs::bench_worker::outside_place;
 use ptu_runs::stored;
 
@@ -73,11 +74,15 @@ impl Words {
     pub fn result(&self, of: &StepResult) -> String {
         match outside_place(of) {
             Some(place) => self.common.outside(place).to_owned(),
-            None => self.step(
-                &of.name,
-                [of.turn, of.turns],
-                of.kind == ResultKind::Again,
-            ),
+            None => self.step(&of.name, [of.turn, of.turns], of.kind == ResultKind::Again),
+        }
+    }
+
+    /// What an event's parameter says; empty for an event that has none.
+    pub fn parameter(&self, event: Event, number: i32) -> String {
+        match self.language {
+            Language::English => event_text::parameter(event, number),
+            Language::Korean => condition::parameter(event, number),
         }
     }
 

@@ -75,7 +75,8 @@ impl NamedAnswer {
     fn trace_of(&self, reason: &Reason) -> Option<Id> {
         let check = reason.step()?;
         let mut traced = self.traced.iter();
-        let about = traced.find(|(_, seen)| failed_turn(seen, &check.procedure, &check.step).is_some());
+        let about =
+            traced.find(|(_, seen)| failed_turn(seen, &check.procedure, &check.step).is_some());
         about?.0.trace_id
     }
 }

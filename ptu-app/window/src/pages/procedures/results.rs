@@ -1,5 +1,6 @@
 //! Results of the steps, and details of the selected one.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use btu_rig::procedure::{Findings, Measurement, StepResult, Verdict};

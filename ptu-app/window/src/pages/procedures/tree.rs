@@ -106,12 +106,12 @@ fn show_folder(
 
 /// A procedure that this connection cannot do: why it would be skipped.
 fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
-    let text = RichText::new(format!("{}: {}", procedure.id, words.procedures.skipped));
+    let said = format!("{}: {}", title(procedure, words), words.procedures.skipped);
+    let text = RichText::new(said);
     let label = ui.add_enabled(false, Label::new(text));
     label.on_disabled_hover_text(format!(
         "{}. {}",
-        title(procedure, words),
-        words.procedures.needs_harness
+        procedure.id, words.procedures.needs_harness
     ));
 }
 
@@ -120,8 +120,8 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
     let id = ui.make_persistent_id(&procedure.id);
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false)
         .show_header(ui, |ui| {
-            let response = tick(ui, share, RichText::new(&procedure.id));
-            if response.on_hover_text(title(procedure, words)).clicked() {
+            let response = tick(ui, share, RichText::new(title(procedure, words)));
+            if response.on_hover_text(&procedure.id).clicked() {
                 chosen.set(procedure, share != Share::All);
             }
             if procedure.on_request {
@@ -134,13 +134,13 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
             }
         })
         .body(|ui| {
-            ui.label(RichText::new(title(procedure, words)).italics());
+            ui.label(RichText::new(&procedure.id).italics());
             for (place, step) in procedure.steps.iter().enumerate() {
                 let mut on = chosen.has(procedure, place);
                 let response = ui.checkbox(&mut on, &*words.content(&step.name));
                 let changed = response.changed();
                 if let Some(note) = &step.note {
-                    response.on_hover_text(note);
+                    response.on_hover_text(&*words.content(note));
                 }
                 if changed {
                     chosen.set_step(procedure, place, on);

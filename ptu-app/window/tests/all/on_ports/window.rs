@@ -66,8 +66,15 @@ fn the_whole_way(language: Language) {
         .harness()
         .set_size(eframe::egui::vec2(1280.0, 1100.0));
     window.click(words.procedures.none);
-    window.click("ptu/identity");
-    window.click("ptu/self_test");
+    for title in match language {
+        Language::English => [
+            "Identity and configuration of the unit",
+            "Self-test of the unit",
+        ],
+        Language::Korean => ["유닛 식별 및 구성 확인 (PTU)", "자체시험 확인 (PTU)"],
+    } {
+        window.click(title);
+    }
     window.click(words.procedures.run);
     window.wait_for_part(match language {
         Language::English => "replace the EB relay (eb_relay, ",

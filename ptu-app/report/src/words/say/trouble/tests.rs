@@ -122,7 +122,10 @@ fn what_is_known_is_told_without_commands_and_in_korean() {
             "교정한 적이 없습니다: tachometer T7. ",
         ),
         (
-            Trouble::NoUnit(NoUnit::PortHeld("/dev/ttyUSB0".into(), "minicom, 4711".into())),
+            Trouble::NoUnit(NoUnit::PortHeld(
+                "/dev/ttyUSB0".into(),
+                "minicom, 4711".into(),
+            )),
             "another program holds the port /dev/ttyUSB0: minicom, 4711; end it, or choose another port",
             "다른 프로그램이 포트를 사용 중입니다: /dev/ttyUSB0, minicom, 4711. ",
         ),

@@ -85,9 +85,9 @@ fn told(entry: &UnitEvent, words: &Words, palette: &Palette) -> (String, Option<
         Severity::Minor => Some(palette.warn),
         Severity::Major | Severity::Critical => Some(palette.bad),
     };
-    let detail = match entry.said() {
+    let detail = match words.parameter(event, entry.parameter) {
         said if said.is_empty() => said,
-        said => format!(" ({})", words.content(&said)),
+        said => format!(" ({said})"),
     };
     (format!("{source}{} {text}{detail}", entry.code), colour)
 }
