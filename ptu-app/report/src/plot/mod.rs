@@ -168,7 +168,7 @@ impl Plot {
             middle(edges.left, edges.right),
             middle(edges.top, edges.bottom),
         );
-        let mut marks = vec![text(Role::Title, (edges.left, 13.0), &self.title)];
+        let mut marks = vec![text(Role::Title, (LEFT, 13.0), &self.title)];
         marks.extend(self.legend(&edges));
         marks.extend(self.raster.as_ref().map(|raster| raster.mark(&x, &y)));
         marks.extend(self.shades(&x, &edges));
