@@ -100,6 +100,7 @@ impl Display for Condition {
                 if let (true, Operand::Literal(bits)) = (comparison.is_bits(), operand) {
                     let bits = *bits as u16;
                     let bits = bit_names(*signal, bits).unwrap_or(format!("bits {bits:#b}"));
+                    let bits = Part(Name(&bits), said);
                     return write!(f, "{name} {} {bits}", sign(*comparison));
                 }
                 let operand = value(*signal, operand);

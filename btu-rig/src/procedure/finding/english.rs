@@ -73,7 +73,9 @@ impl Display for Finding {
             } => {
                 write!(f, "{} did not come within {within}", Part(condition, said))?;
                 if let Some((signal, names)) = seen.and_then(|bits| named_bits(condition, bits)) {
-                    write!(f, " ({} = {names})", Part(Name(signal), said))?;
+                    let [signal, names] =
+                        [signal, names.as_str()].map(|name| Part(Name(name), said));
+                    write!(f, " ({signal} = {names})")?;
                 }
                 because(f, missing.as_ref())?;
                 because(f, reason.as_ref())
