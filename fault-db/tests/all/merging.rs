@@ -487,7 +487,7 @@ const TAMPERED: [(&str, &str); 8] = [
     ("a verdict taken away", "UPDATE run SET verdict = NULL"),
     (
         "a step",
-        "INSERT INTO step SELECT run, 7, procedure, kind, 7, name, verdict, 0, 0, '', NULL, NULL, NULL FROM step",
+        "INSERT INTO step SELECT run, 7, procedure, kind, 7, name, turn, turns, verdict, 0, 0, '', NULL, NULL, NULL FROM step",
     ),
     (
         "a measurement",

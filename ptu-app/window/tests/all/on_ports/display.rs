@@ -22,7 +22,7 @@ const PAGES: [&str; 6] = [
 ];
 
 /// Where the button that begins a run is on the page of procedures.
-const RUN: [&str; 2] = ["418", "95"];
+const RUN: [&str; 2] = ["545", "95"];
 
 /// Where a field is on the page of sheets.
 const FIND: [&str; 2] = ["104", "129"];
