@@ -71,7 +71,7 @@ fn the_whole_way(language: Language) {
             "Identity and configuration of the unit",
             "Self-test of the unit",
         ],
-        Language::Korean => ["유닛 식별 및 구성 확인 (PTU)", "자체시험 확인 (PTU)"],
+        Language::Korean => ["장치 식별 및 구성 확인 (PTU)", "자체시험 확인 (PTU)"],
     } {
         window.click(title);
     }
