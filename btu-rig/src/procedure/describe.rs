@@ -32,6 +32,9 @@ impl Procedure {
             format!("{}: {}", self.id, self.title),
             format!("  needs: {needs}; at most {}", self.worst_case()),
         ];
+        if let Some(lacks) = &self.lacks {
+            lines.push(format!("  skipped {lacks}"));
+        }
         for (what, actions) in [("setup", &self.setup), ("clean-up", &self.cleanup)] {
             if !actions.is_empty() {
                 lines.push(format!("  {what}"));
@@ -63,6 +66,9 @@ impl Step {
         let mut lines = Vec::new();
         if let Some(note) = &self.note {
             lines.push(format!("    note    {note}"));
+        }
+        if let Some(lacks) = &self.lacks {
+            lines.push(format!("    skipped {lacks}"));
         }
         if let Some(when) = &self.when {
             lines.push(format!("    only if {when}"));

@@ -49,6 +49,8 @@ pub struct Procedure {
     pub needs: Connection,
     /// Run only when it is asked for by name: too long for a run of everything.
     pub on_request: bool,
+    /// What unit type, line or train lack for it: all its steps are skipped, and this is why.
+    pub lacks: Option<String>,
     /// Part to suspect when a step fails that names none itself.
     pub suspect: Option<LruId>,
     /// Path of the script under the scripts folder.
@@ -84,6 +86,8 @@ pub struct Step {
     pub provokes: Vec<Event>,
     /// Run only if this holds when the step's turn comes; else skipped.
     pub when: Option<Condition>,
+    /// What unit type, line or train lack for it: it is skipped, and this is why.
+    pub lacks: Option<String>,
     /// How often it is run; every repetition must pass.
     pub repeat: u32,
     /// What happens after it did not pass.

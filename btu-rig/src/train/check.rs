@@ -9,21 +9,22 @@ use super::data::{CarData, CarsData, DoorData, IdealData, Role};
 /// Longest dead time or time constant, s.
 pub(super) const MAX_TIME_S: f64 = 5.0;
 
+/// What a unit is told of such a train has the ranges of `ato.train` in its configuration: the train's file is at fault.
 pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     check_ranges! { data, "";
         mass_kg: 1e3, 1e7;
         full_load_kg: 0.0, 1e6;
-        length_m: 1.0, 500.0;
+        length_m: 5.0, 500.0;
         drag_per_s: 0.0, 0.1;
-        power_kmh_per_s: 0.1, 10.0;
-        service_kmh_per_s: 0.1, 10.0;
+        power_kmh_per_s: 0.5, 6.0;
+        service_kmh_per_s: 0.5, 6.0;
         emergency_kmh_per_s: 0.1, 10.0;
         holding_share: 0.0, 1.0;
         parking_share: 0.0, 1.0;
     }
     check_doors(&data.doors)?;
     let base_kmh = data.base_speed_kmh.unwrap_or(40.0);
-    within("base_speed_kmh", base_kmh, 1.0, 200.0)?;
+    within("base_speed_kmh", base_kmh, 5.0, 130.0)?;
     data.tcms.check()
 }
 

@@ -13,7 +13,8 @@ pub fn without_korean(procedure: &Procedure) -> BTreeSet<String> {
     let is_missing = |text: &str| is_said(text) && words.content(text) == text;
     let mut missing = BTreeSet::new();
     for step in &procedure.steps {
-        let texts = [Some(&step.name), step.note.as_ref()];
+        let lacks = step.lacks.as_ref().or(procedure.lacks.as_ref());
+        let texts = [Some(&step.name), step.note.as_ref(), lacks];
         let texts = texts.into_iter().flatten().cloned();
         missing.extend(texts.filter(|text| is_missing(text)));
         let names = step.measures.iter().map(|measure| &measure.name);

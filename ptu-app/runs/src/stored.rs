@@ -71,6 +71,7 @@ pub fn whole_run() -> Procedure {
         title_ko: None,
         needs: Connection::Ptu,
         on_request: false,
+        lacks: None,
         suspect: None,
         path: String::new(),
         sha256: String::new(),

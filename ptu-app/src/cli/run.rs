@@ -21,7 +21,7 @@ use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::drive::Setting;
+use ptu_runs::drive::{Setting, train::brakes_less};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{
@@ -198,6 +198,8 @@ impl RunArguments {
             }
             stdio::note(&format!("left out: {why}"));
         }
+        let less = brakes_less(&setup.train, &setup.config.content);
+        less.iter().for_each(|less| stdio::note(less));
         if let Some(earlier) = &earlier {
             resume::tell_changes(earlier, &procedures, &setup);
         }

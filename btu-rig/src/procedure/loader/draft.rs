@@ -17,6 +17,7 @@ pub(super) struct ProcedureDraft {
     pub title_ko: Option<String>,
     pub needs: Connection,
     pub on_request: bool,
+    pub lacks: Option<String>,
     pub suspect: Option<LruId>,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,

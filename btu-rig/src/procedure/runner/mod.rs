@@ -128,7 +128,9 @@ pub struct Runner {
 impl Runner {
     /// A runner that has not begun, for one of the procedure's repetitions, `round` of them before it.
     pub fn new(procedure: Arc<Procedure>, options: RunOptions, round: u32) -> Self {
+        let lacks = procedure.lacks.clone();
         Self {
+            passed_over: lacks.map(|lacks| Finding::ConditionFalse { said: Some(lacks) }),
             schedule: schedule(&procedure, &options, round),
             captured: vec![None; procedure.slots],
             begun_at: Resume::from_the_start(procedure.slots),
@@ -143,7 +145,6 @@ impl Runner {
             answer: None,
             link_lost: false,
             interrupted: None,
-            passed_over: None,
             evidence: Evidence::default(),
             not_kept_before: None,
             self_test: SelfTest::empty(),

@@ -71,6 +71,12 @@ impl Runner {
         (now, sample): (Instant, &Sample),
         driver: &dyn Driver,
     ) -> bool {
+        if let Some(lacks) = &step.lacks {
+            let said = Some(lacks.clone());
+            let why = Finding::ConditionFalse { said };
+            self.pass_over(turn, now, Verdict::Skipped, &why);
+            return false;
+        }
         let truth = step
             .when
             .as_ref()

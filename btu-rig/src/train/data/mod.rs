@@ -124,6 +124,14 @@ impl TrainData {
         }
     }
 
+    /// Its full service brake, km/h/s.
+    pub fn service_kmh_per_s(&self) -> f64 {
+        match self {
+            Self::Ideal(data) => data.service_kmh_per_s,
+            Self::Cars(data) => data.service_brake.kmh_per_s,
+        }
+    }
+
     /// Its doors.
     pub fn doors(&self) -> &DoorData {
         match self {

@@ -11,7 +11,7 @@ impl AtoConfig {
             normal_lowering_kmh: 0.0, 20.0;
             slow_kmh: 1.0, 45.0;
             accel_kmh_per_s: 1.0, 5.0;
-            decel_kmh_per_s: 2.0, 5.0;
+            decel_kmh_per_s: 0.5, 5.0;
             train.empty_kg: 1e3, 1e7;
             train.rotating_kg: 0.0, 1e6;
             train.length_m: 5.0, 500.0;

@@ -12,6 +12,7 @@ use super::{DriveBench, Fixed, SectionChoice, Setting, drive, train, unit_config
 use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::failure::Failure;
 use crate::pool;
+use crate::stdio;
 use crate::stop::Stop;
 
 /// Key of the controller in the unit configuration.
@@ -90,6 +91,8 @@ impl Request {
         let sections = self.sections.unwrap_or(DEFAULT_SECTION);
         let sections = sections.numbers(&line.content)?;
         let benches = self.benches(directory, &train, &line)?;
+        let told = (benches.iter()).find_map(|b| train::brakes_less(&train, &b.config.content));
+        told.iter().for_each(|told| stdio::note(told));
         let mut cases = Vec::new();
         for section in sections {
             for bench in &benches {

@@ -5,6 +5,7 @@ use std::path::Path;
 use btu_rig::conditions::Conditions;
 use btu_rig::drive::Load;
 use btu_rig::train::{IdealData, TrainData};
+use protocol::config::UnitConfig;
 
 use super::{Fixed, Setting};
 use crate::data::{ScriptsDirectory, read};
@@ -105,6 +106,18 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
     ]
     .map(|(key, value)| Setting::new(&format!("ato.train.{key}"), format!("{value:?}")))
     .into()
+}
+
+/// What is to be said of a train whose service brake gives less than ATO counts on.
+pub fn brakes_less(train: &TrainData, config: &UnitConfig) -> Option<String> {
+    let (brakes, counts_on) = (train.service_kmh_per_s(), config.ato.decel_kmh_per_s);
+    (brakes < counts_on).then(|| {
+        format!(
+            "the train \"{}\" brakes at {brakes} km/h/s, and ATO counts on {counts_on} (ato.decel_kmh_per_s): it may \
+             overrun its stop points; --set ato.decel_kmh_per_s={brakes} tells ATO",
+            train.name()
+        )
+    })
 }
 
 /// Refuses conditions that would not act on this train.

@@ -23,6 +23,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("title_ko", ParamType::Name),
             takes("needs", ParamType::Choice(&["harness", "ptu"])),
             takes("on_request", ParamType::Bool),
+            takes("lacks", ParamType::Text),
             takes("suspect", ParamType::Name),
             takes("setup", ParamType::Actions),
             takes("cleanup", ParamType::Actions),
@@ -37,6 +38,7 @@ pub(super) static VERBS: &[Verb] = &[
                     _ => Connection::Btu,
                 },
                 on_request: args.flag("on_request", false),
+                lacks: args.text("lacks").map(str::to_owned),
                 suspect: suspect(args)?.flatten(),
                 setup: args.actions("setup"),
                 cleanup: args.actions("cleanup"),
@@ -53,6 +55,7 @@ pub(super) static VERBS: &[Verb] = &[
             takes("measure", ParamType::Measures),
             takes("provokes", ParamType::Events),
             takes("when", ParamType::Condition),
+            takes("lacks", ParamType::Text),
             takes("repeat", ParamType::Int(1, MOST_REPETITIONS)),
             takes("on_fail", ParamType::Choice(&["continue", "stop"])),
             takes("continues", ParamType::Bool),
@@ -96,6 +99,7 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
         measures,
         provokes: args.events("provokes")?,
         when: args.condition("when").ok(),
+        lacks: args.text("lacks").map(str::to_owned),
         repeat: args
             .int("repeat")
             .map_or(1, |n| n.clamp(1, MOST_REPETITIONS) as u32),
