@@ -36,6 +36,7 @@ pub fn on_track(
         section: inputs.section,
         position_m: inputs.position_m,
         heard_within_m: inputs.speed.mps() * inputs.heard_within_s,
+        length_m: config.train.length_m,
         limit: inputs.limit,
     };
     let now_mps = under(inputs.limit).mps();

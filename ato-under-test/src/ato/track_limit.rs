@@ -1,8 +1,9 @@
 //! Limits of the track database ahead: ATO slows for a lower speed code before its place, so that ATP, which hears
 //! it there, finds nothing to brake (S2 §3.3: 55 to 45 km/h at 235 m, in a run that ATO drives).
 //!
-//! ATP's limit is that of the antenna alone. What the database has lowers the speed that ATO runs at, and only
-//! where the wayside sends what the database has.
+//! ATP's limit is that of the antenna alone, which is at the train's head: it cannot know where the tail is. What the
+//! database has lowers the speed that ATO runs at, and only where the wayside sends what the database has: a lower limit
+//! holds until the last car is past it.
 
 use protocol::Speed;
 use protocol::config::{SpeedCode, find_code};
@@ -17,6 +18,8 @@ pub struct Place<'a> {
     pub position_m: f64,
     /// Way behind a code's place within which the one before may still be in force, m.
     pub heard_within_m: f64,
+    /// Length of the train, m.
+    pub length_m: f64,
     /// Limit in force.
     pub limit: Speed,
 }
@@ -51,7 +54,12 @@ pub fn limit_ahead(
         counts.then_some(lower)
     });
     let here = limit_at(place.position_m).filter(|&limit| limit > Speed::ZERO);
-    ahead.chain(here).fold(place.limit, Speed::min)
+    let tail_m = place.position_m - place.length_m;
+    let under = sent().zip(sent().skip(1)).filter_map(|(code, next)| {
+        let limit = limit_of(&code.code).filter(|&limit| limit > Speed::ZERO)?;
+        (code.at_m <= place.position_m && next.at_m > tail_m).then_some(limit)
+    });
+    ahead.chain(here).chain(under).fold(place.limit, Speed::min)
 }
 
 #[cfg(test)]
@@ -63,12 +71,21 @@ mod tests {
 
     /// Limit, km/h, at a place of S2's section under a limit in force, km/h, by a train that slows within 60 m.
     fn at(position_m: f64, limit_kmh: f64) -> f64 {
+        of(
+            include_str!("../../../scripts/lines/line6.toml"),
+            22,
+            position_m,
+            limit_kmh,
+        )
+    }
+
+    fn of(line: &str, section: u16, position_m: f64, limit_kmh: f64) -> f64 {
         let unit = include_str!("../../../scripts/units/sg100.toml");
         let unit = UnitConfig::from_toml(unit).unwrap();
-        let line = include_str!("../../../scripts/lines/line6.toml");
         let line = Line::from_toml(line).unwrap();
         let place = Place {
-            section: line.section(22),
+            section: line.section(section),
+            length_m: 160.0,
             position_m,
             heard_within_m: 15.0,
             limit: Speed::from_kmh(limit_kmh),
@@ -93,6 +110,16 @@ mod tests {
     fn behind_its_place_it_counts_until_the_code_must_have_been_heard() {
         assert!((at(245.0, 55.0) - 45.0).abs() < 1e-9);
         assert!((at(251.0, 55.0) - 55.0).abs() < 1e-9);
+    }
+
+    /// 55 km/h up to 500 m and 65 from there, on section 56 of line 8, for a train of 160 m.
+    #[test]
+    fn a_higher_limit_counts_when_the_last_car_is_past_the_lower_one() {
+        let line8 = include_str!("../../../scripts/lines/line8.toml");
+        for (position_m, expected_kmh) in [(510.0, 55.0), (659.0, 55.0), (661.0, 65.0)] {
+            let limit_kmh = of(line8, 56, position_m, 65.0);
+            assert!((limit_kmh - expected_kmh).abs() < 1e-9, "{position_m}");
+        }
     }
 
     #[test]
