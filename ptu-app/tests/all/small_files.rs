@@ -84,10 +84,11 @@ fn zeros(bytes: u64) -> Vec<u8> {
 }
 
 /// So many messages of ten texts and a number.
-fn messages(count: u32) -> Vec<u8> {
+fn messages(count: u32, encoding: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
-    let mut writer = mcap::WriteOptions::new().create(&mut file).expect("begun");
-    let channel = writer.add_channel(0, "t", "json", &BTreeMap::new());
+    let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Lz4));
+    let mut writer = options.create(&mut file).expect("begun");
+    let channel = writer.add_channel(0, "t", encoding, &BTreeMap::new());
     let channel_id = channel.expect("a channel");
     let texts: Vec<_> = (0..10).map(|n| format!("\"text_{n}\":\"w\"")).collect();
     for sequence in 0..count {
@@ -104,6 +105,20 @@ fn messages(count: u32) -> Vec<u8> {
     writer.finish().expect("finished");
     drop(writer);
     file.into_inner()
+}
+
+/// Goal: who gives a recording of a kind that is not read learns which it is, and a run's own is read.
+#[test]
+#[cfg(unix)]
+fn recordings_are_read_or_named_by_their_encoding() {
+    let place = Place::new();
+    let run = "run atp/overspeed --inject eb_relay.slow -q --mcap run.mcap";
+    place.ptu(run).exits(1);
+    let compared = place.ptu("trace diff latest run.mcap");
+    assert!(compared.out.contains("compared from"), "{}", compared.all());
+    beside(&place, "x.mcap", &messages(10, "ros2msg"))
+        .exits(2)
+        .explains(&["ros2msg: only json is read"]);
 }
 
 /// Goal: what a file unpacks to is bounded, whatever it says. Method: long texts, a page that is longer than any, and a chunk
@@ -148,6 +163,6 @@ fn texts_are_found_at_once_among_many_signals() {
         many.columns.push(vec![0.0; 600]);
     }
     kept(&place, &many);
-    let said = beside(&place, "texts.mcap", &messages(20_000)).exits(2);
-    said.explains(&["no time in common"]);
+    let said = beside(&place, "texts.mcap", &messages(20_000, "json")).exits(2);
+    said.explains(&["none of its signals"]);
 }

@@ -314,7 +314,8 @@ fn a_foreign_table_is_laid_at_the_traces_rows() {
         "-0.35",
         "--json",
     ];
-    let found = place.json(&diff);
+    let said = place.ptu(&diff).exits(1);
+    let found: Value = serde_json::from_str(&said.out).expect("JSON");
     let deviations = list(&found["deviations"]);
     assert_eq!(deviations.len(), 1, "{found}");
     assert_eq!(text(&deviations[0]["signal"]), "speed");
@@ -322,7 +323,7 @@ fn a_foreign_table_is_laid_at_the_traces_rows() {
     assert!((1.9..2.2).contains(&first_s), "{first_s}");
     assert_eq!(found["from_s"], -2.0);
     assert_eq!(found["missing_in_a"][0], "Scope 1");
-    let said = place.ptu(&diff[..6]).exits(0);
+    let said = place.ptu(&diff[..6]).exits(1);
     assert!(
         said.out.contains("speed") && said.out.contains("not in B: effort"),
         "{}",

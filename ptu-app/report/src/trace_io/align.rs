@@ -26,10 +26,12 @@ pub struct Aligned {
     pub window_s: (f64, f64),
     /// Whether the file's samples came at the trace's own rows.
     pub is_row_by_row: bool,
+    /// Whether the file is of another time, and its beginning was laid at the trace's.
+    pub laid_at_begin: bool,
 }
 
 /// Aligns a file's signals with the rows of `trace`, `shift_us` later than they say: at each row stands the last
-/// sample that came until then.
+/// sample that came until then. A file with dates of another time begins with the trace.
 ///
 /// # Errors
 /// They have no time in common, or one signal comes twice.
@@ -44,8 +46,18 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
     } else {
         0
     };
-    let later_us = shift_us.saturating_sub(zero_us);
     let row_us = |row: usize| (row as i64 - trigger).saturating_mul(period_us);
+    let rows = trace.rows();
+    let (begins_us, ends_us) = (row_us(0), row_us(rows.saturating_sub(1)));
+    let span_us = span_us(&import);
+    let mut later_us = shift_us.saturating_sub(zero_us);
+    let at_us = |time_us: i64| time_us.saturating_add(later_us);
+    // Recorded at another time, or by a clock that is wrong: no dates say how the two belong together.
+    let is_elsewhere = at_us(span_us.1) < begins_us || at_us(span_us.0) > ends_us;
+    let laid_at_begin = import.is_utc && shift_us == 0 && is_elsewhere;
+    if laid_at_begin {
+        later_us = begins_us.saturating_sub(span_us.0);
+    }
     let mut imported = TraceData {
         t0_bench_us: trace.t0_bench_us,
         t0_us: trace.t0_us,
@@ -56,9 +68,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         channels: Vec::new(),
         columns: Vec::new(),
     };
-    let rows = trace.rows();
     let (mut first, mut end, mut is_row_by_row) = (rows, 0, true);
-    let span_us = span_us(&import);
     let known: BTreeSet<&str> = trace.channels.iter().map(|c| c.name.as_str()).collect();
     let (mut names, mut unknown) = (BTreeSet::new(), Vec::new());
     for table in import.tables {
@@ -82,8 +92,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         }
     }
     if first >= end {
-        let own_us = (row_us(0), row_us(rows.saturating_sub(1)));
-        return Err(no_time_in_common(span_us, later_us, own_us));
+        return Err(no_time_in_common(span_us, later_us, (begins_us, ends_us)));
     }
     for column in &mut trace.columns {
         column[..first].fill(f64::NAN);
@@ -97,6 +106,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         rows: first..end,
         window_s: (at_s(first), at_s(end - 1)),
         is_row_by_row,
+        laid_at_begin,
     })
 }
 

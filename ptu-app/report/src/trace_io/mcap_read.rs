@@ -1,6 +1,6 @@
 //! Imports MCAP files: our own exports, or any messages in JSON.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::io::Read;
 use std::path::Path;
@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use super::about::{NAME, TraceInfo};
 use super::known::{Known, KnownSignals};
+use super::run_mcap::{EVENTS, SIGNALS};
 use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use ptu_runs::failure::Failure;
 
@@ -28,6 +29,8 @@ const MAX_MESSAGE: usize = 1 << 20;
 const MAX_NAME: usize = 256;
 /// Longest description that this program writes, bytes; a longer one is passed over.
 const MAX_ABOUT: usize = 4 << 20;
+/// Encodings that are named, where none of a file is read.
+const MAX_ENCODINGS: usize = 8;
 /// Fields within fields are looked at this deep.
 const MAX_DEPTH: usize = 8;
 
@@ -65,6 +68,7 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
         known,
         names: KnownSignals::of(&[known]),
         topics: BTreeMap::new(),
+        others: BTreeSet::new(),
         about: None,
         messages: 0,
         signals: 0,
@@ -136,7 +140,7 @@ fn text(data: &[u8]) -> Option<(&[u8], &[u8])> {
 fn told(error: &McapError) -> String {
     match error {
         McapError::UnsupportedCompression(name) => {
-            format!("it is compressed with {name}, which is not read here; zstd is")
+            format!("it is compressed with {name}, which is not read here; lz4 and zstd are")
         }
         McapError::Parse(inner) => inner.to_string(),
         other => other.to_string(),
@@ -149,6 +153,8 @@ struct Reading<'a> {
     names: KnownSignals,
     /// By the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
+    /// Encodings of messages that are passed over.
+    others: BTreeSet<String>,
     about: Option<TraceInfo>,
     messages: usize,
     /// Of all topics.
@@ -168,6 +174,12 @@ impl Reading<'_> {
                     places: BTreeMap::new(),
                     checked: 0,
                 });
+            }
+            Record::Channel(channel) => {
+                check_name(self.file, &channel.message_encoding)?;
+                if self.others.len() < MAX_ENCODINGS {
+                    self.others.insert(channel.message_encoding);
+                }
             }
             Record::Message { header, data } => {
                 self.messages += 1;
@@ -208,13 +220,20 @@ impl Reading<'_> {
     }
 
     fn finish(self) -> Result<Import, Failure> {
-        let mut tables: Vec<Table> = self.topics.into_values().map(|topic| topic.table).collect();
+        // The events of a recorded run count what its rows have as a signal.
+        let is_run = self.topics.values().any(|topic| topic.name == SIGNALS);
+        let read = (self.topics.into_values()).filter(|topic| !is_run || topic.name != EVENTS);
+        let mut tables: Vec<Table> = read.map(|topic| topic.table).collect();
         tables.retain(|table| !table.columns.is_empty());
         if tables.is_empty() {
-            let what = format!(
+            let mut what = format!(
                 "{} messages, none of them JSON with numbers in it",
                 self.messages
             );
+            if !self.others.is_empty() {
+                let others: Vec<_> = self.others.into_iter().collect();
+                what = format!("{what}; {}: only json is read", others.join(", "));
+            }
             return Err(wrong(self.file, &what));
         }
         let mut is_utc = true;

@@ -18,6 +18,10 @@ use super::mcap_write::{keys, options, put_row, schema};
 use crate::event_lines::{EventLines, schema as events_schema};
 use ptu_runs::run::{Outcome, SessionEvent, channel, in_steps};
 
+/// Topics of its rows and its events.
+pub(super) const SIGNALS: &str = "signals";
+pub(super) const EVENTS: &str = "events";
+
 /// The recording of one run.
 pub struct RunMcap<W: Write + Seek> {
     file: Writer<W>,
@@ -54,8 +58,8 @@ impl<W: Write + Seek> RunMcap<W> {
             let id = file.add_channel(schema, name, "json", &BTreeMap::new())?;
             Ok::<_, McapError>(Topic { id, count: 0 })
         };
-        let signals = topic("signals", schema(&channels).to_string())?;
-        let events = topic("events", events_schema().to_string())?;
+        let signals = topic(SIGNALS, schema(&channels).to_string())?;
+        let events = topic(EVENTS, events_schema().to_string())?;
         let mut recording = Self {
             file,
             keys: keys(&channels),

@@ -9,10 +9,11 @@ use serde_json::json;
 
 use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
-use crate::cli::{Json, ScriptsOption};
+use crate::cli::{Json, ScriptsOption, answered};
 use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
+use ptu_runs::stdio;
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -22,8 +23,10 @@ use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_betw
 /// efforts, accelerations and counts of frames.
 ///
 /// B may be a .csv, .parquet or .mcap file: an export, or another program's table with a column of times or messages in
-/// JSON. Seconds count from the trigger, dates and messages are of the calendar (UTC). Each row of the trace is
-/// compared with the last sample before it.
+/// JSON. Seconds count from the trigger, dates and messages are of the calendar (UTC); a file of another time is laid
+/// with its beginning at that of the trace. Each row of the trace is compared with the last sample before it.
+///
+/// Exit codes: 0 no signal differs, 1 one does.
 ///
 /// Examples:
 ///   ptu trace diff 59c2ce97 latest
@@ -105,7 +108,9 @@ impl DiffArguments {
                 "deviations": deviations_json(&comparison),
             })
         };
-        self.json.answer(document, || text(a, &sides, &comparison))
+        let differs = !comparison.deviations.is_empty();
+        let told = (self.json).answer(document, || text(a, &sides, &comparison));
+        answered(told, if differs { Exit::Failed } else { Exit::Passed })
     }
 
     fn with_file(
@@ -122,6 +127,12 @@ impl DiffArguments {
             unit: self.time_unit,
         };
         let (aligned, rule) = beside(store, (a, came), file, shift_us, &asked)?;
+        if aligned.laid_at_begin {
+            stdio::note(&format!(
+                "{} is of another time: its beginning is laid at that of the trace; --shift SECONDS lays it elsewhere",
+                self.expected
+            ));
+        }
         Ok(ComparedTraces {
             name: self.expected.clone(),
             came: aligned.trace,
