@@ -99,26 +99,21 @@ fn what_is_wrong_is_named_with_its_remedy() {
 #[test]
 fn what_is_begun_passes_the_check_and_is_used_at_once() {
     let place = Place::new();
-    let own = place.path("ptu/scripts");
+    let whole = place.path("whole");
+    copy_folder(&scripts(), &whole);
+    let whole = whole.to_string_lossy().into_owned();
+    let run = |arguments: &[&str]| place.ptu(&[arguments, &["--scripts", &whole]].concat());
     for (what, name) in [
         ("procedure", "depot/doors"),
         ("unit", "sg200"),
         ("line", "line9"),
+        ("train", "emu9"),
         ("fault", "eb_relay.late_when_cold"),
     ] {
-        place.ptu(&["new", what, name]).exits(0);
-        let told = place.ptu(&["new", what, name]).exits(2);
+        run(&["new", what, name]).exits(0);
+        let told = run(&["new", what, name]).exits(2);
         assert!(told.err.contains("is there already"), "{}", told.all());
     }
-    // Beside the shipped ones, as they are laid over them.
-    for folder in ["depot", "units", "lines", "faults"] {
-        assert!(own.join(folder).is_dir(), "{folder}");
-    }
-    let whole = place.path("whole");
-    copy_folder(&scripts(), &whole);
-    copy_folder(&own, &whole);
-    let whole = whole.to_string_lossy().into_owned();
-    let run = |arguments: &[&str]| place.ptu(&[arguments, &["--scripts", &whole]].concat());
     let told = run(&["run", "--check"]).exits(0);
     assert!(told.out.contains("data files, no errors"), "{}", told.all());
     run(&[
@@ -128,6 +123,8 @@ fn what_is_begun_passes_the_check_and_is_used_at_once() {
         "sg200",
         "--line",
         "line9",
+        "--train",
+        "emu9",
     ])
     .exits(0);
     run(&[

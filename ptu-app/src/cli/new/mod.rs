@@ -3,21 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use script_files::own_folder;
+use script_files::{Place, own_folder};
 
 use super::{ScriptsOption, print_out};
 use ptu_runs::data::{ScriptsDirectory, write_text};
 use ptu_runs::failure::{Exit, Failure};
 
-/// Begin a procedure, unit configuration, line or fault mode of your own
+/// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///
-/// Writes a file with comments that is valid as it is: `ptu run --check` accepts it. Without --in it goes into your own
-/// scripts, which replace those of the program file by file. An existing file is not changed.
+/// Writes a file with comments that is valid as it is: `ptu run --check` accepts it. Without --in it goes where the program
+/// reads: into a folder of scripts that is read alone, as in a source tree, else into your own scripts, which replace those
+/// of the program file by file. An existing file is not changed.
 ///
 /// Examples:
 ///   ptu new procedure door/depot_doors
 ///   ptu new unit sg200
 ///   ptu new line line9
+///   ptu new train emu9
 ///   ptu new fault eb_relay.late_when_cold
 ///   ptu new stubs --in ~/ptu-stubs      the script language, for editors that complete and explain it
 ///   ptu new schemas --in ~/my-scripts   the keys of every data file, for the same
@@ -28,9 +30,9 @@ pub struct NewArguments {
     #[arg(value_enum)]
     what: What,
     /// Its name: of a procedure with its folder, of a fault with its part
-    #[arg(required_if_eq_any([("what", "procedure"), ("what", "unit"), ("what", "line"), ("what", "fault")]))]
+    #[arg(required_if_eq_any([("what", "procedure"), ("what", "unit"), ("what", "line"), ("what", "train"), ("what", "fault")]))]
     name: Option<String>,
-    /// Scripts directory to write into [default: the user's own]
+    /// Scripts directory to write into [default: the one that is read alone, else the user's own]
     #[arg(long = "in", value_name = "DIR")]
     into: Option<PathBuf>,
     #[command(flatten)]
@@ -45,6 +47,8 @@ enum What {
     Unit,
     /// Line with its sections, `lines/NAME.toml`
     Line,
+    /// Train of cars, `trains/NAME.toml`
+    Train,
     /// Fault mode to inject, `faults/PART.NAME.toml`
     Fault,
     /// The words of the script language as Python stubs, for editors
@@ -56,7 +60,13 @@ enum What {
 impl NewArguments {
     /// Writes it.
     pub fn run(self) -> Result<Exit, Failure> {
-        let Some(folder) = self.into.clone().or_else(own_folder) else {
+        let scripts = self.scripts.find()?;
+        // A folder that is read alone is the place where what is written is read.
+        let read_alone = match scripts.places() {
+            [Place::Folder(folder)] => Some(folder.clone()),
+            _ => own_folder(),
+        };
+        let Some(folder) = self.into.clone().or(read_alone) else {
             return Err(Failure::usage(
                 "no user data directory; name a folder with --in",
             ));
@@ -69,7 +79,7 @@ impl NewArguments {
         let name = self.name.clone().unwrap_or_default();
         let name = name.trim_end_matches(".star").trim_end_matches(".toml");
         self.check_name(name)?;
-        let (file, text) = self.begun(&self.scripts.find()?, name)?;
+        let (file, text) = self.begun(&scripts, name)?;
         let file = folder.join(file);
         write_new(&file, &text)?;
         let check = match &self.into {
@@ -120,6 +130,10 @@ impl NewArguments {
                 let text = renamed(&scripts.text("lines/test_track.toml")?, "test_track", name);
                 (format!("lines/{name}.toml"), summed(&text))
             }
+            What::Train => (
+                format!("trains/{name}.toml"),
+                renamed(&scripts.text("trains/line6.toml")?, "line6", name),
+            ),
             What::Fault => {
                 let part = name.split('.').next().unwrap_or(name);
                 let parts = scripts.faults()?.lrus;
@@ -145,6 +159,7 @@ impl NewArguments {
             What::Procedure => format!("ptu run {name}"),
             What::Unit => format!("ptu run --unit-config {name}"),
             What::Line => format!("ptu run --line {name}"),
+            What::Train => format!("ptu run --train {name}"),
             What::Fault => format!("ptu run --inject {name}"),
             What::Stubs | What::Schemas => String::new(),
         }
