@@ -1,27 +1,25 @@
 //! Figures of a run: one declaration gives a figure's value, and its key, name, unit and decimals in every report.
 
-/// A figure of the runs whose figures are an `F`.
+use super::Metrics;
+
+/// A figure of a run.
 #[derive(Debug)]
-pub struct Figure<F> {
+pub struct Figure {
     /// Key in JSON and CSV, ending in its unit.
     pub key: &'static str,
     /// Name for people.
     pub name: &'static str,
-    /// Unit for people: `%` of a share, `kN` of newtons.
+    /// Unit for people: `%` of a share.
     pub unit: &'static str,
     pub(super) decimals: usize,
-    /// Its value, if the run shows it.
-    pub of: fn(&F) -> Option<f64>,
+    /// Its value.
+    pub of: fn(&Metrics) -> f64,
 }
 
-impl<F> Figure<F> {
+impl Figure {
     /// A value of it for people, without unit.
     pub fn shown(&self, value: f64) -> String {
-        let scale = match self.unit {
-            "%" => 100.0,
-            "kN" => 1e-3,
-            _ => 1.0,
-        };
+        let scale = if self.unit == "%" { 100.0 } else { 1.0 };
         format!("{:.*}", self.decimals, value * scale)
     }
 }
@@ -40,12 +38,12 @@ macro_rules! figures {
 
         impl $figures {
             /// Every figure, in the order in which reports have them.
-            pub const ALL: &'static [$crate::drive::Figure<Self>] = &[$( $crate::drive::Figure {
+            pub const ALL: &'static [$crate::drive::Figure] = &[$( $crate::drive::Figure {
                 key: stringify!($key),
                 name: $name,
                 unit: $unit,
                 decimals: $decimals,
-                of: |figures| figures.$key.into(),
+                of: |figures| figures.$key,
             } ),+];
         }
     };

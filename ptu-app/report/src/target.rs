@@ -23,11 +23,11 @@ use ptu_runs::stdio;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
     path: PathBuf,
-    format: Format,
+    pub(crate) format: Format,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub(crate) enum Format {
     Html,
     Pdf,
     Csv,
@@ -82,7 +82,7 @@ impl Target {
         NewFile::begin_beside(&self.path)
     }
 
-    fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
+    pub(crate) fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
         data::write(&self.path, self.kind(), content?)
     }
 

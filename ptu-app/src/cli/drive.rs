@@ -9,7 +9,8 @@ use protocol::config::ControllerKind;
 
 use super::keep::KeepOptions;
 use super::{Json, ScriptsOption, answered, made_by};
-use ptu_report::drive::{self as report, Outcomes, Results, Target};
+use ptu_report::Target;
+use ptu_report::drive::{self as report, Outcomes, Results};
 use ptu_runs::data::{ScriptsDirectory, read};
 use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
@@ -98,7 +99,7 @@ pub struct DriveArguments {
     #[command(flatten)]
     json: Json,
     /// Write a report, .html, .json or .csv; repeatable
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = report::target)]
     report: Vec<Target>,
     #[command(flatten)]
     scripts: ScriptsOption,
@@ -179,7 +180,7 @@ impl DriveArguments {
     fn answer(&self, results: &Results, stop: &Stop) -> Result<Exit, Failure> {
         let told = (self.json).answer(|| report::json(results), || report::text(results));
         for target in &self.report {
-            target.write(results)?;
+            report::write(results, target)?;
         }
         let passed = match &results.outcomes {
             _ if stop.presses() > 0 => return answered(told, Exit::Aborted),

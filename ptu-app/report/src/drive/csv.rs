@@ -79,7 +79,7 @@ fn trials(many: &[MonteCarlo]) -> String {
             let metrics = trial.metrics.as_ref();
             let figures: Vec<_> = Metrics::ALL
                 .iter()
-                .map(|figure| metrics.and_then(figure.of).unwrap_or(f64::NAN))
+                .map(|figure| metrics.map_or(f64::NAN, figure.of))
                 .collect();
             let values = drawn
                 .iter()

@@ -53,15 +53,15 @@ fn run_json(run: &Driven) -> Value {
             "aligned": run.aligned(),
             "stop_error_m": outcome.stop_error_m,
         }),
-        figures_json(Metrics::ALL, outcome.metrics.as_ref()),
+        figures_json(outcome.metrics.as_ref()),
         day_json(case.plan.load_kg, &case.plan.conditions, case.seed),
         events_json(&outcome.landmarks),
     ])
 }
 
-fn figures_json<F>(table: &[Figure<F>], of: Option<&F>) -> Value {
-    let value = |figure: &Figure<F>| (figure.key.to_owned(), of.and_then(figure.of).into());
-    Value::Object(table.iter().map(value).collect())
+fn figures_json(of: Option<&Metrics>) -> Value {
+    let value = |figure: &Figure| (figure.key.to_owned(), of.map(figure.of).into());
+    Value::Object(Metrics::ALL.iter().map(value).collect())
 }
 
 fn events_json(landmarks: &[Landmark]) -> Value {
@@ -116,7 +116,7 @@ fn conditions_json(conditions: &Conditions) -> Value {
 }
 
 fn many_json(many: &MonteCarlo) -> Value {
-    let figure = |figure: &Figure<Metrics>| {
+    let figure = |figure: &Figure| {
         let spread = percentiles(&many.figures(figure.of));
         (figure.key.to_owned(), spread)
     };

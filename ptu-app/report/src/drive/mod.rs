@@ -10,19 +10,15 @@ mod plots;
 mod tables;
 mod text;
 
-use std::path::PathBuf;
-use std::str::FromStr;
-
 pub use json::json;
 pub use text::text;
 
+use crate::target::{Format, Target};
 use crate::words::Language;
 use crate::{json_text, run};
-use ptu_runs::data;
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::failure::Failure;
-use ptu_runs::new_file::{Kind, kind};
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
@@ -53,64 +49,28 @@ pub enum Outcomes {
     Many(Vec<MonteCarlo>),
 }
 
-/// A report to write.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Target {
-    path: PathBuf,
-    format: Format,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Html,
-    Json,
-    Csv,
-}
-
-impl FromStr for Target {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let format = match text.rsplit_once('.').map(|(_, ending)| ending) {
-            Some("html") => Format::Html,
-            Some("json") => Format::Json,
-            Some("csv") => Format::Csv,
-            _ => return Err("a report of a drive ends in .html, .json or .csv".into()),
-        };
-        Ok(Self {
-            path: text.into(),
-            format,
+/// A report to write, from its file's name.
+///
+/// # Errors
+/// No drive has such a report.
+pub fn target(name: &str) -> Result<Target, String> {
+    let target = name.parse().ok();
+    target
+        .filter(|target: &Target| {
+            matches!(target.format, Format::Html | Format::Json | Format::Csv)
         })
-    }
+        .ok_or_else(|| "a report of a drive ends in .html, .json or .csv".into())
 }
 
-impl Target {
-    /// Finds out before the run whether the file can be written after it.
-    ///
-    /// # Errors
-    /// It cannot.
-    pub fn check(&self) -> Result<(), Failure> {
-        data::check_writable(&self.path, self.kind())
-    }
-
-    fn kind(&self) -> Kind<'static> {
-        match self.format {
-            Format::Html => kind::HTML,
-            Format::Json => kind::JSON,
-            Format::Csv => kind::CSV,
-        }
-    }
-
-    /// Writes the report.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn write(&self, results: &Results) -> Result<(), Failure> {
-        let text = match self.format {
-            Format::Html => run::html(results, Language::English.words()),
-            Format::Json => json_text(&json(results))? + "\n",
-            Format::Csv => csv::csv(results),
-        };
-        data::write(&self.path, self.kind(), &text)
-    }
+/// Writes the report.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(results: &Results, target: &Target) -> Result<(), Failure> {
+    let text = match target.format {
+        Format::Json => json_text(&json(results))? + "\n",
+        Format::Csv => csv::csv(results),
+        _ => run::html(results, Language::English.words()),
+    };
+    target.write(Ok(text.into()))
 }

@@ -80,19 +80,14 @@ impl Table {
 }
 
 /// A row for each figure: its name, its value in each run, its unit.
-fn figures<F>(table: &[Figure<F>], values: &[Option<&F>]) -> Vec<Vec<String>> {
-    let row = |figure: &Figure<F>| {
-        let shown = |run: &Option<&F>| {
-            run.and_then(|run| (figure.of)(run))
-                .map(|v| figure.shown(v))
-        };
-        let cells = values
-            .iter()
-            .map(|run| shown(run).unwrap_or(UNKNOWN.into()));
+fn figures(values: &[Option<&Metrics>]) -> Vec<Vec<String>> {
+    let row = |figure: &Figure| {
+        let shown = |run: &Metrics| figure.shown((figure.of)(run));
+        let cells = values.iter().map(|run| run.map_or(UNKNOWN.into(), shown));
         let named = std::iter::once(figure.name.into()).chain(cells);
         named.chain([figure.unit.into()]).collect()
     };
-    table.iter().map(row).collect()
+    Metrics::ALL.iter().map(row).collect()
 }
 
 fn one_run(rows: Vec<Vec<String>>) -> Table {
@@ -112,7 +107,7 @@ pub fn of_runs(runs: &[Driven]) -> Table {
         .iter()
         .map(|run| run.outcome.metrics.as_ref())
         .collect();
-    rows.extend(figures(Metrics::ALL, &metrics));
+    rows.extend(figures(&metrics));
     let mut table = one_run(rows);
     if runs.len() > 1 {
         let name = |run: &Driven| (String::new(), run.case.controller.name().to_owned());
@@ -132,7 +127,7 @@ pub fn of_many(many: &MonteCarlo) -> Table {
         std::iter::once(name).chain(cells).collect()
     };
     let errors = row("Stop error".into(), &many.stop_errors_m(), &off);
-    let figure = |figure: &Figure<Metrics>| {
+    let figure = |figure: &Figure| {
         let name = format!("{}, {}", figure.name, figure.unit);
         row(name, &many.figures(figure.of), &|value| figure.shown(value))
     };

@@ -67,7 +67,7 @@ fn several(runs: &[Driven]) -> String {
             .iter()
             .filter(|figure| figure.key != "peak_speed_kmh");
         let shown = figures.map(|figure| {
-            let value = outcome.metrics.as_ref().and_then(figure.of);
+            let value = outcome.metrics.as_ref().map(figure.of);
             value.map_or("-".into(), |value| figure.shown(value))
         });
         let first = [

@@ -181,9 +181,9 @@ impl MonteCarlo {
     }
 
     /// A figure of the runs that came to their stop, sorted.
-    pub fn figures(&self, of: fn(&Metrics) -> Option<f64>) -> Vec<f64> {
+    pub fn figures(&self, of: fn(&Metrics) -> f64) -> Vec<f64> {
         let stopped = self.trials.iter().filter(|trial| trial.stopped());
-        sorted(stopped.filter_map(|trial| trial.metrics.as_ref().and_then(of)))
+        sorted(stopped.filter_map(|trial| trial.metrics.as_ref().map(of)))
     }
 
     /// Share of all runs that stopped so close to the stop point.
