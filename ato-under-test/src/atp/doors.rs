@@ -181,6 +181,26 @@ mod tests {
             .union(TrainLines::LEFT_LOCKED),
     );
 
+    const CONFIG: DoorConfig = DoorConfig {
+        aligned_m: 0.3,
+        open_moving_ms: 100,
+        lines_ms: 500,
+    };
+
+    /// A train that stands at a platform on this side.
+    fn at_platform(lines: TrainLines, side: DoorSide) -> DoorInputs {
+        DoorInputs {
+            lines: Some(DoorLines::new(lines)),
+            supervised: true,
+            latched: true,
+            standstill: true,
+            aligned: true,
+            at_platform: true,
+            side,
+            speed: Speed::ZERO,
+        }
+    }
+
     /// A standing train at a platform on this side, or at none.
     struct Train {
         doors: Doors,
@@ -201,23 +221,9 @@ mod tests {
 
         /// These lines for 600 ms, with doors enabled on a side. Whether the train is held.
         fn has(&mut self, lines: TrainLines, side: DoorSide) -> bool {
-            let config = DoorConfig {
-                aligned_m: 0.3,
-                open_moving_ms: 100,
-                lines_ms: 500,
-            };
-            let inputs = DoorInputs {
-                lines: Some(DoorLines::new(lines)),
-                supervised: true,
-                latched: true,
-                standstill: true,
-                aligned: true,
-                at_platform: true,
-                side,
-                speed: Speed::ZERO,
-            };
+            let inputs = at_platform(lines, side);
             for _ in 0..60 {
-                self.doors.step(self.now, inputs, &config, &mut self.log);
+                self.doors.step(self.now, inputs, &CONFIG, &mut self.log);
                 self.now += protocol::SCAN;
             }
             self.doors.hold()
@@ -279,25 +285,16 @@ mod tests {
     #[test]
     fn a_contact_that_chatters_is_told_once_and_doors_that_open_twice_are_none() {
         let mut train = Train::new();
-        let config = DoorConfig {
-            aligned_m: 0.3,
-            open_moving_ms: 100,
-            lines_ms: 500,
-        };
         for (openings, events) in [(2, 0), (10, 1)] {
             for scan in 0..20 * openings {
                 let lines = if scan % 20 < 9 { RIGHT_OPEN } else { PROVED };
                 let inputs = DoorInputs {
-                    lines: Some(DoorLines::new(lines)),
-                    supervised: true,
-                    latched: true,
                     standstill: false,
                     aligned: false,
                     at_platform: false,
-                    side: DoorSide::None,
-                    speed: Speed::ZERO,
+                    ..at_platform(lines, DoorSide::None)
                 };
-                train.doors.step(train.now, inputs, &config, &mut train.log);
+                train.doors.step(train.now, inputs, &CONFIG, &mut train.log);
                 train.now += protocol::SCAN;
             }
             train.now += Duration::from_ms(2_000);
@@ -319,23 +316,9 @@ mod tests {
             (DoorSide::Unknown(4), Outputs::empty()),
             (DoorSide::Unknown(255), Outputs::empty()),
         ] {
-            let inputs = DoorInputs {
-                lines: Some(DoorLines::new(PROVED)),
-                supervised: true,
-                latched: true,
-                standstill: true,
-                aligned: true,
-                at_platform: true,
-                side,
-                speed: Speed::ZERO,
-            };
-            let config = DoorConfig {
-                aligned_m: 0.3,
-                open_moving_ms: 100,
-                lines_ms: 500,
-            };
             let (mut doors, mut log) = (Doors::default(), EventLog::default());
-            doors.step(Instant::ZERO, inputs, &config, &mut log);
+            let inputs = at_platform(PROVED, side);
+            doors.step(Instant::ZERO, inputs, &CONFIG, &mut log);
             assert_eq!(doors.enable(), enabled, "{side:?}");
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::common::{Random, T0_US, end, fault, ids, open, run_record, step};
+use crate::common::{Random, STAT_KEYS, T0_US, end, fault, ids, open, run_record, step};
 use fault_db::{
     FaultFilter, FaultStat, FaultState, OpenOptions, RepairRecord, RunRecord, RunWriter, StatKey,
     StatQuery, Store, Verdict,
@@ -324,14 +324,6 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
         (Some(T0_US + 80 * DAY_US - 1), None),
         (None, Some(month)),
     ];
-    let keys = [
-        StatKey::Code,
-        StatKey::Lru,
-        StatKey::Cause,
-        StatKey::Unit,
-        StatKey::Line,
-        StatKey::All,
-    ];
     let cases = of_faults().into_iter().chain(of_occurrences());
     for (at, case) in cases.enumerate() {
         let query = |by, (since_us, until_us)| StatQuery {
@@ -344,7 +336,7 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
             now_us: T0_US + DAYS * DAY_US,
             back_within_days: 20,
         };
-        for (key, by) in keys.into_iter().enumerate() {
+        for (key, by) in STAT_KEYS.into_iter().enumerate() {
             let query = query(by, spans[(turn + at + key) % spans.len()]);
             let (stats, total) = store.stats_and_total(&query).expect("counted");
             let expected = sums(&conn, &case, &query);
@@ -360,7 +352,7 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
             let all = store.stats(&StatQuery { by, ..query }).expect("counted");
             assert_eq!(all.first().unwrap_or(&total), &total, "{what} {by:?}");
         }
-        let by = keys[(turn + at) % keys.len()];
+        let by = STAT_KEYS[(turn + at) % STAT_KEYS.len()];
         let adjacent = [T0_US..month, month..month, month..month + 35 * DAY_US];
         let together = store.stats_of_spans(&query(by, (None, None)), &adjacent);
         let alone = adjacent.map(|span| {

@@ -3,10 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::common::{Random, T0_US, by_hand, end, fault, ids, measurement, run_record, step};
+use crate::common::{
+    Random, STAT_KEYS, T0_US, by_hand, end, fault, ids, measurement, run_record, step,
+};
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter,
-    StatKey, StatQuery, Store, StoreError, Synchronous, Verdict,
+    StatQuery, Store, StoreError, Synchronous, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -54,14 +56,7 @@ fn said(store: &Store) -> Vec<String> {
         lines.sort();
         said.extend(lines);
     }
-    for by in [
-        StatKey::Code,
-        StatKey::Lru,
-        StatKey::Cause,
-        StatKey::Unit,
-        StatKey::Line,
-        StatKey::All,
-    ] {
+    for by in STAT_KEYS {
         let query = StatQuery {
             by,
             filter: FaultFilter::default(),

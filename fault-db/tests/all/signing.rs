@@ -1,6 +1,6 @@
 //! A signed run says who signed it, and every later change of it is found and located.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fault_db::{
@@ -10,7 +10,7 @@ use fault_db::{
 use fuzzing::draw;
 use rusqlite::Connection;
 use rusqlite::types::Value;
-use tempfile::tempdir;
+use tempfile::{TempDir, tempdir};
 
 use crate::common::{
     T0_US, change, end, fault, ids, measurement, open, realistic_trace, run_record, step,
@@ -67,6 +67,16 @@ fn signed_run(store: &Store) -> Id {
     id
 }
 
+/// The same in a file `a.db` that is closed.
+fn signed_file() -> (TempDir, PathBuf, Id) {
+    let dir = tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    let id = signed_run(&store);
+    store.close().expect("closed");
+    (dir, path, id)
+}
+
 #[test]
 fn a_signed_run_says_who_signed_it_and_when() {
     let dir = tempdir().expect("a directory");
@@ -117,11 +127,7 @@ const OF_THE_FILE: [(&str, &str); 4] = [
 /// its own; blobs at several bytes. The finding must name the row.
 #[test]
 fn every_changed_field_of_a_signed_run_is_found_and_located() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    let id = signed_run(&store);
-    store.close().expect("closed");
+    let (dir, path, id) = signed_file();
     let tables = [
         "run",
         "run_script",
@@ -315,11 +321,7 @@ fn keys(conn: &Connection, table: &str) -> String {
 /// that makes a text no text any more is passed over.
 #[test]
 fn every_changed_byte_of_samples_notes_and_repairs_is_found() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    let id = signed_run(&store);
-    store.close().expect("closed");
+    let (_dir, path, id) = signed_file();
     let reader = Store::open_read_only(&path).expect("opens");
     let conn = Connection::open(&path).expect("opens");
     conn.execute_batch("PRAGMA synchronous = OFF").expect("set");
@@ -391,11 +393,7 @@ fn with_bit_changed(value: &Value, place: usize, bit: u64) -> Option<Value> {
 /// Goal: taking a row out, or putting one in, is found and located.
 #[test]
 fn rows_taken_out_or_put_in_are_found() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    let id = signed_run(&store);
-    store.close().expect("closed");
+    let (dir, path, id) = signed_file();
     for (sql, says) in [
         (
             "DELETE FROM measurement WHERE step_index = 2 AND ordinal = 1",
@@ -478,11 +476,7 @@ fn a_run_that_was_sealed_again_is_not_what_was_signed() {
 /// Goal: signatures travel with the rows, and still hold in another file.
 #[test]
 fn a_signature_holds_in_the_file_that_it_was_brought_to() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    let id = signed_run(&store);
-    store.close().expect("closed");
+    let (dir, path, id) = signed_file();
     let other = Store::open(&dir.path().join("b.db"), OpenOptions::new(ids(5))).expect("opens");
     other.import(&path).expect("merged");
     let found = other.verify_run(id).expect("verified");
@@ -494,11 +488,7 @@ fn a_signature_holds_in_the_file_that_it_was_brought_to() {
 /// Goal: `rebuild` signs nothing and gives nothing a seal that has none, whoever's key is set.
 #[test]
 fn rebuild_seals_and_signs_nothing_that_was_changed() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    signed_run(&store);
-    store.close().expect("closed");
+    let (_dir, path, _) = signed_file();
     change(
         &path,
         "DELETE FROM repair; UPDATE run SET operator = 'lee'; DELETE FROM seal WHERE what = 'note'",

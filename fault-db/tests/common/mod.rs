@@ -6,7 +6,7 @@ use std::path::Path;
 
 use fault_db::{
     Channel, ChannelKind, FaultRecord, FreezeSample, IdSource, MeasurementRecord, OpenOptions,
-    RunEnd, RunRecord, ScriptRecord, StepRecord, Store, TraceData, UnitRecord, Verdict,
+    RunEnd, RunRecord, ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
 
 /// 2026-03-01 00:00:00 UTC.
@@ -88,6 +88,16 @@ pub fn by_hand(path: &Path, sql: &str) {
         conn.execute_batch(&sql).expect("made again");
     }
 }
+
+/// All that faults are counted by.
+pub const STAT_KEYS: [StatKey; 6] = [
+    StatKey::Code,
+    StatKey::Lru,
+    StatKey::Cause,
+    StatKey::Unit,
+    StatKey::Line,
+    StatKey::All,
+];
 
 pub fn run_record(serial: &str) -> RunRecord {
     RunRecord {

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord,
-    RepairsOf, RunFilter, RunWriter, StatKey, StatQuery, Store, StoreError, TrendQuery, Verdict,
+    RepairsOf, RunFilter, RunWriter, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 
 use crate::common;
@@ -383,14 +383,7 @@ fn a_server_gives_the_answers_its_files_give() {
         questions.push(question(name, move |store| {
             Ok((wanted.clone(), store.faults(&wanted)?))
         }));
-        for by in [
-            StatKey::Code,
-            StatKey::Lru,
-            StatKey::Cause,
-            StatKey::Unit,
-            StatKey::Line,
-            StatKey::All,
-        ] {
+        for by in common::STAT_KEYS {
             let query = StatQuery {
                 by,
                 filter: FaultFilter {

@@ -98,11 +98,6 @@ fn what_cannot_be_diagnosed_is_refused_with_the_next_move() {
     let place = Place::new();
     place.ptu("diagnose latest").exits(3);
     place.recorded_run();
-    place
-        .ptu("diagnose ffffffff")
-        .exits(2)
-        .explains(&["ffffffff"]);
-    place.ptu("diagnose").exits(2);
     let bare = changed_scripts(&place);
     std::fs::remove_file(Path::new(&bare).join("dictionary.zst")).expect("removed");
     place

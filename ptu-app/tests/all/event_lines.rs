@@ -52,14 +52,8 @@ fn check(lines: &[Value]) -> BTreeSet<String> {
 #[test]
 fn the_stream_of_a_run_says_what_the_database_says() {
     let place = Place::new();
-    let run = [
-        "run",
-        "atp/overspeed",
-        "twc/exchange",
-        "--inject",
-        "eb_relay.slow",
-    ];
-    let said = place.ptu(&[&run[..], &["--json"]].concat()).exits(1);
+    let run = "run atp/overspeed twc/exchange --inject eb_relay.slow";
+    let said = place.ptu(&format!("{run} --json")).exits(1);
     let all = lines(&said.out);
     let seen = check(&all);
     for event in [
@@ -95,9 +89,8 @@ fn the_stream_of_a_run_says_what_the_database_says() {
     assert_eq!(steps, stored_steps);
     assert!(of("fault").iter().any(|line| line["part"] == "eb_relay"));
 
-    let jobs = ["--events", "events.jsonl", "--jobs", "2"];
     place
-        .ptu(&[&run[..], &jobs].concat())
+        .ptu(&format!("{run} --events events.jsonl --jobs 2"))
         .exits(1)
         .prints(&["eb_relay"]);
     let again = lines(&place.read("events.jsonl"));
@@ -144,10 +137,9 @@ fn the_schema_in_docs_is_that_of_the_program() {
 fn a_recorded_run_has_every_row_and_every_event() {
     let place = Place::new();
     let [record, stream] = ["run.mcap", "run.jsonl"].map(|name| place.text_path(name));
-    let run = ["run", "atp/overspeed", "twc/exchange", "--jobs", "2"];
-    let to = ["--mcap", &*record, "--events", &*stream];
+    let run = "run atp/overspeed twc/exchange --jobs 2 --inject eb_relay.slow";
     place
-        .ptu(&[&run[..], &["--inject", "eb_relay.slow"], &to].concat())
+        .ptu(&format!("{run} --mcap {record} --events {stream}"))
         .exits(1);
     let read: Value = serde_json::from_str(&run_python("read_run.py", &[&record])).expect("JSON");
     assert_eq!(read["ordered"], true);

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 /// The poles S0 prints, from which its four gains follow.
 const PRINTED_POLES: &str =
-    "ato.servo.poles=[[0.6982, 0.0], [0.9682, 0.0], [0.92, 0.0332], [0.92, -0.0332]]";
+    "--set 'ato.servo.poles=[[0.6982, 0.0], [0.9682, 0.0], [0.92, 0.0332], [0.92, -0.0332]]'";
 /// Deceleration that ATO asks for at most [S0 §4], km/h/s.
 const MOST_KMH_S: f64 = 3.5;
 /// ATO knows brakes and resistance of the train of cars to so much of it.
@@ -25,8 +25,8 @@ const STARTING_KMH_S: f64 = 0.1;
 
 /// JSON of a drive in which every train stopped where doors may open.
 #[track_caller]
-fn driven(place: &Place, arguments: &[&str]) -> Value {
-    place.json(&[&["drive", "--json"], arguments].concat())
+fn driven(place: &Place, arguments: &str) -> Value {
+    place.json(&format!("drive --json {arguments}"))
 }
 
 /// Stop error, m; the run must have come to its stop by itself.
@@ -48,18 +48,9 @@ fn place_of(run: &Value, what: &str) -> Option<f64> {
 #[test]
 fn the_servo_stops_the_ideal_train_of_section_61_within_two_centimetres() {
     let place = Place::new();
-    let ideal = [
-        "--line",
-        "line8",
-        "--section",
-        "61",
-        "--train",
-        "ideal",
-        "--mass",
-        "200000",
-    ];
-    for more in [&[][..], &["--set", PRINTED_POLES]] {
-        let run = driven(&place, &[&ideal[..], more].concat());
+    for more in ["", PRINTED_POLES] {
+        let ideal = "--line line8 --section 61 --train ideal --mass 200000";
+        let run = driven(&place, &format!("{ideal} {more}"));
         assert_eq!(text(&run["controller"]), "servo");
         let error_m = stop_error_m(&run);
         assert!(error_m.abs() <= 0.02, "{more:?}: {error_m} m");
@@ -77,7 +68,7 @@ fn the_servo_stops_the_ideal_train_of_section_61_within_two_centimetres() {
 fn servo_and_pss_stop_empty_and_full_trains_within_ten_centimetres_on_all_of_line_8() {
     let place = Place::new();
     for load in ["empty", "full"] {
-        let all = ["--section", "all", "--load", load, "--compare", "servo,pss"];
+        let all = format!("--section all --load {load} --compare servo,pss");
         let driven = driven(&place, &all);
         let runs = list(&driven["runs"]);
         assert_eq!(runs.len(), 24);
@@ -99,9 +90,8 @@ fn servo_and_pss_stop_empty_and_full_trains_within_ten_centimetres_on_all_of_lin
 fn no_controller_is_braked_by_atp_where_the_codes_of_line_6_step_down() {
     let place = Place::new();
     for load in ["empty", "full"] {
-        let line6 = ["--line", "line6", "--section", "all", "--load", load];
-        let all = ["--compare", "servo,pi,fuzzy,pss"];
-        for run in list(&driven(&place, &[&line6[..], &all].concat())["runs"]) {
+        let all = "--line line6 --section all --compare servo,pi,fuzzy,pss";
+        for run in list(&driven(&place, &format!("{all} --load {load}"))["runs"]) {
             let what = format!("{load} {} {}", run["section"], run["controller"]);
             assert!(stop_error_m(run).abs() <= 0.10, "{what}");
             assert_eq!(place_of(run, "unit: overspeed"), None, "{what}");
@@ -114,7 +104,7 @@ fn no_controller_is_braked_by_atp_where_the_codes_of_line_6_step_down() {
 #[test]
 fn sixty_trains_and_days_stop_within_thirty_centimetres() {
     let place = Place::new();
-    let many = driven(&place, &["--section", "61", "--monte-carlo", "60"]);
+    let many = driven(&place, "--section 61 --monte-carlo 60");
     assert_eq!(number(&many["runs"]), 60.0);
     assert_eq!(number(&many["within_30cm"]), 1.0, "{many}");
     assert!(number(&many["within_10cm"]) >= 0.9, "{many}");
@@ -129,16 +119,7 @@ fn pss_takes_over_on_line_6_where_the_paper_has_it() {
     let place = Place::new();
     let run = driven(
         &place,
-        &[
-            "--line",
-            "line6",
-            "--section",
-            "22",
-            "--controller",
-            "pss",
-            "--report",
-            "run.csv",
-        ],
+        "--line line6 --section 22 --controller pss --report run.csv",
     );
     let takes_over_m = place_of(&run, "stop curve takes over").expect("a stop curve");
     assert!((takes_over_m - 637.0).abs() <= 3.0, "{takes_over_m} m");
@@ -169,20 +150,9 @@ fn pss_takes_over_on_line_6_where_the_paper_has_it() {
 }
 
 /// Rms errors of fuzzy and PI, km/h, in S1's run through the whole unit: 432 t to 60 km/h on the test track.
-fn fuzzy_and_pi_kmh(more: &[&str]) -> [f64; 2] {
-    let s1 = [
-        "--line",
-        "test_track",
-        "--section",
-        "1",
-        "--train",
-        "ideal",
-        "--mass",
-        "432000",
-        "--compare",
-        "fuzzy,pi",
-    ];
-    let driven = driven(&Place::new(), &[&s1[..], more].concat());
+fn fuzzy_and_pi_kmh(more: &str) -> [f64; 2] {
+    let s1 = "--line test_track --section 1 --train ideal --mass 432000 --compare fuzzy,pi";
+    let driven = driven(&Place::new(), &format!("{s1} {more}"));
     let [fuzzy, pi] = list(&driven["runs"]) else {
         panic!("two runs: {driven}")
     };
@@ -197,10 +167,8 @@ fn fuzzy_and_pi_kmh(more: &[&str]) -> [f64; 2] {
 #[test]
 fn fuzzy_follows_better_than_pi_under_the_disturbance() {
     let ratio = |unit: &str| {
-        let unit = format!("ato.pi.speed_unit={unit}");
-        let printed = "ato.profile.feed_forward=false";
-        let more = ["--disturbance", "s1", "--set", printed, "--set", &unit];
-        let [fuzzy, pi] = fuzzy_and_pi_kmh(&more);
+        let printed = "--disturbance s1 --set ato.profile.feed_forward=false";
+        let [fuzzy, pi] = fuzzy_and_pi_kmh(&format!("{printed} --set ato.pi.speed_unit={unit}"));
         fuzzy / pi
     };
     let per_mps = ratio("mps");
@@ -214,10 +182,10 @@ fn fuzzy_follows_better_than_pi_under_the_disturbance() {
 #[test]
 fn with_feed_forward_the_disturbance_itself_is_left_of_both() {
     let undriven_kmh = 0.77 / std::f64::consts::TAU / 2f64.sqrt() * 3.6;
-    for error_kmh in fuzzy_and_pi_kmh(&["--disturbance", "s1"]) {
+    for error_kmh in fuzzy_and_pi_kmh("--disturbance s1") {
         assert!(error_kmh < 1.2 * undriven_kmh, "{error_kmh}");
     }
-    let [fuzzy, pi] = fuzzy_and_pi_kmh(&[]);
+    let [fuzzy, pi] = fuzzy_and_pi_kmh("");
     assert!(fuzzy <= pi && pi < 0.15, "{fuzzy} {pi}");
 }
 

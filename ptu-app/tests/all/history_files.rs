@@ -110,15 +110,8 @@ fn partitions_answer_as_the_file_does_and_grow_with_it() {
         .ptu(&["run", "atp/overspeed", "--serial-no", "OK-7"])
         .exits(0);
     let fault = relay_fault(&place);
-    let repair = [
-        "faults",
-        "repair",
-        text(&fault["id"]),
-        "--part",
-        "eb_relay",
-        "--new",
-        "SN-77",
-    ];
+    let id = text(&fault["id"]);
+    let repair = format!("faults repair {id} --part eb_relay --new SN-77");
     place.ptu(&repair).exits(0);
     place.ptu(&["runs", "note", "latest", "바꿈"]).exits(0);
     let grown = export("files");

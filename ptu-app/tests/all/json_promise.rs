@@ -62,29 +62,12 @@ fn told(answers: &[(&str, Value)]) -> Vec<String> {
 fn every_answer_has_the_keys_that_are_promised() {
     let place = Place::new();
     place.ptu("run tcms/link").exits(0);
-    let run = [
-        "run",
-        "atp/overspeed",
-        "twc/exchange",
-        "--inject",
-        "eb_relay.slow",
-    ];
-    let by = [
-        "--who",
-        "Kim",
-        "--train-no",
-        "612",
-        "--symptom",
-        "brakes_late",
-    ];
-    place.ptu(&[&run[..], &by].concat()).exits(1);
+    let run = "run atp/overspeed twc/exchange --inject eb_relay.slow --who Kim --train-no 612";
+    place.ptu(&format!("{run} --symptom brakes_late")).exits(1);
     let faults = place.json("faults list --json");
     let fault = text(&list(&faults)[0]["id"]).to_owned();
-    let repair = [
-        "faults", "repair", &fault, "--part", "eb_relay", "--old", "R-1",
-    ];
-    let new = ["--new", "R-2", "--who", "Kim"];
-    place.ptu(&[&repair[..], &new].concat()).exits(0);
+    let repair = format!("faults repair {fault} --part eb_relay --old R-1 --new R-2 --who Kim");
+    place.ptu(&repair).exits(0);
     place.ptu("signal make code 55 code.wav").exits(0);
     place.ptu("signal make twc 01 twc.wav").exits(0);
     let cut = std::fs::read(place.path("twc.wav")).expect("made");

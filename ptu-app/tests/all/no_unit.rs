@@ -30,28 +30,6 @@ pub fn fails(unit: &str, words: &[&str]) {
 }
 
 #[test]
-fn an_unknown_port() {
-    fails(
-        "serial:/dev/ttyNowhere",
-        &["/dev/ttyNowhere", "check the cable", "`ptu ports`"],
-    );
-}
-
-#[test]
-fn a_file_that_is_no_port() {
-    fails("serial:/dev/null", &["/dev/null", "`ptu ports`"]);
-}
-
-#[test]
-fn nobody_listens() {
-    // A free port might be taken by another test.
-    fails(
-        "tcp:127.0.0.1:1",
-        &["127.0.0.1:1", "check that the unit is served there"],
-    );
-}
-
-#[test]
 fn a_host_that_does_not_exist() {
     fails(
         "tcp:no-such-host.invalid:7000",

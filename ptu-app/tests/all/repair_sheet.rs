@@ -233,33 +233,6 @@ fn the_sheet_of_the_proof_run_names_what_it_settles() {
     assert_eq!(text(&report["settles"][0]["repair"]["serial_new"]), "SN-77");
 }
 
-#[test]
-fn what_is_no_run_and_no_fault_is_told_with_where_to_look() {
-    let place = Place::new();
-    place.recorded_run();
-    for (arguments, said) in [
-        (
-            &["ffffffff"][..],
-            &["no run and no fault", "ptu runs list", "ptu faults list"][..],
-        ),
-        (&["latest", "--case"], &["no fault \"latest\""]),
-        (&["latest", "--annex"], &["--annex is of a case"]),
-        (&["x"], &["no run id"]),
-    ] {
-        let all = [&["report"], arguments, &["--out", "x.html"]].concat();
-        place.ptu(&all).exits(2).explains(said);
-        assert!(!place.path("x.html").exists(), "something was written");
-    }
-    place
-        .ptu(&["report", "latest"])
-        .exits(2)
-        .explains(&["--out"]);
-    place
-        .ptu(&["report", "latest", "--out", "x.docx"])
-        .exits(2)
-        .explains(&["a report ends in"]);
-}
-
 /// Goal: a proof holds until the fault is seen again, and a person's word is told as one. Method: the relay is slow again
 /// after the proof; then it is repaired once more, and somebody says that it holds.
 #[test]

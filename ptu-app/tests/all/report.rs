@@ -216,30 +216,6 @@ fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
 }
 
 #[test]
-fn what_cannot_be_written_or_found_is_named() {
-    let place = Place::new();
-    place.recorded_run();
-    for (arguments, code, said) in [
-        (
-            &["--report", "nowhere/x.pdf"][..],
-            2,
-            "cannot write nowhere/x.pdf",
-        ),
-        (&["--report", "x.docx"], 2, "a report ends in .html, .pdf"),
-        (&["--lang", "fr"], 2, "a language is en or ko"),
-        (
-            &["--report", "x.html", "--scripts", "gone"],
-            2,
-            "gone is not a directory",
-        ),
-    ] {
-        let all = [&["runs", "show", "latest"], arguments].concat();
-        let told = place.ptu(&all).exits(code);
-        assert!(told.err.contains(said), "{}", told.all());
-    }
-}
-
-#[test]
 fn a_sheet_without_a_dictionary_says_why_it_has_no_diagnosis() {
     let place = Place::new();
     place.recorded_run();

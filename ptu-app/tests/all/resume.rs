@@ -126,14 +126,3 @@ fn another_unit_does_not_continue_a_run_and_changed_scripts_are_told() {
         .exits(2)
         .explains(&["no procedure of run", "ended as an error"]);
 }
-
-#[test]
-fn what_ran_no_procedures_is_not_continued() {
-    let place = Place::new();
-    place
-        .ptu("run --resume latest")
-        .exits(3)
-        .explains(&["there is no database"]);
-    place.recorded_run();
-    place.ptu("run --resume ffffffff").exits(2);
-}

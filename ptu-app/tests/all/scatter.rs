@@ -69,8 +69,4 @@ fn a_wrong_file_is_told_by_name_and_key() {
         .ptu(&["run", &option])
         .exits(2)
         .explains(&["wrong.toml", "teeth"]);
-    place
-        .ptu("run --scattered=gone.toml")
-        .exits(2)
-        .explains(&["gone.toml"]);
 }

@@ -5,39 +5,19 @@ use crate::common::{Place, Said};
 const SHARDS: usize = 3;
 
 /// A small campaign, or a small Monte Carlo series of two cases.
-const CAMPAIGN: [&str; 12] = [
-    "campaign",
-    "--harness",
-    "none",
-    "--faults",
-    "eb_relay.slow",
-    "--seeds",
-    "1",
-    "--held-out",
-    "1",
-    "--good",
-    "4",
-    "--json",
-];
-const DRIVE: [&str; 7] = [
-    "drive",
-    "--monte-carlo",
-    "6",
-    "--seed",
-    "40",
-    "--compare",
-    "servo,pi",
-];
+const CAMPAIGN: &str =
+    "campaign --harness none --faults eb_relay.slow --seeds 1 --held-out 1 --good 4 --json";
+const DRIVE: &str = "drive --monte-carlo 6 --seed 40 --compare servo,pi";
 
-fn said(place: &Place, command: &[&str], more: &[&str]) -> Said {
-    place.ptu(&[command, more].concat())
+fn said(place: &Place, command: &str, more: &str) -> Said {
+    place.ptu(&format!("{command} {more}"))
 }
 
 /// Makes a shard with a scheduler's variable, as an array job does.
-fn shard(place: &Place, command: &[&str], number: usize) -> String {
+fn shard(place: &Place, command: &str, number: usize) -> String {
     let file = format!("shard-{number}.zst");
-    let auto = format!("auto/{SHARDS}");
-    let mut command = place.command(&[command, &["--shard", &auto, "--runs", &file]].concat());
+    let shard = format!("{command} --shard auto/{SHARDS} --runs {file}");
+    let mut command = place.command(&shard);
     // Nodes of a cluster have no history.
     command.env("PTU_DB", "/nonexistent/history.db");
     let number = number.to_string();
@@ -48,34 +28,29 @@ fn shard(place: &Place, command: &[&str], number: usize) -> String {
     file
 }
 
-fn shards_are_one_process(place: &Place, command: &[&str]) {
-    let whole = said(place, command, &["--runs", "whole.zst", "--jobs", "2"]);
+fn shards_are_one_process(place: &Place, command: &str) {
+    let whole = said(place, command, "--runs whole.zst --jobs 2");
     assert!(matches!(whole.code, Some(0 | 1)), "{}", whole.all());
     let files: Vec<_> = (1..=SHARDS)
         .rev()
         .map(|number| shard(place, command, number))
         .collect();
-    let names: Vec<_> = files.iter().map(String::as_str).collect();
-    let missing = |files: &[&str]| place.ptu(&[&["campaign", "missing"], files].concat());
-    missing(&names).exits(0).prints(&["0 of"]);
+    let missing = |files: &[String]| place.ptu(&format!("campaign missing {}", files.join(" ")));
+    missing(&files).exits(0).prints(&["0 of"]);
     let last = [
         format!("shard {SHARDS}/{SHARDS}"),
         format!("--array={SHARDS}"),
     ];
-    missing(&names[1..])
+    missing(&files[1..])
         .exits(1)
         .prints(&last.each_ref().map(String::as_str));
-    let merged = [
-        &["campaign", "merge", names[1]],
-        &names[..],
-        &["--out", "merged.zst"],
-    ]
-    .concat();
+    let (twice, all) = (&files[1], files.join(" "));
+    let merged = format!("campaign merge {twice} {all} --out merged.zst");
     place.ptu(&merged).exits(0);
     let bytes = |name: &str| std::fs::read(place.path(name)).expect("a file of runs");
     assert!(bytes("merged.zst") == bytes("whole.zst"));
     // Nothing is made again, and the result is that of one process.
-    let again = said(place, command, &["--runs", "merged.zst"]);
+    let again = said(place, command, "--runs merged.zst");
     assert_eq!((again.code, again.out), (whole.code, whole.out));
     assert!(bytes("merged.zst") == bytes("whole.zst"));
 }
@@ -84,24 +59,24 @@ fn shards_are_one_process(place: &Place, command: &[&str]) {
 /// one process: bytes of the file, and the answer.
 #[test]
 fn a_campaign_in_shards_is_one_campaign() {
-    shards_are_one_process(&Place::with_database(), &CAMPAIGN);
+    shards_are_one_process(&Place::with_database(), CAMPAIGN);
 }
 
 #[test]
 fn drives_in_shards_are_one_series() {
-    shards_are_one_process(&Place::new(), &DRIVE);
+    shards_are_one_process(&Place::new(), DRIVE);
 }
 
 #[test]
 fn what_cannot_be_a_shard_is_said_with_what_to_do() {
     let place = Place::new();
-    said(&place, &CAMPAIGN, &["--shard", "3/2", "--runs", "a.zst"])
+    said(&place, CAMPAIGN, "--shard 3/2 --runs a.zst")
         .exits(2)
         .explains(&["no shard 3/2"]);
-    said(&place, &CAMPAIGN, &["--shard", "auto", "--runs", "a.zst"])
+    said(&place, CAMPAIGN, "--shard auto --runs a.zst")
         .exits(2)
         .explains(&["SLURM_ARRAY_TASK_ID", "write --shard 3/64"]);
-    said(&place, &CAMPAIGN, &["--shard", "1/2"])
+    said(&place, CAMPAIGN, "--shard 1/2")
         .exits(2)
         .explains(&["--runs"]);
     place
@@ -109,12 +84,11 @@ fn what_cannot_be_a_shard_is_said_with_what_to_do() {
         .exits(2)
         .explains(&["goes with --monte-carlo"]);
     // A file of drives does not belong to a campaign.
-    let one = ["--shard", "1/12", "--runs"];
-    said(&place, &DRIVE, &[&one[..], &["drives.zst"]].concat()).exits(0);
-    said(&place, &CAMPAIGN, &[&one[..], &["drives.zst"]].concat())
+    said(&place, DRIVE, "--shard 1/12 --runs drives.zst").exits(0);
+    said(&place, CAMPAIGN, "--shard 1/12 --runs drives.zst")
         .exits(2)
         .explains(&["drives.zst", "by another program or with other scripts"]);
-    said(&place, &CAMPAIGN, &[&one[..], &["suite.zst"]].concat()).exits(0);
+    said(&place, CAMPAIGN, "--shard 1/12 --runs suite.zst").exits(0);
     place
         .ptu("campaign merge suite.zst drives.zst --out m.zst")
         .exits(2)

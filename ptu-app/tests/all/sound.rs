@@ -181,16 +181,9 @@ fn a_stop_a_crash_and_a_tester_that_hangs_are_silent_at_once() {
             }
         });
         // A code has pauses; the reference is a tone without any.
-        let tone = [
-            "signal",
-            "calibrate",
-            "--device",
-            "coil",
-            "--channel",
-            "both",
-        ];
-        let by = ["--measured", "500", "--seconds", "60", "--instrument", "x"];
-        let mut player = server.begin(&[&tone[..], &by, &["--within", "1%"]].concat());
+        let tone = "signal calibrate --device coil --channel both --instrument x";
+        let by = "--measured 500 --seconds 60 --within 1%";
+        let mut player = server.begin(&format!("{tone} {by}"));
         heard
             .recv_timeout(Duration::from_secs(20))
             .expect("it is heard");
@@ -266,22 +259,12 @@ fn what_cannot_be_played_or_recorded_is_said() {
     let Some(server) = SoundServer::start() else {
         return;
     };
-    let code = ["signal", "play", "code", "55", "--seconds", "1", "--device"];
     server
-        .ptu(&[&code[..], &["nothing"]].concat())
+        .ptu("signal play code 55 --seconds 1 --device nothing")
         .exits(3)
         .explains(&["play on nothing", "No such entity"]);
-    let record = [
-        "signal",
-        "record",
-        "--out",
-        "x.wav",
-        "--seconds",
-        "1",
-        "--device",
-    ];
     server
-        .ptu(&[&record[..], &["nothing"]].concat())
+        .ptu("signal record --out x.wav --seconds 1 --device nothing")
         .exits(3)
         .explains(&["record from nothing"]);
     let loud = "signal play code 55 --seconds 0.5 --level 4000";
@@ -292,22 +275,14 @@ fn what_cannot_be_played_or_recorded_is_said() {
             .ptu(&["signal", "play", wrong, "--device", "coil"])
             .exits(2);
     }
-    let calibrate = [
-        "signal",
-        "calibrate",
-        "--device",
-        "coil",
-        "--instrument",
-        "x",
-    ];
-    let measured = ["--measured", "1", "--within"];
+    let calibrate = "signal calibrate --device coil --instrument x";
     for wrong in ["-1%", "much", "101%"] {
         server
-            .ptu(&[&calibrate[..], &measured, &[wrong]].concat())
+            .ptu(&format!("{calibrate} --measured 1 --within {wrong}"))
             .exits(2);
     }
     server
-        .ptu(&[&calibrate[..], &["--within", "1%"]].concat())
+        .ptu(&format!("{calibrate} --within 1%"))
         .exits(2)
         .explains(&["--measured"]);
 }

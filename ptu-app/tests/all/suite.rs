@@ -168,18 +168,8 @@ fn other_seeds_pass_too() {
 /// Goal: which failure is the first is a matter of the order of the procedures, not of who is done first.
 #[test]
 fn a_run_can_end_with_the_first_failure() {
-    let ends_early = |jobs| {
-        report_of(
-            1,
-            &[
-                "--inject",
-                "eb_relay.slow",
-                "--stop-on-fail",
-                "--jobs",
-                jobs,
-            ],
-        )
-    };
+    let early = ["--inject", "eb_relay.slow", "--stop-on-fail", "--jobs"];
+    let ends_early = |jobs| report_of(1, &[&early[..], &[jobs]].concat());
     let report = ends_early("1");
     let failed: Vec<_> = list(&report["steps"])
         .iter()

@@ -81,28 +81,12 @@ fn the_twin_of_a_good_unit_is_its_trace_bit_by_bit() {
     let place = Place::new();
     let script = place.write("impossible.star", PULLS_AWAY);
     for arguments in [
-        &["--seed", "7"][..],
-        &["--seed", "8", "--scattered"],
-        &[
-            "--seed",
-            "9",
-            "--set",
-            "ato.gently_mps2=0.4",
-            "--serial-no",
-            "X-9",
-        ],
-        &[
-            "--seed",
-            "10",
-            "--line",
-            "line6",
-            "--train",
-            "ideal",
-            "tcms/link",
-        ],
+        "--seed 7",
+        "--seed 8 --scattered",
+        "--seed 9 --set ato.gently_mps2=0.4 --serial-no X-9",
+        "--seed 10 --line line6 --train ideal tcms/link",
     ] {
-        let all = [&["run", &script], arguments].concat();
-        place.ptu(&all).exits(1);
+        place.ptu(&format!("run {script} {arguments}")).exits(1);
     }
     assert_eq!(twins_are_identical(&place, &directory()), 4);
     let shown = place.explained();

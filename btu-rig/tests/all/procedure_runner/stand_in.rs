@@ -146,6 +146,16 @@ impl Outcome {
             .collect()
     }
 
+    /// Something that no step provoked was told of the unit.
+    pub fn blames_the_unit(&self) -> bool {
+        self.events.iter().any(|event| {
+            matches!(
+                event,
+                RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
+            )
+        })
+    }
+
     pub fn finished(&self) -> (Verdict, &str) {
         match self.events.last() {
             Some(RunEvent::ProcedureFinished {

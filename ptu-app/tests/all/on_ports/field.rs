@@ -91,14 +91,7 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
     assert!(!names(&own["faults"]).contains(&"tacho1_dead"), "{own}");
     assert!(number(&own["left_out"]["under_test"]) > 0.0, "{own}");
 
-    let other = [
-        "faults",
-        "import",
-        "--unit",
-        &unit.address,
-        "--serial-no",
-        "FLD-2",
-    ];
+    let other = format!("faults import --unit {} --serial-no FLD-2", unit.address);
     depot
         .ptu(&other)
         .exits(3)

@@ -59,6 +59,7 @@ sessions! {
     life_of_a_fault,
     life_of_a_part,
     matrices,
+    merged,
     no_history,
     questions,
     repaired_and_back,
@@ -70,6 +71,7 @@ sessions! {
     undone,
     wrong_commands,
     wrong_drives,
+    wrong_files,
     wrong_questions,
     wrong_scripts,
 }
