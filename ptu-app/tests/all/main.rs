@@ -53,3 +53,4 @@ mod symptoms;
 mod trace_files;
 mod train_faults;
 mod twin;
+mod worlds;
