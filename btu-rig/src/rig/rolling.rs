@@ -9,6 +9,7 @@ use crate::train::{Train, TrainData, TrainInputs, TrainState};
 use super::Rig;
 use super::tcms::pair_cars;
 use super::train_side::TrueMotion;
+use crate::stimulus::DoorState;
 
 /// The train is integrated in two steps a scan: 5 ms each.
 const TRAIN_STEP: Duration = Duration::from_us(SCAN.as_us() / 2);
@@ -71,6 +72,11 @@ impl Rig {
             air_brake_n: state.air_brake_n,
             sliding: state.sliding,
         }
+    }
+
+    /// Doors of the left and of the right that stand open, whatever their lines say.
+    pub fn doors_open(&self) -> [bool; 2] {
+        self.desk.doors.map(|doors| doors == DoorState::Open)
     }
 
     /// Turns the wheels through one scan.

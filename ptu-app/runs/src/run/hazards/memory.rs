@@ -1,10 +1,10 @@
-//! What the monitor remembers of the minute: values that were there lately, codes that were there for long enough,
-//! runs that the brake line ended, a train that is put away.
+//! What the monitor remembers of a scene: values that were there lately, codes that were there for long enough, a train
+//! that is put away, tachometers that are dead.
 
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, SCAN};
 
-use super::monitor::{NO_POWER_N, Observed};
+use super::monitor::Observed;
 
 /// Remembers values that were there lately.
 #[derive(Default)]
@@ -30,7 +30,8 @@ impl Lately {
     }
 }
 
-/// Limits that were there long enough to be detected: for `needs` within `within`, gaps left out.
+/// Limits that were there long enough to be detected: each for `needs` without a break, and from then on for as long as
+/// it is heard so long in sum `within` a span.
 pub(super) struct Confirmed {
     needs: Duration,
     within: Duration,
@@ -57,58 +58,18 @@ impl Confirmed {
         }
         let within = self.within;
         self.spells.retain(|(.., to)| now.since(*to) < within);
-        let heard = self.spells.iter().filter(|(limit, ..)| *limit == limit_kmh);
         // Each scan counts whole.
-        let heard_us: u64 = heard
-            .map(|(_, from, to)| (to.since(*from) + SCAN).as_us())
-            .sum();
+        let long = |from: &Instant, to: &Instant| to.since(*from) + SCAN;
+        let heard = self.spells.iter().filter(|(limit, ..)| *limit == limit_kmh);
+        let heard_us: u64 = heard.map(|(_, from, to)| long(from, to).as_us()).sum();
+        let steady = self.spells.last().map(|(_, from, to)| long(from, to));
+        let takes_over = steady.is_some_and(|long| long >= self.needs);
+        let known = self.lately.values().any(|known| known >= limit_kmh);
         let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        match heard_us >= self.needs.as_us() {
+        match takes_over || known && heard_us >= self.needs.as_us() {
             true => greatest(&mut self.lately.note(now, limit_kmh, span)),
             false => greatest(&mut self.lately.note_none(now, span)),
         }
-    }
-}
-
-/// Automatic runs that the open brake line ended, or a supply that failed: the train goes on by a person or a new departure alone.
-#[derive(Default)]
-pub(super) struct Runs {
-    under_way: bool,
-    ended: bool,
-    departure: bool,
-    /// When departure was given last while the brake was applied.
-    given_braked: Option<Instant>,
-}
-
-impl Runs {
-    /// Time for which a departure is on its way: given under the brake it may be heard after its release.
-    const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
-
-    /// Whether ATO drives on although the line has ended its run.
-    pub fn goes_on(&mut self, seen: Observed<'_>, eb: bool) -> bool {
-        let driverless = seen.value(Signal::TcmsMode) == 5.0;
-        let by_ato = driverless || seen.value(Signal::TcmsMode) == 4.0;
-        let departure = seen.on(Signal::Departure);
-        let before = std::mem::replace(&mut self.departure, departure);
-        // A unit without supply hears no departure.
-        let begins = departure && !before && seen.powered;
-        // One that is given under the brake is for a train that may not go.
-        if begins && eb {
-            self.given_braked = Some(seen.now);
-        }
-        let braked = self.given_braked.take_if(|_| !eb);
-        let late = braked.is_some_and(|at| seen.now.since(at) < Self::ON_ITS_WAY);
-        let given = begins && !eb || late;
-        let switch = matches!(seen.value(Signal::ModeSwitch) as u8, 3 | 4);
-        if seen.start || given || !switch || seen.value(Signal::Controller) != 0.0 {
-            self.ended = false;
-        }
-        let powers = by_ato && seen.traction_n > NO_POWER_N;
-        self.under_way = by_ato && (self.under_way || powers);
-        if eb && self.under_way {
-            self.ended = true;
-        }
-        self.ended && powers && !eb
     }
 }
 
@@ -148,60 +109,5 @@ impl Blind {
         }
         let since = *self.since.get_or_insert(seen.now);
         seen.now.since(since) < Self::TOLD
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use protocol::signal::Sample;
-
-    use super::*;
-
-    /// A scan of a driverless train that powers.
-    fn goes_on(runs: &mut Runs, departure: bool, powered: bool, eb: bool) -> bool {
-        goes_on_at(runs, 0, departure, powered, eb)
-    }
-
-    fn goes_on_at(runs: &mut Runs, ms: u64, departure: bool, powered: bool, eb: bool) -> bool {
-        let mut sample = Sample::default();
-        sample.set(Signal::TcmsMode, 5.0);
-        sample.set(Signal::ModeSwitch, 4.0);
-        sample.set_bit(Signal::Departure, departure);
-        let seen = Observed {
-            speed_mps: 1.0,
-            traction_n: 2.0 * NO_POWER_N,
-            powered,
-            ..Observed::at_rest(Instant::from_us(ms * 1_000), &sample)
-        };
-        runs.goes_on(seen, eb)
-    }
-
-    /// Goal: each new departure begins a run, not only the minute's first; none is heard without supply.
-    #[test]
-    fn a_run_that_was_ended_goes_on_by_a_new_departure() {
-        let mut runs = Runs::default();
-        assert!(!goes_on(&mut runs, true, true, false), "under way");
-        for _ in 0..2 {
-            assert!(!goes_on(&mut runs, true, true, true), "braked");
-            assert!(goes_on(&mut runs, true, true, false), "still given");
-            assert!(goes_on(&mut runs, false, true, false), "withheld");
-            assert!(!goes_on(&mut runs, true, true, false), "given again");
-        }
-        assert!(!goes_on(&mut runs, false, false, true), "no supply");
-        assert!(!goes_on(&mut runs, true, false, true), "given unheard");
-        assert!(goes_on(&mut runs, true, true, false));
-    }
-
-    /// Goal: a departure that is given under the brake does not begin a run, but for one that is heard after its release.
-    #[test]
-    fn a_departure_under_the_brake_begins_no_run() {
-        for (released_ms, goes) in [(3_000, true), (1_500, false)] {
-            let mut runs = Runs::default();
-            assert!(!goes_on_at(&mut runs, 0, true, true, false), "under way");
-            assert!(!goes_on_at(&mut runs, 500, false, true, true), "braked");
-            assert!(!goes_on_at(&mut runs, 1_000, true, true, true), "given");
-            let released = goes_on_at(&mut runs, released_ms, true, true, false);
-            assert_eq!(released, goes, "released at {released_ms} ms");
-        }
     }
 }

@@ -1,102 +1,182 @@
-//! Search for hazards: random minutes against an independent monitor.
+//! Search for hazards: scenes that follow no rule against an independent monitor of what is true.
 //!
-//! A hazard is explained by a fault mode that its row of `docs/protection.md` names, or by faults of both tachometers;
-//! while both are dead, by one that the row `both_tachometers` names.
-//! Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one minute.
+//! A breach is explained by a condition that `docs/protection.md` exports by name: one of the scene, or a failed part that
+//! the condition names. Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one scene, shortened.
 
+mod acts;
+mod authority;
 mod memory;
-mod minute;
 mod monitor;
 mod permitted;
+mod place;
+mod plan;
+mod play;
 mod proceeding;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use self::minute::{Find, Minute};
-use self::monitor::Hazard;
+use self::monitor::Invariant;
+use self::plan::Plan;
+use self::play::{Find, play};
 use crate::pool;
-use crate::run::{BenchChoice, BenchSetup};
+use crate::run::{BenchChoice, BenchSetup, Signals};
 use crate::stop::Stop;
 use crate::test_support::{scripts, setup};
 use fuzzing::draw;
+use protocol::injection::FaultMode;
 
 const PROTECTION: &str = include_str!("../../../../../docs/protection.md");
 
-/// Fault modes, or globs, that the table has in the last column of a row.
-fn broken_by(name: &str) -> Vec<glob::Pattern> {
-    let row = format!("| `{name}` |");
-    let row = PROTECTION.lines().find(|line| line.starts_with(&row));
-    let row = row.unwrap_or_else(|| panic!("docs/protection.md has a row {name}"));
-    let last = row
-        .trim_end_matches('|')
-        .rsplit('|')
-        .next()
-        .unwrap_or_default();
-    let names = last.split('`').skip(1).step_by(2);
-    names
-        .map(|name| glob::Pattern::new(name).expect("a glob"))
-        .collect()
+/// Finds of a kind that are shortened.
+const SHORTENED: usize = 6;
+
+/// A condition that others than the unit have to see to.
+struct Exported {
+    name: &'static str,
+    /// What it explains.
+    invariants: Vec<&'static str>,
+    /// Failed parts that are this condition; none where the monitor sees it in the scene.
+    modes: Vec<glob::Pattern>,
 }
 
-/// A fault that the table knows to take this protection away, or both tachometers; while neither gives pulses, one that
-/// takes away what tells motion without them.
-fn explained(find: &Find) -> bool {
-    let mut names = broken_by(find.hazard.row());
-    if find.blind {
-        names.extend(broken_by("both_tachometers"));
-    }
-    let known = |fault: &String| names.iter().any(|name| name.matches(fault));
-    let of_sensor = |n| {
-        let part = format!("speed_sensor_{n}.");
-        find.faults.iter().any(|fault| fault.starts_with(&part))
+/// The table under the heading "Exported conditions".
+fn exported() -> Vec<Exported> {
+    let (_, table) = PROTECTION
+        .split_once("## Exported conditions")
+        .expect("exported conditions");
+    let rows = table.lines().skip_while(|line| !line.starts_with("|---"));
+    let rows = rows.skip(1).take_while(|line| line.starts_with('|'));
+    let row = |row: &'static str| {
+        let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let [name, invariants, _, modes] = cells[..] else {
+            panic!("columns of {row}")
+        };
+        let modes = modes.split('`').skip(1).step_by(2);
+        Exported {
+            name,
+            invariants: invariants.split(' ').collect(),
+            modes: modes
+                .map(|mode| glob::Pattern::new(mode).expect("a glob"))
+                .collect(),
+        }
     };
-    find.faults.iter().any(known) || of_sensor('1') && of_sensor('2')
+    rows.map(row).collect()
 }
 
-/// Plays the minutes of these seeds on all processors, with faults drawn from the modes that this glob names.
-fn search(seeds: std::ops::Range<u64>, modes: &str) -> Vec<(u64, Find)> {
-    search_on(&setup(&[]), seeds, modes)
+/// The condition that explains a find.
+fn explained(find: &Find, exported: &[Exported]) -> Option<&'static str> {
+    let invariant = format!("{:?}", find.breach.invariant);
+    let holds = |one: &&Exported| {
+        let failed = |fault: &String| one.modes.iter().any(|mode| mode.matches(fault));
+        one.invariants.contains(&invariant.as_str())
+            && (find.breach.condition == Some(one.name) || find.faults.iter().any(failed))
+    };
+    exported.iter().find(holds).map(|one| one.name)
 }
 
-/// The same on a bench of its own.
-fn search_on(setup: &BenchSetup, seeds: std::ops::Range<u64>, modes: &str) -> Vec<(u64, Find)> {
-    let mut catalogue = scripts().faults().expect("fault modes").faults;
-    let modes = glob::Pattern::new(modes).expect("a glob");
-    catalogue.retain(|mode| modes.matches(&mode.id));
-    let seed = |number: usize| seeds.start + number as u64;
-    let play = |number| Minute::new(setup, &catalogue, seed(number)).play();
-    let count = (seeds.end - seeds.start) as usize;
-    let finds = pool::run(count, pool::cores(), &Stop::default(), &mut |_| {}, play);
-    let found = |(number, find): (usize, Option<Find>)| Some((seed(number), find?));
-    finds.into_iter().filter_map(found).collect()
+/// A bench, with the fault modes of the catalogue that are drawn from.
+struct Search {
+    setup: BenchSetup,
+    modes: Vec<FaultMode>,
 }
 
-/// Tells what was found; no hazard without a fault that explains it.
-fn judge(finds: &[(u64, Find)]) {
-    let (known, gaps): (Vec<_>, Vec<_>) = finds.iter().partition(|(_, find)| explained(find));
+impl Search {
+    fn new(setup: BenchSetup, modes: &str) -> Self {
+        let mut catalogue = scripts().faults().expect("fault modes").faults;
+        let glob = glob::Pattern::new(modes).expect("a glob");
+        catalogue.retain(|mode| glob.matches(&mode.id));
+        Self {
+            setup,
+            modes: catalogue,
+        }
+    }
+
+    fn plan(&self, number: u64) -> Plan {
+        Plan::draw(&self.setup, &self.modes, number)
+    }
+
+    /// Plays the plans of these numbers on all processors: finds, and the time played, min.
+    fn run(&self, numbers: Range<u64>) -> (Vec<(u64, Find)>, f64) {
+        let number = |place: usize| numbers.start + place as u64;
+        let work = |place| {
+            let plan = self.plan(number(place));
+            (play(&self.setup, &plan), plan.length_ms)
+        };
+        let count = (numbers.end - numbers.start) as usize;
+        let played = pool::run(count, pool::cores(), &Stop::default(), &mut |_| {}, work);
+        let minutes = played
+            .iter()
+            .map(|(_, (_, ms))| f64::from(*ms) / 60_000.0)
+            .sum();
+        let found = |(place, (find, _)): (usize, (Option<Find>, u32))| Some((number(place), find?));
+        (played.into_iter().filter_map(found).collect(), minutes)
+    }
+
+    /// The same breach by as few acts as do it.
+    fn shortened(&self, number: u64) -> Option<Find> {
+        let mut plan = self.plan(number);
+        let mut find = play(&self.setup, &plan)?;
+        loop {
+            let invariant = find.breach.invariant;
+            let shorter = plan.shorter().find_map(|shorter| {
+                let find = play(&self.setup, &shorter)?;
+                let same = find.breach.invariant == invariant && find.breach.condition.is_none();
+                same.then_some((shorter, find))
+            });
+            match shorter {
+                Some((shorter, less)) => (plan, find) = (shorter, less),
+                None => return Some(find),
+            }
+        }
+    }
+}
+
+/// Tells what was found: each exported condition with its count, and no breach without one.
+fn judge(search: &Search, finds: &[(u64, Find)], minutes: f64) {
+    let exported = exported();
     let mut counts = BTreeMap::<_, usize>::new();
-    for (_, find) in known {
-        *counts.entry((find.hazard, &find.faults)).or_default() += 1;
+    let mut gaps = Vec::new();
+    for (number, find) in finds {
+        match explained(find, &exported) {
+            Some(name) => *counts.entry((find.breach.invariant, name)).or_default() += 1,
+            None => gaps.push((*number, find)),
+        }
     }
-    for ((hazard, faults), count) in &counts {
-        println!("explained: {count} {hazard:?} by {}", faults.join(", "));
+    println!("{minutes:.0} min");
+    for ((invariant, name), count) in &counts {
+        println!("exported: {count} {invariant:?} by {name}");
     }
-    for (seed, find) in &gaps {
-        println!(
-            "seed {seed}: {:?} at {} with {:?}",
-            find.hazard, find.at, find.faults
-        );
+    let mut kinds = BTreeMap::<_, Vec<u64>>::new();
+    for (number, find) in &gaps {
+        let kind = (find.breach.invariant, find.breach.how);
+        kinds.entry(kind).or_default().push(*number);
+    }
+    for ((invariant, how), numbers) in &kinds {
+        println!("{invariant:?} {how}: {}, {numbers:?}", numbers.len());
+        for number in numbers.iter().take(SHORTENED) {
+            if let Some(find) = search.shortened(*number) {
+                println!("  {number}: {find}");
+            }
+        }
     }
     assert!(
         gaps.is_empty(),
-        "{} hazards that no fault explains",
+        "{} breaches that no condition explains",
         gaps.len()
     );
 }
 
+fn judged(setup: BenchSetup, numbers: Range<u64>) {
+    let search = Search::new(setup, "*");
+    let (finds, minutes) = search.run(numbers);
+    judge(&search, &finds, minutes);
+}
+
+/// Other scenes with each commit.
 #[test]
-fn three_hundred_random_minutes_show_no_hazard() {
-    judge(&search(0..300, "*"));
+fn scenes_break_no_invariant() {
+    judged(setup(&[]), 0..150);
 }
 
 /// A unit that stops and proceeds, with codes of the yard.
@@ -109,44 +189,44 @@ fn seoul34() -> BenchSetup {
 }
 
 #[test]
-fn minutes_of_a_unit_that_stops_and_proceeds_show_no_hazard() {
-    judge(&search_on(&seoul34(), 0..100, "*"));
+fn scenes_of_a_unit_that_stops_and_proceeds_break_no_invariant() {
+    judged(seoul34(), 0..40);
 }
 
-/// Goal: the search finds what is there. Method: with a fault that takes a protection away, some minutes show the hazard.
+/// Codes, pulses, markers and data as waveforms.
+fn sampled() -> BenchSetup {
+    let choice = BenchChoice {
+        signals: Signals::Sampled(None),
+        ..BenchChoice::default()
+    };
+    choice.setup(&scripts()).expect("a bench")
+}
+
+/// Goal: the search finds what is there. Method: with a fault that takes a protection away, some scenes show the breach.
 #[test]
 fn a_protection_that_is_taken_away_shows() {
-    use Hazard::*;
-    for (mode, hazards) in draw::drawn(
+    use Invariant::*;
+    for (mode, invariants) in draw::drawn(
         [
-            ("fsb_output.dead", &[OverLimit, MovesUnderStop][..]),
-            ("eb_relay.welded", &[MovesWithDoorOpen, RolledBack]),
-            (
-                "io_board.door_enable_stuck",
-                &[EnabledMoving, EnabledWrongSide],
-            ),
-            ("atp_receiver.unselective", &[Crosstalk]),
-            ("atp_cpu.wheel_guard_dead", &[WrongWheels]),
+            ("fsb_output.dead", &[I2][..]),
+            ("eb_relay.welded", &[I3, I8]),
+            ("io_board.door_enable_stuck", &[I4]),
+            ("atp_receiver.unselective", &[I2]),
+            ("atp_cpu.wheel_guard_dead", &[I2]),
         ],
         2,
     ) {
-        shows(mode, hazards);
+        shows(mode, invariants);
     }
 }
 
-#[test]
-#[ignore = "long suite: shows in one minute of hundreds"]
-fn missing_teeth_show() {
-    shows("speed_sensor_*.missing_teeth", &[Hazard::OverLimit]);
-}
-
-/// Plays 1 500 minutes at most, in blocks so small that few are played after the one that shows the last hazard.
-fn shows(mode: &str, hazards: &[Hazard]) {
-    let setup = setup(&[]);
-    let mut not_shown = hazards.to_vec();
+/// Plays 1 500 scenes at most, in blocks so small that few are played after the one that shows the last breach.
+fn shows(mode: &str, invariants: &[Invariant]) {
+    let search = Search::new(setup(&[]), mode);
+    let mut not_shown = invariants.to_vec();
     for block in 0..100 {
-        let finds = search_on(&setup, block * 15..(block + 1) * 15, mode);
-        not_shown.retain(|hazard| !finds.iter().any(|(_, find)| find.hazard == *hazard));
+        let (finds, _) = search.run(block * 15..(block + 1) * 15);
+        not_shown.retain(|one| !finds.iter().any(|(_, find)| find.breach.invariant == *one));
         if not_shown.is_empty() {
             return;
         }
@@ -154,28 +234,22 @@ fn shows(mode: &str, hazards: &[Hazard]) {
     panic!("{mode}: no {not_shown:?}");
 }
 
-/// The hundred thousand minutes of the promise, or those of `HAZARD_SEEDS`; of a single one all that was done.
+/// The scenes of the promise, or those of `HAZARD_SEEDS`, on `HAZARD_BENCH`: `seoul34` or `sampled`.
 #[test]
-#[ignore = "long suite: a part of them; all take 7 min: cargo test --release -p ptu-runs many_random_minutes -- --ignored"]
-fn many_random_minutes_show_no_hazard() {
+#[ignore = "long suite: a part of them; all take an hour: cargo test --release -p ptu-runs many_scenes -- --ignored"]
+fn many_scenes_break_no_invariant() {
     let asked = std::env::var("HAZARD_SEEDS").ok();
     let (from, to) = match asked.as_deref().map(|asked| asked.split_once("..")) {
-        None => (1_000, 101_000),
+        None => (1_000, 201_000),
         Some(Some((from, to))) => (number(from), number(to)),
         Some(None) => panic!("HAZARD_SEEDS is FROM..TO"),
     };
-    let setup = match std::env::var("HAZARD_UNIT_CONFIG").as_deref() {
+    let setup = match std::env::var("HAZARD_BENCH").as_deref() {
         Ok("seoul34") => seoul34(),
+        Ok("sampled") => sampled(),
         _ => setup(&[]),
     };
-    let finds = search_on(&setup, from..to, "*");
-    if to == from + 1 {
-        for (_, find) in &finds {
-            find.acts.iter().for_each(|act| println!("{act}"));
-            println!("{}", find.state);
-        }
-    }
-    judge(&finds);
+    judged(setup, from..to);
 }
 
 fn number(text: &str) -> u64 {

@@ -1,101 +1,74 @@
-//! An independent monitor of the train: what must never be, written from the table in `docs/protection.md` and from
-//! nothing of the unit's code.
+//! An independent monitor of the train: invariants over what is true, whatever the unit says of it.
 //!
-//! It sees the track, the desk, the brake line and the wheels as they are, and of the unit its contacts alone.
+//! It sees the track, the desk, the brake line, doors and wheels as they are, and of the unit its contacts alone. What is
+//! explained by something else than the unit is a condition with a name, written down in `docs/protection.md`.
 
 use protocol::config::UnitConfig;
+use protocol::line::Line;
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant};
 
-use super::memory::{Asleep, Blind, Lately, Runs};
+use super::authority::Authority;
+use super::memory::{Asleep, Blind};
 use super::permitted::{Limits, Permitted};
+use super::place::Place;
 
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
-const MOVES_KMH: f64 = 1.08 + 0.4;
-/// Wheels slower than this stand, km/h: a pulse every 27 mm tells no more within half a second.
-const STANDS_KMH: f64 = 0.25;
+pub(super) const MOVES_KMH: f64 = 1.08 + 0.4;
 /// What a measured speed may be off, km/h.
 const SPEED_OFF_KMH: f64 = 0.6;
-/// Time from a cause to a contact, beside the table's: scans of unit and bench, and window of the speed.
+/// Time from a cause to a contact, beside what is stated: scans of unit and bench, and window of the speed.
 const SLACK: Duration = Duration::from_ms(300);
 /// Wheels that slow the train by less do not, m/s².
 const SLOWS_MPS2: f64 = 0.3;
 /// Traction that is none, N: what an inverter still gives while its order fades.
 pub(super) const NO_POWER_N: f64 = 10_000.0;
-/// Place that the unit may take for the stop point's, m: its tolerance, and what its position may be off.
-const AT_STOP_POINT_M: f64 = 0.3 + 0.9;
-/// Speed of a jog, km/h.
+/// Speed of a jog, km/h, and overrun after which a train may be jogged back, m, with what its position may be off.
 const JOG_KMH: f64 = 5.0;
-/// Overrun after which a train may be jogged back, m: the table's, and what its position may be off.
 const JOGS_FROM_M: f64 = 5.3 + 0.9;
-/// Way against the reverser, m: tolerance, and one pulse window at the speed of a train that rolls.
-const ROLLED_BACK_M: f64 = 0.5 + 0.5;
+/// Sum of ways against or without a direction between two departures, m: tolerance, and one window at the speed of a roll.
+const ROLLED_M: f64 = 0.5 + 0.5;
+/// Way with a door open, m, and time in which a train that moves is braked.
+const OPEN_WAY_M: f64 = 0.3;
+const OPEN_BRAKED_S: f64 = 0.5;
 
-/// A row of the table that was broken.
+/// What must hold at any time; numbers are never used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Hazard {
-    /// Faster than the limit and its margin, and no service brake.
-    OverLimit,
-    /// The same for long, neither slowed nor under the emergency brake.
-    OverLimitUnslowed,
-    /// Motion where there is no limit above zero.
-    MovesUnderStop,
-    /// Motion with a door open.
-    MovesWithDoorOpen,
-    /// Doors enabled on a train that moves.
-    EnabledMoving,
-    /// Doors enabled on a side that no station data gave.
-    EnabledWrongSide,
-    /// Doors enabled away from the stop point.
-    EnabledElsewhere,
-    /// Doors ordered to open on a side that is not enabled.
-    OrderedUnenabled,
-    /// Power under the emergency brake.
-    PowerUnderBrake,
-    /// Way against the reverser, but for a jog back to the stop point.
-    RolledBack,
-    /// A jog that is fast, and no brake.
-    JogTooFast,
-    /// Faster than any code lets it that was there long enough to be detected.
-    UnconfirmedCode,
-    /// Power by ATO after the open brake line has ended its run, and no other was begun.
-    DrivesOnByItself,
-    /// Motion of a train that is put away, or was woken with a self-test that failed.
-    SleepingMoves,
-    /// Motion with the reverser in neutral.
-    RollsNeutral,
-    /// Faster than the code of the own track lets it, by that of a neighbouring one.
-    Crosstalk,
-    /// Faster than the limit by a wheel diameter that has to be refused.
-    WrongWheels,
+pub enum Invariant {
+    /// The train runs only in the direction that its code and its reverser allow.
+    I1,
+    /// No faster than the code that is there.
+    I2,
+    /// No way with a door open.
+    I3,
+    /// Doors are enabled, and open by order, at a platform, on its side, at the place, at rest.
+    I4,
+    /// It starts by an act of a person or an order of the wayside after the last thing that stopped it.
+    I5,
+    /// The emergency brake is not released in motion.
+    I6,
+    /// A failed path of a brake is followed by the next brake.
+    I7,
+    /// It does not roll.
+    I8,
+    /// No power under a brake.
+    I9,
+    /// ATO drives only where its conditions hold in truth.
+    I10,
+    /// Tests move and open nothing.
+    I11,
 }
 
-impl Hazard {
-    /// Its row in the table.
-    pub fn row(self) -> &'static str {
-        match self {
-            Self::OverLimit => "over_limit",
-            Self::OverLimitUnslowed => "over_limit_unslowed",
-            Self::MovesUnderStop => "moves_under_stop",
-            Self::MovesWithDoorOpen => "moves_with_door_open",
-            Self::EnabledMoving => "enabled_moving",
-            Self::EnabledWrongSide => "enabled_wrong_side",
-            Self::EnabledElsewhere => "enabled_elsewhere",
-            Self::OrderedUnenabled => "ordered_unenabled",
-            Self::PowerUnderBrake => "power_under_brake",
-            Self::RolledBack => "rolled_back",
-            Self::JogTooFast => "jog_too_fast",
-            Self::UnconfirmedCode => "unconfirmed_code",
-            Self::DrivesOnByItself => "drives_on_by_itself",
-            Self::SleepingMoves => "sleeping_moves",
-            Self::RollsNeutral => "rolls_neutral",
-            Self::Crosstalk => "crosstalk",
-            Self::WrongWheels => "wrong_wheels",
-        }
-    }
+/// An invariant that was broken, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Breach {
+    pub invariant: Invariant,
+    pub how: &'static str,
+    /// Condition of the scene that explains it.
+    pub condition: Option<&'static str>,
 }
 
-/// What happened in a scan.
+/// What is true in a scan.
 #[derive(Clone, Copy)]
 pub struct Observed<'a> {
     pub now: Instant,
@@ -108,8 +81,18 @@ pub struct Observed<'a> {
     pub to_stop_m: Option<f64>,
     /// Traction at the wheels, N; 0 while the bench turns them.
     pub traction_n: f64,
+    /// A car slips or slides.
+    pub sliding: bool,
+    /// The wheels follow the train; else the bench turns them, whatever brakes do.
+    pub driven: bool,
+    /// Doors of the left and of the right.
+    pub doors_open: [bool; 2],
     /// Reverser: 1, 0, -1.
     pub reverser: i8,
+    /// Section that the train is on.
+    pub section: u16,
+    /// Section whose data the wayside gives.
+    pub told: u16,
     /// The start button is pressed, or was a moment ago.
     pub start: bool,
     /// No tachometer gives pulses.
@@ -120,6 +103,10 @@ pub struct Observed<'a> {
     pub crosstalk: [f64; 2],
     /// Wheel diameter that is being keyed in, mm; 0 = as configured.
     pub wheel_mm: Option<f64>,
+    /// Pulses of markers that lie nowhere, so far.
+    pub pulsed: usize,
+    /// How far beyond their places the markers lie, m.
+    pub displaced: [f64; 4],
 }
 
 impl<'a> Observed<'a> {
@@ -132,12 +119,19 @@ impl<'a> Observed<'a> {
             accel_mps2: 0.0,
             to_stop_m: None,
             traction_n: 0.0,
+            sliding: false,
+            driven: true,
+            doors_open: [false; 2],
             reverser: 1,
+            section: 0,
+            told: 0,
             start: false,
             blind: false,
             powered: true,
             crosstalk: [0.0; 2],
             wheel_mm: None,
+            pulsed: 0,
+            displaced: [0.0; 4],
         }
     }
 }
@@ -154,58 +148,101 @@ impl Observed<'_> {
     pub(super) fn kmh(&self) -> f64 {
         self.speed_mps.abs() * 3.6
     }
+
+    pub(super) fn switch(&self) -> u8 {
+        self.value(Signal::ModeSwitch) as u8
+    }
+
+    /// ATO drives the train, as TCMS has it.
+    pub(super) fn by_ato(&self) -> bool {
+        matches!(self.value(Signal::TcmsMode) as u8, 4 | 5)
+    }
+
+    /// The train may be jogging back: by ATO, past the stop point, doors closed.
+    fn jogs_back(&self) -> bool {
+        let past = |to_stop_m: f64| (-JOGS_FROM_M..1.2).contains(&to_stop_m);
+        let backward = self.reverser == 1 && self.speed_mps < 0.0;
+        self.by_ato() && backward && self.to_stop_m.is_some_and(past)
+    }
+
+    /// It runs where neither reverser nor code lets it.
+    fn wrong_way(&self) -> bool {
+        let by_code = matches!(self.switch(), 2..=4);
+        let against = self.speed_mps * f64::from(self.reverser) <= 0.0;
+        (against || by_code && self.speed_mps < 0.0) && !self.jogs_back()
+    }
 }
 
+/// Watches over all invariants.
 pub struct Monitor {
     /// Margins of the service brake and of the emergency brake, km/h.
     margins_kmh: [f64; 2],
     limits: Limits,
-    runs: Runs,
+    authority: Authority,
+    place: Place,
     asleep: Asleep,
     blind: Blind,
-    sides: Lately,
-    /// Sides on which doors may be enabled, left and right.
-    given: [bool; 2],
-    /// Way against the reverser since the train last stood, m.
-    against_m: f64,
+    rolled_m: f64,
+    open_m: f64,
+    /// Greatest speed since they opened, m/s.
+    open_mps: f64,
+    line_open: bool,
+    released: Option<Instant>,
     /// Since when each condition holds.
     since: Vec<Option<Instant>>,
 }
 
+type Condition = (Invariant, &'static str, bool, u64);
+
 impl Monitor {
-    pub fn new(config: &UnitConfig) -> Self {
+    pub fn new(config: &UnitConfig, line: &Line) -> Self {
+        let fsb_kmh = config.overspeed.fsb_margin_kmh;
         Self {
-            margins_kmh: {
-                let fsb_kmh = config.overspeed.fsb_margin_kmh;
-                [fsb_kmh, config.overspeed.eb_margin_kmh.unwrap_or(fsb_kmh)]
-            },
+            margins_kmh: [fsb_kmh, config.overspeed.eb_margin_kmh.unwrap_or(fsb_kmh)],
             limits: Limits::new(config),
-            runs: Runs::default(),
+            authority: Authority::default(),
+            place: Place::new(line),
             asleep: Asleep::default(),
             blind: Blind::default(),
-            sides: Lately::default(),
-            given: [false; 2],
-            against_m: 0.0,
+            rolled_m: 0.0,
+            open_m: 0.0,
+            open_mps: 0.0,
+            line_open: true,
+            released: None,
             since: Vec::new(),
         }
     }
 
-    /// One scan; what has been there for longer than the table allows.
-    pub fn step(&mut self, seen: Observed<'_>) -> Option<Hazard> {
-        let conditions = self.conditions(seen);
+    /// One scan; what has been broken for longer than is stated.
+    pub fn step(&mut self, seen: Observed<'_>) -> Option<Breach> {
+        self.place.note(seen);
+        let blind = self.blind.note(seen);
+        let mut conditions = self.of_speed(seen, blind);
+        conditions.extend(self.of_way(seen, blind));
+        conditions.extend(self.of_doors(seen, blind));
+        conditions.extend(self.of_orders(seen, blind));
         self.since.resize(conditions.len(), None);
         let mut found = None;
-        for (since, (hazard, holds, allowed)) in self.since.iter_mut().zip(conditions) {
+        for (since, (invariant, how, holds, ms)) in self.since.iter_mut().zip(conditions) {
+            let allowed = Duration::from_ms(ms) + SLACK;
             if !holds {
                 *since = None;
-            } else if seen.now.since(*since.get_or_insert(seen.now)) > allowed + SLACK {
-                found = found.or(Some(hazard));
+            } else if seen.now.since(*since.get_or_insert(seen.now)) > allowed {
+                found = found.or(Some((invariant, how)));
             }
         }
-        found
+        let (invariant, how) = found?;
+        let condition = self.place.condition(seen, invariant);
+        Some(Breach {
+            invariant,
+            how,
+            condition,
+        })
     }
 
-    fn conditions(&mut self, seen: Observed<'_>) -> [(Hazard, bool, Duration); 17] {
+    /// Speed against the code that is there.
+    fn of_speed(&mut self, seen: Observed<'_>, blind: bool) -> Vec<Condition> {
+        use Invariant::I2;
         let Permitted {
             most_kmh,
             confirmed_kmh,
@@ -213,143 +250,200 @@ impl Monitor {
             keyed,
             admitted,
         } = self.limits.note(seen);
-        let (eb, fsb) = (seen.on(Signal::EbLoop), seen.on(Signal::Fsb));
-        let (left, right) = (
-            seen.on(Signal::DoorEnableLeft),
-            seen.on(Signal::DoorEnableRight),
-        );
+        let braked = seen.on(Signal::EbLoop) || seen.on(Signal::Fsb);
         let kmh = seen.kmh();
-        let blind = self.blind.note(seen);
         let moves = kmh > MOVES_KMH && !blind;
+        let [fsb_kmh, eb_kmh] = self.margins_kmh;
         let beyond = |limit_kmh: f64, margin_kmh: f64, factor: f64| {
             kmh > (limit_kmh + margin_kmh) * factor + SPEED_OFF_KMH
         };
         let above =
             |margin_kmh, factor| most_kmh > 0.0 && beyond(most_kmh, margin_kmh, factor) && !blind;
-        let [fsb_kmh, eb_kmh] = self.margins_kmh;
-        let side = seen.value(Signal::WaysideDoorSide);
-        let (mut left_given, mut right_given) = (false, false);
-        for side in self.sides.note(seen.now, side, Duration::from_ms(2_500)) {
-            left_given |= side == 1.0 || side == 3.0;
-            right_given |= side == 2.0 || side == 3.0;
-        }
-        // What was enabled so lasts until the doors are proved closed.
-        let open = !seen.on(Signal::Doors);
-        let [left_kept, right_kept] = self.given;
-        left_given |= left_kept && left && open;
-        right_given |= right_kept && right && open;
-        self.given = [left_given, right_given];
-        let elsewhere = seen.to_stop_m.is_none_or(|m| m.abs() > AT_STOP_POINT_M);
-        let ms = Duration::from_ms;
-        [
+        let slowed = seen.speed_mps * seen.accel_mps2 < -SLOWS_MPS2 * seen.speed_mps.abs();
+        let unslowed = above(eb_kmh, keyed) && !seen.on(Signal::EbLoop) && !slowed;
+        vec![
+            (I2, "over the limit", above(fsb_kmh, keyed) && !braked, 300),
+            (I2, "over the limit, unslowed", unslowed, 6_000),
             (
-                Hazard::OverLimit,
-                above(fsb_kmh, keyed) && !eb && !fsb,
-                ms(300),
+                I2,
+                "moves under a stop",
+                most_kmh == 0.0 && moves && !braked,
+                500,
             ),
             (
-                Hazard::OverLimitUnslowed,
-                above(eb_kmh, keyed)
-                    && !eb
-                    && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs(),
-                ms(6_000),
+                I2,
+                "by a code that was not there for long enough",
+                moves && beyond(confirmed_kmh, fsb_kmh, keyed) && !braked,
+                500,
             ),
             (
-                Hazard::MovesUnderStop,
-                most_kmh == 0.0 && moves && !eb && !fsb,
-                ms(500),
+                I2,
+                "by the code of a neighbouring track",
+                moves && beyond(selected_kmh, fsb_kmh, keyed) && !braked,
+                500,
             ),
             (
-                Hazard::MovesWithDoorOpen,
-                moves && !seen.on(Signal::Doors) && !eb,
-                ms(100),
-            ),
-            (Hazard::EnabledMoving, moves && (left || right), ms(0)),
-            (
-                Hazard::EnabledWrongSide,
-                left && !left_given || right && !right_given,
-                ms(0),
+                I2,
+                "by a wheel diameter that is refused, or that markers have disproved",
+                above(fsb_kmh, admitted) && !braked,
+                300,
             ),
             (
-                Hazard::EnabledElsewhere,
-                (left || right) && elsewhere,
-                ms(0),
-            ),
-            (
-                Hazard::OrderedUnenabled,
-                seen.on(Signal::DoorOrderLeft) && !left
-                    || seen.on(Signal::DoorOrderRight) && !right,
-                ms(0),
-            ),
-            (
-                Hazard::PowerUnderBrake,
-                eb && seen.traction_n > NO_POWER_N,
-                ms(500),
-            ),
-            (
-                Hazard::RolledBack,
-                seen.reverser != 0 && self.rolled_back(seen, fsb, blind) && !eb,
-                ms(0),
-            ),
-            (
-                Hazard::JogTooFast,
-                jogs_back(seen) && beyond(JOG_KMH, 0.0, keyed) && !eb && !fsb && !blind,
-                ms(300),
-            ),
-            (
-                Hazard::UnconfirmedCode,
-                moves && beyond(confirmed_kmh, fsb_kmh, keyed) && !eb && !fsb,
-                ms(500),
-            ),
-            (
-                Hazard::DrivesOnByItself,
-                self.runs.goes_on(seen, eb),
-                ms(200),
-            ),
-            (
-                Hazard::SleepingMoves,
-                self.asleep.note(seen) && moves && !eb,
-                ms(500),
-            ),
-            (
-                Hazard::RollsNeutral,
-                seen.reverser == 0 && self.rolled_back(seen, fsb, blind) && !eb,
-                ms(0),
-            ),
-            (
-                Hazard::Crosstalk,
-                moves && beyond(selected_kmh, fsb_kmh, keyed) && !eb && !fsb,
-                ms(500),
-            ),
-            (
-                Hazard::WrongWheels,
-                above(fsb_kmh, admitted) && !eb && !fsb,
-                ms(300),
+                I2,
+                "a jog that is fast",
+                seen.jogs_back() && beyond(JOG_KMH, 0.0, keyed) && !braked && !blind,
+                300,
             ),
         ]
     }
 
-    /// A jog back does not count, nor does what its brake takes to stop the train, nor the way that no wheel has measured.
-    fn rolled_back(&mut self, seen: Observed<'_>, fsb: bool, blind: bool) -> bool {
-        let jogs = jogs_back(seen) && (seen.kmh() <= JOG_KMH + SPEED_OFF_KMH || fsb);
-        let way_m = match seen.reverser {
-            0 => seen.speed_mps.abs() * 0.01,
-            towards => -f64::from(towards) * seen.speed_mps * 0.01,
-        };
-        let against_m = if jogs { 0.0 } else { way_m };
-        self.against_m = (self.against_m + against_m).max(0.0);
-        // A brake that was released at standstill begins again.
-        if seen.kmh() < STANDS_KMH || seen.on(Signal::EbLoop) || blind {
-            self.against_m = 0.0;
+    /// Direction and roll.
+    fn of_way(&mut self, seen: Observed<'_>, blind: bool) -> Vec<Condition> {
+        use Invariant::{I1, I8};
+        let eb = seen.on(Signal::EbLoop);
+        let wrong = seen.wrong_way() && !eb && !blind;
+        if wrong {
+            self.rolled_m += seen.speed_mps.abs() * 0.01;
         }
-        self.against_m > ROLLED_BACK_M
+        // By the brake, or by a departure, a new sum begins.
+        if eb || blind || self.authority.begins() {
+            self.rolled_m = 0.0;
+        }
+        let fast = seen.kmh() > JOG_KMH + SPEED_OFF_KMH || seen.traction_n > NO_POWER_N;
+        vec![
+            (
+                I1,
+                "runs the wrong way",
+                wrong && fast && self.rolled_m > ROLLED_M,
+                200,
+            ),
+            (
+                I8,
+                "rolls",
+                self.rolled_m > ROLLED_M && !seen.on(Signal::Fsb),
+                0,
+            ),
+        ]
     }
-}
 
-/// The train may be jogging back: mode switch at automatic or driverless, past the stop point, doors closed.
-fn jogs_back(seen: Observed<'_>) -> bool {
-    let switch = matches!(seen.value(Signal::ModeSwitch) as u8, 3 | 4);
-    let past = |to_stop_m: f64| (-JOGS_FROM_M..AT_STOP_POINT_M).contains(&to_stop_m);
-    let backward = seen.reverser == 1 && seen.speed_mps < 0.0;
-    switch && backward && seen.on(Signal::Doors) && seen.to_stop_m.is_some_and(past)
+    fn of_doors(&mut self, seen: Observed<'_>, blind: bool) -> Vec<Condition> {
+        use Invariant::{I3, I4, I11};
+        let open = seen.doors_open.contains(&true);
+        let braked = seen.on(Signal::EbLoop);
+        self.open_m = match open {
+            false => 0.0,
+            // By the brake a new way begins.
+            true if braked || blind => 0.0,
+            true => self.open_m + seen.speed_mps.abs() * 0.01,
+        };
+        let speed_mps = seen.speed_mps.abs();
+        self.open_mps = if open {
+            self.open_mps.max(speed_mps)
+        } else {
+            0.0
+        };
+        let most_m = OPEN_WAY_M + self.open_mps * OPEN_BRAKED_S;
+        let enabled = [
+            seen.on(Signal::DoorEnableLeft),
+            seen.on(Signal::DoorEnableRight),
+        ];
+        let ordered = [
+            seen.on(Signal::DoorOrderLeft),
+            seen.on(Signal::DoorOrderRight),
+        ];
+        let any = enabled.contains(&true);
+        let platform = self.place.platform(seen);
+        let wrong = (0..2).any(|side| enabled[side] && !platform.sides[side]);
+        let unenabled = (0..2).any(|side| ordered[side] && !enabled[side]);
+        let moves = seen.kmh() > MOVES_KMH && !blind;
+        vec![
+            (
+                I3,
+                "moves with a door open",
+                open && !braked && self.open_m > most_m,
+                0,
+            ),
+            (I4, "enabled in motion", any && moves, 0),
+            (I4, "enabled away from the place", any && !platform.there, 0),
+            (
+                I4,
+                "enabled where no platform is",
+                platform.there && wrong,
+                0,
+            ),
+            (I4, "ordered where nothing is enabled", unenabled, 0),
+            (
+                I11,
+                "enabled by tests",
+                seen.on(Signal::Armed) && any && !platform.there,
+                1_000,
+            ),
+        ]
+    }
+
+    /// Starts, brakes and what ATO may.
+    fn of_orders(&mut self, seen: Observed<'_>, blind: bool) -> Vec<Condition> {
+        use Invariant::{I5, I6, I7, I9, I10, I11};
+        let (line, fsb, asked) = (
+            seen.on(Signal::EbLoop),
+            seen.on(Signal::Fsb),
+            seen.on(Signal::Eb),
+        );
+        let moves = seen.kmh() > MOVES_KMH && !blind;
+        if self.line_open && !line && moves && !seen.sliding {
+            self.released = Some(seen.now);
+        }
+        self.line_open = line;
+        self.released = self.released.filter(|_| moves && !line);
+        let powers = seen.traction_n > NO_POWER_N;
+        let unasked = self.authority.lacks(seen, powers);
+        let ineffective = line
+            && seen.driven
+            && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs();
+        let hcr = seen.on(Signal::Hcr);
+        let fit = hcr && seen.reverser == 1 && seen.doors_open == [false; 2];
+        vec![
+            (I5, "starts by itself", unasked, 200),
+            (
+                I6,
+                "emergency brake released in motion",
+                self.released.is_some(),
+                0,
+            ),
+            (
+                I7,
+                "the emergency brake's path has failed",
+                moves && asked && !line && !fsb,
+                1_500,
+            ),
+            (
+                I7,
+                "the emergency brake does not act",
+                moves && ineffective && asked && !fsb,
+                3_500,
+            ),
+            (I9, "power under the emergency brake", line && powers, 500),
+            (I9, "power under the service brake", fsb && powers, 800),
+            (
+                I9,
+                "power not cut with the line open",
+                line && seen.sample.get(Signal::PowerCut) == Some(0.0),
+                700,
+            ),
+            (
+                I10,
+                "ATO drives where it may not",
+                seen.by_ato() && moves && !fit && !line && !fsb,
+                700,
+            ),
+            (
+                I10,
+                "ATO drives by data of another place",
+                self.place.driven_by_other(seen),
+                500,
+            ),
+            (I11, "moves by tests", seen.on(Signal::Armed) && powers, 500),
+            (I11, "asleep", self.asleep.note(seen) && moves && !line, 500),
+        ]
+    }
 }

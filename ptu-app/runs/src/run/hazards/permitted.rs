@@ -12,8 +12,10 @@ use super::proceeding::{Proceeding, YardEnded};
 /// Time for which a code that is no longer there may still be in force, and the desk's order on its way, beside hold time
 /// of the receiver and detection, ms: filter, scans.
 const CODE_HELD_MS: u32 = 500;
+/// Time for which the order of the desk, or a limit that it gave, is on its way.
+const SWITCHED: Duration = Duration::from_ms(700);
 /// Share of the time of detection for which a code is there before the unit may count it.
-const NEARLY: f64 = 0.8;
+const NEARLY: f64 = 0.9;
 /// Ratio of the levels of two codes from which on the stronger may count: the table's 4 dB, less what noise makes of it.
 const APART: f64 = 1.58 * 0.95;
 /// Train that counts as under way when a wheel diameter is keyed in, km/h: beyond the tolerance of standstill.
@@ -46,6 +48,8 @@ pub(super) struct Limits {
     /// Of the track's own code, or the mode switch; and of a neighbouring track's.
     each: [Heard; 2],
     selected: Lately,
+    /// Limits by code and mode switch.
+    by_switch: [Lately; 3],
     wheels: Wheels,
 }
 
@@ -84,31 +88,39 @@ impl Limits {
                 confirmed: Confirmed::new(needs, within),
             }),
             selected: Lately::default(),
+            by_switch: Default::default(),
             wheels: Wheels::new(config),
         }
     }
 
     /// One scan.
     pub fn note(&mut self, seen: Observed<'_>) -> Permitted {
-        let by_codes = self.by_codes(seen);
+        let [own_kmh, second_kmh, selected_kmh] = self.by_codes(seen);
         let ended = self.yard_ended.note(seen);
-        let proceeds_kmh = self.proceeding.note(seen, by_codes[0]);
-        let [own_kmh, second_kmh, selected_kmh] = match seen.value(Signal::ModeSwitch) as u8 {
-            1 if ended => by_codes.map(|kmh| kmh.max(proceeds_kmh).min(self.yard_kmh)),
-            1 => [self.yard_kmh; 3],
-            2..=4 => by_codes.map(|kmh| kmh.max(proceeds_kmh)),
-            5 => [self.emergency_kmh; 3],
-            _ => [0.0; 3],
-        };
+        let proceeds_kmh = self.proceeding.note(seen, own_kmh);
+        let switch = seen.value(Signal::ModeSwitch) as u8;
         let [own, second] = &mut self.each;
         let own = own.note(seen.now, own_kmh, self.code_held);
         let second = second.note(seen.now, second_kmh, self.code_held);
         let selected = self.selected.note(seen.now, selected_kmh, self.code_held);
-        let selected_kmh = selected.fold(0.0, f64::max);
+        let selected = selected.fold(0.0, f64::max);
+        let codes = [own[0].max(second[0]), own[1].max(second[1]), selected];
+        // By the mode switch, whose order is on its way for a while.
+        let [most_kmh, confirmed_kmh, selected_kmh] = std::array::from_fn(|which| {
+            let limit_kmh = match switch {
+                1 if ended => codes[which].max(proceeds_kmh).min(self.yard_kmh),
+                1 => self.yard_kmh,
+                2..=4 => codes[which].max(proceeds_kmh),
+                5 => self.emergency_kmh,
+                _ => 0.0,
+            };
+            let limits = self.by_switch[which].note(seen.now, limit_kmh, SWITCHED);
+            limits.fold(0.0, f64::max)
+        });
         let [keyed, admitted] = self.wheels.note(seen);
         Permitted {
-            most_kmh: own[0].max(second[0]),
-            confirmed_kmh: own[1].max(second[1]),
+            most_kmh,
+            confirmed_kmh,
             selected_kmh,
             keyed,
             admitted,
@@ -153,7 +165,14 @@ struct Wheels {
     range_mm: std::ops::RangeInclusive<f64>,
     keyed: f64,
     admitted: f64,
+    /// Markers passed under way since one was keyed in, and the last of them.
+    passed: usize,
+    marker: f64,
 }
+
+/// Markers by which a wheel is known, and how far off it may be then.
+const PROVES: usize = 3;
+const PROVED: f64 = 1.03;
 
 impl Wheels {
     fn new(config: &UnitConfig) -> Self {
@@ -164,6 +183,8 @@ impl Wheels {
             range_mm: configured_mm - tacho.worn_mm..=configured_mm + tacho.over_mm,
             keyed: 1.0,
             admitted: 1.0,
+            passed: 0,
+            marker: 0.0,
         }
     }
 
@@ -180,9 +201,19 @@ impl Wheels {
             let stands = seen.kmh() < UNDER_WAY_KMH || seen.blind;
             if stands && self.range_mm.contains(&mm) {
                 self.admitted = self.admitted.max(factor);
+                self.passed = 0;
             }
         }
-        [self.keyed, self.admitted]
+        let marker = seen.value(Signal::MarkerCoil);
+        let new = std::mem::replace(&mut self.marker, marker) != marker;
+        self.passed += usize::from(new && seen.kmh() > UNDER_WAY_KMH && seen.pulsed == 0);
+        let proved = self.passed >= PROVES && seen.displaced == [0.0; 4];
+        let admitted = if proved {
+            self.admitted.min(PROVED)
+        } else {
+            self.admitted
+        };
+        [self.keyed, admitted]
     }
 }
 

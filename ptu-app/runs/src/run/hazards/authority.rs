@@ -1,0 +1,98 @@
+//! Whose act lets the train start: a person's, or an order of the wayside, after the last thing that stopped it.
+
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::monitor::{MOVES_KMH, Observed};
+
+/// Time for which a departure is on its way, or an act that was over before its condition may still count.
+const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
+/// Time at a position of the mode switch by which a person has chosen it.
+const CHOSEN: Duration = Duration::from_ms(1_000);
+/// Way in which ATO may correct a stop, m, and its speed, km/h.
+const JOG_M: f64 = 6.2;
+const JOG_KMH: f64 = 5.6;
+
+/// What was allowed, and not ended since.
+#[derive(Default)]
+pub(super) struct Authority {
+    by_hand: bool,
+    by_ato: bool,
+    lever: f64,
+    switch: u8,
+    turned: Instant,
+    departure: bool,
+    given: Option<Instant>,
+    stood: bool,
+    begun: bool,
+}
+
+impl Authority {
+    /// Power without anybody's act. One scan.
+    pub fn lacks(&mut self, seen: Observed<'_>, powers: bool) -> bool {
+        let (before_hand, before_ato) = (self.by_hand, self.by_ato);
+        self.end(seen);
+        self.begin(seen);
+        self.begun = self.by_hand && !before_hand || self.by_ato && !before_ato;
+        let jogs = seen.to_stop_m.is_some_and(|m| m.abs() < JOG_M) && seen.kmh() < JOG_KMH;
+        // What fades under the brake is no start.
+        let powers = powers && !seen.on(Signal::EbLoop);
+        match seen.by_ato() {
+            true => powers && !self.by_ato && !jogs,
+            false => powers && !self.by_hand,
+        }
+    }
+
+    /// A start was allowed in this scan.
+    pub fn begins(&self) -> bool {
+        self.begun
+    }
+
+    fn end(&mut self, seen: Observed<'_>) {
+        let switch = seen.switch();
+        let enabled = [
+            seen.on(Signal::DoorEnableLeft),
+            seen.on(Signal::DoorEnableRight),
+        ];
+        let stands = seen.kmh() < MOVES_KMH;
+        let forced = (0..2).any(|side| seen.doors_open[side] && !enabled[side] && stands);
+        if seen.on(Signal::EbLoop) || forced || !seen.on(Signal::Hcr) || !seen.powered {
+            (self.by_hand, self.by_ato) = (false, false);
+        }
+        if switch != self.switch {
+            // From automatic to driverless a run goes on.
+            let goes_on = matches!((self.switch, switch), (3, 4) | (4, 3)) && !stands;
+            self.by_ato &= goes_on;
+            self.turned = seen.now;
+        }
+        self.switch = switch;
+        let at_stop = seen.to_stop_m.is_some_and(|m| m.abs() < JOG_M);
+        let stood = stands && at_stop;
+        if stood && !self.stood {
+            self.by_ato = false;
+        }
+        self.stood = stood;
+        if seen.value(Signal::Controller) <= 0.0 && stands {
+            self.by_hand = false;
+        }
+    }
+
+    fn begin(&mut self, seen: Observed<'_>) {
+        let lever = seen.value(Signal::Controller);
+        let before = std::mem::replace(&mut self.lever, lever);
+        let braked = seen.on(Signal::EbLoop);
+        // Half of the first notch is told as none.
+        self.by_hand |= lever > 0.0 && before <= 0.0 && !braked || lever == 0.0;
+        let heard = seen.value(Signal::Wayside) == 1.0 && seen.powered;
+        let departure = seen.on(Signal::Departure) && heard;
+        if departure && !std::mem::replace(&mut self.departure, departure) {
+            self.given = Some(seen.now);
+        }
+        self.departure = departure;
+        let fresh = self.given.is_some_and(|at| seen.now.since(at) < ON_ITS_WAY);
+        let chosen = seen.now.since(self.turned);
+        let turned = chosen >= CHOSEN && chosen < CHOSEN + ON_ITS_WAY;
+        let driverless = self.switch == 4 && (fresh || turned && departure);
+        self.by_ato |= !braked && (seen.start || driverless);
+    }
+}

@@ -1,0 +1,154 @@
+//! Where the train is in truth: platforms, whether the unit can know it, and what explains that it does not.
+
+use protocol::line::{Line, Section};
+use protocol::message::DoorSide;
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::monitor::{Invariant, NO_POWER_N, Observed};
+
+/// Place that may be the stop point's, m: tolerance, and what a position may be off behind the last marker.
+const AT_STOP_POINT_M: f64 = 0.3 + 0.5;
+/// Time for which what slid, or was laid, may still be believed.
+const LATELY: Duration = Duration::from_ms(20_000);
+/// Time for which doors that were enabled at the last platform stay so.
+const LEFT: Duration = Duration::from_ms(2_000);
+
+/// The platform at which the train stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Platform {
+    pub there: bool,
+    /// Left and right.
+    pub sides: [bool; 2],
+}
+
+pub(super) struct Place {
+    line: Line,
+    section: u16,
+    /// The section before it.
+    before: u16,
+    /// Its distance to run when the section was laid.
+    laid_m: Option<f64>,
+    laid: Instant,
+    /// The train has stood at a stop point since the unit has its supply.
+    arrived: bool,
+    arrivals: usize,
+    standing: bool,
+    slid: Option<Instant>,
+    pulsed_before: usize,
+}
+
+impl Place {
+    pub fn new(line: &Line) -> Self {
+        Self {
+            line: line.clone(),
+            section: 0,
+            before: 0,
+            laid_m: None,
+            laid: Instant::ZERO,
+            arrived: false,
+            arrivals: 0,
+            standing: false,
+            slid: None,
+            pulsed_before: 0,
+        }
+    }
+
+    pub fn note(&mut self, seen: Observed<'_>) {
+        if seen.section != self.section {
+            self.before = std::mem::replace(&mut self.section, seen.section);
+            self.laid_m = seen.to_stop_m;
+            self.laid = seen.now;
+            self.pulsed_before = seen.pulsed;
+        }
+        let at_stop = seen.to_stop_m.is_some_and(|m| m.abs() < AT_STOP_POINT_M);
+        let standing = at_stop && seen.kmh() < 0.25;
+        if standing && !self.standing {
+            self.arrivals += 1;
+        }
+        self.standing = standing;
+        self.arrived = (self.arrived || standing) && seen.powered;
+        if !seen.powered {
+            self.arrivals = 0;
+        }
+        if seen.sliding {
+            self.slid = Some(seen.now);
+        }
+    }
+
+    fn section(&self) -> Option<&Section> {
+        self.line.section(self.section)
+    }
+
+    /// The platform of the section's end, or where it begins the one before.
+    pub fn platform(&self, seen: Observed<'_>) -> Platform {
+        let Some(section) = self.section() else {
+            return Platform::default();
+        };
+        let at_end = seen.to_stop_m.is_some_and(|m| m.abs() < AT_STOP_POINT_M);
+        let run_m = self.laid_m.zip(seen.to_stop_m).map(|(laid, to)| laid - to);
+        let at_begin = run_m.is_some_and(|m| m.abs() < AT_STOP_POINT_M);
+        let of = |section: &Section| match DoorSide::from_label(&section.door_side) {
+            Some(DoorSide::Left) => [true, false],
+            Some(DoorSide::Right) => [false, true],
+            Some(DoorSide::Both) => [true, true],
+            _ => [false, false],
+        };
+        if at_end {
+            return Platform {
+                there: true,
+                sides: of(section),
+            };
+        }
+        // Where the last section ended the train stands at a platform.
+        let before = self.line.before(section).filter(|_| at_begin);
+        before.map_or_else(Platform::default, |before| Platform {
+            there: self.arrived || seen.now.since(self.laid) < LEFT,
+            sides: of(before),
+        })
+    }
+
+    /// ATO begins to power by data of another section, although the train has stood at a stop point and the next is known.
+    pub fn driven_by_other(&self, seen: Observed<'_>) -> bool {
+        let heard = seen.value(Signal::Wayside) == 1.0;
+        let run_m = self
+            .laid_m
+            .zip(seen.to_stop_m)
+            .map_or(0.0, |(laid, to)| laid - to);
+        let begins = run_m.abs() < 30.0 && seen.now.since(self.laid) > LEFT;
+        let powers = seen.by_ato() && seen.traction_n > NO_POWER_N;
+        powers && begins && heard && self.arrived && seen.told != seen.section
+    }
+
+    /// The exported condition that explains a breach.
+    pub fn condition(&self, seen: Observed<'_>, invariant: Invariant) -> Option<&'static str> {
+        let by_place = matches!(invariant, Invariant::I4 | Invariant::I10);
+        let slid = self.slid.is_some_and(|at| seen.now.since(at) < LATELY);
+        let alike = seen.displaced[1] != 0.0
+            && seen.displaced[1..]
+                .iter()
+                .all(|by_m| *by_m == seen.displaced[1]);
+        let conditions = [
+            ("rails_slippery", slid),
+            (
+                "markers_that_lie_nowhere",
+                by_place && seen.pulsed >= self.pulsed_before + 2,
+            ),
+            ("section_run_again", by_place && seen.told == self.before),
+            (
+                "place_lost",
+                invariant == Invariant::I10 && seen.displaced != [0.0; 4],
+            ),
+            (
+                "place_unknown",
+                by_place && !self.arrived && seen.told != seen.section,
+            ),
+            (
+                "markers_alike_on_unknown_wheels",
+                by_place && alike && self.arrivals < 2,
+            ),
+        ];
+        let found = conditions.iter().find(|(_, holds)| *holds);
+        found.map(|(name, _)| *name)
+    }
+}

@@ -1,0 +1,421 @@
+//! Plays a plan on a bench, and has the monitor watch.
+
+use std::fmt;
+
+use btu_rig::rig::Bench;
+use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
+use protocol::injection::{FaultMode, Place};
+use protocol::line::Section;
+use protocol::message::ModeSwitch;
+use protocol::signal::Signal;
+use protocol::{Duration, Instant};
+
+use super::monitor::{Breach, Monitor, Observed};
+use super::plan::{Act, Plan, Scene};
+use crate::link::SimLink;
+use crate::run::BenchSetup;
+
+/// The unit is powered up a second in, and starts up in three.
+const STARTED_MS: u32 = 4_000;
+/// Time in which the bench notices that the unit has restarted.
+const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
+/// Time for which a start button that was pressed may begin a run.
+const PRESSED: Duration = Duration::from_ms(800);
+/// Time for which a wheel diameter that is keyed in may be taken: the bench keys it in for 300 ms.
+const KEYED_IN: Duration = Duration::from_ms(600);
+/// Longest time at a platform, and time from new station data to departure and to the start button.
+const DWELL: Duration = Duration::from_ms(14_000);
+const DEPARTS: Duration = Duration::from_ms(3_000);
+const STARTS: Duration = Duration::from_ms(4_500);
+
+/// What was found in a plan.
+#[derive(Debug)]
+pub struct Find {
+    pub breach: Breach,
+    pub at: Instant,
+    /// What the monitor saw then.
+    pub state: String,
+    /// Faults that were injected, and those of tachometers that the bench made.
+    pub faults: Vec<String>,
+    /// What was done until then, in order.
+    pub acts: Vec<String>,
+}
+
+impl fmt::Display for Find {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            at,
+            state,
+            faults,
+            acts,
+            ..
+        } = self;
+        writeln!(f, "at {at} with {faults:?}: {state}")?;
+        write!(f, "    {}", acts.join("; "))
+    }
+}
+
+/// What the wayside of a ride does next.
+#[derive(Clone, Copy, PartialEq)]
+enum Ride {
+    At(Instant),
+    Given(Instant),
+    Pressed,
+    UnderWay,
+    Arrived(Instant),
+    Over,
+}
+
+struct Player<'a> {
+    bench: Bench<SimLink>,
+    setup: &'a BenchSetup,
+    plan: &'a Plan,
+    section: &'a Section,
+    ride: Ride,
+    reverser: i8,
+    powered: bool,
+    flicker: Option<[(Stimulus, Duration); 2]>,
+    flicker_due: Instant,
+    started: Option<Instant>,
+    crosstalk: [f64; 2],
+    wheel: Option<(f64, Instant)>,
+    told: StationData,
+    tacho_made: bool,
+    tcms_good: bool,
+    driven: bool,
+    pulsed: usize,
+    acts: Vec<(Instant, String)>,
+}
+
+/// Plays it; what was found first, if anything was, and what only conditions explain.
+pub fn play(setup: &BenchSetup, plan: &Plan) -> Option<Find> {
+    Player::new(setup, plan).play()
+}
+
+impl<'a> Player<'a> {
+    fn new(setup: &'a BenchSetup, plan: &'a Plan) -> Self {
+        let of_plan = BenchSetup {
+            faults: plan.faults.clone(),
+            ..setup.clone()
+        };
+        let power_at = Instant::ZERO + Duration::from_ms(1_000);
+        let section = &setup.line.content.sections[plan.section];
+        Self {
+            bench: of_plan.on_bench(plan.number, power_at),
+            setup,
+            plan,
+            section,
+            ride: Ride::Over,
+            reverser: 1,
+            powered: true,
+            flicker: None,
+            flicker_due: Instant::ZERO,
+            started: None,
+            crosstalk: [0.0; 2],
+            wheel: None,
+            told: StationData::at_departure(section),
+            tacho_made: false,
+            tcms_good: true,
+            driven: false,
+            pulsed: 0,
+            acts: Vec::new(),
+        }
+    }
+
+    fn play(mut self) -> Option<Find> {
+        let config = &self.setup.config.content;
+        let mut monitor = Monitor::new(config, &self.setup.line.content);
+        self.begin();
+        let begin = self.bench.now();
+        let end = begin + Duration::from_ms(u64::from(self.plan.length_ms));
+        let held_ms = 2 * config.receiver.hold_ms + config.receiver.detect_ms + 500;
+        let started = Duration::from_ms(u64::from(held_ms.max(STARTED_MS)));
+        let mut seen_from = begin + started;
+        let mut acts = self.plan.acts.iter().peekable();
+        let mut found: Option<(Find, u32)> = None;
+        while self.bench.now() < end {
+            let now = self.bench.now();
+            let due = |at_ms: u32| now >= begin + Duration::from_ms(u64::from(at_ms));
+            while let Some((_, act)) = acts.next_if(|(at_ms, _)| due(*at_ms)) {
+                self.act(*act);
+            }
+            self.turn_code(now);
+            self.go_on(now);
+            self.bench.tick().expect("the embedded unit answers");
+            // Without TCMS nothing tells of motion that no tachometer sees.
+            if !self.powered || self.blind() && !self.tcms_good {
+                seen_from = now + started;
+            }
+            let observed = self.observed();
+            let breach = monitor.step(observed).filter(|_| now >= seen_from);
+            let restarts = self.bench.rig().unit_restarts();
+            if found.is_none() {
+                found = breach.map(|breach| (self.found(breach), restarts));
+            }
+            // A unit that restarts is heard again only after a while: until then the bench has its last contacts.
+            let ripe = |(find, _): &mut (Find, u32)| now.since(find.at) > HEARD_AGAIN;
+            if let Some((find, before)) = found.take_if(ripe) {
+                if before == restarts {
+                    return Some(find);
+                }
+                seen_from = now + started;
+            }
+        }
+        None
+    }
+
+    fn observed(&self) -> Observed<'_> {
+        let (rig, now) = (self.bench.rig(), self.bench.now());
+        let truth = rig.truth();
+        Observed {
+            now,
+            sample: rig.sample(),
+            speed_mps: truth.speed_mps,
+            accel_mps2: truth.accel_mps2,
+            to_stop_m: truth.to_stop_m,
+            traction_n: truth.traction_n,
+            sliding: truth.sliding,
+            driven: self.driven,
+            doors_open: rig.doors_open(),
+            reverser: self.reverser,
+            section: self.section.section,
+            told: self.told.section,
+            start: self.started.is_some_and(|at| now.since(at) < PRESSED),
+            blind: self.blind(),
+            powered: self.powered,
+            crosstalk: self.crosstalk,
+            wheel_mm: (self.wheel.filter(|(_, at)| now.since(*at) < KEYED_IN)).map(|(mm, _)| mm),
+            pulsed: self.pulsed,
+            displaced: self.plan.displaced_m,
+        }
+    }
+
+    fn found(&self, breach: Breach) -> Find {
+        let seen = self.observed();
+        let mut faults: Vec<_> = (self.plan.faults.iter())
+            .map(|fault| fault.id.clone())
+            .collect();
+        if self.tacho_made {
+            faults.push("speed_sensor_1.of_the_bench".to_owned());
+        }
+        let acts = self.acts.iter();
+        Find {
+            breach,
+            at: seen.now,
+            state: state(seen),
+            faults,
+            acts: acts
+                .map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6))
+                .collect(),
+        }
+    }
+
+    /// How the scene begins.
+    fn begin(&mut self) {
+        let scene = self.plan.scene;
+        let ride = matches!(scene, Scene::Ride(_));
+        self.lay();
+        for stimulus in [
+            Stimulus::DoorsFollow { on: true },
+            Stimulus::ModeSwitch(scene.switch()),
+            Stimulus::CodesAlong { on: true },
+            Stimulus::Station(self.told),
+            Stimulus::Wayside(WaysideCondition::Good),
+            Stimulus::TrainDriven {
+                on: scene != Scene::OnBench,
+            },
+        ] {
+            self.apply(stimulus);
+        }
+        self.wait(4_000);
+        self.apply(Stimulus::Acknowledge);
+        self.wait(1_000);
+        // The same in every plan.
+        self.acts.clear();
+        self.acts.push((
+            self.bench.now(),
+            format!("{scene:?}, section {}", self.section.section),
+        ));
+        if let Some(coefficient) = self.plan.adhesion {
+            self.apply(Stimulus::Adhesion {
+                coefficient: Some(coefficient),
+            });
+        }
+        if let Some(stimulus) = scene.begins() {
+            self.apply(stimulus);
+        }
+        if ride {
+            self.ride = Ride::At(self.bench.now());
+        }
+    }
+
+    fn wait(&mut self, ms: u32) {
+        for _ in 0..ms / 10 {
+            self.bench.tick().expect("the embedded unit answers");
+        }
+    }
+
+    /// Lays the section, with its markers where they lie in truth.
+    fn lay(&mut self) {
+        let section = Some(self.section.section);
+        self.apply(Stimulus::MarkersAlong { section });
+        for (psm, by_m) in (1..).zip(self.plan.displaced_m) {
+            if by_m != 0.0 {
+                self.apply(Stimulus::MarkerMoved {
+                    psm,
+                    by_m: Some(by_m),
+                });
+            }
+        }
+    }
+
+    /// The wayside of a ride, and a driver who presses the start button.
+    fn go_on(&mut self, now: Instant) {
+        let truth = self.bench.rig().truth();
+        let stands = truth.speed_mps.abs() < 0.05;
+        let line = &self.setup.line.content;
+        self.ride = match self.ride {
+            Ride::At(at) if now.since(at) > DEPARTS => {
+                let departure = StationData {
+                    departure: true,
+                    ..self.told
+                };
+                self.apply(Stimulus::Station(departure));
+                Ride::Given(at)
+            }
+            Ride::Given(at) if now.since(at) > STARTS => {
+                if self.plan.scene.switch() == ModeSwitch::Automatic {
+                    self.apply(Stimulus::Start);
+                }
+                Ride::Pressed
+            }
+            Ride::Given(_) | Ride::Pressed if truth.speed_mps > 1.4 => {
+                let next = line.station_after(self.section);
+                self.apply(Stimulus::Station(StationData::at_arrival(
+                    self.section,
+                    next,
+                )));
+                Ride::UnderWay
+            }
+            Ride::UnderWay if stands && truth.to_stop_m.is_some_and(|m| m.abs() < 25.0) => {
+                Ride::Arrived(now)
+            }
+            Ride::Arrived(at) if now.since(at) > DWELL => match line.after(self.section) {
+                None => Ride::Over,
+                Some(next) => {
+                    self.section = next;
+                    self.lay();
+                    let data_of = self.plan.data_of.and_then(|at| line.sections.get(at));
+                    let data = StationData::at_departure(data_of.unwrap_or(next));
+                    self.apply(Stimulus::Station(data));
+                    Ride::At(now)
+                }
+            },
+            ride => ride,
+        };
+    }
+
+    fn act(&mut self, act: Act) {
+        let now = self.bench.now();
+        match act {
+            Act::Do(stimulus) => self.apply(stimulus),
+            Act::Supply(on) => {
+                self.powered = on;
+                self.bench.link_mut().set_power(now, on);
+                self.acts.push((now, format!("supply {on}")));
+            }
+            Act::Alternate(turns) => {
+                let [(first, one), (second, other)] = turns;
+                let (one, other) = (one.as_ms(), other.as_ms());
+                let text = format!("{first} for {one} ms and {second} for {other} ms by turns");
+                self.acts.push((now, text));
+                self.flicker = Some(turns);
+                self.flicker_due = now;
+            }
+        }
+    }
+
+    fn turn_code(&mut self, now: Instant) {
+        let Some(turns) = self.flicker.as_mut().filter(|_| now >= self.flicker_due) else {
+            return;
+        };
+        turns.reverse();
+        let (code, stays) = turns[0];
+        self.flicker_due = now + stays;
+        let refused = self.bench.rig_mut().apply(now, &code);
+        refused.expect("any code can be put in");
+    }
+
+    /// What cannot be done is not done, as a bench refuses it.
+    fn apply(&mut self, stimulus: Stimulus) {
+        let now = self.bench.now();
+        if self.bench.rig_mut().apply(now, &stimulus).is_err() {
+            return;
+        }
+        match stimulus {
+            Stimulus::Reverser { position } => self.reverser = position,
+            Stimulus::Crosstalk {
+                carrier_hz,
+                rate_hz,
+                ..
+            } => {
+                self.crosstalk = [carrier_hz, rate_hz];
+            }
+            Stimulus::WheelDiameter { diameter_mm } => self.wheel = Some((diameter_mm, now)),
+            Stimulus::Station(data) => self.told = data,
+            Stimulus::Start => self.started = Some(now),
+            Stimulus::Tcms(condition) => {
+                self.tcms_good = condition == btu_rig::stimulus::TcmsCondition::Good;
+            }
+            Stimulus::TrainDriven { on } => self.driven = on,
+            Stimulus::Tacho { .. } => self.tacho_made = true,
+            Stimulus::Marker { .. } => self.pulsed += 1,
+            Stimulus::Code { .. } | Stimulus::CodeOff | Stimulus::CodesAlong { .. } => {
+                self.flicker = None;
+            }
+            _ => {}
+        }
+        self.acts.push((now, stimulus.to_string()));
+    }
+
+    /// No tachometer gives pulses.
+    fn blind(&self) -> bool {
+        let sample = self.bench.rig().sample();
+        let dead = |signal| sample.get(signal) == Some(1.0);
+        let unfed = |fault: &FaultMode| fault.place == Place::SpeedSensors;
+        dead(Signal::Tacho1) && dead(Signal::Tacho2) || self.plan.faults.iter().any(unfed)
+    }
+}
+
+fn state(seen: Observed<'_>) -> String {
+    let signals = [
+        Signal::Mode,
+        Signal::TcmsMode,
+        Signal::Limit,
+        Signal::Speed,
+        Signal::Eb,
+        Signal::EbLoop,
+        Signal::EbCause,
+        Signal::Fsb,
+        Signal::FsbCause,
+        Signal::Standstill,
+        Signal::Position,
+        Signal::Aligned,
+        Signal::TwcSection,
+    ];
+    let values = signals.map(|signal| {
+        let value = seen
+            .sample
+            .get(signal)
+            .map_or("-".to_owned(), |value| format!("{value:.1}"));
+        format!("{} {value}", signal.name())
+    });
+    format!(
+        "section {}, {:.2} km/h, {:.2} m to the stop point, {:.0} N, {}",
+        seen.section,
+        seen.speed_mps * 3.6,
+        seen.to_stop_m.unwrap_or(f64::NAN),
+        seen.traction_n,
+        values.join(", ")
+    )
+}
