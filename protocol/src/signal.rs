@@ -179,8 +179,8 @@ signals! {
     Mode "mode" "" Kind::Enum(Mode::LABELS), 0 ..= 5, Unit, "Operating mode";
     Refusals "refusals" "" UNITY, 0 ..= 65535, Unit, "Preconditions of automatic mode that do not hold, as bits";
     CodeIndex "code_index" "" UNITY, 0 ..= 255, Unit, "Received code's place in the code table; 255 = none";
-    EbCause "eb_cause" "" Kind::Enum(EbCause::LABELS), 0 ..= 11, Unit, "Why the emergency brake is applied";
-    FsbCause "fsb_cause" "" Kind::Enum(FsbCause::LABELS), 0 ..= 10, Unit, "Why the full service brake is requested";
+    EbCause "eb_cause" "" Kind::Enum(EbCause::LABELS), 0 ..= 12, Unit, "Why the emergency brake is applied";
+    FsbCause "fsb_cause" "" Kind::Enum(FsbCause::LABELS), 0 ..= 11, Unit, "Why the full service brake is requested";
     Speed1 "speed1" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 1";
     Speed2 "speed2" "km/h" CMS_KMH, 0 ..= 200, Unit, "Speed from tachometer 2";
     Target "target" "km/h" CMS_KMH, 0 ..= 200, Unit, "ATO target speed";

@@ -21,6 +21,8 @@ pub struct Found {
     pub beyond: bool,
     /// The service brake that is asked for slows the train too little.
     pub ineffective: bool,
+    /// Others opened the brake line of a train that moves: it stays braked until it stands.
+    pub line_opened: bool,
 }
 
 impl Atp {
@@ -86,6 +88,7 @@ impl Atp {
             (found.door_open, EbCause::DoorOpen),
             (found.beyond, EbCause::Overspeed),
             (found.ineffective, EbCause::ServiceBrakeIneffective),
+            (found.line_opened, EbCause::LineOpened),
             // As at power-up; not a fault, and released without an acknowledgement.
             (
                 !context.vital_passed || self.sequence.mode() == Mode::Off,
@@ -124,6 +127,7 @@ impl Atp {
         let code = self.decoder.code();
         let over = self.overspeed.service_brake;
         let causes = [
+            (self.path.failed(), FsbCause::EbFailed),
             (
                 self.by_code() && code == Code::None && self.proceeds.limit().is_none(),
                 FsbCause::NoCode,

@@ -46,26 +46,41 @@ impl Towards {
 pub struct Rollback {
     /// By each tachometer: one that is dead hides nothing.
     against_m: [f64; 2],
+    /// What it was when the wheels stood last: a lone pulse since then is spurious.
+    stood_m: [f64; 2],
+    towards: Option<Towards>,
     tripped: Edge,
 }
 
+/// Way of a lone pulse, and no more, m.
+const LONE_M: f64 = 0.04;
+
 impl Rollback {
-    /// One scan; true once the distance against the reverser exceeds `allowed_m`, until the way is
-    /// counted from 0 again: the wheels stand still.
+    /// One scan, with the way of each tachometer and whether the wheels stand still; true once the distance against the
+    /// reverser exceeds `allowed_m`, until the way is counted from 0 again. It is not by standing still: what a train rolls
+    /// in small steps is a sum.
     pub fn step(
         &mut self,
         now: Instant,
-        moved_m: [f64; 2],
+        (moved_m, still): ([f64; 2], bool),
         towards: Towards,
         from_zero: bool,
         allowed_m: f64,
         log: &mut EventLog,
     ) -> bool {
-        for (against_m, moved_m) in self.against_m.iter_mut().zip(moved_m) {
-            *against_m = match from_zero {
+        let turned = self.towards.replace(towards) != Some(towards);
+        let sums = self.against_m.iter_mut().zip(&mut self.stood_m);
+        for ((against_m, stood_m), moved_m) in sums.zip(moved_m) {
+            *against_m = match from_zero || turned {
                 true => 0.0,
                 false => (*against_m + towards.wrong_m(moved_m)).max(0.0),
             };
+            if still {
+                if libm::fabs(*against_m - *stood_m) < LONE_M {
+                    *against_m = against_m.min(*stood_m);
+                }
+                *stood_m = *against_m;
+            }
         }
         let farthest_m = self.against_m[0].max(self.against_m[1]);
         let trips = farthest_m > allowed_m;

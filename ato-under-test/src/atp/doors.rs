@@ -34,11 +34,15 @@ pub struct DoorInputs {
     pub at_platform: bool,
     pub side: DoorSide,
     pub speed: Speed,
+    /// Way in this scan, m.
+    pub way_m: f64,
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct Doors {
     open_moving: OnDelay,
+    /// Way with a door open, m, at any speed.
+    open_m: f64,
     tripped: Edge,
     unaligned: OnDelay,
     refused: Edge,
@@ -93,7 +97,14 @@ impl Doors {
         let closed = inputs.lines.is_none_or(DoorLines::closed);
         let opens = self.unproved.rises(!closed);
         self.chatter.step(now, opens, log);
-        let open_moving = self.open_moving.update(now, moving && !closed, span);
+        self.open_m = if closed {
+            0.0
+        } else {
+            self.open_m + inputs.way_m
+        };
+        // A train that leaves its place with a door open moves, however slowly.
+        let creeps = self.open_m > config.aligned_m;
+        let open_moving = self.open_moving.update(now, moving && !closed, span) || creeps;
         if self.tripped.rises(open_moving) {
             log.push(now, Event::DoorOpenMoving, i32::from(inputs.speed.to_cms()));
         }
@@ -198,6 +209,7 @@ mod tests {
             at_platform: true,
             side,
             speed: Speed::ZERO,
+            way_m: 0.0,
         }
     }
 

@@ -106,6 +106,7 @@ impl EmergencyBrake {
             EbCause::ServiceBrakeIneffective => {
                 (Event::ServiceBrakeIneffective, inputs.proof.decel_mms2)
             }
+            EbCause::LineOpened => (Event::LineOpened, 0),
             _ => return,
         };
         log.push(now, event, parameter);

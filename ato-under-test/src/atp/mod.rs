@@ -11,6 +11,7 @@ mod door_order;
 mod doors;
 mod emergency;
 mod heard;
+mod interlock;
 mod jog_guard;
 mod mode;
 mod overspeed;
@@ -21,7 +22,7 @@ mod tachometers;
 mod yard;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
-use protocol::message::{DoorSide, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
+use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
 
 use crate::guards::Guards;
@@ -31,6 +32,7 @@ use crate::timer::Edge;
 use causes::Found;
 use direction::{Rollback, Towards};
 use door_order::{DoorOrders, enabled_sides};
+use interlock::{BrakePath, Interlock};
 use jog_guard::{JogGuard, JogInputs};
 use stop_and_proceed::{ProceedInputs, StopAndProceed};
 use yard::Yard;
@@ -68,8 +70,18 @@ pub struct ScanContext {
     pub jogs_backward: Option<bool>,
     /// Distance past the stop point, m, where the section's last marker proves it.
     pub overrun_m: Option<f64>,
+    /// Share by which markers prove that the wheels run farther than is measured.
+    pub runs_farther: f64,
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
+    /// Others have opened the brake line, as it is read back or TCMS tells it.
+    pub line_open: bool,
+    /// Others have opened the line that had followed the relay.
+    pub line_fell: bool,
+    /// The brake line is energised although the unit's relay should have opened it.
+    pub line_stays: bool,
+    /// Emergency brake of the train as TCMS tells it.
+    pub tcms_eb: Option<bool>,
     /// TCMS holds the train, or cuts its power.
     pub tcms_holds: bool,
     /// ATO asks for power.
@@ -91,6 +103,8 @@ pub struct Atp {
     rollback: Rollback,
     jog: JogGuard,
     brake: EmergencyBrake,
+    path: BrakePath,
+    interlock: Interlock,
     sequence: ModeSequence,
     limit: Speed,
     overspeed: Overspeed,
@@ -116,6 +130,8 @@ impl Atp {
             rollback: Rollback::default(),
             jog: JogGuard::default(),
             brake: EmergencyBrake::new(),
+            path: BrakePath::default(),
+            interlock: Interlock::default(),
             sequence: ModeSequence::new(),
             limit: Speed::ZERO,
             overspeed: Overspeed::default(),
@@ -139,6 +155,7 @@ impl Atp {
         let confirmed = guards.code_confirmation;
         self.decoder
             .step(now, inputs.signal, confirmed, config, log);
+        self.tachometers.correct(context.runs_farther);
         let witness = self.witness(inputs, context);
         self.tachometers.step(now, inputs, witness, config, log);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
@@ -154,7 +171,10 @@ impl Atp {
         };
         self.proceeds
             .step(now, proceed_inputs, config.stop_and_proceed.as_ref(), log);
-        self.limit = self.limit_in_force(config);
+        self.limit = match self.protected(inputs.lines) {
+            true => self.limit_in_force(config),
+            false => Speed::ZERO,
+        };
         let motion = SupervisedMotion {
             speed,
             limit: self.limit,
@@ -181,6 +201,7 @@ impl Atp {
             at_platform: context.at_platform,
             side: context.door_side,
             speed,
+            way_m: self.tachometers.farthest_m(),
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
         self.door_orders
@@ -199,18 +220,20 @@ impl Atp {
         };
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
-        // Way that was permitted is no roll back when the permission has gone.
-        let from_zero = still || self.jog.ended();
+        // Way that was permitted is no roll back when the permission has gone; nor is what a brake has ended, or a departure.
+        let stopped = still && (self.brake.applied() || self.jog.back_m() > 0.0);
+        let from_zero = self.jog.ended() || stopped || self.sequence.begins();
         let towards = Towards::of(inputs.lines, inputs.test_speed, guards.neutral);
-        let rollback = self
-            .rollback
-            .step(now, moved_m, towards, from_zero, allowed_m, log);
+        let rollback =
+            self.rollback
+                .step(now, (moved_m, still), towards, from_zero, allowed_m, log);
         let found = Found {
             rollback,
             wrong_way,
             door_open,
             beyond,
             ineffective: proof.ineffective,
+            line_opened: context.line_fell && !standstill,
         };
         let cause = self.emergency_cause(now, inputs, context, found, log);
         let brake_inputs = BrakeInputs {
@@ -224,6 +247,17 @@ impl Atp {
             compares_cause: guards.release,
         };
         self.brake.step(now, brake_inputs, log);
+        let asked = self.brake.applied() && self.brake.cause() != EbCause::NotReleased;
+        self.path
+            .step(now, asked, context.line_stays, context.tcms_eb, log);
+        let held = self.brake.applied() || context.line_fell || !self.doors_closed;
+        self.interlock
+            .step(now, held, context.line_open, inputs.controller);
+    }
+
+    /// A code protects the track ahead alone: backward it permits nothing.
+    fn protected(&self, lines: TrainLines) -> bool {
+        !lines.contains(TrainLines::BACKWARD) || !self.by_code()
     }
 
     /// A train that has run past its stop point may be jogged back.
@@ -281,6 +315,7 @@ impl Atp {
             || self.fsb_cause != FsbCause::None
             || !self.doors_closed
             || self.limit == Speed::ZERO
+            || self.interlock.cuts()
             || self.jog.refuses()
             || self.tachometers.cuts_power()
     }
@@ -345,6 +380,11 @@ impl Atp {
     /// Sides on which doors are enabled.
     pub fn enabled(&self) -> DoorSide {
         enabled_sides(self.doors.enable())
+    }
+
+    /// Doors are open on a side that is not enabled.
+    pub fn forced(&self) -> bool {
+        self.doors.hold()
     }
 
     /// Why the full service brake is requested.

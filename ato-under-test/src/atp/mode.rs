@@ -15,12 +15,12 @@
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
 //! again the service brake goes on stopping the train, and a driverless one waits for a new departure.
 
-use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::{Mode, ModeSwitch, Refusals};
+use protocol::{Duration, Instant};
 
 use crate::kernel::EventLog;
-use crate::timer::Edge;
+use crate::timer::{Edge, OnDelay};
 
 /// Refusals that do not hinder Automatic, only Automatic Run.
 const RUN_ONLY: Refusals = Refusals::NO_DEPARTURE
@@ -35,6 +35,9 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::TCMS_NOT_READY)
     .union(Refusals::ATO_NOT_READY)
     .union(Refusals::SELF_TEST);
+
+/// Time at driverless by which the position was chosen, and not passed on the way to another [default].
+const CHOSEN: Duration = Duration::from_ms(1_000);
 
 /// Of these, what is kept until it is acknowledged: braking clears it, and driving on would cause it again.
 const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
@@ -59,6 +62,8 @@ pub struct ModeInputs {
     pub gave_up: bool,
     /// Others than the unit have opened the emergency brake line.
     pub line_open: bool,
+    /// Doors are open on a side that is not enabled.
+    pub forced: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -66,6 +71,8 @@ pub struct ModeSequence {
     mode: Mode,
     start: Edge,
     acknowledge: Edge,
+    chosen: OnDelay,
+    began: bool,
     /// Departure was heard withheld, and not given since.
     withheld: bool,
     /// What ended a run and is not acknowledged, of [`KEPT`].
@@ -84,6 +91,8 @@ impl ModeSequence {
             mode: Mode::Off,
             start: Edge::default(),
             acknowledge: Edge::default(),
+            chosen: OnDelay::default(),
+            began: false,
             withheld: false,
             failed: Refusals::empty(),
             departs_anew: true,
@@ -98,11 +107,13 @@ impl ModeSequence {
         self.stop_after_line(now, &inputs, log);
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
+        let driverless = inputs.switch == ModeSwitch::Driverless;
+        let driverless = self.chosen.update(now, driverless, CHOSEN);
         let departing = inputs.departure
             && !inputs
                 .lacking
                 .intersects(Refusals::DOOR_SEQUENCE | Refusals::ORDERED)
-            && (pressed || inputs.switch == ModeSwitch::Driverless && !self.departs_anew);
+            && (pressed || driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let next = next(self.mode, &inputs, departing);
@@ -119,6 +130,7 @@ impl ModeSequence {
             (_, Mode::AutomaticRun) => self.departs_anew = false,
             _ => {}
         }
+        self.began = next == Mode::AutomaticRun && self.mode != next;
         if next != self.mode {
             self.mode = next;
             log.push(now, Event::ModeChanged, i32::from(next.code()));
@@ -146,7 +158,8 @@ impl ModeSequence {
             self.failed = Refusals::empty();
         }
         let braked = inputs.lacking.contains(Refusals::EB_APPLIED);
-        self.departs_anew |= runs && (inputs.gave_up || braked);
+        // A door that was forced is looked after before the train departs.
+        self.departs_anew |= runs && (inputs.gave_up || braked) || inputs.forced;
         self.departs_anew &= !departs;
     }
 
@@ -174,6 +187,11 @@ impl ModeSequence {
             ModeSwitch::Automatic | ModeSwitch::Driverless
         );
         self.stops &= by_ato && inputs.lacking.contains(Refusals::NOT_STANDSTILL);
+    }
+
+    /// An automatic run has begun in the last cycle.
+    pub fn begins(&self) -> bool {
+        self.began
     }
 
     pub fn mode(&self) -> Mode {

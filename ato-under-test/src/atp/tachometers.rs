@@ -41,6 +41,8 @@ pub struct Tachometers {
     ways_m: [f64; 2],
     distance_channel: usize,
     belief: Belief,
+    /// Share by which the train is faster than its wheels tell.
+    farther: f64,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -72,7 +74,13 @@ impl Tachometers {
             ways_m: [0.0; 2],
             distance_channel: 0,
             belief: Belief::default(),
+            farther: 0.0,
         }
+    }
+
+    /// Markers have proved that the wheels run so much farther than is measured.
+    pub fn correct(&mut self, farther: f64) {
+        self.farther = farther;
     }
 
     /// Sets the way that a pulse stands for, m, of a train that stands.
@@ -175,7 +183,8 @@ impl Tachometers {
 
     /// The greater of the two.
     fn measured(&self) -> Speed {
-        self.meters[0].speed().max(self.meters[1].speed())
+        let greater = self.meters[0].speed().max(self.meters[1].speed());
+        Speed::from_mps(greater.mps() * (1.0 + self.farther))
     }
 
     /// The safe speed: the greater of the two, or what the train may still have where they are not believed.
@@ -227,6 +236,11 @@ impl Tachometers {
     /// Distance run in this scan, m, backward negative.
     pub fn moved_m(&self) -> f64 {
         self.ways_m[self.distance_channel]
+    }
+
+    /// The greater way in this scan, m.
+    pub fn farthest_m(&self) -> f64 {
+        libm::fabs(self.ways_m[0]).max(libm::fabs(self.ways_m[1]))
     }
 
     /// Way by each channel in this scan, m, backward negative.

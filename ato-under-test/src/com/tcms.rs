@@ -122,6 +122,11 @@ impl TcmsLink {
         self.says(TcmsToAtcBits::TELLS_LINES) && !self.says(TcmsToAtcBits::CAB_MANNED)
     }
 
+    /// TCMS reads the doors as not closed.
+    pub fn reads_doors_open(&self) -> bool {
+        self.says(TcmsToAtcBits::TELLS_LINES) && !self.says(TcmsToAtcBits::DOORS_CLOSED)
+    }
+
     /// TCMS cuts powering. What it cuts while its holding brake is on is left out: ATO asks for that
     /// brake itself, and the train leaves it by motor current.
     pub fn cuts_power(&self) -> bool {

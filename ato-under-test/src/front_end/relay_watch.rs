@@ -15,6 +15,9 @@ pub struct RelayWatch {
     open: OnDelay,
     due: OnDelay,
     line_due: bool,
+    /// The line was due since the relay was energised.
+    followed: bool,
+    line_fell: bool,
     sound: bool,
     feedback: Duration,
 }
@@ -27,6 +30,8 @@ impl RelayWatch {
             open: OnDelay::default(),
             due: OnDelay::default(),
             line_due: false,
+            followed: false,
+            line_fell: false,
             sound: true,
             feedback,
         }
@@ -46,6 +51,8 @@ impl RelayWatch {
         let open = energised && line(TrainLines::EB_LOOP_FED) && !alive;
         let due = energised && line(TrainLines::EB_LOOP_FED);
         self.line_due = self.due.update(now, due, self.feedback);
+        self.followed = energised && (self.followed || self.line_due && alive);
+        self.line_fell = self.followed && lines.is_some() && !alive;
         let welded = self.welded.update(now, welded, self.feedback);
         let open = self.open.update(now, open, self.feedback);
         if (welded || open) && self.sound {
@@ -62,6 +69,11 @@ impl RelayWatch {
     /// The line must be energised: the relay is, and the line is fed, for as long as it may take to follow.
     pub fn line_due(&self) -> bool {
         self.line_due
+    }
+
+    /// The line has followed the relay, which is energised still, and is dead now.
+    pub fn line_fell(&self) -> bool {
+        self.line_fell
     }
 
     /// The relay has followed ever since power-up; one failure is not forgotten before the next.

@@ -17,6 +17,7 @@ use super::marker_check::{
     MarkerCheck, MarkerDetection, PendingDetection, PositionFix, Wheels, further_m, judge, place_m,
     window_m,
 };
+use super::ways::Ways;
 use super::{MarkerSpan, Movement, Odometer, WheelCalibration};
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
@@ -54,6 +55,13 @@ pub struct Locator {
     by_way_m: f64,
     /// The last markers agree with each other and not with one that was believed before.
     contradicted: bool,
+    /// The stop point was reached under the unit's supervision: what follows it is known.
+    placed: bool,
+    /// The section that ended where this one begins, if the train stopped there.
+    came_from: Option<Section>,
+    /// Ways between believed markers of this section.
+    ways: Ways,
+    holds_ways: bool,
     /// Markers are held against the way: nothing is wrong with that.
     holds_markers: bool,
     wheel_reported: bool,
@@ -92,6 +100,10 @@ impl Locator {
             early_m: 0.0,
             by_way_m: 0.0,
             contradicted: false,
+            placed: false,
+            came_from: None,
+            ways: Ways::default(),
+            holds_ways: true,
             holds_markers: true,
             wheel_reported: false,
             span: None,
@@ -112,6 +124,10 @@ impl Locator {
         let Some(section) = line.section(data.section) else {
             return;
         };
+        if standstill && self.contradicts(section, line) {
+            return;
+        }
+        let left = self.anchor().cloned();
         let same = self
             .section
             .as_ref()
@@ -125,6 +141,8 @@ impl Locator {
                 marker: 0,
             };
             self.section = Some(section.clone());
+            self.came_from = left;
+            self.ways.clear();
             self.expected = 1;
             self.pending = None;
             self.slid_m = 0.0;
@@ -133,6 +151,35 @@ impl Locator {
             self.by_way_m = 0.0;
             self.contradicted = false;
             self.wheel_reported = false;
+        }
+    }
+
+    /// The section at whose stop point the train stands, as far as that is known.
+    fn anchor(&self) -> Option<&Section> {
+        let here = self.section.as_ref().filter(|_| self.placed)?;
+        let run_m = self.position_m() - here.start_m;
+        let begins = self.fix.marker == 0 && libm::fabs(run_m) <= self.config.start_window_m;
+        match self.aligned() {
+            true => Some(here),
+            false => self.came_from.as_ref().filter(|_| begins),
+        }
+    }
+
+    /// The train stands where a section ends, and these data are of one that does not begin there.
+    pub fn contradicts(&self, section: &Section, line: &Line) -> bool {
+        let next = self
+            .anchor()
+            .and_then(|here| Some((here, line.after(here)?)));
+        next.is_some_and(|(here, next)| {
+            section.section != here.section && section.section != next.section
+        })
+    }
+
+    /// Whether the place counts: not in a train that is driven by hand at yard or emergency, or has no cab.
+    pub fn keep_place(&mut self, keeps: bool) {
+        self.placed = keeps && (self.placed || !self.aligned());
+        if !keeps {
+            self.came_from = None;
         }
     }
 
@@ -214,6 +261,7 @@ impl Locator {
             }
         }
         self.hold_against_the_way(now, place_m, &detection, log);
+        self.note_way(place_m, &detection);
         // Of a section's start only the distance is known; a span on sliding wheels tells nothing of their diameter.
         let start = self.span_from(&detection, self.fix.marker != 0);
         if let Some((start, _)) = start.filter(|_| self.slid_m == 0.0) {
@@ -236,6 +284,38 @@ impl Locator {
         self.slid_m = 0.0;
         self.unsure_since_m = None;
         self.early_m = 0.0;
+        if marker == MARKERS {
+            self.compare_ways(now, log);
+        }
+    }
+
+    /// Notes the way from the marker before, or from the section's begin, which is known less well.
+    fn note_way(&mut self, place_m: f64, end: &MarkerDetection) {
+        let scatter_m = 3.0 * core::f64::consts::SQRT_2 * self.config.scatter_m;
+        let (from, off_m) = match self.span_from(end, self.fix.marker != 0) {
+            Some((from, _)) => (from, scatter_m),
+            None => (self.fix, self.config.start_window_m),
+        };
+        if self.slid_m == 0.0 {
+            let wheel_m = end.distance_m - from.distance_m;
+            self.ways.note(place_m - from.place_m, wheel_m, off_m);
+        }
+    }
+
+    /// Wheels of any size make the same share of each way. Where they do not, markers are displaced: no doors, and nothing
+    /// is learned of the wheels.
+    fn compare_ways(&mut self, now: Instant, log: &mut EventLog) {
+        let holds = self.holds_markers && self.holds_ways;
+        let Some(share) = self.ways.contradiction().filter(|_| holds) else {
+            return;
+        };
+        self.contradicted = true;
+        self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
+        log.push(
+            now,
+            Event::MarkersDisplaced,
+            libm::round(share * 1e4) as i32,
+        );
     }
 
     /// Holds a marker that is believed against the way from the marker before. Both may be displaced, and then the stop
@@ -271,7 +351,9 @@ impl Locator {
     }
 
     /// Whether markers are held against the way from the one before.
-    pub fn hold_markers(&mut self, holds: bool) {
+    pub fn hold_markers(&mut self, holds: bool, tested: bool) {
+        // Test markers are pulsed by a tester, whose requests take their time.
+        self.holds_ways = !tested;
         self.holds_markers = holds;
     }
 
@@ -343,6 +425,11 @@ impl Locator {
     /// What is added to the odometer's distance, as a share.
     pub fn wheel_correction(&self) -> f64 {
         self.wheel.correction()
+    }
+
+    /// Share by which markers prove that the wheels run farther than is measured; 0 within what wheels may differ by.
+    pub fn runs_farther(&self) -> f64 {
+        self.wheel.impossible().unwrap_or_default().max(0.0)
     }
 
     pub fn section(&self) -> Option<&Section> {

@@ -8,6 +8,7 @@ mod odometer;
 
 mod tacho_compare;
 mod tra;
+mod ways;
 mod wheel;
 
 pub use debounce::Debounce;

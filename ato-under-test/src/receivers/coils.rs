@@ -19,7 +19,7 @@ const COILS: usize = Coil::ALL.len();
 /// Scans without samples after which a coil has been silent for long, and its receiver rests.
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
-const HEARD_EARLY_MS: u64 = 60;
+const HEARD_EARLY_MS: u64 = 150;
 /// Scans for which the last code stands in for one that noise hides.
 const STANDS_IN: u8 = 3;
 /// Weakest level of TWC and of a marker, as a share of its configured one.

@@ -6,6 +6,7 @@
 mod operation;
 
 use protocol::config::{TachoConfig, UnitConfig};
+use protocol::event::Event;
 use protocol::injection::{Effect, Place};
 use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines};
 use protocol::{Duration, Instant};
@@ -20,6 +21,7 @@ use crate::kernel::{EventLog, FreezeFrame, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
 use crate::signals::{Inputs, MarkerPulse};
+use crate::timer::Edge;
 use crate::twc::{TrainState, Twc};
 
 /// What the functions look at beside their inputs.
@@ -30,6 +32,8 @@ pub struct Surroundings<'a> {
     pub tra: &'a Tra,
     pub faults: &'a Faults,
     pub guards: Guards,
+    /// The brake line has followed the relay, and others have opened it since.
+    pub line_fell: bool,
     /// The harness has been alive at least once.
     pub ever_heard: bool,
     /// No run may begin: a tester is armed.
@@ -43,6 +47,8 @@ pub struct Functions {
     pub twc: Twc,
     pub locator: Locator,
     debounce: Debounce,
+    /// Station data are of another place than that at which the train is known to stand.
+    elsewhere: Edge,
     tacho_compare: TachoCompare,
     pub ato: Ato,
     pub ato_outputs: AtoOutputs,
@@ -65,6 +71,7 @@ impl Functions {
             twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
             locator: Locator::new(config),
             debounce: Debounce::default(),
+            elsewhere: Edge::default(),
             tacho_compare: TachoCompare::default(),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
@@ -89,8 +96,19 @@ impl Functions {
         self.twc.step(now, between_loops, log);
         if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
             let standstill = self.atp.tachometers().standstill();
-            self.locator.locate(data, &around.setup.line, standstill);
+            let line = &around.setup.line;
+            let section = line.section(data.section).filter(|_| around.guards.station);
+            let elsewhere = section.is_some_and(|section| self.locator.contradicts(section, line));
+            if self.elsewhere.rises(elsewhere && standstill) {
+                log.push(now, Event::TwcStationInvalid, i32::from(data.station));
+            }
+            self.locator.locate(data, line, standstill);
         }
+        let by_signal = matches!(
+            self.atp.sequence().mode(),
+            Mode::Manual | Mode::Automatic | Mode::AutomaticRun
+        );
+        self.locator.keep_place(by_signal && around.guards.station);
         self.serve_station(now, around, log);
         self.carry_out(now, around, log);
         let mode_inputs = self.mode_inputs(around);
@@ -115,6 +133,14 @@ impl Functions {
             tcms_up: around.tcms.alive(),
             ato_ready: self.ato_outputs.ready,
             guards: around.guards,
+            line_open: self.line_open(around) && around.guards.line,
+            line_fell: around.line_fell && around.guards.line,
+            line_stays: self.inputs.alive && !self.line_dead(),
+            tcms_eb: around.tcms.emergency_brake_applied(),
+            runs_farther: match around.guards.wheel {
+                true => self.locator.runs_farther(),
+                false => 0.0,
+            },
             tcms_speed: around.tcms.speed(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
@@ -153,7 +179,8 @@ impl Functions {
         let marker = self
             .debounce
             .take(now, self.inputs.marker, works, config, log);
-        self.locator.hold_markers(around.guards.marker);
+        let tested = self.inputs.test_speed.contains(&true);
+        self.locator.hold_markers(around.guards.marker, tested);
         self.locator.step(now, movement, marker, log);
         self.compare_tachometers(now, marker, &around.setup.config.tacho, log);
     }
@@ -270,12 +297,17 @@ impl Functions {
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
         let unproved = !around.guards.departure;
-        lacking.set(Refusals::DOORS_OPEN, !unproved && !self.atp.doors_closed());
+        let open = !self.atp.doors_closed() || around.tcms.reads_doors_open();
+        lacking.set(Refusals::DOORS_OPEN, !unproved && open);
         lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
-        lacking.set(Refusals::STATION_INVALID, !self.twc.valid());
+        let invalid = !self.twc.valid() || self.elsewhere.value();
+        lacking.set(Refusals::STATION_INVALID, invalid);
         lacking.set(Refusals::NO_CODE, !code);
-        lacking.set(Refusals::CAB_INACTIVE, !lines.contains(TrainLines::HCR));
+        lacking.set(
+            Refusals::CAB_INACTIVE,
+            !lines.contains(TrainLines::HCR) || around.tcms.reads_cab_unmanned() || self.turned(),
+        );
         lacking.set(Refusals::MODE_SWITCH, !Atp::switch_automatic(switch));
         lacking.set(
             Refusals::CONTROLLER_NOT_NEUTRAL,
@@ -311,12 +343,25 @@ impl Functions {
             arrived: self.ato.arrived(),
             gave_up: self.ato.gave_up(),
             line_open: line_open && !self.atp.brake().applied(),
+            forced: self.atp.forced(),
         }
+    }
+
+    /// The reverser is not forward, where ATO drives. ATP itself refuses a jog with it at neutral, and tells that.
+    fn turned(&self) -> bool {
+        let lines = self.inputs.lines;
+        let forward = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);
+        let jogs = self.ato_outputs.jogs_backward.is_some();
+        !forward && (!jogs || lines.contains(TrainLines::BACKWARD))
+    }
+
+    /// The brake line is read back as open.
+    fn line_dead(&self) -> bool {
+        self.inputs.alive && !self.inputs.lines.contains(TrainLines::EB_LOOP)
     }
 
     /// The emergency brake line is open, as it is read back or TCMS tells it.
     fn line_open(&self, around: &Surroundings<'_>) -> bool {
-        let read = self.inputs.alive && !self.inputs.lines.contains(TrainLines::EB_LOOP);
-        read || around.tcms.emergency_brake_applied() == Some(true)
+        self.line_dead() || around.tcms.emergency_brake_applied() == Some(true)
     }
 }

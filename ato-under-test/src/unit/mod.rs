@@ -318,6 +318,7 @@ impl Unit {
             tra: &self.tra,
             faults: &self.faults,
             guards: self.guards,
+            line_fell: self.relay_watch.line_fell(),
             ever_heard: self.image.ever_heard(),
             barred: false,
         };

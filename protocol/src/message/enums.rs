@@ -241,6 +241,8 @@ wire_enum! {
         TestMode = 10 "test_mode",
         /// Moving forward while ATO jogs backward.
         Jog = 11 "jog",
+        /// Others opened the brake line of a train that moves.
+        LineOpened = 12 "line_opened",
     }
 }
 
@@ -263,12 +265,14 @@ wire_enum! {
         NotPermitted = 6 "not_permitted",
         /// Armed for maintenance.
         TestMode = 7 "test_mode",
-        /// Absolute stop, or moving under a code that says stop.
+        /// Absolute stop, moving under a code that says stop, or backward under any code.
         StopCode = 8 "stop_code",
         /// A door is open on a side that is not enabled.
         DoorOpen = 9 "door_open",
         /// Faster than a jog may be.
         Jog = 10 "jog",
+        /// The emergency brake is asked for and does not act.
+        EbFailed = 11 "eb_failed",
     }
 }
 
@@ -347,7 +351,7 @@ wire_bits! {
     Refusals {
         /// The train is not at standstill.
         NOT_STANDSTILL = 0,
-        /// Doors are not proved closed.
+        /// Doors are not proved closed, or TCMS reads them open.
         DOORS_OPEN = 1,
         /// No TWC communication.
         NO_TWC = 2,
@@ -355,7 +359,7 @@ wire_bits! {
         STATION_INVALID = 3,
         /// No valid speed code.
         NO_CODE = 4,
-        /// The cab is not active (no HCR).
+        /// The cab is not active (no HCR, or TCMS reads none), or its reverser is not forward.
         CAB_INACTIVE = 5,
         /// The mode switch is not at automatic or driverless.
         MODE_SWITCH = 6,

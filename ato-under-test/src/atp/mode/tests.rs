@@ -14,6 +14,7 @@ const GOOD: ModeInputs = ModeInputs {
     arrived: false,
     gave_up: false,
     line_open: false,
+    forced: false,
 };
 
 #[test]
@@ -29,8 +30,12 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
     {
         let mut sequence = ModeSequence::new();
         let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
         let mut after = |inputs| {
-            (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+            for _ in 0..3 {
+                now += Duration::from_ms(600);
+                sequence.step(now, inputs, &mut log);
+            }
             (sequence.mode(), sequence.stops())
         };
         let given = ModeInputs {
@@ -90,8 +95,12 @@ fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
         switch: ModeSwitch::Driverless,
         ..GOOD
     };
+    let mut now = Instant::ZERO;
     let mut after = |inputs| {
-        (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+        for _ in 0..3 {
+            now += Duration::from_ms(600);
+            sequence.step(now, inputs, &mut log);
+        }
         (sequence.mode(), sequence.refusals())
     };
     let none = Refusals::empty();
@@ -170,8 +179,12 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
     };
     let mut sequence = ModeSequence::new();
     let mut log = EventLog::default();
+    let mut now = Instant::ZERO;
     let mut after = |inputs| {
-        (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+        for _ in 0..3 {
+            now += Duration::from_ms(600);
+            sequence.step(now, inputs, &mut log);
+        }
         sequence.mode()
     };
     for off in [starting, cab_lost] {
@@ -204,8 +217,12 @@ fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
     for held in [Refusals::EB_APPLIED, Refusals::ATO_NOT_READY] {
         let mut sequence = ModeSequence::new();
         let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
         let mut after = |inputs| {
-            (0..3).for_each(|_| sequence.step(Instant::ZERO, inputs, &mut log));
+            for _ in 0..3 {
+                now += Duration::from_ms(600);
+                sequence.step(now, inputs, &mut log);
+            }
             sequence.mode()
         };
         let lacking = |inputs| ModeInputs {
@@ -237,6 +254,65 @@ fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
         });
         assert_eq!(after(given), Mode::AutomaticRun, "{held:?}: given after");
     }
+}
+
+/// A switch that passes driverless, and a door that was forced at a stop, send no train off by the departure that is given.
+#[test]
+fn a_position_that_is_passed_and_a_forced_door_begin_no_run() {
+    let driverless = ModeInputs {
+        switch: ModeSwitch::Driverless,
+        ..GOOD
+    };
+    let withheld = ModeInputs {
+        heard: Some(false),
+        departure: false,
+        ..driverless
+    };
+    let (mut sequence, mut log) = (ModeSequence::new(), EventLog::default());
+    let mut now = Instant::ZERO;
+    let mut after = |ms: u64, inputs| {
+        for _ in 0..ms / 50 {
+            now += Duration::from_ms(50);
+            sequence.step(now, inputs, &mut log);
+        }
+        sequence.mode()
+    };
+    let emergency = ModeInputs {
+        switch: ModeSwitch::Emergency,
+        ..GOOD
+    };
+    after(
+        2_000,
+        ModeInputs {
+            heard: Some(false),
+            departure: false,
+            ..emergency
+        },
+    );
+    after(2_000, emergency);
+    assert_eq!(after(400, driverless), Mode::Automatic, "passed");
+    assert_eq!(after(2_000, GOOD), Mode::Automatic);
+    assert_eq!(after(1_200, driverless), Mode::AutomaticRun, "chosen");
+    after(
+        200,
+        ModeInputs {
+            arrived: true,
+            ..withheld
+        },
+    );
+    after(200, driverless);
+    after(
+        100,
+        ModeInputs {
+            arrived: true,
+            forced: true,
+            lacking: Refusals::DOORS_OPEN,
+            ..driverless
+        },
+    );
+    assert_eq!(after(2_000, driverless), Mode::Automatic, "forced");
+    after(200, withheld);
+    assert_eq!(after(200, driverless), Mode::AutomaticRun, "given anew");
 }
 
 #[test]

@@ -265,6 +265,7 @@ wordings! {
         eb_self_test: "self-test failed", "자체시험 실패";
         eb_internal: "broken invariant", "내부 논리 오류";
         eb_jog: "moved forward while jogging backward", "후진 인칭 중 전진";
+        eb_line_opened: "brake line opened by others", "외부 비상제동 인통선 차단";
         fsb_twc: "TWC lost", "TWC 두절";
         fsb_tcms: "TCMS lost", "TCMS 두절";
         fsb_ato: "ATO failed", "ATO 고장";
@@ -272,6 +273,7 @@ wordings! {
         fsb_stop_code: "stop code", "정지신호";
         fsb_door: "door open, not enabled", "허용되지 않은 출입문 열림";
         fsb_jog: "jogging too fast", "인칭 과속";
+        fsb_eb_failed: "emergency brake does not act", "비상제동 불발";
         test_mode: "test mode", "정비 시험 모드";
         differs: "differs", "불일치";
         same: "same", "일치";

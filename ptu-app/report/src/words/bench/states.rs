@@ -109,6 +109,7 @@ impl Bench {
                 self.eb_internal,
                 self.test_mode,
                 self.eb_jog,
+                self.eb_line_opened,
             ],
             Signal::FsbCause => vec![
                 self.none,
@@ -122,6 +123,7 @@ impl Bench {
                 self.fsb_stop_code,
                 self.fsb_door,
                 self.fsb_jog,
+                self.fsb_eb_failed,
             ],
             Signal::IdentitySerial
             | Signal::IdentitySoftware

@@ -1,0 +1,115 @@
+//! What follows a brake: power only after the lever was at neutral, and the service brake where the emergency brake does
+//! not act.
+
+use protocol::event::Event;
+use protocol::{Duration, Instant};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, OnDelay};
+
+/// Time in which the train's brake line follows the relay, and TCMS tells of it [default].
+const FOLLOWS: Duration = Duration::from_ms(1_000);
+
+/// Time in which the line alone follows the relay when it is released [default].
+const LINE_FOLLOWS: Duration = Duration::from_ms(300);
+
+/// Power that was asked for when something held the train is not given when that has gone: a person has to ask again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Interlock {
+    open: OnDelay,
+    held: bool,
+    cuts: bool,
+}
+
+impl Interlock {
+    /// One scan: whether something holds the train, or its brake line is open, and the notch of the controller. A line that
+    /// has still to follow the relay holds nobody.
+    pub fn step(&mut self, now: Instant, held: bool, open: bool, controller: i8) {
+        let stays_open = self.open.update(now, open && !held, LINE_FOLLOWS);
+        self.held = held || open;
+        self.cuts = controller > 0 && (self.cuts || held || stays_open);
+    }
+
+    /// Powering is cut.
+    pub fn cuts(&self) -> bool {
+        self.held || self.cuts
+    }
+}
+
+/// Whether the emergency brake acts when it is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct BrakePath {
+    stays: OnDelay,
+    denied: OnDelay,
+    failed: Edge,
+}
+
+impl BrakePath {
+    /// One scan: the brake is asked for, its line is energised all the same, and what TCMS tells of it.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        asked: bool,
+        line_stays: bool,
+        tcms: Option<bool>,
+        log: &mut EventLog,
+    ) {
+        let stays = self.stays.update(now, asked && line_stays, FOLLOWS);
+        let denied = asked && tcms == Some(false);
+        let denied = self.denied.update(now, denied, FOLLOWS);
+        let failed = asked && (stays || denied || self.failed.value());
+        if self.failed.rises(failed) {
+            log.push(now, Event::EbIneffective, if stays { 1 } else { 2 });
+        }
+    }
+
+    /// It does not: the next brake has to.
+    pub fn failed(&self) -> bool {
+        self.failed.value()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_comes_back_only_after_neutral() {
+        let mut interlock = Interlock::default();
+        for (second, (held, open, controller, cuts)) in (0..).zip([
+            (false, false, 4, false),
+            (true, false, 4, true),
+            (false, false, 4, true),
+            (false, false, 1, true),
+            (false, false, 0, false),
+            (false, true, 4, true),
+            (false, false, 4, false),
+            (false, true, 4, true),
+            (false, true, 4, true),
+            (false, false, 4, true),
+            (true, false, 0, true),
+            (false, false, 0, false),
+        ]) {
+            interlock.step(Instant::from_ms(second * 1_000), held, open, controller);
+            assert_eq!(interlock.cuts(), cuts, "{second} s");
+        }
+    }
+
+    #[test]
+    fn a_brake_that_does_not_act_is_told_once_and_until_it_is_released() {
+        let (mut path, mut log) = (BrakePath::default(), EventLog::default());
+        let mut at = |ms: u64, asked, stays, tcms| {
+            path.step(Instant::from_ms(ms), asked, stays, tcms, &mut log);
+            path.failed()
+        };
+        assert!(!at(0, true, true, Some(true)));
+        assert!(!at(900, true, true, Some(true)));
+        assert!(at(1_000, true, true, Some(true)));
+        assert!(at(1_100, true, false, Some(true)));
+        assert!(!at(1_200, false, false, Some(false)));
+        assert!(!at(1_300, true, false, Some(false)));
+        assert!(at(2_300, true, false, Some(false)));
+        assert!(!at(2_400, false, false, None));
+        assert_eq!(log.next_index(), 2);
+    }
+}
