@@ -133,7 +133,7 @@ events! {
     SpeedVanished = 233 "speed_vanished" Critical "io_board" "Speed fell faster than a train can slow: no tachometer is believed" "속도 신호 소실: 속도센서 전체 불신" "last speed that is believed, cm/s";
     NoPulses = 234 "no_pulses" Major "-" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
     SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, or is much faster than both tachometers" "TCMS 속도와 속도센서 불일치" "speed that TCMS tells, cm/s";
-    EbIneffective = 236 "eb_ineffective" Critical "-" "Emergency brake asked for, and it does not act: full service brake" "비상제동 불발: 상용전제동 체결" "1 = the brake line stays energised, 2 = TCMS tells of no brake";
+    EbIneffective = 236 "eb_ineffective" Critical "-" "Emergency brake asked for, and it does not act: full service brake" "비상제동 불발: 상용전제동 체결" "1 = only TCMS tells it";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     DoorNotEnabled = 242 "door_not_enabled" Critical "io_board" "Door open on a side that is not enabled" "허용되지 않은 쪽 출입문 열림" "sides";
@@ -157,7 +157,7 @@ events! {
     JogOverspeed = 312 "jog_overspeed" Major "-" "Faster than a jog may be: full service brake" "인칭 과속: 상용전제동" "speed, cm/s";
     JogWrongWay = 313 "jog_wrong_way" Critical "-" "Moving forward while ATO jogs backward: emergency brake" "인칭 방향 불일치: 비상제동" "distance, cm";
     JogRefused = 314 "jog_refused" Minor "-" "ATP does not let ATO jog backward: powering cut" "후진 인칭 불허" "overrun as ATP knows it, cm; 0 = none, or not known";
-    MarkersDisplaced = 315 "markers_displaced" Minor "-" "Ways between markers contradict each other: no doors enabled" "마커 간 거리 상호 모순: 출입문 불허" "share of one way over another's, 0.01 %";
+    MarkersDisplaced = 315 "markers_displaced" Minor "-" "Ways between markers contradict each other: no doors enabled" "마커 간 거리 상호 모순: 출입문 불허" "difference, 0.01 %";
     TwcLost = 400 "twc_lost" Minor "twc_cpu" "TWC communication lost" "TWC 통신 두절" "";
     TwcRestored = 401 "twc_restored" Info "-" "TWC communication restored" "TWC 통신 복귀" "";
     TwcStationInvalid = 402 "twc_station_invalid" Minor "twc_cpu" "Station data do not match the track database" "역 정보 불일치" "station number";

@@ -59,7 +59,7 @@ impl BrakePath {
         let denied = self.denied.update(now, denied, FOLLOWS);
         let failed = asked && (stays || denied || self.failed.value());
         if self.failed.rises(failed) {
-            log.push(now, Event::EbIneffective, if stays { 1 } else { 2 });
+            log.push(now, Event::EbIneffective, i32::from(!stays));
         }
     }
 

@@ -247,7 +247,9 @@ impl Atp {
             compares_cause: guards.release,
         };
         self.brake.step(now, brake_inputs, log);
-        let asked = self.brake.applied() && self.brake.cause() != EbCause::NotReleased;
+        // A standing unit asks for the brake from its power-up on, before others tell anything of the line.
+        let asked =
+            self.brake.applied() && (self.brake.cause() != EbCause::NotReleased || !standstill);
         self.path
             .step(now, asked, context.line_stays, context.tcms_eb, log);
         let held = self.brake.applied() || context.line_fell || !self.doors_closed;

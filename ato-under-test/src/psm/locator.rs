@@ -7,6 +7,9 @@
 //! rather than beyond the platform. So it does after a marker that came too early to be believed. Doors are enabled
 //! only where the last marker and the way from the one before agree on the stop point.
 
+mod agreement;
+mod stop_place;
+
 use protocol::Instant;
 use protocol::config::{MarkerConfig, UnitConfig};
 use protocol::event::Event;
@@ -154,35 +157,6 @@ impl Locator {
         }
     }
 
-    /// The section at whose stop point the train stands, as far as that is known.
-    fn anchor(&self) -> Option<&Section> {
-        let here = self.section.as_ref().filter(|_| self.placed)?;
-        let run_m = self.position_m() - here.start_m;
-        let begins = self.fix.marker == 0 && libm::fabs(run_m) <= self.config.start_window_m;
-        match self.aligned() {
-            true => Some(here),
-            false => self.came_from.as_ref().filter(|_| begins),
-        }
-    }
-
-    /// The train stands where a section ends, and these data are of one that does not begin there.
-    pub fn contradicts(&self, section: &Section, line: &Line) -> bool {
-        let next = self
-            .anchor()
-            .and_then(|here| Some((here, line.after(here)?)));
-        next.is_some_and(|(here, next)| {
-            section.section != here.section && section.section != next.section
-        })
-    }
-
-    /// Whether the place counts: not in a train that is driven by hand at yard or emergency, or has no cab.
-    pub fn keep_place(&mut self, keeps: bool) {
-        self.placed = keeps && (self.placed || !self.aligned());
-        if !keeps {
-            self.came_from = None;
-        }
-    }
-
     pub fn step(
         &mut self,
         now: Instant,
@@ -287,89 +261,6 @@ impl Locator {
         if marker == MARKERS {
             self.compare_ways(now, log);
         }
-    }
-
-    /// Notes the way from the marker before, or from the section's begin, which is known less well.
-    fn note_way(&mut self, place_m: f64, end: &MarkerDetection) {
-        let scatter_m = 3.0 * core::f64::consts::SQRT_2 * self.config.scatter_m;
-        let (from, off_m) = match self.span_from(end, self.fix.marker != 0) {
-            Some((from, _)) => (from, scatter_m),
-            None => (self.fix, self.config.start_window_m),
-        };
-        if self.slid_m == 0.0 {
-            let wheel_m = end.distance_m - from.distance_m;
-            self.ways.note(place_m - from.place_m, wheel_m, off_m);
-        }
-    }
-
-    /// Wheels of any size make the same share of each way. Where they do not, markers are displaced: no doors, and nothing
-    /// is learned of the wheels.
-    fn compare_ways(&mut self, now: Instant, log: &mut EventLog) {
-        let holds = self.holds_markers && self.holds_ways;
-        let Some(share) = self.ways.contradiction().filter(|_| holds) else {
-            return;
-        };
-        self.contradicted = true;
-        self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
-        log.push(
-            now,
-            Event::MarkersDisplaced,
-            libm::round(share * 1e4) as i32,
-        );
-    }
-
-    /// Holds a marker that is believed against the way from the marker before. Both may be displaced, and then the stop
-    /// point is elsewhere.
-    fn hold_against_the_way(
-        &mut self,
-        now: Instant,
-        place_m: f64,
-        detection: &MarkerDetection,
-        log: &mut EventLog,
-    ) {
-        let wheels = self.wheels();
-        let run_m = wheels.run_m(detection.distance_m - self.fix.distance_m);
-        let by_fix_m = self.fix.place_m + run_m - place_m;
-        let agrees = libm::fabs(by_fix_m) <= window_m(&self.fix, run_m, &wheels, &self.config);
-        self.contradicted = self.holds_markers && !agrees && self.fix.marker != 0;
-        self.by_way_m = 0.0;
-        // The way on sliding wheels contradicts nothing.
-        let start = self.span_from(detection, agrees);
-        let rolled = |slid_m| self.holds_markers && detection.slid_m == slid_m;
-        let Some((start, _)) = start.filter(|(_, slid_m)| rolled(*slid_m)) else {
-            return;
-        };
-        let run_m = wheels.scale * (detection.distance_m - start.distance_m);
-        let error_m = start.place_m + run_m - place_m;
-        // 2σ: doors that stay closed cost less than doors that open elsewhere.
-        let wrong_m = self.wheel.uncertainty() * libm::fabs(run_m);
-        self.by_way_m = libm::copysign((libm::fabs(error_m) - wrong_m).max(0.0), error_m);
-        if detection.marker == MARKERS && libm::fabs(self.by_way_m) > self.aligned_m {
-            let error_cm = libm::round(error_m * 100.0) as i32;
-            log.push(now, Event::MarkerPosition, error_cm);
-        }
-    }
-
-    /// Whether markers are held against the way from the one before.
-    pub fn hold_markers(&mut self, holds: bool, tested: bool) {
-        // Test markers are pulsed by a tester, whose requests take their time.
-        self.holds_ways = !tested;
-        self.holds_markers = holds;
-    }
-
-    /// Where a span that ends at a believed marker begins, and the distance slid from the fix until there, m: at the
-    /// marker of the fix, or at the one that waits for a second one to agree with.
-    fn span_from(&self, end: &MarkerDetection, at_fix: bool) -> Option<(PositionFix, f64)> {
-        if at_fix {
-            return (self.fix.marker != 0).then_some((self.fix, 0.0));
-        }
-        let first = self.pending.filter(|first| first.marker < end.marker)?;
-        let start = PositionFix {
-            place_m: place_m(self.section.as_ref()?, first.marker)?,
-            distance_m: first.distance_m,
-            marker: first.marker,
-        };
-        Some((start, first.slid_m))
     }
 
     fn report_wheel(&mut self, now: Instant, log: &mut EventLog) {

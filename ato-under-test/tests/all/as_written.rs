@@ -559,6 +559,10 @@ impl Player {
                 {
                     let released = output.outputs.contains(Outputs::EB_RELAY);
                     input.lines.set(TrainLines::EB_LOOP, released);
+                    if let Some(frame) = &mut self.tcms {
+                        let bits = &mut frame.bits;
+                        bits.set(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED, !released);
+                    }
                 }
                 self.heard.push((self.now, received.message));
             }

@@ -157,10 +157,10 @@ fn a_dead_guard_releases_with_the_doors_open() {
     let mut bench = Bench::new(&[fault(Place::ReleaseGuard, Effect::Dead)]);
     bench.code("25");
     bench.run(0.6);
-    bench.speed_kmh(20.0);
+    bench.speed_kmh(5.0);
     bench.input.lines.remove(TrainLines::DOORS_CLOSED);
     assert!(bench.until(1.0, Bench::braking).is_some());
-    bench.speed_kmh(0.0);
+    bench.speeds = [0.0; 2];
     bench.run(2.0);
     bench.acknowledge();
     assert!(!bench.braking());

@@ -189,18 +189,21 @@ impl LineWatch {
         } else if self.settled(now) || self.stalled_at.is_some() {
             self.silent |= now.since(self.heard.0) > SILENT;
         }
-        let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
-        let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
-        let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
-        let counts = &mut self.counts;
-        if self.settles_until.is_some_and(|until| now >= until) {
-            // Modems may catch up with what they may have damaged: what was counted stays counted.
-            counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
-            counts.taken = self.base.taken + sum(taken);
-        } else {
-            if self.stalled_at.is_some() {
+        let settled = self.settled(now);
+        if settled || self.stalled_at.is_some() {
+            let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
+            let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
+            let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
+            let counts = &mut self.counts;
+            if settled {
+                // Modems may catch up with what they may have damaged: what was counted stays counted.
+                counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
+                counts.taken = self.base.taken + sum(taken);
+            } else {
                 counts.after_stall += from_unit;
             }
+        }
+        if !settled {
             self.before = *counters;
             self.base = self.counts;
         }

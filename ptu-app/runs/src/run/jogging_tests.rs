@@ -119,9 +119,13 @@ impl Stop {
     /// The bench turns the wheels by so many metres.
     fn travel(&mut self, by_m: f64, kmh: f64) {
         self.apply(Stimulus::TrainDriven { on: false });
-        self.apply(Stimulus::ModeSwitch(ModeSwitch::Manual));
-        self.run(500);
         let backward = by_m < 0.0;
+        // Backward no code lets a train run.
+        self.apply(Stimulus::ModeSwitch(match backward {
+            true => ModeSwitch::Yard,
+            false => ModeSwitch::Manual,
+        }));
+        self.run(500);
         if backward != self.backward {
             self.backward = backward;
             let position = if backward { -1 } else { 1 };

@@ -49,7 +49,13 @@ fn a_step_in_which_the_tester_stood_still_is_repeated_and_no_fault_of_the_unit()
     let unit = Unit::on_pty(&[]);
     let place = Place::new();
     // Some ten seconds of steps, so that the run is under way still when its first step is known here.
-    let arguments = ["atp/limit_speed", "--report", "report.json"];
+    let arguments = [
+        "atp/limit_speed",
+        "--step",
+        "code*",
+        "--report",
+        "report.json",
+    ];
     let mut run = Running::start(&place, &unit, &arguments);
     run.recorded_steps(1);
     run.stand_still(Duration::from_millis(3000));

@@ -225,6 +225,10 @@ fn every_row_of_the_protection_table_is_run() {
         let [name, .., proved_by, broken_by] = cells[..] else {
             panic!("columns of {row}");
         };
+        // Once by function, with its classes, beside its own row.
+        if by_function().filter(|line| line.contains(name)).count() != 1 {
+            wrong.push(format!("{name}: not once by function"));
+        }
         let (procedure, words) = proved_by.split_once(": ").expect("procedure and step");
         if !bench.has_step(procedure.trim_matches('`'), words) {
             wrong.push(format!("{name}: no step {proved_by}"));
@@ -245,6 +249,17 @@ fn every_row_of_the_protection_table_is_run() {
     let unnamed = unsafe_modes.filter(|mode| !broken.contains(&mode.id.as_str()));
     wrong.extend(unnamed.map(|mode| format!("{}: in no row", mode.id)));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Rows of the table of hazards by function.
+fn by_function() -> impl Iterator<Item = &'static str> {
+    let (_, table) = PROTECTION
+        .split_once("| Function | Row |")
+        .expect("hazards by function");
+    table
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
 }
 
 #[test]

@@ -209,7 +209,7 @@ fn a_protection_that_is_taken_away_shows() {
     for (mode, invariants) in draw::drawn(
         [
             ("fsb_output.dead", &[I2][..]),
-            ("eb_relay.welded", &[I3, I8]),
+            ("eb_relay.welded", &[I3]),
             ("io_board.door_enable_stuck", &[I4]),
             ("atp_receiver.unselective", &[I2]),
             ("atp_cpu.wheel_guard_dead", &[I2]),
