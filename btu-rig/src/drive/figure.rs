@@ -12,7 +12,7 @@ pub struct Figure {
     /// Unit for people: `%` of a share.
     pub unit: &'static str,
     pub(super) decimals: usize,
-    /// Its value.
+    /// Reads the figure's value, in the key's unit, from a run's figures.
     pub of: fn(&Metrics) -> f64,
 }
 

@@ -286,7 +286,7 @@ pub enum Finding {
         step: String,
         /// Which repetition of it, from 1.
         turn: u32,
-        /// Of so many.
+        /// Number of repetitions that were asked for.
         turns: u32,
         /// What it found.
         findings: Findings,

@@ -129,6 +129,22 @@ pub struct UnitEvent {
 }
 
 impl UnitEvent {
+    /// An entry of the unit's log with this event, made at a stand in manual operation.
+    pub fn at_stand(index: u32, event: Event, at_ms: u32) -> Self {
+        Self {
+            source: EventSource::Unit,
+            index,
+            code: event.definition().code,
+            at_ms,
+            parameter: 0,
+            speed: Speed::ZERO,
+            limit: Speed::ZERO,
+            position_m: 0.0,
+            mode: Mode::Manual,
+            eb_cause: EbCause::None,
+        }
+    }
+
     /// An entry of the unit's log.
     pub fn of_log(entry: &LogEntry) -> Self {
         Self {

@@ -27,10 +27,10 @@ pub struct Measurement {
     pub verdict: Verdict,
 }
 
-/// What a result of a step is.
+/// How a result counts: a step has one that counts, and may have others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultKind {
-    /// It stands.
+    /// The result that counts for the step.
     Step,
     /// The step was not tested because the tester's computer stood still, and is begun again: another result follows.
     Attempt,
@@ -43,11 +43,11 @@ pub enum ResultKind {
 pub struct StepResult {
     /// Place in the procedure.
     pub index: usize,
-    /// Its name.
+    /// Name that the script gives the step.
     pub name: String,
     /// Which repetition, from 1.
     pub turn: u32,
-    /// Of so many.
+    /// Number of repetitions that were asked for.
     pub turns: u32,
     /// Which result of it.
     pub kind: ResultKind,
@@ -162,18 +162,18 @@ pub enum RunEvent {
     StepStarted {
         /// Place in the procedure.
         index: usize,
-        /// Its name.
+        /// Name that the script gives the step.
         name: String,
         /// Which repetition, from 1.
         turn: u32,
-        /// Of so many.
+        /// Number of repetitions that were asked for.
         turns: u32,
         /// Bench time.
         at: Instant,
     },
     /// The run is paused and the next step waits.
     Paused {
-        /// Its name.
+        /// Name of the step that waits.
         next: String,
         /// Bench time.
         at: Instant,

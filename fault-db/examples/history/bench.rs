@@ -103,20 +103,11 @@ pub fn measured(
         format!("{} was {value} {}", check.name, check.unit)
     };
     StepRecord {
-        index,
-        procedure: check.procedure.to_owned(),
-        kind: fault_db::StepKind::Step,
-        place: Some(index),
-        turn: 1,
-        turns: 1,
-        name: check.step.to_owned(),
         verdict,
         started_bench_us: i64::from(index) * 9_000_000,
         bench_time_us: 4_000_000 + chance.below(5_000_000) as i64,
-        findings: None,
         message,
         script_line: Some(12 + index),
-        limit_source: None,
         measurements: vec![MeasurementRecord {
             name: check.name.to_owned(),
             value: Some(value),
@@ -126,6 +117,7 @@ pub fn measured(
             limit_source: None,
             verdict,
         }],
+        ..StepRecord::passed(index, check.procedure, check.step)
     }
 }
 

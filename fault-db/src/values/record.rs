@@ -128,11 +128,11 @@ pub struct StepRecord {
     pub kind: StepKind,
     /// Place of the step in its procedure, from 0; none outside steps.
     pub place: Option<u32>,
-    /// Its name.
+    /// Name that the procedure gives the step, or the place outside steps.
     pub name: String,
     /// Which repetition, from 1.
     pub turn: u32,
-    /// Of so many.
+    /// Number of repetitions that were asked for.
     pub turns: u32,
     /// The step's verdict.
     pub verdict: Verdict,
@@ -152,10 +152,33 @@ pub struct StepRecord {
     pub measurements: Vec<MeasurementRecord>,
 }
 
+impl StepRecord {
+    /// A step that passed at once and measured nothing, at this place of the run and of its procedure.
+    pub fn passed(index: u32, procedure: impl Into<String>, name: impl Into<String>) -> Self {
+        Self {
+            index,
+            procedure: procedure.into(),
+            kind: StepKind::Step,
+            place: Some(index),
+            name: name.into(),
+            turn: 1,
+            turns: 1,
+            verdict: Verdict::Passed,
+            started_bench_us: 0,
+            bench_time_us: 0,
+            message: String::new(),
+            findings: None,
+            script_line: None,
+            limit_source: None,
+            measurements: Vec::new(),
+        }
+    }
+}
+
 /// A measured value with its limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasurementRecord {
-    /// Its name.
+    /// Name within its step, as `eb_reaction`.
     pub name: String,
     /// The value; `None` if nothing could be measured. NaN is stored as NULL.
     pub value: Option<f64>,
@@ -176,7 +199,7 @@ pub struct MeasurementRecord {
 pub struct FaultRecord {
     /// Stable number of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the fault, as `eb_relay_open`.
     pub code_name: String,
     /// Replaceable part it points at, or the caller's word for none. Identifies the fault, with unit and code.
     pub lru: String,

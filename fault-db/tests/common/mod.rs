@@ -126,21 +126,10 @@ pub fn run_record(serial: &str) -> RunRecord {
 
 pub fn step(index: u32) -> StepRecord {
     StepRecord {
-        index,
-        procedure: "atp.overspeed".to_owned(),
-        kind: fault_db::StepKind::Step,
-        place: Some(index),
-        turn: 1,
-        turns: 1,
-        name: format!("step {index}"),
-        verdict: Verdict::Passed,
         started_bench_us: i64::from(index) * 50_000,
         bench_time_us: 50_000,
-        findings: None,
-        message: String::new(),
         script_line: Some(12),
-        limit_source: None,
-        measurements: Vec::new(),
+        ..StepRecord::passed(index, "atp.overspeed", format!("step {index}"))
     }
 }
 

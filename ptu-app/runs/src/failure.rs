@@ -56,7 +56,7 @@ pub enum Trouble {
     },
     /// The history did not become free: what was measured since is kept in a file.
     RestKept {
-        /// Of the history.
+        /// Why the history cannot take it.
         error: Arc<StoreError>,
         /// The file.
         rest: PathBuf,

@@ -91,21 +91,13 @@ pub fn kind_of(step: &StepRecord) -> &'static str {
 /// without a line of a script.
 pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> StepRecord {
     StepRecord {
-        index: 0,
-        procedure: procedure.to_owned(),
         kind: StepKind::Outside,
         place: None,
-        turn: 1,
-        turns: 1,
-        name: entry.place.name().to_owned(),
         verdict: stored(entry.verdict),
         started_bench_us: bench_us,
-        bench_time_us: 0,
         message: entry.finding.to_string(),
         findings: Findings::from(entry.finding.clone()).to_json(),
-        script_line: None,
-        limit_source: None,
-        measurements: Vec::new(),
+        ..StepRecord::passed(0, procedure, entry.place.name())
     }
 }
 

@@ -49,21 +49,8 @@ fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Opt
         verdict: Verdict::Passed,
     };
     let step = StepRecord {
-        index: 0,
-        procedure: "atp/overspeed".into(),
-        kind: fault_db::StepKind::Step,
-        place: Some(0),
-        turn: 1,
-        turns: 1,
-        name: "step".into(),
-        verdict: Verdict::Passed,
-        started_bench_us: 0,
-        bench_time_us: 1,
-        findings: None,
-        message: String::new(),
-        script_line: None,
-        limit_source: None,
         measurements: vec![measured],
+        ..StepRecord::passed(0, "atp/overspeed", "step")
     };
     writer.step(step).expect("kept");
     let id = fault.map(|lru| {

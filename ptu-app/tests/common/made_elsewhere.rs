@@ -1,10 +1,8 @@
 //! Runs that no bench made: what was read of a unit's log, and of its own record of runs.
 
-use btu_rig::procedure::{EventSource, UnitEvent};
+use btu_rig::procedure::UnitEvent;
 use fault_db::{Channel, ChannelKind, Id, Store, TraceData};
-use protocol::Speed;
 use protocol::event::Event;
-use protocol::message::{EbCause, Mode};
 use ptu_runs::clock;
 use ptu_runs::field::{Entry, Source, import};
 use ptu_runs::record::{RecordedRun, pull};
@@ -70,18 +68,7 @@ pub fn read_of_a_unit(store: &Store, seed: u64, is_log: bool, chance: &mut Chanc
 
 fn entry((index, event): (u32, &Event)) -> Entry {
     Entry {
-        event: UnitEvent {
-            source: EventSource::Unit,
-            index,
-            code: event.definition().code,
-            at_ms: 1_000 * index,
-            parameter: 0,
-            speed: Speed::ZERO,
-            limit: Speed::ZERO,
-            position_m: 0.0,
-            mode: Mode::Manual,
-            eb_cause: EbCause::None,
-        },
+        event: UnitEvent::at_stand(index, *event, 1_000 * index),
         at_us: Some(clock::now_us()),
         is_sure: true,
         stored: None,

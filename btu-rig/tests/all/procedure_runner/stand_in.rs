@@ -14,9 +14,9 @@ use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::line::Line;
-use protocol::message::{EbCause, Mode, SelfTest, SelfTestItem};
+use protocol::message::{SelfTest, SelfTestItem};
 use protocol::signal::{Sample, Signal};
-use protocol::{Instant, SCAN, Speed};
+use protocol::{Instant, SCAN};
 
 /// Scans after which a run that does not end is a bug.
 const MOST_SCANS: u32 = 60_000;
@@ -110,15 +110,7 @@ impl World<'_> {
     pub fn log_by(&mut self, source: EventSource, event: Event) {
         self.events.push(UnitEvent {
             source,
-            index: 0,
-            code: event.definition().code,
-            at_ms: 0,
-            parameter: 0,
-            speed: Speed::ZERO,
-            limit: Speed::ZERO,
-            position_m: 0.0,
-            mode: Mode::Manual,
-            eb_cause: EbCause::None,
+            ..UnitEvent::at_stand(0, event, 0)
         });
     }
 }

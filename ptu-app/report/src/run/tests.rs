@@ -111,27 +111,18 @@ fn step(index: u32, failed: bool) -> StepRecord {
     } else {
         Verdict::Passed
     };
+    let long = "of a very long name ".repeat(index as usize % 9);
+    let procedure = format!("atp/part_{}", index / 40);
     StepRecord {
-        procedure: format!("atp/part_{}", index / 40),
-        kind: fault_db::StepKind::Step,
-        place: Some(index),
-        turn: 1,
-        turns: 1,
-        name: format!(
-            "step no {index} {}",
-            "of a very long name ".repeat(index as usize % 9)
-        ),
         verdict,
         started_bench_us: i64::from(index) * 1_000_000,
         bench_time_us: 1_000_000,
-        findings: None,
         message: if failed {
             HOSTILE.repeat(4)
         } else {
             String::new()
         },
         script_line: Some(3),
-        limit_source: None,
         measurements: vec![MeasurementRecord {
             name: "eb_reaction".into(),
             value: Some(if failed { 640.0 } else { 340.0 }),
@@ -141,7 +132,7 @@ fn step(index: u32, failed: bool) -> StepRecord {
             limit_source: Some(LIMIT_SOURCE.into()),
             verdict,
         }],
-        index,
+        ..StepRecord::passed(index, procedure, format!("step no {index} {long}"))
     }
 }
 

@@ -202,14 +202,14 @@ pub fn dates(entries: &[UnitEvent], clock: Option<ClockPair>) -> Vec<Option<i64>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::read::tests::event;
+    use btu_rig::procedure::UnitEvent;
 
     const NOW_US: i64 = 1_000_000_000_000;
 
     fn dated(entries: &[(Event, u32)], uptime_ms: u32) -> Vec<Option<i64>> {
         let entries: Vec<_> = (0..)
             .zip(entries)
-            .map(|(index, (code, at_ms))| event(index, *code, *at_ms))
+            .map(|(index, (code, at_ms))| UnitEvent::at_stand(index, *code, *at_ms))
             .collect();
         let clock = ClockPair {
             uptime_ms,
@@ -337,6 +337,9 @@ mod tests {
         let overwritten = [(Event::TachoDead1, 900_000), (Event::TwcLost, 6_000)];
         assert_eq!(dated(&overwritten, 7_000)[0], None);
         assert_eq!(dated(&[(Event::TwcLost, 900_000)], 7_000), [None]);
-        assert_eq!(dates(&[event(0, Event::TwcLost, 1)], None), [None]);
+        assert_eq!(
+            dates(&[UnitEvent::at_stand(0, Event::TwcLost, 1)], None),
+            [None]
+        );
     }
 }

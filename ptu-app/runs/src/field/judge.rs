@@ -183,14 +183,14 @@ fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::read::tests::event;
+    use btu_rig::procedure::UnitEvent;
 
     /// Entries half a second apart from the first on, dated by their own time; names of the faults.
     fn faults(events: &[Event], tested: &[(i64, i64)]) -> (Vec<u32>, ExcludedEntries) {
         let entries: Vec<_> = (0..)
             .zip(events)
             .map(|(index, code)| Entry {
-                event: event(index, *code, index * 500),
+                event: UnitEvent::at_stand(index, *code, index * 500),
                 at_us: Some(i64::from(index) * 500_000),
                 is_sure: true,
                 stored: None,
@@ -206,7 +206,7 @@ mod tests {
         for (mode, faults) in [(Mode::Manual, 0), (Mode::Yard, 0), (Mode::Automatic, 1)] {
             let event = UnitEvent {
                 mode,
-                ..event(0, Event::TwcLost, 5_000)
+                ..UnitEvent::at_stand(0, Event::TwcLost, 5_000)
             };
             let entry = Entry {
                 event,
@@ -289,14 +289,14 @@ mod tests {
         let refused = |channel: Channel, at_ms: u32| Entry {
             event: UnitEvent {
                 parameter: i32::from(channel.code()),
-                ..event(0, Event::FramesRejected, at_ms)
+                ..UnitEvent::at_stand(0, Event::FramesRejected, at_ms)
             },
             at_us: None,
             is_sure: true,
             stored: None,
         };
         let lost = |at_ms| Entry {
-            event: event(0, Event::TwcLost, at_ms),
+            event: UnitEvent::at_stand(0, Event::TwcLost, at_ms),
             at_us: None,
             is_sure: true,
             stored: None,
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn only_entries_that_are_surely_dated_can_be_too_old() {
         let entry = |at_us, is_sure| Entry {
-            event: event(0, Event::TachoDead1, 0),
+            event: UnitEvent::at_stand(0, Event::TachoDead1, 0),
             at_us,
             is_sure,
             stored: None,

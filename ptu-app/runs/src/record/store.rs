@@ -80,21 +80,11 @@ pub fn pull_reading(store: &Store, reading: &UnitReading) -> Result<Pulled, Fail
 fn step(index: u32, run: &RecordedRun) -> StepRecord {
     let rows = run.trace.rows() as i64;
     StepRecord {
-        index,
-        procedure: "record".into(),
-        kind: fault_db::StepKind::Step,
-        place: Some(index),
-        turn: 1,
-        turns: 1,
-        name: run.name(),
         verdict: Verdict::Skipped,
         started_bench_us: i64::from(run.at_ms) * 1000,
         bench_time_us: rows * run.trace.period_us,
-        findings: None,
         message: format!("trace {}: {}", run.id.short(), run.summary()),
-        script_line: None,
-        limit_source: None,
-        measurements: Vec::new(),
+        ..StepRecord::passed(index, "record", run.name())
     }
 }
 

@@ -267,22 +267,13 @@ fn write(
     let mut trace = again.trace.clone();
     trace.t0_us = clock::now_us() - bench_time_us(&trace);
     let began_us = again.recorded.began.since(Instant::ZERO).as_us() as i64;
+    let name = format!("replay of trace {}", original.id.short());
     writer.step(StepRecord {
-        index: 0,
-        procedure: original.procedure.clone(),
-        kind: fault_db::StepKind::Step,
-        place: Some(0),
-        turn: 1,
-        turns: 1,
-        name: format!("replay of trace {}", original.id.short()),
         verdict,
         started_bench_us: began_us,
         bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
         message: likeness.words().to_owned(),
-        findings: None,
-        script_line: None,
-        limit_source: None,
-        measurements: Vec::new(),
+        ..StepRecord::passed(0, &original.procedure, name)
     })?;
     let id = writer.trace(&[], &trace)?;
     let recording = made.recording(&original.procedure, &again.recorded);

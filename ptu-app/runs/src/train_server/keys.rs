@@ -4,7 +4,7 @@
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{CutOut, DoorState, Stimulus, TrainSwitch};
 
-/// What a key does.
+/// What the driver operates with a key's value.
 #[derive(Clone, Copy)]
 enum Key {
     /// Cuts the equipment of a car out, or in again.
@@ -54,7 +54,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// What the key of this name does with a value; `None` = there is no such key.
 ///
 /// # Errors
-/// What the key takes.
+/// The values that the key takes, when this is none of them.
 pub fn stimulus(name: &str, value: Option<&str>) -> Option<Result<Stimulus, &'static str>> {
     let (_, key) = KEYS.iter().find(|(known, _)| *known == name)?;
     let value = value.unwrap_or_default();

@@ -1,33 +1,15 @@
 //! Reading the log of embedded units, and of links that fail while it is read.
 
-use btu_rig::procedure::EventSource;
 use btu_rig::rig::LinkFailure;
-use protocol::Speed;
 use protocol::event::Event;
 use protocol::link::{End, Link};
-use protocol::message::{EbCause, IoOutput, LogEnd, LogEntry, Message, Mode, Status};
+use protocol::message::{IoOutput, LogEnd, LogEntry, Message, Status};
 
 use super::*;
 use crate::link::Delayed;
 use crate::run::Session;
 use crate::run::bench_setup::{SWITCHED_OFF, SimUnit};
 use crate::test_support::setup;
-
-/// An entry made standing.
-pub fn event(index: u32, event: Event, at_ms: u32) -> UnitEvent {
-    UnitEvent {
-        source: EventSource::Unit,
-        index,
-        code: event.definition().code,
-        at_ms,
-        parameter: 0,
-        speed: Speed::default(),
-        limit: Speed::default(),
-        position_m: 0.0,
-        mode: Mode::default(),
-        eb_cause: EbCause::default(),
-    }
-}
 
 /// A bench with an embedded unit, these faults injected.
 pub fn bench(faults: &[&str]) -> Session<Delayed<SimUnit>> {

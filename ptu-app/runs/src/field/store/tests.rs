@@ -7,7 +7,7 @@ use protocol::event::Event;
 
 use super::*;
 use crate::clock::open_options;
-use crate::field::read::tests::event;
+use btu_rig::procedure::UnitEvent;
 
 fn store(directory: &Path, name: &str) -> Store {
     Store::open(&directory.join(name), open_options()).expect("a database")
@@ -34,7 +34,7 @@ fn entries(until: u32) -> Vec<Entry> {
         let power_up = 1 + sequence / 3;
         let at_us = (power_up > 1).then(|| 1_000_000_000_000 + i64::from(sequence) * 600_000_000);
         Entry {
-            event: event(sequence % 3, Event::TachoDead1, 1_000 * sequence),
+            event: UnitEvent::at_stand(sequence % 3, Event::TachoDead1, 1_000 * sequence),
             at_us,
             is_sure: true,
             stored: Some(StoredPlace {

@@ -25,23 +25,7 @@ fn record() -> RunRecord {
 }
 
 fn step(index: u32) -> StepRecord {
-    StepRecord {
-        index,
-        procedure: "atp/overspeed".into(),
-        kind: fault_db::StepKind::Step,
-        place: Some(index),
-        turn: 1,
-        turns: 1,
-        name: format!("step {index}"),
-        verdict: Verdict::Passed,
-        started_bench_us: 0,
-        bench_time_us: 1,
-        findings: None,
-        message: String::new(),
-        script_line: None,
-        limit_source: None,
-        measurements: Vec::new(),
-    }
+    StepRecord::passed(index, "atp/overspeed", format!("step {index}"))
 }
 
 fn fault() -> FaultRecord {
