@@ -9,6 +9,8 @@ use alloc::vec::Vec;
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
 pub use crate::decoder::Decoder;
+use serde::{Deserialize, Serialize};
+
 use crate::message::{Address, CATALOGUE, Channel};
 
 /// Version of the wire, first byte of every frame.
@@ -67,7 +69,8 @@ pub struct Header {
 }
 
 /// Why a frame is rejected. Each frame is counted under the first reason that applies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Reject {
     /// Fewer bytes between two flags than header and FCS take.
     TooShort,

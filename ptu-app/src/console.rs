@@ -137,7 +137,11 @@ impl Listener for Console {
         let shown = match event {
             SessionEvent::Run(RunEvent::StepStarted {
                 name, turn, turns, ..
-            }) => present(Language::English.words().step(name, [*turn, *turns], false)),
+            }) => present(
+                Language::English
+                    .words()
+                    .step(name, [*turn, *turns], StepKind::Step),
+            ),
             SessionEvent::Run(RunEvent::Waiting { action: what, left }) => {
                 present(format!("{what}, {:.0} s left", left.as_secs()))
             }
@@ -232,9 +236,7 @@ fn measured(measurement: &Measurement) -> String {
 /// The procedure and the step; or where it failed outside of steps, as files name it.
 fn named(step: &StepRecord) -> String {
     let turn = [step.turn, step.turns];
-    let name = Language::English
-        .words()
-        .step(&step.name, turn, step.kind == StepKind::Again);
+    let name = Language::English.words().step(&step.name, turn, step.kind);
     format!("{}: {name}", step.procedure)
 }
 

@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
-use crate::rig::{Rig, TrueMotion};
+use crate::rig::{LinkTrouble, Rig, TrueMotion};
 use crate::stimulus::Stimulus;
 
 pub use figure::Figure;
@@ -105,7 +105,7 @@ pub enum Ending {
     TimeLimit,
     /// The unit cannot be reached any more.
     #[error("link lost: {0}")]
-    LinkLost(String),
+    LinkLost(LinkTrouble),
 }
 
 fn lacking(refusals: Option<u16>) -> String {
@@ -262,8 +262,8 @@ impl Drive {
     }
 
     fn advance(&mut self, now: Instant, truth: &TrueMotion, rig: &mut Rig) -> Option<Ending> {
-        if let Some(text) = watch::link_error(now, rig) {
-            return Some(Ending::LinkLost(text));
+        if let Some(why) = watch::link_error(now, rig) {
+            return Some(Ending::LinkLost(why));
         }
         let sample = rig.sample();
         let mode = watch::mode(sample);

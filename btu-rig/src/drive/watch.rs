@@ -4,11 +4,11 @@ use protocol::message::{EbCause, Mode};
 use protocol::signal::{Sample, Signal};
 use protocol::{CYCLE, Instant};
 
-use crate::rig::Rig;
+use crate::rig::{LinkTrouble, Rig};
 
 /// Why the unit cannot be reached any more. Silence lasts for many cycles before it is one, so it need not be
 /// looked for each scan.
-pub(super) fn link_error(now: Instant, rig: &Rig) -> Option<String> {
+pub(super) fn link_error(now: Instant, rig: &Rig) -> Option<LinkTrouble> {
     let cycle = now.as_us().is_multiple_of(CYCLE.as_us());
     cycle.then(|| rig.link_error())?
 }

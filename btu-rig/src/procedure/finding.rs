@@ -8,6 +8,7 @@ use protocol::event::Event;
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::MissingData;
+use super::link_trouble::LinkTrouble;
 use super::plan::{Condition, Expectation};
 use super::{EventSource, UnitEvent};
 pub use list::{Findings, Found};
@@ -168,7 +169,7 @@ pub enum Finding {
     /// The link to the unit cannot be used.
     LinkLost {
         /// Why.
-        why: String,
+        why: LinkTrouble,
     },
     /// The tester's computer stood still in an attempt at a step.
     StoodStill {

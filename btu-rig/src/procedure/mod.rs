@@ -17,6 +17,7 @@ mod evidence;
 mod expectation_run;
 pub mod finding;
 mod limit;
+pub mod link_trouble;
 pub mod loader;
 mod measure_run;
 mod names;
@@ -129,7 +130,7 @@ pub struct UnitEvent {
 }
 
 impl UnitEvent {
-    /// An entry of the unit's log with this event, made at a stand in manual operation.
+    /// An entry of the unit's log with this event, made standing.
     pub fn at_stand(index: u32, event: Event, at_ms: u32) -> Self {
         Self {
             source: EventSource::Unit,
@@ -140,7 +141,7 @@ impl UnitEvent {
             speed: Speed::ZERO,
             limit: Speed::ZERO,
             position_m: 0.0,
-            mode: Mode::Manual,
+            mode: Mode::default(),
             eb_cause: EbCause::None,
         }
     }

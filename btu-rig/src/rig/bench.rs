@@ -1,19 +1,8 @@
 //! The rig and a unit on a wire, moved on together one scan at a time.
 
 use protocol::{Duration, Instant, SCAN};
-use thiserror::Error;
 
-use super::Rig;
-
-/// The connection to the unit broke.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{link}: {reason}")]
-pub struct LinkFailure {
-    /// What it is connected by, as the user named it.
-    pub link: String,
-    /// Error of the operating system, or why the unit turned the tester away.
-    pub reason: String,
-}
+use super::{LinkTrouble, Rig};
 
 /// A unit at the other end of a byte stream: embedded, or on a port.
 pub trait UnitLink {
@@ -26,7 +15,7 @@ pub trait UnitLink {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure>;
+    ) -> Result<(), LinkTrouble>;
 
     /// How long unit and bench both stood still since this was last asked, as two programs do on a computer that is
     /// held up: time that neither of them lived through.
@@ -64,7 +53,7 @@ impl<L: UnitLink> Bench<L> {
     ///
     /// # Errors
     /// When the connection to the unit broke.
-    pub fn tick(&mut self) -> Result<(), LinkFailure> {
+    pub fn tick(&mut self) -> Result<(), LinkTrouble> {
         self.now += SCAN;
         self.to_unit.clear();
         self.rig.step(self.now, &mut self.to_unit);
@@ -74,10 +63,7 @@ impl<L: UnitLink> Bench<L> {
             .exchange(self.now, &self.to_unit, &mut self.from_unit);
         self.rig.receive(self.now, &self.from_unit);
         // A tester that is turned away gets the reason, and then the connection is closed.
-        exchanged.map_err(|failure| LinkFailure {
-            reason: self.rig.turned_away().unwrap_or(failure.reason),
-            ..failure
-        })
+        exchanged.map_err(|broken| self.rig.turned_away().unwrap_or(broken))
     }
 
     /// Time of the last tick.

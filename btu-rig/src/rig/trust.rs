@@ -5,7 +5,7 @@ use protocol::link::Counters;
 use protocol::message::{Identity, SelfTest, SelfTestItem};
 use protocol::signal::{Sample, Signal};
 
-use super::Rig;
+use super::{LinkTrouble, Rig};
 use crate::procedure::{Evidence, UnitEvent};
 
 impl Rig {
@@ -56,7 +56,7 @@ impl Rig {
 
     /// Why nothing that is heard can be judged, after a time allowed for first contact: what is wrong with
     /// the connection, with who answers, or with reading the unit's log.
-    pub fn link_error(&self) -> Option<String> {
+    pub fn link_error(&self) -> Option<LinkTrouble> {
         let line = self.line_watch.error(self.now);
         let silence = || {
             let asks_since = self.tester.speaks_since();
@@ -97,7 +97,7 @@ impl Rig {
     }
 
     /// Why the unit turned this bench away, if it did: another has it.
-    pub fn turned_away(&self) -> Option<String> {
+    pub fn turned_away(&self) -> Option<LinkTrouble> {
         self.watch.turned_away()
     }
 

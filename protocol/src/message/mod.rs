@@ -16,6 +16,8 @@ mod twc;
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use serde::{Deserialize, Serialize};
+
 pub use enums::{
     AbsurdInputs, Answer, ArmRefusal, AtoFailure, AtoState, Coil, DoorSide, EbCause, FsbCause,
     MeasureUnit, Mode, ModeSwitch, NumberState, OrderLacks, OrderState, Refusals, RunningMode,
@@ -41,7 +43,8 @@ pub use train_state::{Subscribe, TrainState};
 pub use twc::{TwcOrders, TwcReport, TwcTrain, TwcTrainBits, TwcWayside};
 
 /// The four channels of the wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Channel {
     /// Maintenance: arm, stimuli, status, event log, identity.
     Ptu,

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
@@ -63,6 +64,8 @@ pub enum Trouble {
     },
     /// A unit on a port.
     NoUnit(NoUnit),
+    /// The link to a unit that was there.
+    Link(LinkTrouble),
     /// An instrument of the bench whose calibration does not hold, and nothing was driven.
     Uncalibrated {
         /// Its kind, as "tachometer".
@@ -129,6 +132,7 @@ impl fmt::Display for Trouble {
                 )
             }
             Self::NoUnit(why) => why.fmt(f),
+            Self::Link(why) => why.fmt(f),
             Self::Told(words) => f.write_str(words),
         }
     }

@@ -3,7 +3,7 @@
 //! program.
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, Verdict};
+use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, ResultKind, Verdict};
 use fault_db::{FaultRecord, StepKind, StepRecord};
 use protocol::lru;
 
@@ -98,6 +98,15 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
         message: entry.finding.to_string(),
         findings: Findings::from(entry.finding.clone()).to_json(),
         ..StepRecord::passed(0, procedure, entry.place.name())
+    }
+}
+
+/// How a result of a step is stored.
+pub fn kind(kind: ResultKind) -> StepKind {
+    match kind {
+        ResultKind::Step => StepKind::Step,
+        ResultKind::Attempt => StepKind::Attempt,
+        ResultKind::Again => StepKind::Again,
     }
 }
 

@@ -12,6 +12,7 @@ use btu_rig::procedure::{
     Finding, Findings, Measurement, Outside as Place, OutsideStep, Procedure, ResultKind, RunEvent,
     RunOptions, StepResult,
 };
+use btu_rig::rig::LinkTrouble;
 use diagnosis::{Dictionary, Mode};
 use fault_db::{Id, OpenOptions, RunRecord, RunState, Signer, Store, Synchronous, UnitRecord};
 use protocol::event::Severity;
@@ -24,7 +25,7 @@ use ptu_runs::run::{
     SessionEvent, Task, different_steps,
 };
 use ptu_runs::stop::Stop;
-use ptu_runs::stored::stored;
+use ptu_runs::stored::{kind, stored};
 
 use super::made_elsewhere::read_of_a_unit;
 use super::made_plans::{Chance, Heard, KINDS, contents, known, likeliest, own};
@@ -340,7 +341,9 @@ impl<'a> Making<'a> {
                 break;
             }
             if is_end && self.kind == LinkLost {
-                to.take(SessionEvent::LinkLost("nothing comes from the unit".into()));
+                to.take(SessionEvent::LinkLost(LinkTrouble::NotOneByte {
+                    within: Duration::from_ms(3_000),
+                }));
             }
         }
         verdict
@@ -468,12 +471,13 @@ impl<'a> Making<'a> {
         *worst = rank.max(*worst);
         self.attempts += usize::from(rank > 0);
         self.on_bench += usize::from(result.findings.need_harness());
-        if rank > 1 {
-            let marks = marks(&result.name, 's');
+        if rank > 1 || result.kind == ResultKind::Attempt {
             let [turn, turns] = [result.turn, result.turns].map(u64::from);
-            let turn = turn_of(turn, turns, result.kind == ResultKind::Again);
-            self.turns.extend(turned(&marks, &turn));
-            self.not_passed.extend(marks);
+            let turn = turn_of(turn, turns, kind(result.kind).as_str());
+            self.turns.extend(turned(&marks(&result.name, 's'), &turn));
+        }
+        if rank > 1 {
+            self.not_passed.extend(marks(&result.name, 's'));
         }
         for one in &result.measurements {
             let limits = [one.low, one.high];
@@ -552,10 +556,13 @@ impl<'a> Making<'a> {
         let mut known: BTreeMap<_, _> = names.split('|').map(str::to_owned).zip(numbers).collect();
         let parts = self.parts.iter();
         let (values, limits): (Vec<_>, Vec<_>) = self.values.into_iter().unzip();
+        let turns = self.turns.into_iter();
+        let (in_vain, turns): (Vec<_>, Vec<_>) = turns.partition(|turn| turn.ends_with("attempt"));
         known.extend([
             sorted("parts", parts.map(|(part, seen)| format!("{part}={seen}"))),
             sorted("steps that did not pass", self.not_passed),
-            sorted("turns that did not pass", self.turns),
+            sorted("turns that did not pass", turns),
+            sorted("attempts in vain", in_vain),
             sorted("values", values),
             sorted("limits", limits),
         ]);

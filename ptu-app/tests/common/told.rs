@@ -71,21 +71,29 @@ pub fn numbers(names: &str, numbers: impl IntoIterator<Item = impl ToString>) ->
     names.map(|(name, number)| fact(name, number)).collect()
 }
 
-/// Which of so many repetitions, and whether for the state alone that the step leaves; empty where it is run once.
-pub fn turn_of(turn: u64, turns: u64, is_again: bool) -> String {
-    let again = ["", " again"][usize::from(is_again)];
+/// Which of so many repetitions, and what it is if not the result that counts; empty where it is run once.
+pub fn turn_of(turn: u64, turns: u64, kind: &str) -> String {
+    let kind = match kind {
+        "step" => "",
+        kind => &format!(" {kind}"),
+    };
     match turns {
-        1 => again.to_owned(),
-        _ => format!(" {turn}/{turns}{again}"),
+        1 => kind.to_owned(),
+        _ => format!(" {turn}/{turns}{kind}"),
     }
 }
 
 /// The same as it stands behind a name.
 pub fn turn_in(name: &str) -> String {
-    let (name, is_again) = match name.strip_suffix(" (repeated)") {
-        Some(name) => (name, true),
-        None => (name, false),
-    };
+    let kinds = [
+        (" (repeated)", "again"),
+        (" (반복)", "again"),
+        (" (attempt)", "attempt"),
+        (" (시도)", "attempt"),
+    ];
+    let mut kinds = kinds.into_iter();
+    let kind = kinds.find_map(|(end, kind)| Some((name.strip_suffix(end)?, kind)));
+    let (name, kind) = kind.unwrap_or((name, "step"));
     let inside = name
         .strip_suffix(')')
         .and_then(|name| name.rsplit_once(" ("));
@@ -93,7 +101,7 @@ pub fn turn_in(name: &str) -> String {
     let [turn, turns] = numbers.map_or([1, 1], |(turn, turns)| {
         [turn, turns].map(|number| number.parse().unwrap_or(1))
     });
-    turn_of(turn, turns, is_again)
+    turn_of(turn, turns, kind)
 }
 
 /// Marks with their turn, if there is more than one.
@@ -105,13 +113,16 @@ pub fn turned(marks: &[String], turn: &str) -> Vec<String> {
 /// What records of results come to: of each whether it is a step's, its name, its verdict, why, and its turn.
 pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str, String)>) -> Told {
     let (mut attempts, mut outside, mut bad, mut link) = (0, 0, Vec::new(), None);
-    let mut turns = Vec::new();
+    let (mut turns, mut in_vain) = (Vec::new(), Vec::new());
     for (is_step, name, verdict, why, turn) in all {
         let is_bad = !["passed", "skipped"].contains(&verdict);
         attempts += usize::from(is_step && verdict != "skipped");
         outside += usize::from(!is_step && is_bad);
+        let marks = marks(name, 's');
+        if is_step && turn.ends_with("attempt") {
+            in_vain.extend(turned(&marks, &turn));
+        }
         if is_step && is_bad {
-            let marks = marks(name, 's');
             turns.extend(turned(&marks, &turn));
             bad.extend(marks);
         }
@@ -122,6 +133,7 @@ pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str, S
         fact("outside", outside),
         sorted("steps that did not pass", bad),
         sorted("turns that did not pass", turns),
+        sorted("attempts in vain", in_vain),
         fact("link en", link.unwrap_or_default()),
     ]
 }
@@ -277,6 +289,7 @@ fn section(text: &str) -> Option<&'static str> {
 pub fn sheet(texts: &[String], language: Language) -> Told {
     let (mut told, mut here) = (Vec::new(), "");
     let (mut counted, mut bad, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut turns, mut in_vain) = (Vec::new(), Vec::new());
     let (mut values, mut limits, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     let (mut passed, mut recorded, mut lost) = (None, 0, "");
     let at = |place: usize| texts.get(place).map_or("", |text| text.as_str());
@@ -307,6 +320,15 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
                 told.push(id(next))
             }
             "All steps" => {
+                let mut behind = texts[place + 1..].iter().take(3);
+                let came_to = behind.find_map(|text| verdict(text, language));
+                let turn = turn_in(text);
+                let all = turned(&marks(text, 's'), &turn);
+                match came_to {
+                    Some(_) if turn.ends_with("attempt") => in_vain.extend(all),
+                    None | Some("passed" | "skipped") => {}
+                    Some(_) => turns.extend(all),
+                }
                 let (of, passes) = [(" of ", " passed"), ("개 중 ", "개 합격")][language as usize];
                 let counted = text
                     .strip_suffix(passes)
@@ -341,6 +363,8 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     told.extend(candidates(rows));
     told.push(fact(format!("link {}", language.code()), lost));
     told.push(sorted("steps that did not pass", bad));
+    told.push(sorted("turns that did not pass", turns));
+    told.push(sorted("attempts in vain", in_vain));
     told.extend([sorted("values", values), sorted("limits", limits)]);
     told.push(sorted("parts", seen));
     told
@@ -355,8 +379,7 @@ pub fn live(run: &Progress, language: Language) -> Told {
         .collect();
     let mut told = results(all.iter().map(|(result, why)| {
         let is_step = outside_place(result).is_none();
-        let name = language.words().result(result);
-        let turn = turn_in(&name.replace("(반복)", "(repeated)"));
+        let turn = turn_in(&language.words().result(result));
         (
             is_step,
             &*result.name,

@@ -7,12 +7,12 @@ use super::{Phase, Runner, Stop};
 use crate::procedure::Verdict;
 use crate::procedure::action_run::Problem;
 use crate::procedure::finding::Finding;
+use crate::procedure::link_trouble::LinkTrouble;
 use crate::procedure::report::Outside;
 
 impl Runner {
-    pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, error: &str) {
+    pub(super) fn lose_link(&mut self, now: Instant, sample: &Sample, why: LinkTrouble) {
         self.link_lost = true;
-        let why = error.to_owned();
         let finding = Finding::LinkLost { why };
         match self.phase {
             Phase::CleanUp { .. } | Phase::MakeSafe { .. } | Phase::ReadLog { .. } => {

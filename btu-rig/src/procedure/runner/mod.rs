@@ -29,6 +29,7 @@ use super::action_run::{ActionRun, Operator, Progress, Scan};
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::finding::{Before, Finding, Findings};
+use super::link_trouble::LinkTrouble;
 use super::plan::{Procedure, Step};
 use super::report::{Outside, OutsideStep, RunEvent};
 use super::step_run::StepRun;
@@ -232,7 +233,7 @@ impl Runner {
         now: Instant,
         sample: &Sample,
         events: &[UnitEvent],
-        link_error: Option<&str>,
+        link_error: Option<&LinkTrouble>,
         driver: &mut dyn Driver,
     ) -> Poll {
         self.begin(now);
@@ -245,7 +246,7 @@ impl Runner {
         self.take_unit_events(events, now);
         self.watch_unit(now, sample);
         if let Some(error) = link_error.filter(|_| !self.link_lost) {
-            self.lose_link(now, sample, error);
+            self.lose_link(now, sample, error.clone());
         }
         self.obey_stop(now, sample);
         if matches!(self.phase, Phase::Setup(_)) {

@@ -14,6 +14,7 @@ use protocol::message::Channel;
 use protocol::{CYCLE, Duration, Instant};
 
 use crate::procedure::LineState;
+use crate::procedure::link_trouble::LinkTrouble;
 
 use super::clock_rate::ClockRate;
 
@@ -243,7 +244,7 @@ impl LineWatch {
     }
 
     /// What is wrong with the line, if it is bad.
-    pub fn error(&self, now: Instant) -> Option<String> {
+    pub fn error(&self, now: Instant) -> Option<LinkTrouble> {
         // What the line lost before a stall may have been lost by the stall.
         let within = |(at, _): &&(Instant, Counts)| {
             now.since(*at) <= SPAN && self.stalled_at.is_none_or(|stalled| *at >= stalled)
@@ -256,13 +257,11 @@ impl LineWatch {
         let from_unit = self.counts.from_unit.saturating_sub(before.from_unit);
         let to_unit = self.counts.to_unit.saturating_sub(before.to_unit);
         let came = self.counts.taken.saturating_sub(before.taken) + from_unit;
-        (from_unit + to_unit >= self.bad_at).then(|| {
-            format!(
-                "the line between tester and unit is bad: within {:.0} s {from_unit} of {came} frames from \
-                 the unit did not come through, and the unit refused {to_unit} — check the cable, its plugs \
-                 and whether another program uses the port",
-                SPAN.as_secs()
-            )
+        (from_unit + to_unit >= self.bad_at).then_some(LinkTrouble::BadLine {
+            within: SPAN,
+            from_unit,
+            came,
+            to_unit,
         })
     }
 }

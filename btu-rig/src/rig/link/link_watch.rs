@@ -1,4 +1,4 @@
-//! Reports what is wrong with the connection to the unit, in words a technician can act on.
+//! Finds what is wrong with the connection to the unit.
 //!
 //! Only channels that no fault of the unit can silence are watched: a unit that does not answer
 //! TCMS or the wayside is a finding, not a bench error.
@@ -10,6 +10,8 @@ use protocol::link::{Counters, Link, RESYNC};
 use protocol::message::{Channel, Taken};
 use protocol::{Duration, Instant};
 
+use crate::procedure::link_trouble::{GarbageCause, LinkTrouble, Refused};
+
 /// Time a unit has to be heard for the first time: it may be starting.
 const FIRST_CONTACT: Duration = Duration::from_ms(3000);
 /// Silence that is an error: longer than the link takes to hear a unit that was started again.
@@ -19,8 +21,8 @@ const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 /// may do so while it is about to be heard again.
 const STARTING: Duration = Duration::from_ms(10_000);
 
-/// Channels that are watched, by their names.
-const WATCHED: [(Channel, &str); 2] = [(Channel::Io, "I/O"), (Channel::Ptu, "PTU")];
+/// Channels that are watched.
+const WATCHED: [Channel; 2] = [Channel::Io, Channel::Ptu];
 
 #[derive(Debug, Default)]
 pub struct LinkWatch {
@@ -30,18 +32,18 @@ pub struct LinkWatch {
     /// The tester's own computer stood still until then.
     stalled_until: Instant,
     /// Frames refused until each of the watched channels was last heard.
-    refused: [Refused; WATCHED.len()],
+    refused: [RefusedCounts; WATCHED.len()],
 }
 
 /// Frames refused: all, and those for their sequence number or stamp, as the frames of a unit that starts
 /// again are.
 #[derive(Clone, Copy, Debug, Default)]
-struct Refused {
+struct RefusedCounts {
     total: u64,
     restarted: u64,
 }
 
-impl Refused {
+impl RefusedCounts {
     fn until_now(counters: &Counters) -> Self {
         Self {
             total: counters.rejected_total(),
@@ -61,17 +63,11 @@ impl Refused {
         2 * self.restarted > self.total
     }
 
-    /// What to say of them.
-    fn said(self) -> Option<String> {
-        let Self { total, restarted } = self;
-        match total {
+    fn told(self) -> Option<Refused> {
+        match self.total {
             0 => None,
-            _ if self.of_a_start() => Some(format!(
-                "while {restarted} frames did not continue those before them — the unit starts again and again: check its supply"
-            )),
-            _ => Some(format!(
-                "while {total} frames were refused — check the line between tester and unit"
-            )),
+            _ if self.of_a_start() => Some(Refused::OfStarts(self.restarted)),
+            total => Some(Refused::Frames(total)),
         }
     }
 }
@@ -88,19 +84,15 @@ impl LinkWatch {
     }
 
     /// Why the unit turned this client away, if it did.
-    pub fn turned_away(&self) -> Option<String> {
+    pub fn turned_away(&self) -> Option<LinkTrouble> {
         let taken = self.taken?;
         let ip = Ipv6Addr::from(taken.address).to_canonical();
-        let by = SocketAddr::new(ip, taken.port);
-        let seconds = |ms: u32| Duration::from_ms(u64::from(ms)).as_secs();
-        let silence = match seconds(taken.silent_ms) {
-            silent_s if silent_s < SILENCE.as_secs() => String::new(),
-            silent_s => format!(", which has been silent for {silent_s:.0} s"),
-        };
-        Some(format!(
-            "the unit is taken by another tester, {by}, for {:.0} s{silence}",
-            seconds(taken.for_ms)
-        ))
+        let silent = Duration::from_ms(u64::from(taken.silent_ms));
+        Some(LinkTrouble::Taken {
+            by: SocketAddr::new(ip, taken.port),
+            held: Duration::from_ms(u64::from(taken.for_ms)),
+            silent: Some(silent).filter(|silent| *silent >= SILENCE),
+        })
     }
 
     /// Notes that the bench runs.
@@ -116,9 +108,9 @@ impl LinkWatch {
 
     /// Notes that a frame of a channel was taken.
     pub fn note_frame(&mut self, channel: Channel, counters: &Counters) {
-        let place = WATCHED.iter().position(|(watched, _)| *watched == channel);
+        let place = WATCHED.iter().position(|watched| *watched == channel);
         if let Some(refused) = place.and_then(|place| self.refused.get_mut(place)) {
-            *refused = Refused::until_now(counters);
+            *refused = RefusedCounts::until_now(counters);
         }
     }
 
@@ -130,7 +122,7 @@ impl LinkWatch {
         link: &Link,
         asks_since: Option<Instant>,
         harness: bool,
-    ) -> Option<String> {
+    ) -> Option<LinkTrouble> {
         if let Some(why) = self.turned_away() {
             return Some(why);
         }
@@ -144,61 +136,48 @@ impl LinkWatch {
         }
         let since = [harness.then_some(begun), asks_since];
         let mut watched = WATCHED.iter().zip(since).zip(self.refused);
-        watched.find_map(|((&(channel, name), since), refused_before)| {
+        watched.find_map(|((&channel, since), refused_before)| {
             let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
             let silence = now.since(heard.max(self.stalled_until));
-            let refused = Refused::until_now(link.counters()).since(refused_before);
+            let refused = RefusedCounts::until_now(link.counters()).since(refused_before);
             let at_most = if refused.of_a_start() {
                 STARTING
             } else {
                 SILENCE
             };
-            (silence > at_most).then(|| {
-                let seconds = silence.as_secs();
-                let silent = format!("unit silent for {seconds:.1} s on the {name} channel");
-                match refused.said() {
-                    None => silent,
-                    Some(refused) => format!("{silent}, {refused}"),
-                }
+            (silence > at_most).then(|| LinkTrouble::Silent {
+                channel,
+                silence,
+                refused: refused.told(),
             })
         })
     }
 
-    fn no_contact(&self, waited: Duration, counters: &Counters) -> String {
+    fn no_contact(&self, waited: Duration, counters: &Counters) -> LinkTrouble {
         if self.bytes == 0 {
-            return format!(
-                "unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power",
-                waited.as_secs()
-            );
+            return LinkTrouble::NotOneByte { within: waited };
         }
-        let bytes = self.bytes;
         let refused = |reason: &Reject| counters.rejected(*reason);
-        let most = Reject::ALL.into_iter().max_by_key(refused);
-        let garbage = match most.filter(|reason| refused(reason) > 0) {
-            Some(reason) => format!(
-                "garbage: {bytes} bytes, no valid frame, {} refused for {}",
-                refused(&reason),
-                reason.label()
-            ),
-            None => format!("garbage: {bytes} bytes, no valid frame"),
+        let most_of = |reasons: &mut dyn Iterator<Item = Reject>| {
+            let most = reasons.max_by_key(refused);
+            most.filter(|reason| refused(reason) > 0)
         };
         // A frame whose check sequence fits was read at the right rate.
-        let fitting = Reject::ALL
-            .into_iter()
-            .filter(|reason| !before_checksum(*reason));
-        match fitting
-            .max_by_key(refused)
-            .filter(|reason| refused(reason) > 0)
-        {
-            Some(Reject::Version) => format!(
-                "{} frames of another version of the wire — unit and bench programs differ",
-                counters.rejected(Reject::Version)
-            ),
-            Some(Reject::Address) => {
-                format!("{garbage} — the tester's own frames come back: is the unit on this port?")
+        let fitting = |reason: &Reject| !before_checksum(*reason);
+        let cause = match most_of(&mut Reject::ALL.into_iter().filter(fitting)) {
+            Some(Reject::Version) => {
+                let frames = counters.rejected(Reject::Version);
+                return LinkTrouble::OtherVersion { frames };
             }
-            Some(_) => format!("{garbage} — check the cable and what is connected to this port"),
-            None => format!("{garbage} — wrong baud rate?"),
+            Some(Reject::Address) => GarbageCause::Echo,
+            Some(_) => GarbageCause::OtherDevice,
+            None => GarbageCause::BaudRate,
+        };
+        let most = most_of(&mut Reject::ALL.into_iter());
+        LinkTrouble::Garbage {
+            bytes: self.bytes,
+            refused: most.map(|reason| (refused(&reason), reason)),
+            cause,
         }
     }
 }

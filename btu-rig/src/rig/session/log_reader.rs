@@ -11,6 +11,7 @@ use protocol::link::Link;
 use protocol::message::{LogEnd, LogEntry, ReadLog};
 use protocol::{Duration, Instant};
 
+use crate::procedure::link_trouble::LinkTrouble;
 use crate::procedure::{LogState, UnitEvent};
 
 /// Entries kept until they are taken; reading pauses beyond, and the unit keeps the rest.
@@ -207,25 +208,21 @@ impl LogReader {
     }
 
     /// Why the log cannot be read, if it cannot.
-    pub fn error(&self, now: Instant) -> Option<String> {
+    pub fn error(&self, now: Instant) -> Option<LinkTrouble> {
         let times = self.asked_times;
         let waited = self.wanted_since.map_or(Duration::ZERO, |at| now.since(at));
         if self.not_kept >= LOG_ENTRIES as u64 {
-            return Some(format!(
-                "the unit logs without end: {} entries came beyond what a log can hold",
-                self.not_kept
-            ));
+            return Some(LinkTrouble::LogWithoutEnd {
+                entries: self.not_kept,
+            });
         }
         if self.silence(now) >= NO_ANSWER {
-            return Some(format!(
-                "the unit's log could not be read: asked {times} times, no answer"
-            ));
+            return Some(LinkTrouble::LogNotAnswered { times });
         }
-        (waited >= NO_ENTRY).then(|| {
-            format!(
-                "the unit's log could not be read: asked {times} times for entry {} of {}, which never came",
-                self.next, self.logged
-            )
+        (waited >= NO_ENTRY).then_some(LinkTrouble::EntryNeverCame {
+            times,
+            entry: self.next,
+            of: self.logged,
         })
     }
 

@@ -10,6 +10,7 @@ use super::store_reader::{StoreReader, StoreState, StoredData};
 use super::tester::Tester;
 use super::unit_clock::TimeOfDay;
 use crate::procedure::UnitEvent;
+use crate::procedure::link_trouble::LinkTrouble;
 use crate::rig::link::LinkWatch;
 
 /// Session number, for arming only: never said.
@@ -179,7 +180,7 @@ impl LogSession {
     }
 
     /// Why the unit turned this tester away, if it did: another has it.
-    pub fn turned_away(&self) -> Option<String> {
+    pub fn turned_away(&self) -> Option<LinkTrouble> {
         self.watch.turned_away()
     }
 
@@ -190,7 +191,7 @@ impl LogSession {
 
     /// What is wrong with the connection, with who answers or with its log, after a time allowed for first
     /// contact.
-    pub fn link_error(&self, now: Instant) -> Option<String> {
+    pub fn link_error(&self, now: Instant) -> Option<LinkTrouble> {
         let speaks_since = self.begun.map(|begun| begun + HOLD_BACK);
         let link = self.watch.error(now, &self.link, speaks_since, false);
         let stores = [Some(&self.events), self.rows.as_ref()];

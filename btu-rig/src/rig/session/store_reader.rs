@@ -10,6 +10,8 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant};
 
+use crate::procedure::link_trouble::LinkTrouble;
+
 /// Silence after which it is asked again.
 const TIMEOUT: Duration = Duration::from_ms(400);
 /// Questions without an answer after which the unit counts as one without stored memory.
@@ -52,7 +54,7 @@ pub enum StoreState {
     /// All is read that was there when it was first asked for.
     Read,
     /// It cannot be read: why.
-    Failed(String),
+    Failed(LinkTrouble),
 }
 
 /// A number that was missing, the one that came in its place, and how often.
@@ -115,7 +117,7 @@ impl StoreReader {
             return;
         }
         if now.since(self.heard) >= NO_ANSWER {
-            self.fail("the unit's stored memory could not be read: no answer any more");
+            self.state = StoreState::Failed(LinkTrouble::MemoryNotAnswered);
             return;
         }
         let request = ReadStored {
@@ -200,9 +202,7 @@ impl StoreReader {
         if self.state == StoreState::Unknown {
             let held = end.next_sequence.saturating_sub(end.oldest_sequence);
             if held > MOST {
-                self.fail(&format!(
-                    "the unit says that it stores {held} entries, more than a unit can"
-                ));
+                self.state = StoreState::Failed(LinkTrouble::MemoryTooLarge { entries: held });
                 return;
             }
             self.state = StoreState::Reading;
@@ -210,7 +210,7 @@ impl StoreReader {
             self.until = end.next_sequence;
         } else if self.state == StoreState::Reading {
             if end.next_sequence < self.until {
-                self.fail("the unit's stored memory was exchanged or failed while it was read");
+                self.state = StoreState::Failed(LinkTrouble::MemoryExchanged);
                 return;
             }
             if end.oldest_sequence > self.next {
@@ -228,10 +228,6 @@ impl StoreReader {
         if self.state == StoreState::Reading && self.next >= self.until {
             self.state = StoreState::Read;
         }
-    }
-
-    fn fail(&mut self, why: &str) {
-        self.state = StoreState::Failed(why.to_owned());
     }
 
     /// How far it is read.
@@ -364,6 +360,9 @@ mod tests {
     #[test]
     fn a_store_that_cannot_be_is_refused() {
         let absurd = read(&[], 0, u32::MAX, 0);
-        assert!(matches!(absurd.state(), StoreState::Failed(why) if why.contains("4294967295")));
+        assert_eq!(
+            *absurd.state(),
+            StoreState::Failed(LinkTrouble::MemoryTooLarge { entries: u32::MAX })
+        );
     }
 }

@@ -8,6 +8,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant};
 
+use crate::procedure::link_trouble::{Changed, LinkTrouble, Property};
 use crate::procedure::{LogState, Refusal, UnitEvent};
 
 use super::exchange::Exchange;
@@ -36,7 +37,7 @@ pub struct Tester {
     /// Who it was when it was first asked.
     first: Option<Identity>,
     /// What another unit said otherwise.
-    changed: Option<String>,
+    changed: Option<LinkTrouble>,
     self_test: SelfTest,
     /// Count of events in the last status.
     logged: Option<u32>,
@@ -347,48 +348,37 @@ impl Tester {
     }
 
     /// Why nothing that is heard can be judged: another unit answers, or the log cannot be read.
-    pub fn error(&self, now: Instant) -> Option<String> {
+    pub fn error(&self, now: Instant) -> Option<LinkTrouble> {
         let unread = || self.log.error(now).filter(|_| !self.silent);
         self.changed.clone().or_else(unread)
     }
 
     /// Entries logged since contact that cannot be read any more.
-    pub fn missed(&self) -> Option<String> {
-        (self.missed > 0).then(|| {
-            format!(
-                "{} entries of the unit's log were overwritten before they could be read",
-                self.missed
-            )
-        })
+    pub fn missed(&self) -> Option<LinkTrouble> {
+        let entries = self.missed;
+        (entries > 0).then_some(LinkTrouble::Overwritten { entries })
     }
 }
 
-/// What tells two units apart, in words.
-fn difference(first: &Identity, now: &Identity) -> Option<String> {
-    let changed = |what: &str, was: String, is: String| {
-        (was != is).then(|| format!("its {what} was {was} and is {is}"))
-    };
+/// What tells two units apart.
+fn difference(first: &Identity, now: &Identity) -> Option<LinkTrouble> {
     let name = |field: &[u8; 16]| {
         let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
         format!("\"{}\"", field[..end].escape_ascii())
     };
-    let checksum = |crc: u32| format!("{crc:08x}");
-    let changes: Vec<_> = [
-        changed("serial number", name(&first.serial), name(&now.serial)),
-        changed("unit configuration", name(&first.config), name(&now.config)),
-        changed(
-            "configuration's checksum",
-            checksum(first.config_crc),
-            checksum(now.config_crc),
-        ),
-        changed(
-            "track database's checksum",
-            checksum(first.tdb_crc),
-            checksum(now.tdb_crc),
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    (!changes.is_empty()).then(|| format!("another unit answers: {}", changes.join(", ")))
+    type Read<'a> = &'a dyn Fn(&Identity) -> String;
+    let properties: [(Property, Read<'_>); 4] = [
+        (Property::Serial, &|of| name(&of.serial)),
+        (Property::Configuration, &|of| name(&of.config)),
+        (Property::ConfigurationChecksum, &|of| {
+            format!("{:08x}", of.config_crc)
+        }),
+        (Property::TrackChecksum, &|of| format!("{:08x}", of.tdb_crc)),
+    ];
+    let changed = properties.into_iter().filter_map(|(property, read)| {
+        let (was, is) = (read(first), read(now));
+        (was != is).then_some(Changed { property, was, is })
+    });
+    let changed: Vec<_> = changed.collect();
+    (!changed.is_empty()).then_some(LinkTrouble::OtherUnit(changed))
 }

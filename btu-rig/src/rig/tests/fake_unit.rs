@@ -7,7 +7,7 @@ use protocol::message::{
 };
 use protocol::{Duration, Instant, Random};
 
-use crate::rig::{LinkFailure, UnitLink};
+use crate::rig::{LinkTrouble, UnitLink};
 
 const CHALLENGE: u32 = 0x7D7E_1234;
 
@@ -257,7 +257,7 @@ impl UnitLink for FakeUnit {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         let gained = now.since(Instant::ZERO).as_secs() * self.clock_gains;
         let now = now + Duration::from_secs(gained);
         self.scan += 1;

@@ -14,7 +14,7 @@ mod wire;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 
-use super::{Bench, Rig};
+use super::{Bench, Rig, UnitLink};
 use crate::procedure::Refusal;
 use crate::stimulus::Stimulus;
 use fake_unit::FakeUnit;
@@ -33,6 +33,12 @@ fn rig(seed: u64) -> Rig {
 
 fn bench(unit: FakeUnit) -> Bench<FakeUnit> {
     Bench::new(rig(1), unit)
+}
+
+/// What is wrong with the link, as it is told; empty if nothing is.
+fn link_error<L: UnitLink>(bench: &Bench<L>) -> String {
+    let error = bench.rig().link_error();
+    error.map_or_else(String::new, |error| error.to_string())
 }
 
 impl Bench<FakeUnit> {

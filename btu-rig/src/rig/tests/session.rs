@@ -4,7 +4,7 @@ use protocol::Speed;
 use protocol::message::{Answer, ArmRefusal, Channel, Message};
 use protocol::signal::Signal;
 
-use super::{FakeUnit, bench};
+use super::{FakeUnit, bench, link_error};
 use crate::procedure::EventSource;
 use crate::procedure::Refusal;
 use crate::rig::session::MAX_EVENTS;
@@ -132,7 +132,7 @@ fn a_unit_that_never_answers_is_given_up_and_a_bench_still_becomes_safe() {
     bench.rig_mut().make_safe(now);
     bench.run_ms(3000);
     assert!(bench.rig().safe());
-    let error = bench.rig().link_error().unwrap();
+    let error = link_error(&bench);
     assert!(
         error.starts_with("unit silent for 3.") && error.ends_with("PTU channel"),
         "{error}"

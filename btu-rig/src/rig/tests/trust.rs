@@ -5,9 +5,9 @@ use protocol::Random;
 use protocol::link::{End, Link};
 use protocol::message::{Channel, IoInput, SelfTest};
 
-use super::{FakeUnit, bench, rig};
+use super::{FakeUnit, bench, link_error, rig};
 use crate::procedure::{LineState, LogState};
-use crate::rig::{Bench, LinkFailure, UnitLink};
+use crate::rig::{Bench, LinkTrouble, UnitLink};
 use crate::stimulus::{Stimulus, WaysideCondition};
 
 /// What a bad line does to bytes, one in a hundred.
@@ -57,7 +57,7 @@ impl UnitLink for BadLine {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         let there = match self.to_unit {
             true => self.pass(to_unit),
             false => to_unit.to_vec(),
@@ -96,7 +96,7 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
             for _ in 0..1_500 {
                 bench.tick().unwrap();
             }
-            let error = bench.rig().link_error().unwrap_or_default();
+            let error = link_error(&bench);
             let told = error.starts_with("the line between tester and unit is bad: within 10 s ");
             assert!(told, "{harm:?} {to_unit} {from_unit}: \"{error}\"");
             assert!(!error.contains("baud"), "{error}");
@@ -216,7 +216,7 @@ fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     assert_eq!(bench.rig().link_error(), None, "not yet");
     bench.run_ms(5_000);
     let error = "the unit's log could not be read: asked 20 times, no answer";
-    assert_eq!(bench.rig().link_error().as_deref(), Some(error));
+    assert_eq!(link_error(&bench), error);
     bench.link_mut().answers_log = true;
     bench.run_ms(1_000);
     assert_eq!(bench.rig().evidence().log, LogState::Read);
@@ -233,7 +233,7 @@ fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     bench.run_ms(2_000);
     assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
     bench.run_ms(5_000);
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(error.ends_with("times, no answer"), "{error}");
 }
 
@@ -246,7 +246,7 @@ fn a_log_without_the_entries_it_should_have_is_an_error() {
     });
     bench.link_mut().log_event(7);
     bench.run_ms(60_000);
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(
         error.ends_with("times for entry 0 of 1, which never came"),
         "{error}"
@@ -276,7 +276,7 @@ fn a_log_without_end_is_bounded_counted_and_an_error() {
     );
     let not_kept = bench.rig().evidence().not_kept;
     assert!(not_kept > 10_000, "{not_kept}");
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(error.starts_with("the unit logs without end"), "{error}");
 }
 
@@ -294,7 +294,7 @@ fn entries_that_were_gone_before_they_could_be_read_are_an_error_unless_they_are
     unit.oldest += 300;
     unit.log_event(1);
     bench.run_ms(4_000);
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(
         error.contains("entries of the unit's log were overwritten"),
         "{error}"
@@ -332,12 +332,12 @@ fn another_unit_on_the_same_line_is_an_error_from_then_on() {
         change(&mut bench.link_mut().identity);
         bench.run_ms(4_000);
         let error = format!("another unit answers: {told}");
-        assert_eq!(bench.rig().link_error(), Some(error.clone()));
+        assert_eq!(link_error(&bench), error);
         bench.link_mut().identity = before;
         bench.run_ms(4_000);
         assert_eq!(
-            bench.rig().link_error(),
-            Some(error),
+            link_error(&bench),
+            error,
             "what was measured is of two units"
         );
     }
@@ -361,7 +361,7 @@ fn failed_self_test_items_are_known_from_identity_and_status() {
 struct Echo;
 
 impl UnitLink for Echo {
-    fn exchange(&mut self, now: Instant, _: &[u8], out: &mut Vec<u8>) -> Result<(), LinkFailure> {
+    fn exchange(&mut self, now: Instant, _: &[u8], out: &mut Vec<u8>) -> Result<(), LinkTrouble> {
         Link::new(End::Bench).send(now, &IoInput::default().into(), out);
         Ok(())
     }
@@ -373,7 +373,7 @@ fn a_wrong_baud_rate_is_suspected_only_where_no_check_sequence_fits() {
     for _ in 0..301 {
         bench.tick().unwrap();
     }
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(
         error.contains("no valid frame") && error.contains("own frames come back"),
         "{error}"
@@ -389,7 +389,7 @@ fn a_unit_whose_frames_drown_in_noise_is_not_reported_as_silent_only() {
     bench.link_mut().dead = Channel::ALL.to_vec();
     bench.link_mut().noise = b"noise~";
     bench.run_ms(2_000);
-    let error = bench.rig().link_error().unwrap_or_default();
+    let error = link_error(&bench);
     assert!(
         error.starts_with("the line between tester and unit is bad"),
         "{error}"
@@ -412,8 +412,7 @@ fn a_unit_that_restarts_repeatedly_is_not_reported_as_a_bad_line() {
     // It may be about to be heard again.
     assert_eq!(bench.rig().link_error(), None);
     bench.run_ms(9_000);
-    let error = bench.rig().link_error();
-    let error = error.unwrap_or_default();
+    let error = link_error(&bench);
     assert!(error.contains("the unit starts again and again"), "{error}");
     assert!(!error.contains("line"), "{error}");
 }

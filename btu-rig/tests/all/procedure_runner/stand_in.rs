@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use btu_rig::procedure::link_trouble::LinkTrouble;
 use btu_rig::procedure::loader::load;
 use btu_rig::procedure::{
     Driver, EventSource, Evidence, Findings, Poll, Procedure, Refusal, RunEvent, RunOptions,
@@ -93,7 +94,7 @@ pub struct World<'a> {
     pub scan: u32,
     pub sample: Sample,
     pub events: Vec<UnitEvent>,
-    pub link_error: Option<&'static str>,
+    pub link_error: Option<LinkTrouble>,
     pub fake: Fake,
     pub runner: &'a mut Runner,
 }
@@ -191,7 +192,7 @@ pub fn run_round(
         let (logged, link_error) = (world.events, world.link_error);
         (sample, fake) = (world.sample, world.fake);
         let now = Instant::from_us(u64::from(scan) * SCAN.as_us());
-        let poll = runner.advance(now, &sample, &logged, link_error, &mut fake);
+        let poll = runner.advance(now, &sample, &logged, link_error.as_ref(), &mut fake);
         events.extend(runner.take_events());
         if let (Poll::Done, Some(rest)) = (poll, runner.to_be_resumed().cloned()) {
             runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);

@@ -1,5 +1,6 @@
 //! The order of steps: setup, conditions, repetitions, choice of steps, prompts.
 
+use btu_rig::procedure::link_trouble::LinkTrouble;
 use btu_rig::procedure::{PromptPolicy, RunEvent, RunOptions, Verdict};
 use btu_rig::stimulus::Stimulus;
 use protocol::Instant;
@@ -208,7 +209,7 @@ fn a_failed_check_outranks_one_that_could_not_be_made() {
     assert_eq!(outcome.steps()[1].verdict, Verdict::Error);
     assert_eq!(outcome.finished().0, Verdict::Failed);
     let lost = run(&two, |world| {
-        world.link_error = (world.ms() >= 1_500).then_some("closed");
+        world.link_error = (world.ms() >= 1_500).then_some(LinkTrouble::MemoryExchanged);
     });
     assert_eq!(
         lost.finished().0,

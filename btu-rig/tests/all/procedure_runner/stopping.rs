@@ -1,5 +1,6 @@
 //! Stop, pause, time limits and problems: clean-up always runs and outputs always end safe.
 
+use btu_rig::procedure::link_trouble::LinkTrouble;
 use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
 
 use super::stand_in::{HEAD, OFF, ON, run, run_with};
@@ -189,7 +190,7 @@ fn a_pause_does_not_delay_a_stop() {
         if world.ms() == 0 {
             world.runner.pause();
         }
-        world.link_error = (world.ms() >= 1_000).then_some("silent");
+        world.link_error = (world.ms() >= 1_000).then_some(LinkTrouble::MemoryExchanged);
     });
     assert_eq!(lost.finished().0, Verdict::Error);
     assert!(lost.fake.made_safe > 0);

@@ -1,5 +1,6 @@
 //! What the runner may not judge: a lost link, a stalled tester, an unread log, lost frames.
 
+use btu_rig::procedure::link_trouble::LinkTrouble;
 use btu_rig::procedure::{Finding, LogState, RunEvent, Verdict};
 use protocol::Duration;
 use protocol::event::Event;
@@ -13,10 +14,10 @@ fn a_lost_link_ends_the_step_as_an_error_and_skips_the_rest() {
     let script = format!("{HEAD}look('a', do = wait(s(5)))\nlook('b')");
     let outcome = run(&script, |world| {
         if world.ms() >= 1000 {
-            world.link_error = Some("unit silent for 1.0 s");
+            world.link_error = Some(LinkTrouble::LogNotAnswered { times: 5 });
         }
     });
-    let text = "link to the unit: unit silent for 1.0 s";
+    let text = "link to the unit: the unit's log could not be read: asked 5 times, no answer";
     let reason = format!("not run, {text}");
     let expected = [
         ("a", Verdict::Error, text),
@@ -121,10 +122,10 @@ fn a_step_ends_when_the_log_of_its_time_is_read_and_is_an_error_if_it_cannot_be(
         Verdict::Failed,
         "what came late counts"
     );
-    let lost = "the unit's log could not be read: asked 69 times, no answer";
+    let lost = LinkTrouble::LogNotAnswered { times: 69 };
     let outcome = run(&script, |world| {
         silent(world, u32::MAX);
-        world.link_error = (world.ms() >= 6_000).then_some(lost);
+        world.link_error = (world.ms() >= 6_000).then(|| lost.clone());
     });
     let text = format!("link to the unit: {lost}");
     assert_eq!(outcome.summary(), [("a", Verdict::Error, text.as_str())]);
@@ -150,10 +151,10 @@ fn an_awaited_event_is_not_missing_while_the_log_is_not_read() {
     assert_eq!(outcome.summary(), [("a", Verdict::Passed, "")]);
     let in_vain = run(&script, |world| {
         world.fake.evidence.log = LogState::Unanswered;
-        world.link_error = (world.ms() >= 6_000).then_some("no answer");
+        world.link_error = (world.ms() >= 6_000).then_some(LinkTrouble::MemoryExchanged);
     });
-    let reason = "link to the unit: no answer";
-    assert_eq!(in_vain.summary(), [("a", Verdict::Error, reason)]);
+    let reason = format!("link to the unit: {}", LinkTrouble::MemoryExchanged);
+    assert_eq!(in_vain.summary(), [("a", Verdict::Error, reason.as_str())]);
 }
 
 #[test]
@@ -178,12 +179,10 @@ fn a_procedure_ends_with_its_log_read() {
         if world.ms() >= 900 {
             world.fake.evidence.log = LogState::Behind;
         }
-        world.link_error = (world.ms() >= 2_000).then_some("no answer");
+        world.link_error = (world.ms() >= 2_000).then_some(LinkTrouble::MemoryExchanged);
     });
-    assert_eq!(
-        lost.finished(),
-        (Verdict::Error, "link to the unit: no answer")
-    );
+    let reason = format!("link to the unit: {}", LinkTrouble::MemoryExchanged);
+    assert_eq!(lost.finished(), (Verdict::Error, reason.as_str()));
 }
 
 /// Goal: what a bad line does is no fault of a part, and what a part does on a good line is one. Method: the

@@ -7,7 +7,8 @@
 mod table;
 
 use btu_rig::procedure::{
-    EventSource, Findings, Measurement, Procedure, ResultKind, RunEvent, StepResult, UnitEvent,
+    EventSource, Finding, Findings, Measurement, Procedure, ResultKind, RunEvent, StepResult,
+    UnitEvent,
 };
 use protocol::lru;
 use serde_json::{Map, Value, json};
@@ -57,7 +58,13 @@ impl EventLines {
             SessionEvent::Recording(recording) => {
                 ("recording", json!({ "began_us": recording.began.as_us() }))
             }
-            SessionEvent::LinkLost(reason) => ("link_lost", json!({ "reason": reason })),
+            SessionEvent::LinkLost(why) => {
+                let findings = Findings::from(Finding::LinkLost { why: why.clone() });
+                (
+                    "link_lost",
+                    json!({ "reason": why.to_string(), "findings": findings }),
+                )
+            }
             SessionEvent::Ended { bench_time } => {
                 ("ended", json!({ "bench_time_us": bench_time.as_us() }))
             }

@@ -260,7 +260,7 @@ pub const EVENTS: &[EventKeys] = &[
     (
         "link_lost",
         "nothing can be judged any more",
-        &[("reason", Text, "why")],
+        &[("reason", Text, "why"), FINDINGS],
     ),
     (
         "ended",

@@ -30,6 +30,7 @@ wordings! {
         not_begun: "not begun", "시작 안 함";
         as_a_whole: "as a whole", "전체";
         run_again: "repeated", "반복";
+        attempt: "attempt", "시도";
         open: "open", "미조치";
         acknowledged: "acknowledged", "확인됨";
         repaired: "repaired", "수리됨";

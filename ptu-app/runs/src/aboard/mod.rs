@@ -19,7 +19,7 @@ mod service;
 use ato_under_test::flash::BlockDevice;
 use btu_rig::lever::Lever;
 use btu_rig::procedure::Refusal;
-use btu_rig::rig::{Bench, LinkFailure, Rig, UnitLink};
+use btu_rig::rig::{Bench, LinkTrouble, Rig, UnitLink};
 use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
 use protocol::line::Section;
 use protocol::message::ModeSwitch;
@@ -168,7 +168,7 @@ impl UnitAboard {
     }
 
     /// One scan of unit and train.
-    fn scan(&mut self) -> Result<(), LinkFailure> {
+    fn scan(&mut self) -> Result<(), LinkTrouble> {
         self.train.tick()?;
         if self.comes_to_rest && self.train.rig().motion_settled() {
             self.comes_to_rest = false;
@@ -185,7 +185,7 @@ impl UnitLink for UnitAboard {
         _now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         self.train.link_mut().receive_maintenance(to_unit);
         self.scan()?;
         self.train.link_mut().take_maintenance(from_unit);

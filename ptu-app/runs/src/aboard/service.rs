@@ -1,7 +1,7 @@
 //! A service: section after section by the unit's ATO, with doors at the stations, and back to the depot.
 
 use btu_rig::drive::{Drive, DrivePlan, Ending, Outcome};
-use btu_rig::rig::LinkFailure;
+use btu_rig::rig::LinkTrouble;
 use btu_rig::stimulus::{DoorState, Stimulus, WaysideCondition};
 use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
@@ -50,7 +50,7 @@ impl UnitAboard {
     ///
     /// # Errors
     /// The connection within the train broke, which it cannot.
-    pub fn drive(&mut self, plan: DrivePlan) -> Result<Arrival, LinkFailure> {
+    pub fn drive(&mut self, plan: DrivePlan) -> Result<Arrival, LinkTrouble> {
         must(self.apply(&Stimulus::MaintenanceKey { on: false }));
         must(self.apply(&Stimulus::Wayside(WaysideCondition::Good)));
         // The next run is prepared from the beginning: ATP leaves and sets Automatic again.
@@ -76,7 +76,7 @@ impl UnitAboard {
         })
     }
 
-    fn serve_station(&mut self) -> Result<Doors, LinkFailure> {
+    fn serve_station(&mut self) -> Result<Doors, LinkTrouble> {
         self.wait(CLOSED)?;
         let sample = self.rig().sample();
         let on = |signal| sample.get(signal) == Some(1.0);
@@ -99,7 +99,7 @@ impl UnitAboard {
     ///
     /// # Errors
     /// The connection within the train broke, which it cannot.
-    pub fn return_to_depot(&mut self) -> Result<(), LinkFailure> {
+    pub fn return_to_depot(&mut self) -> Result<(), LinkTrouble> {
         must(self.apply(&Stimulus::TrainDriven { on: false }));
         let until = self.now() + STANDS_WITHIN;
         while self.now() < until && self.rig().truth().speed_mps != 0.0 {
@@ -113,7 +113,7 @@ impl UnitAboard {
         self.wait(SETTLES)
     }
 
-    fn wait(&mut self, time: Duration) -> Result<(), LinkFailure> {
+    fn wait(&mut self, time: Duration) -> Result<(), LinkTrouble> {
         let until = self.now() + time;
         while self.now() + SCAN <= until {
             self.scan()?;

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{Procedure, UnitEvent};
-use btu_rig::rig::UnitLink;
+use btu_rig::rig::{LinkTrouble, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::signal::{Sample, Signal};
 use protocol::{Duration, Instant, SCAN};
@@ -43,7 +43,7 @@ const KEY_SEEN: Duration = Duration::from_ms(300);
 enum WatchEnd {
     Run(Box<RunOrder>, Stop),
     Disconnect,
-    LinkLost(String),
+    LinkLost(LinkTrouble),
     /// The worker was dropped.
     Closed,
 }

@@ -1,6 +1,7 @@
 //! What the bench thread tells the window, in the order in which it happened.
 
 use btu_rig::procedure::UnitEvent;
+use btu_rig::rig::LinkTrouble;
 
 use crate::failure::Trouble;
 use crate::run::{Outcome, SessionEvent};
@@ -21,7 +22,7 @@ pub enum BenchEvent {
         safe: bool,
     },
     /// The link to the unit was lost outside a run: the reason.
-    LinkLost(String),
+    LinkLost(LinkTrouble),
     /// The unit restarted.
     UnitRestarted,
     /// Safe outputs were not confirmed before a run began, or after everything was stopped.

@@ -46,8 +46,8 @@ pub fn drive(bench: &DriveBench, plan: DrivePlan, seed: u64) -> Outcome {
     loop {
         let ticked = bench.tick();
         let now = bench.now();
-        if let Err(failure) = ticked {
-            return drive.abandon(Ending::LinkLost(failure.to_string()));
+        if let Err(why) = ticked {
+            return drive.abandon(Ending::LinkLost(why));
         }
         if let Some(outcome) = drive.step(now, bench.rig_mut()) {
             return outcome;

@@ -127,14 +127,14 @@ pub fn read_log<L: UnitLink>(
             pair = Some(ClockPair { uptime_ms, at_us });
         }
         since_power_up.extend(session.take_events());
-        if let Err(failure) = exchanged {
-            break Some(session.turned_away().unwrap_or(failure.to_string()));
+        if let Err(broken) = exchanged {
+            break Some(session.turned_away().unwrap_or(broken).to_string());
         }
         if session.is_complete() {
             break None;
         }
         if let Some(error) = session.link_error(now) {
-            break Some(error);
+            break Some(error.to_string());
         }
         if stop.presses() > 0 {
             break Some("stopped by the operator".to_owned());

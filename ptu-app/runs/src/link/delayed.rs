@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use btu_rig::bench_scatter::Timing;
-use btu_rig::rig::{LinkFailure, UnitLink};
+use btu_rig::rig::{LinkTrouble, UnitLink};
 use protocol::{Duration, Instant, Random, SCAN};
 
 /// A unit at the other end of such a wire.
@@ -38,7 +38,7 @@ impl<L: UnitLink> UnitLink for Delayed<L> {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         self.arriving.clear();
         self.to_unit.carry(now, to_unit, &mut self.arriving);
         self.sent.clear();
@@ -98,7 +98,7 @@ mod tests {
             _now: Instant,
             to_unit: &[u8],
             from_unit: &mut Vec<u8>,
-        ) -> Result<(), LinkFailure> {
+        ) -> Result<(), LinkTrouble> {
             from_unit.extend_from_slice(to_unit);
             Ok(())
         }

@@ -1,5 +1,6 @@
 //! Why a unit on a port cannot be tested.
 
+use btu_rig::rig::LinkTrouble;
 use protocol::Duration;
 
 use super::Endpoint;
@@ -19,13 +20,13 @@ pub enum NoUnit {
     NotServed(String, String),
     /// Another tester has the one there: which.
     #[error("{0}: {1}; wait until it has left, or end it there")]
-    Taken(Endpoint, String),
+    Taken(Endpoint, LinkTrouble),
     /// The port failed so.
     #[error("{0}; check the cable and that the unit is served there")]
-    PortFailed(String),
+    PortFailed(LinkTrouble),
     /// What comes from there is not what a unit sends.
     #[error("{0}: {1}")]
-    BadLink(Endpoint, String),
+    BadLink(Endpoint, LinkTrouble),
     /// The one there answers, and its start did not end in this time.
     #[error("{0}: the unit answers but does not become ready within {1}; power it off and on")]
     NotReady(Endpoint, Duration),

@@ -2,7 +2,7 @@
 
 use ato_under_test::flash::BlockDevice;
 use ato_under_test::{Port, Setup, Unit};
-use btu_rig::rig::{LinkFailure, UnitLink};
+use btu_rig::rig::{LinkTrouble, UnitLink};
 use protocol::{Duration, Instant};
 
 /// Serial number of the embedded unit when none is asked for.
@@ -102,7 +102,7 @@ impl UnitLink for SimLink {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         let Some(power_at) = self.power_at.filter(|at| now >= *at) else {
             return Ok(());
         };

@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use ato_under_test::serve::{PORT_WAITS, SerialEnd};
-use btu_rig::rig::{LinkFailure, UnitLink};
+use btu_rig::rig::{LinkFailure, LinkTrouble, PortFailure, UnitLink};
 use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
@@ -205,7 +205,7 @@ impl UnitLink for WireLink {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         let behind = self.behind(now);
         let scans = 1 + behind.as_us() / SCAN.as_us();
         let exchanged = match &mut self.port {
@@ -215,9 +215,9 @@ impl UnitLink for WireLink {
         };
         self.pause += self.backlog.share(&self.read, behind, from_unit);
         self.read.clear();
-        exchanged.map_err(|reason| LinkFailure {
-            link: self.name.clone(),
-            reason,
+        exchanged.map_err(|why| {
+            let link = self.name.clone();
+            LinkTrouble::Broken(LinkFailure { link, why })
         })
     }
 
@@ -243,20 +243,20 @@ fn exchange(
     to_unit: &[u8],
     from_unit: &mut Vec<u8>,
     scans: u64,
-) -> Result<(), String> {
+) -> Result<(), PortFailure> {
     let mut chunk = [0; 4096];
     for _ in 0..scans {
         match port.read(&mut chunk) {
-            Ok(0) => return Err("closed at the other end".into()),
+            Ok(0) => return Err(PortFailure::Closed),
             Ok(count) => from_unit.extend_from_slice(&chunk[..count]),
             Err(error) if is_nothing(&error) => break,
-            Err(error) => return Err(format!("reading failed: {error}")),
+            Err(error) => return Err(PortFailure::Reading(error.to_string())),
         }
     }
     match port.write(to_unit) {
         Ok(_) => Ok(()),
         Err(error) if is_nothing(&error) => Ok(()),
-        Err(error) => Err(format!("writing failed: {error}")),
+        Err(error) => Err(PortFailure::Writing(error.to_string())),
     }
 }
 
@@ -265,10 +265,8 @@ fn exchange_scan(
     port: &mut Box<dyn SerialPort>,
     to_unit: &[u8],
     from_unit: &mut Vec<u8>,
-) -> Result<(), String> {
-    let not_in_step = |error: std::io::Error| {
-        format!("the unit does not answer in lock step ({error}); serve it with --pty --lock-step")
-    };
+) -> Result<(), PortFailure> {
+    let not_in_step = |error: io::Error| PortFailure::NotInLockStep(error.to_string());
     port.write_all(to_unit).map_err(not_in_step)?;
     port.write_all(&SCAN_END).map_err(not_in_step)?;
     let mut chunk = [0; 4096];

@@ -7,7 +7,7 @@ use protocol::{CYCLE, Instant};
 
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, Trouble};
 use crate::run::bench_setup::SWITCHED_OFF;
 use crate::run::{BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
@@ -87,8 +87,10 @@ fn play<L: UnitLink>(
     let window = original.window(shift_us);
     let trace = session.play(StimulusPlayer::new(record, shift_us), window, &mut refused);
     let trace = trace.ok_or_else(|| {
-        let why = session.link_error();
-        Failure::bench(why.unwrap_or_else(|| "stopped before anything was recorded".into()))
+        Failure::bench(session.link_error().map_or_else(
+            || "stopped before anything was recorded".into(),
+            Trouble::Link,
+        ))
     })?;
     let mut record = record.clone();
     for entry in &mut record.entries {

@@ -218,8 +218,10 @@ fn play(
             let safe = session.make_safe();
             let again = played?;
             let unsafe_ = (!safe).then(|| {
-                let why = session.link_error();
-                why.unwrap_or_else(|| "the outputs are not confirmed safe".to_owned())
+                session.link_error().map_or_else(
+                    || "the outputs are not confirmed safe".to_owned(),
+                    |why| why.to_string(),
+                )
             });
             let cut_short = unsafe_.or_else(|| stopped(&again));
             Ok((again, serial, cut_short))

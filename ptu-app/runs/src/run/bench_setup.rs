@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ato_under_test::Setup;
 use btu_rig::bench_scatter::{BenchDraw, BenchScatter};
 use btu_rig::procedure::plan::Connection;
-use btu_rig::rig::{Bench, ExpectedIdentity, Harness, LinkFailure, Rig, UnitLink};
+use btu_rig::rig::{Bench, ExpectedIdentity, Harness, LinkTrouble, Rig, UnitLink};
 use btu_rig::train::TrainData;
 use btu_rig::waveform::ChannelConfig;
 use protocol::config::UnitConfig;
@@ -86,7 +86,7 @@ impl UnitLink for SimUnit {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         match self {
             Self::OnBench(unit) => unit.exchange(now, to_unit, from_unit),
             Self::Aboard(train) => train.exchange(now, to_unit, from_unit),

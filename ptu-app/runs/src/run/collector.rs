@@ -1,13 +1,9 @@
 //! Reads the streams of the procedures in order, numbers steps and faults through the run, passes
 //! them to the store and to the listener, and computes the verdict of the run.
 
-use btu_rig::procedure::{
-    Finding, Outside, OutsideStep, Procedure, ResultKind, RunEvent, StepResult, Verdict,
-};
+use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
-use fault_db::{
-    Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepKind, StepRecord,
-};
+use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
 use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
@@ -18,7 +14,7 @@ use super::trace_data::trace_data;
 use super::whole_run::RunStart;
 use crate::failure::Exit;
 use crate::failure::Trouble;
-use crate::stored::{WHOLE_RUN, fault_record, outside_record, stored, whole_run};
+use crate::stored::{WHOLE_RUN, fault_record, kind, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -275,11 +271,7 @@ impl<'a> Collector<'a> {
         self.store.step(StepRecord {
             index,
             procedure: procedure.id.clone(),
-            kind: match result.kind {
-                ResultKind::Step => StepKind::Step,
-                ResultKind::Attempt => StepKind::Attempt,
-                ResultKind::Again => StepKind::Again,
-            },
+            kind: kind(result.kind),
             place: Some(result.index as u32),
             name: result.name,
             turn: result.turn,

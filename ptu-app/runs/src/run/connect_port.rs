@@ -127,7 +127,7 @@ impl BenchSetup {
             return Err(NoUnit::Taken(at(), why).into());
         }
         if let Some(error) = session.link_failure() {
-            return Err(NoUnit::PortFailed(error.to_owned()).into());
+            return Err(NoUnit::PortFailed(error.clone()).into());
         }
         if let Some(why) = session.link_error() {
             return Err(NoUnit::BadLink(at(), why).into());

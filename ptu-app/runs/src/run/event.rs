@@ -3,6 +3,7 @@
 use btu_rig::procedure::RunEvent;
 use btu_rig::recorded::StimulusRecord;
 use btu_rig::recorder::{RecordedWindow, Row};
+use btu_rig::rig::LinkTrouble;
 use protocol::{Duration, Instant};
 
 use super::fault_watch::FaultSeen;
@@ -22,7 +23,7 @@ pub enum SessionEvent {
     Recording(Box<RecordedStimuli>),
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
     /// be read.
-    LinkLost(String),
+    LinkLost(LinkTrouble),
     /// Nothing more comes.
     Ended {
         /// Bench time this procedure took, bring-up included.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
-use btu_rig::rig::{Bench, Harness, LinkFailure, UnitLink};
+use btu_rig::rig::{Bench, Harness, LinkTrouble, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::frame::Decoder;
 use protocol::message::{Channel, Message, ModeSwitch};
@@ -87,7 +87,7 @@ impl UnitLink for Line {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         let since_ms = now.since(Instant::ZERO + SWITCHED_OFF).as_ms();
         let begins = since_ms == AT_MS;
         let done = match self.happens {

@@ -9,7 +9,7 @@ use btu_rig::procedure::runner::SAFE_WITHIN;
 use btu_rig::procedure::{EventSource, UnitEvent};
 use btu_rig::recorded::StimulusPlayer;
 use btu_rig::recorder::{RecordedWindow, Recorder, Row};
-use btu_rig::rig::{Bench, UnitLink};
+use btu_rig::rig::{Bench, LinkTrouble, UnitLink};
 use fault_db::TraceData;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant, SCAN};
@@ -31,7 +31,7 @@ pub struct Session<L: UnitLink> {
     stop: Stop,
     recorder: Recorder,
     sample: Sample,
-    link_error: Option<String>,
+    link_error: Option<LinkTrouble>,
     /// How far the bench may lag behind the wall clock; `None` for a unit in virtual time.
     max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
@@ -178,13 +178,13 @@ impl<L: UnitLink> Session<L> {
     }
 
     /// Why nothing can be sent or received any more, if so.
-    pub fn link_failure(&self) -> Option<&str> {
-        self.link_error.as_deref()
+    pub fn link_failure(&self) -> Option<&LinkTrouble> {
+        self.link_error.as_ref()
     }
 
     /// Why nothing can be judged, if so: the unit cannot be reached, another one answers, or its log cannot
     /// be read.
-    pub fn link_error(&self) -> Option<String> {
+    pub fn link_error(&self) -> Option<LinkTrouble> {
         self.link_error
             .clone()
             .or_else(|| self.bench.rig().link_error())
@@ -206,7 +206,7 @@ impl<L: UnitLink> Session<L> {
     fn scan(&mut self, cut: &mut dyn FnMut(RecordedWindow)) {
         self.pace.wait();
         if let Err(failure) = self.bench.tick() {
-            self.link_error.get_or_insert(failure.to_string());
+            self.link_error.get_or_insert(failure);
         }
         self.keep_in_step();
         let behind = self.behind();

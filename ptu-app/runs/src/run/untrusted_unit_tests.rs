@@ -2,7 +2,7 @@
 //! harms what passes.
 
 use btu_rig::procedure::{Procedure, RunEvent, Verdict};
-use btu_rig::rig::{LinkFailure, UnitLink};
+use btu_rig::rig::{LinkTrouble, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
 use protocol::{Duration, Instant, Random};
@@ -94,7 +94,7 @@ impl<L: UnitLink> UnitLink for FaultyLink<L> {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         if now.since(Instant::ZERO) < FROM || self.wrong == LinkFault::Nothing {
             return self.link.exchange(now, to_unit, from_unit);
         }

@@ -4,7 +4,7 @@ use btu_rig::drive::DrivePlan;
 
 use crate::aboard::{Arrival, Doors, UnitAboard};
 use crate::drive::SectionChoice;
-use crate::failure::Failure;
+use crate::failure::{Failure, Trouble};
 use crate::run::BenchSetup;
 use crate::stdio;
 use crate::stop::Stop;
@@ -33,7 +33,7 @@ pub fn drive(
     if plans.is_empty() {
         return Ok(());
     }
-    let broke = |failure: btu_rig::rig::LinkFailure| Failure::bench(failure.to_string());
+    let broke = |why| Failure::bench(Trouble::Link(why));
     for plan in plans {
         if !stop.may_begin() {
             break;

@@ -17,7 +17,7 @@ use serde_json::Value;
 
 use self::surfaces::{
     columns, console, diagnosed, diagnosed_json, in_full, json, junit, printed_texts, short,
-    stream, summary, table_of_values, texts,
+    stream, summary, table_of_values, texts, turn_kind,
 };
 use crate::common::made_runs::{Made, Maker, PARTS};
 use crate::common::served::{Running, Unit};
@@ -251,7 +251,7 @@ fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
             [&runs, &steps, &values, &parts].map(|all| all.get(&of).map_or(&[][..], |rows| rows));
         let steps = steps.iter().map(|row| {
             let [turn, turns] = [5, 6].map(|place: usize| row[place].parse().expect("a number"));
-            let turn = turn_of(turn, turns, row[4] == "again");
+            let turn = turn_of(turn, turns, turn_kind(&row[4]));
             (row[4] != "outside", &*row[1], &*row[2], &*row[3], turn)
         });
         let values = values.iter().map(|row| {

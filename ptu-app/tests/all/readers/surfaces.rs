@@ -35,10 +35,18 @@ fn is_step(kind: &str) -> bool {
     ["step", "attempt", "again"].contains(&kind)
 }
 
+/// The kind of a result as far as a name tells it.
+pub fn turn_kind(kind: &str) -> &str {
+    ["attempt", "again"]
+        .into_iter()
+        .find(|of| *of == kind)
+        .unwrap_or("step")
+}
+
 /// What stands outside of steps has no turns.
-fn turn_of_keys(of: &Value, is_again: bool) -> String {
+fn turn_of_keys(of: &Value, kind: &str) -> String {
     let [turn, turns] = ["turn", "turns"].map(|key| of[key].as_u64().unwrap_or(1));
-    turn_of(turn, turns, is_again)
+    turn_of(turn, turns, kind)
 }
 
 /// What the row of a lost link begins with.
@@ -49,7 +57,7 @@ pub fn console(table: &str) -> Told {
     let mut recorded = 0;
     let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
-    let mut turns = Vec::new();
+    let (mut turns, mut in_vain) = (Vec::new(), Vec::new());
     for line in table.lines() {
         let cells = columns(line);
         let mut heads = "PROCEDURE|VERDICT|REPEATED STEP|SKIPPED STEPS|FAULT".split('|');
@@ -69,6 +77,9 @@ pub fn console(table: &str) -> Told {
             outside += usize::from(places.any(|place| place.name() == name));
             let why = cells.get(2).filter(|why| why.starts_with(LOST));
             lost = why.cloned().unwrap_or(lost);
+        } else if here == "REPEATED STEP" {
+            let name = cells[0].split_once(": ").map_or("", |(_, name)| name);
+            in_vain.extend(turned(&marks(name, 's'), &turn_in(name)));
         } else if here == "FAULT" {
             parts.push(format!("{}={}", cells[2], cells[4]));
         } else if let Some(said) = line.strip_prefix("run ") {
@@ -87,9 +98,10 @@ pub fn console(table: &str) -> Told {
     told.extend(passed.map(|passed| fact("passed", passed)));
     told.extend(passed.map(|_| fact("with a result", recorded)));
     told.push(fact("link en", lost));
-    // The quiet one names no fault.
+    // The quiet one names no fault and no attempt.
     if passed.is_some() {
         told.push(sorted("parts", parts));
+        told.push(sorted("attempts in vain", in_vain));
     }
     told.extend([
         sorted("steps that did not pass", bad),
@@ -126,7 +138,7 @@ pub fn json(run: &Value) -> Told {
     let steps = list(&run["steps"]);
     told.extend(results(steps.iter().map(|step| {
         let [name, verdict, why] = ["name", "verdict", "message"].map(|key| text(&step[key]));
-        let turn = turn_of_keys(step, step["kind"] == "again");
+        let turn = turn_of_keys(step, turn_kind(text(&step["kind"])));
         (is_step(text(&step["kind"])), name, verdict, why, turn)
     })));
     let values = steps.iter().flat_map(|step| list(&step["measurements"]));
@@ -148,7 +160,12 @@ pub fn stream(lines: &[String]) -> Told {
             _ => return None,
         };
         let [verdict, why] = ["verdict", "message"].map(|key| text(&line[key]));
-        let turn = turn_of_keys(line, line["again"] == true);
+        let kind = match [&line["again"], &line["repeated"]].map(|key| *key == true) {
+            [true, _] => "again",
+            [_, true] => "attempt",
+            _ => "step",
+        };
+        let turn = turn_of_keys(line, kind);
         Some((line["event"] == "step_finished", name, verdict, why, turn))
     }));
     let mut parts: BTreeMap<&str, u32> = BTreeMap::new();
@@ -177,7 +194,7 @@ pub fn table_of_values(csv: &str) -> Told {
     let all = steps.values();
     let mut told = results(all.map(|row| {
         let [turn, turns] = [17, 18].map(|place: usize| row[place].parse().expect("a number"));
-        let turn = turn_of(turn, turns, row[6] == "again");
+        let turn = turn_of(turn, turns, turn_kind(&row[6]));
         (is_step(&row[6]), &*row[5], &*row[7], &*row[9], turn)
     }));
     let values = rows.iter().filter(|row| !row[10].is_empty());
@@ -208,6 +225,8 @@ fn csv_cells(line: &str) -> Vec<String> {
 }
 
 pub fn junit(xml: &str) -> Told {
+    // XML 1.0 cannot have these, and some parsers pass over them.
+    assert!(!xml.contains(['\u{fffe}', '\u{ffff}', '\u{1b}']));
     let report = Report::deserialize_from_str(xml).expect("JUnit XML");
     let name = report.name.as_ref().expect("a name").as_str();
     let said = name.strip_prefix("ptu run ").expect("a run");

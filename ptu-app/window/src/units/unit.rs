@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Finding, UnitEvent};
+use btu_rig::rig::LinkTrouble;
 use btu_rig::stimulus::Stimulus;
 use protocol::message::Identity;
 use protocol::signal::Signal;
@@ -284,10 +285,14 @@ impl Unit {
     }
 
     /// Said once, though every procedure of a run finds it out for itself.
-    fn lose(&mut self, why: String, words: &Words, said: &mut UnitMessages<'_>) {
+    fn lose(&mut self, why: LinkTrouble, words: &Words, said: &mut UnitMessages<'_>) {
         self.stopping = false;
         if !std::mem::replace(&mut self.lost, true) {
-            said.trouble(About::Connection(self.id), words.frame.link_lost, why);
+            said.trouble(
+                About::Connection(self.id),
+                words.frame.link_lost,
+                Trouble::Link(why),
+            );
         }
     }
 }

@@ -25,7 +25,7 @@ fn a_text_is_told_in_its_parts_and_without_the_number_of_its_repetition() {
     let say = |text: &str| korean(text).into_owned();
     let step = "code 25: alarm, FSB, EB";
     assert_eq!(say(step), "속도 코드 25: 경보, FSB, EB 작동");
-    let repeated = super::super::KOREAN.step(step, [2, 3], true);
+    let repeated = super::super::KOREAN.step(step, [2, 3], fault_db::StepKind::Again);
     assert_eq!(repeated, format!("{} (2/3) (반복)", say(step)));
     assert_eq!(
         say("a step of the depot's own"),

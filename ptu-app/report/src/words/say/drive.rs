@@ -6,7 +6,7 @@ use protocol::event::Event;
 use protocol::message::Refusals;
 
 use super::super::{Language, Words, content};
-use super::condition;
+use super::{condition, link};
 
 impl Words {
     /// How an automatic run ended.
@@ -58,7 +58,7 @@ fn korean(ending: &Ending) -> String {
             behind("주행 중 자동 주행 모드에서 벗어남", mode)
         }
         Ending::TimeLimit => "제한 시간 초과: 아직 주행 중".to_owned(),
-        Ending::LinkLost(why) => format!("통신 두절: {}", told(why)),
+        Ending::LinkLost(why) => format!("통신 두절: {}", link::korean(why)),
     }
 }
 

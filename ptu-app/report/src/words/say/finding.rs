@@ -9,11 +9,12 @@ use btu_rig::procedure::finding::{
 use btu_rig::procedure::plan::Condition;
 use btu_rig::procedure::runner::ATTEMPTS;
 use btu_rig::stimulus::number;
+use fault_db::StepKind;
 use protocol::event::{Event, LOG_ENTRIES};
 use protocol::message::SelfTest;
 
 use super::super::{KOREAN, content};
-use super::condition;
+use super::{condition, link};
 
 pub fn findings(all: &Findings) -> String {
     let said: Vec<_> = all
@@ -148,7 +149,7 @@ pub fn korean(finding: &Finding) -> String {
                 format!("제한 시간 {limit} 초과: 기다린 조건 {expected}")
             }
         },
-        Finding::LinkLost { why } => format!("장치와의 통신: {}", told(why)),
+        Finding::LinkLost { why } => format!("장치와의 통신: {}", link::korean(why)),
         Finding::StoodStill { by, attempt } => {
             let by = by.as_secs();
             let then = match *attempt < ATTEMPTS {
@@ -229,7 +230,7 @@ pub fn korean(finding: &Finding) -> String {
             turns,
             findings: found,
         } => {
-            let step = KOREAN.step(step, [*turn, *turns], false);
+            let step = KOREAN.step(step, [*turn, *turns], StepKind::Step);
             format!("{procedure}, {step}: {}", findings(found))
         }
         Finding::More { n } => format!("그 외 {n}건"),

@@ -6,6 +6,7 @@ mod damage;
 mod diagnosis;
 mod drive;
 mod finding;
+mod link;
 mod reasons;
 mod trouble;
 
@@ -13,7 +14,7 @@ use std::borrow::Cow;
 
 use btu_rig::procedure::finding::{Finding, Findings};
 use btu_rig::procedure::plan::Action;
-use btu_rig::procedure::{ResultKind, StepResult, event_text};
+use btu_rig::procedure::{StepResult, event_text};
 use fault_db::{StepKind, StepRecord};
 use protocol::event::Event;
 use ptu_runs::bench_worker::outside_place;
@@ -50,23 +51,24 @@ impl Words {
         }
     }
 
-    /// A step by its name and its turn of so many; perhaps it was run again only for the state that it leaves.
-    pub fn step(&self, name: &str, [turn, turns]: [u32; 2], again: bool) -> String {
+    /// A step by its name and its turn of so many, and what it is where that is no result that counts.
+    pub fn step(&self, name: &str, [turn, turns]: [u32; 2], kind: StepKind) -> String {
         let mut said = self.content(name).into_owned();
         if turns > 1 {
             said += &format!(" ({turn}/{turns})");
         }
-        if again {
-            said += &format!(" ({})", self.common.run_again);
+        match kind {
+            StepKind::Attempt => said + &format!(" ({})", self.common.attempt),
+            StepKind::Again => said + &format!(" ({})", self.common.run_again),
+            StepKind::Step | StepKind::Outside => said,
         }
-        said
     }
 
     /// What is on record: a step, or where something failed that is none.
     pub fn record(&self, of: &StepRecord) -> String {
         match stored::outside_of(of) {
             Some(place) => self.common.outside(place).to_owned(),
-            None => self.step(&of.name, [of.turn, of.turns], of.kind == StepKind::Again),
+            None => self.step(&of.name, [of.turn, of.turns], of.kind),
         }
     }
 
@@ -74,7 +76,7 @@ impl Words {
     pub fn result(&self, of: &StepResult) -> String {
         match outside_place(of) {
             Some(place) => self.common.outside(place).to_owned(),
-            None => self.step(&of.name, [of.turn, of.turns], of.kind == ResultKind::Again),
+            None => self.step(&of.name, [of.turn, of.turns], stored::kind(of.kind)),
         }
     }
 

@@ -10,8 +10,8 @@ use ptu_runs::failure::Trouble;
 use ptu_runs::link::NoUnit;
 
 use super::super::{KOREAN, Words, content};
-use super::damage;
 use super::diagnosis::Both;
+use super::{damage, link};
 use crate::distances::{COLUMNS, DistancesError, ReadingError, WrongCell};
 
 impl Words {
@@ -59,6 +59,7 @@ fn both(trouble: &Trouble) -> Both {
             ]
         }
         Trouble::NoUnit(why) => no_unit(why),
+        Trouble::Link(why) => [why.to_string(), link::korean(why)],
         Trouble::Uncalibrated { kind, serial_no, due: Some(day) } => [
             format!("the calibration of {kind} {serial_no} was due on {day}; nothing was driven. Have it calibrated and its new calibration registered"),
             format!("교정 기한이 지났습니다: {kind} {serial_no} ({day}). 아무것도 구동하지 않았습니다. 교정한 후 새 교정을 등록하십시오"),
@@ -86,9 +87,9 @@ fn no_unit(no: &NoUnit) -> Both {
             format!("포트를 열 수 없습니다: {path} ({}). 케이블을 확인하거나 다른 포트를 선택하십시오", said(why)),
         ],
         N::NotServed(address, why) => same(format!("{address}에 연결할 수 없습니다 ({}). 장치가 그 주소에 있는지 확인하십시오", said(why))),
-        N::Taken(at, why) => same(format!("{at}: 다른 시험기가 장치를 사용 중입니다 ({}). 끝날 때까지 기다리거나 그 시험기를 끝내십시오", said(why))),
-        N::PortFailed(why) => same(format!("{}. 케이블과 장치를 확인하십시오", said(why))),
-        N::BadLink(at, why) => same(format!("{at}: {}", said(why))),
+        N::Taken(at, why) => same(format!("{at}: {}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오", link::korean(why))),
+        N::PortFailed(why) => same(format!("{}. 케이블과 장치를 확인하십시오", link::korean(why))),
+        N::BadLink(at, why) => same(format!("{at}: {}", link::korean(why))),
         N::NotReady(at, within) => same(format!("{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오")),
         N::OtherPace(at, times) => same(format!("{at}: 장치의 시계가 시험기보다 {times:.1}배 빠릅니다. 양쪽의 속도를 같게 하십시오")),
         N::Other(at, serial, expected) => same(format!("{at}의 장치는 {serial}이며 {expected}이(가) 아닙니다. 포트와 일련번호를 확인하십시오")),

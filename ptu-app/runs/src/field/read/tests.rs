@@ -1,6 +1,6 @@
 //! Reading the log of embedded units, and of links that fail while it is read.
 
-use btu_rig::rig::LinkFailure;
+use btu_rig::rig::{LinkFailure, LinkTrouble, PortFailure};
 use protocol::event::Event;
 use protocol::link::{End, Link};
 use protocol::message::{IoOutput, LogEnd, LogEntry, Message, Status};
@@ -117,16 +117,16 @@ impl UnitLink for ScriptedUnit {
         now: Instant,
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
-    ) -> Result<(), LinkFailure> {
+    ) -> Result<(), LinkTrouble> {
         match self
             .happens
             .filter(|(at_ms, _)| now >= Instant::from_ms(*at_ms))
         {
             Some((_, ScriptedEvent::CableOff)) => {
-                return Err(LinkFailure {
+                return Err(LinkTrouble::Broken(LinkFailure {
                     link: "tcp:told".into(),
-                    reason: "closed at the other end".into(),
-                });
+                    why: PortFailure::Closed,
+                }));
             }
             Some((_, ScriptedEvent::Restart)) => {
                 self.happens = None;
@@ -261,7 +261,7 @@ fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
 fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
     struct SilentUnit;
     impl UnitLink for SilentUnit {
-        fn exchange(&mut self, _: Instant, _: &[u8], _: &mut Vec<u8>) -> Result<(), LinkFailure> {
+        fn exchange(&mut self, _: Instant, _: &[u8], _: &mut Vec<u8>) -> Result<(), LinkTrouble> {
             Ok(())
         }
     }

@@ -98,7 +98,7 @@ impl<L: UnitLink> Session<L> {
             }
             self.wait_with(runner.awaits_operator());
             let mut rig = RecordingDriver::new(self.bench.rig_mut(), &mut recorded.record);
-            let poll = runner.advance(now, &self.sample, &events, link_error.as_deref(), &mut rig);
+            let poll = runner.advance(now, &self.sample, &events, link_error.as_ref(), &mut rig);
             self.emit(&mut runner, &mut rounds, &mut progress, sink);
             self.hand_rows(ROWS_AT_ONCE, sink);
             if !go_on() {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
+use fault_db::StepKind;
 
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
@@ -34,7 +35,7 @@ pub fn present(
     };
     let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
-    let name = words.step(&present.name, present.turn, false);
+    let name = words.step(&present.name, present.turn, StepKind::Step);
     let name = match with_path {
         true => format!("{}: {name}", procedure.id),
         false => name,

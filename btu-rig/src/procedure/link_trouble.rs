@@ -1,0 +1,249 @@
+//! Why nothing that is heard of a unit can be judged, as data: told in English here and in other languages by whoever
+//! shows it.
+
+use std::net::SocketAddr;
+
+use protocol::Duration;
+use protocol::frame::Reject;
+use protocol::message::Channel;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The connection to the unit broke.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[error("{link}: {why}")]
+pub struct LinkFailure {
+    /// What it is connected by, as the user named it.
+    pub link: String,
+    /// How it broke.
+    pub why: PortFailure,
+}
+
+/// How a port fails; the strings are the operating system's.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PortFailure {
+    /// The other end is gone.
+    #[error("closed at the other end")]
+    Closed,
+    /// Nothing can be read.
+    #[error("reading failed: {0}")]
+    Reading(String),
+    /// Nothing can be written.
+    #[error("writing failed: {0}")]
+    Writing(String),
+    /// The unit goes by the clock, or is not there.
+    #[error("the unit does not answer in lock step ({0}); serve it with --pty --lock-step")]
+    NotInLockStep(String),
+}
+
+/// What is wrong with the connection, with who answers, or with reading the unit's log.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinkTrouble {
+    /// Nothing can be sent or received any more.
+    #[error(transparent)]
+    Broken(LinkFailure),
+    /// Another tester has the unit.
+    #[error("the unit is taken by another tester, {by}, for {:.0} s{}", .held.as_secs(), silent_for(*.silent))]
+    Taken {
+        /// Where that tester is.
+        by: SocketAddr,
+        /// For how long it has it.
+        held: Duration,
+        /// For how long it has said nothing, if that is long.
+        silent: Option<Duration>,
+    },
+    /// Nothing at all came.
+    #[error("unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power", .within.as_secs())]
+    NotOneByte {
+        /// The time it had.
+        within: Duration,
+    },
+    /// Frames came that another version of this program makes.
+    #[error("{frames} frames of another version of the wire — unit and bench programs differ")]
+    OtherVersion {
+        /// How many.
+        frames: u64,
+    },
+    /// Bytes came, and no frame that can be taken.
+    #[error("garbage: {bytes} bytes, no valid frame{} — {cause}", refused_for(*.refused))]
+    Garbage {
+        /// How many bytes.
+        bytes: u64,
+        /// The most frequent reason for which frames were refused, and how many were for it.
+        refused: Option<(u64, Reject)>,
+        /// What it looks like.
+        cause: GarbageCause,
+    },
+    /// The unit was heard before, and is not any more.
+    #[error("unit silent for {:.1} s on the {} channel{}", .silence.as_secs(), channel_name(*.channel), meanwhile(*.refused))]
+    Silent {
+        /// Where it is silent.
+        channel: Channel,
+        /// For how long.
+        silence: Duration,
+        /// What came in the place of frames.
+        refused: Option<Refused>,
+    },
+    /// The line loses or damages more than one may.
+    #[error(
+        "the line between tester and unit is bad: within {:.0} s {from_unit} of {came} frames from the unit did not \
+         come through, and the unit refused {to_unit} — check the cable, its plugs and whether another program uses \
+         the port",
+        .within.as_secs()
+    )]
+    BadLine {
+        /// The time in which it did.
+        within: Duration,
+        /// Frames of the unit that did not come through.
+        from_unit: u64,
+        /// Frames of the unit, these included.
+        came: u64,
+        /// Frames that the unit refused.
+        to_unit: u64,
+    },
+    /// Who answers says other things of itself than before.
+    #[error("another unit answers: {}", changes(.0))]
+    OtherUnit(Vec<Changed>),
+    /// The log grows faster than it can be read.
+    #[error("the unit logs without end: {entries} entries came beyond what a log can hold")]
+    LogWithoutEnd {
+        /// How many came that are not kept.
+        entries: u64,
+    },
+    /// The unit does not answer questions for its log.
+    #[error("the unit's log could not be read: asked {times} times, no answer")]
+    LogNotAnswered {
+        /// How many questions.
+        times: u32,
+    },
+    /// The unit answers, and does not give an entry that it says it has.
+    #[error(
+        "the unit's log could not be read: asked {times} times for entry {entry} of {of}, which never came"
+    )]
+    EntryNeverCame {
+        /// How many questions.
+        times: u32,
+        /// Index of the entry.
+        entry: u32,
+        /// Entries that the unit says it has logged.
+        of: u32,
+    },
+    /// Entries were lost in the unit before they could be read.
+    #[error("{entries} entries of the unit's log were overwritten before they could be read")]
+    Overwritten {
+        /// How many.
+        entries: u64,
+    },
+    /// The unit ceased to answer questions for its stored memory.
+    #[error("the unit's stored memory could not be read: no answer any more")]
+    MemoryNotAnswered,
+    /// The unit says that it stores more than its memory can hold.
+    #[error("the unit says that it stores {entries} entries, more than a unit can")]
+    MemoryTooLarge {
+        /// How many.
+        entries: u32,
+    },
+    /// The stored memory has become shorter while it was read.
+    #[error("the unit's stored memory was exchanged or failed while it was read")]
+    MemoryExchanged,
+}
+
+/// What bytes without a valid frame look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GarbageCause {
+    /// No check sequence fits.
+    #[error("wrong baud rate?")]
+    BaudRate,
+    /// Frames come that this end has sent.
+    #[error("the tester's own frames come back: is the unit on this port?")]
+    Echo,
+    /// Frames are whole, and of something else.
+    #[error("check the cable and what is connected to this port")]
+    OtherDevice,
+}
+
+/// Frames that were refused while a unit was silent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Refused {
+    /// So many do not continue those before them, as those of a unit that starts again and again.
+    OfStarts(u64),
+    /// So many were refused for any reason.
+    Frames(u64),
+}
+
+/// A property of a unit that is not what it was.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Changed {
+    /// Which.
+    pub property: Property,
+    /// As the unit said it first.
+    pub was: String,
+    /// As it says it now.
+    pub is: String,
+}
+
+/// What tells two units apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Property {
+    /// Serial number.
+    Serial,
+    /// Name of its configuration.
+    Configuration,
+    /// Checksum of its configuration.
+    ConfigurationChecksum,
+    /// Checksum of its track database.
+    TrackChecksum,
+}
+
+/// Name of a channel in a sentence.
+pub const fn channel_name(channel: Channel) -> &'static str {
+    match channel {
+        Channel::Ptu => "PTU",
+        Channel::Io => "I/O",
+        Channel::Tcms => "TCMS",
+        Channel::Twc => "TWC",
+    }
+}
+
+fn silent_for(silent: Option<Duration>) -> String {
+    silent.map_or_else(String::new, |silent| {
+        format!(", which has been silent for {:.0} s", silent.as_secs())
+    })
+}
+
+fn refused_for(refused: Option<(u64, Reject)>) -> String {
+    refused.map_or_else(String::new, |(frames, reason)| {
+        format!(", {frames} refused for {}", reason.label())
+    })
+}
+
+fn meanwhile(refused: Option<Refused>) -> String {
+    match refused {
+        None => String::new(),
+        Some(Refused::OfStarts(frames)) => format!(
+            ", while {frames} frames did not continue those before them — the unit starts again and again: check its \
+             supply"
+        ),
+        Some(Refused::Frames(frames)) => {
+            format!(", while {frames} frames were refused — check the line between tester and unit")
+        }
+    }
+}
+
+fn changes(all: &[Changed]) -> String {
+    let said = all.iter().map(|Changed { property, was, is }| {
+        let what = match property {
+            Property::Serial => "serial number",
+            Property::Configuration => "unit configuration",
+            Property::ConfigurationChecksum => "configuration's checksum",
+            Property::TrackChecksum => "track database's checksum",
+        };
+        format!("its {what} was {was} and is {is}")
+    });
+    said.collect::<Vec<_>>().join(", ")
+}

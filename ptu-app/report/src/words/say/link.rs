@@ -1,0 +1,171 @@
+//! What is wrong with the link to a unit, in Korean.
+
+use btu_rig::procedure::link_trouble::{
+    GarbageCause, LinkFailure, LinkTrouble, PortFailure, Property, Refused, channel_name,
+};
+
+#[rustfmt::skip]
+pub fn korean(trouble: &LinkTrouble) -> String {
+    use LinkTrouble as T;
+    match trouble {
+        T::Broken(LinkFailure { link, why }) => format!("{link}: {}", port(why)),
+        T::Taken { by, held, silent } => {
+            let silent = silent.map_or_else(String::new, |silent| format!(", 그중 {:.0} s 동안 무응답", silent.as_secs()));
+            format!("다른 시험기가 장치를 사용 중입니다 ({by}, {:.0} s 전부터{silent})", held.as_secs())
+        }
+        T::NotOneByte { within } => format!("장치 무응답: {:.1} s 동안 수신한 데이터 없음. 케이블, 포트, 장치 전원을 확인하십시오", within.as_secs()),
+        T::OtherVersion { frames } => format!("통신 버전이 다른 전문 {frames}개 수신: 장치와 시험기의 프로그램 버전이 다릅니다"),
+        T::Garbage { bytes, refused, cause } => {
+            let refused = refused.map_or_else(String::new, |(frames, reason)| format!(", {frames}개 거부 ({})", reason.label()));
+            let cause = match cause {
+                GarbageCause::BaudRate => "통신 속도를 확인하십시오",
+                GarbageCause::Echo => "시험기가 보낸 전문이 되돌아옵니다. 이 포트에 장치가 연결되었는지 확인하십시오",
+                GarbageCause::OtherDevice => "케이블과 이 포트에 연결된 기기를 확인하십시오",
+            };
+            format!("올바른 전문 없이 {bytes} B 수신{refused}: {cause}")
+        }
+        T::Silent { channel, silence, refused } => {
+            let meanwhile = match refused {
+                None => String::new(),
+                Some(Refused::OfStarts(frames)) => format!(". 그동안 앞과 이어지지 않는 전문 {frames}개 수신: 장치가 재기동을 되풀이합니다. 전원을 확인하십시오"),
+                Some(Refused::Frames(frames)) => format!(". 그동안 거부한 전문 {frames}개: 시험기와 장치 사이의 회선을 점검하십시오"),
+            };
+            format!("장치 무응답: {} 채널 {:.1} s{meanwhile}", channel_name(*channel), silence.as_secs())
+        }
+        T::BadLine { within, from_unit, came, to_unit } => format!(
+            "시험기와 장치 사이의 회선 불량: {:.0} s 동안 장치의 전문 {came}개 중 {from_unit}개가 전달되지 않았고 장치가 {to_unit}개를 거부함. 케이블과 커넥터, 다른 프로그램의 포트 사용 여부를 확인하십시오",
+            within.as_secs()
+        ),
+        T::OtherUnit(changed) => {
+            let changed = changed.iter().map(|one| {
+                let what = match one.property {
+                    Property::Serial => "일련번호",
+                    Property::Configuration => "장치 구성",
+                    Property::ConfigurationChecksum => "장치 구성 체크섬",
+                    Property::TrackChecksum => "선로 데이터베이스 체크섬",
+                };
+                format!("{what} {} → {}", one.was, one.is)
+            });
+            format!("다른 장치가 응답함: {}", changed.collect::<Vec<_>>().join(", "))
+        }
+        T::LogWithoutEnd { entries } => format!("장치의 고장 기록이 끝없이 늘어남: 기록 용량을 넘은 항목 {entries}개 수신"),
+        T::LogNotAnswered { times } => format!("장치의 고장 기록을 읽지 못함: {times}회 요청, 응답 없음"),
+        T::EntryNeverCame { times, entry, of } => format!("장치의 고장 기록을 읽지 못함: {of}개 중 {entry}번 항목을 {times}회 요청했으나 오지 않음"),
+        T::Overwritten { entries } => format!("장치의 고장 기록 {entries}개를 읽기 전에 장치가 덮어씀"),
+        T::MemoryNotAnswered => "장치의 저장 메모리를 읽지 못함: 응답이 끊김".to_owned(),
+        T::MemoryTooLarge { entries } => format!("장치가 알린 저장 항목 수 {entries}개는 장치의 용량을 넘음"),
+        T::MemoryExchanged => "읽는 동안 장치의 저장 메모리가 교체되었거나 고장남".to_owned(),
+    }
+}
+
+#[rustfmt::skip]
+fn port(failure: &PortFailure) -> String {
+    match failure {
+        PortFailure::Closed => "상대편에서 연결을 닫음".to_owned(),
+        PortFailure::Reading(why) => format!("수신 실패: {why}"),
+        PortFailure::Writing(why) => format!("송신 실패: {why}"),
+        PortFailure::NotInLockStep(why) => format!("장치가 동기 방식으로 응답하지 않음 ({why}). 장치를 --pty --lock-step(으)로 실행하십시오"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use btu_rig::procedure::link_trouble::Changed;
+    use protocol::Duration;
+    use protocol::frame::Reject;
+    use protocol::message::Channel;
+
+    use super::*;
+
+    /// Goal: a number that one language tells is not lost or changed in the other. Method: troubles with numbers of their own.
+    #[test]
+    fn both_languages_tell_the_same_numbers() {
+        use LinkTrouble as T;
+        let time = Duration::from_ms;
+        let changed = |property| Changed {
+            property,
+            was: "11".into(),
+            is: "12".into(),
+        };
+        let lock_step = PortFailure::NotInLockStep("21".into());
+        let ports = [
+            PortFailure::Closed,
+            PortFailure::Reading("22".into()),
+            PortFailure::Writing("23".into()),
+            lock_step,
+        ];
+        let link = || "tcp:31".to_owned();
+        let broken = ports.map(|why| T::Broken(LinkFailure { link: link(), why }));
+        let garbage = [
+            GarbageCause::BaudRate,
+            GarbageCause::Echo,
+            GarbageCause::OtherDevice,
+        ];
+        let garbage = garbage.map(|cause| T::Garbage {
+            bytes: 903,
+            refused: Some((41, Reject::Checksum)),
+            cause,
+        });
+        let silent = [None, Some(Refused::OfStarts(51)), Some(Refused::Frames(52))];
+        let silent = silent.map(|refused| T::Silent {
+            channel: Channel::Io,
+            silence: time(1_600),
+            refused,
+        });
+        let properties = [
+            Property::Serial,
+            Property::Configuration,
+            Property::ConfigurationChecksum,
+            Property::TrackChecksum,
+        ];
+        let others = [
+            T::Taken {
+                by: ([10, 0, 0, 1], 4711).into(),
+                held: time(61_000),
+                silent: Some(time(62_000)),
+            },
+            T::NotOneByte {
+                within: time(3_000),
+            },
+            T::OtherVersion { frames: 63 },
+            T::BadLine {
+                within: time(10_000),
+                from_unit: 64,
+                came: 65,
+                to_unit: 66,
+            },
+            T::OtherUnit(properties.map(changed).into()),
+            T::LogWithoutEnd { entries: 67 },
+            T::LogNotAnswered { times: 68 },
+            T::EntryNeverCame {
+                times: 69,
+                entry: 70,
+                of: 71,
+            },
+            T::Overwritten { entries: 72 },
+            T::MemoryNotAnswered,
+            T::MemoryTooLarge { entries: 73 },
+            T::MemoryExchanged,
+        ];
+        let numbers = |text: &str| {
+            let all = text.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+            let mut all: Vec<_> = all
+                .map(|number| number.trim_matches('.').to_owned())
+                .collect();
+            all.retain(|number| !number.is_empty());
+            all.sort();
+            all
+        };
+        for trouble in others
+            .into_iter()
+            .chain(broken)
+            .chain(garbage)
+            .chain(silent)
+        {
+            let (english, korean) = (trouble.to_string(), korean(&trouble));
+            assert_eq!(numbers(&english), numbers(&korean), "{english}\n{korean}");
+            let read = serde_json::to_string(&trouble).expect("JSON");
+            assert_eq!(serde_json::from_str::<T>(&read).expect("data"), trouble);
+        }
+    }
+}
