@@ -119,9 +119,7 @@ impl App {
         };
         self.frame.keys(ui, &mut page_context);
         self.pages.poll(&mut page_context);
-        Panel::top("connection").show(ui, |ui| self.frame.connection(ui, &mut page_context));
-        Panel::top("pages").show(ui, |ui| self.frame.navigation(ui, &mut page_context));
-        Panel::bottom("messages").show(ui, |ui| self.frame.messages(ui, &mut page_context));
+        self.frame.around(ui, &mut page_context);
         if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
             let goes_on = self.pages.goes_on(&page_context);
             Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
@@ -141,6 +139,7 @@ impl App {
             }
             self.pages.show(page, ui, &mut page_context);
         });
+        self.frame.over(ui, &mut page_context);
         if self.closing {
             let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);

@@ -1,4 +1,4 @@
-//! Fonts: the shipped one for everything people read, those of the toolkit for scripts and symbols.
+//! Fonts: the shipped one for everything people read, those of the toolkit for scripts and symbols, and one of icons.
 
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 
@@ -17,4 +17,5 @@ pub fn set(context: &Context) {
         fallbacks.insert(place.min(fallbacks.len()), NAME.into());
     }
     context.set_fonts(fonts);
+    egui_material_icons::initialize(context);
 }

@@ -57,6 +57,8 @@ pub struct Message {
 
 /// What was written can be undone so long, s.
 pub const UNDO_S: f64 = 10.0;
+/// Any other message is shown so long, s.
+const SHOWN_S: f64 = 10.0;
 /// Messages kept; older ones are dropped.
 const KEPT: usize = 100;
 
@@ -101,12 +103,15 @@ impl Messages {
                 message.written = None;
             }
         }
+        for message in &mut self.all {
+            message.shown_at_s.get_or_insert(now_s);
+        }
         let place = self
             .all
             .iter()
             .rposition(|message| message.written.is_some())?;
-        let message = &mut self.all[place];
-        let left_s = message.shown_at_s.get_or_insert(now_s).to_owned() + UNDO_S - now_s;
+        let message = &self.all[place];
+        let left_s = message.shown_at_s.unwrap_or(now_s) + UNDO_S - now_s;
         let written = message.written.filter(|_| left_s > 0.0)?;
         Some((place, written, left_s))
     }
@@ -148,15 +153,20 @@ impl Messages {
         self.all.get(self.unread?).filter(|message| !message.over)
     }
 
-    /// The latest that is no trouble and still holds, unless trouble came after it or it is that of this place.
-    pub fn latest_note(&self, but: Option<usize>) -> Option<&Message> {
+    /// The latest that is no trouble and still holds, for [`SHOWN_S`], unless trouble came after it or it is that of this place.
+    pub fn latest_note(&self, but: Option<usize>, now_s: f64) -> Option<&Message> {
         let place = self
             .all
             .len()
             .checked_sub(1)
             .filter(|place| Some(*place) != but);
         let last = self.all.get(place?);
+        let is_new = |message: &&Message| {
+            let shown_at_s = message.shown_at_s.unwrap_or(now_s);
+            now_s - shown_at_s < SHOWN_S
+        };
         last.filter(|message| !message.bad && !message.over)
+            .filter(is_new)
     }
 
     /// Marks the latest trouble as acknowledged.
@@ -206,8 +216,11 @@ mod tests {
         messages.note_written("repaired", written);
         let offered = messages.undoable(1.0, 3);
         assert_eq!(offered, Some((1, written, UNDO_S)));
-        let newer =
-            |messages: &Messages| messages.latest_note(Some(1)).map(|said| said.text.clone());
+        let newer = |messages: &Messages| {
+            messages
+                .latest_note(Some(1), 1.0)
+                .map(|said| said.text.clone())
+        };
         assert_eq!(newer(&messages), None);
         messages.note("connected");
         assert_eq!(newer(&messages).as_deref(), Some("connected"));

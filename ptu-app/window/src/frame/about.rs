@@ -1,8 +1,9 @@
 //! What this program is, its keys, where its data are, and the licences of what it ships.
 
-use eframe::egui::{CollapsingHeader, Grid, Id, Key, RichText, ScrollArea, Ui, Window};
+use eframe::egui::{CollapsingHeader, Grid, RichText, ScrollArea, Ui};
 
 use super::keys::{CONNECT, STOP_ALL};
+use crate::parts::dialog;
 use crate::{Page, PageContext, Palette};
 use ptu_report::fonts::PRETENDARD_LICENCE;
 
@@ -12,23 +13,16 @@ pub struct About {
 }
 
 impl About {
-    /// The button that opens it, and the window while it is open.
-    pub fn button(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
-        let words = &context.words.frame;
-        if ui.selectable_label(self.open, words.about).clicked() {
-            self.open = !self.open;
+    pub fn open(&mut self) {
+        self.open = true;
+    }
+
+    /// The dialog while it is open.
+    pub fn show(&mut self, ui: &Ui, context: &PageContext<'_>) {
+        if self.open {
+            let title = context.words.frame.about;
+            self.open = dialog(ui, "about", title, |ui| contents(ui, context));
         }
-        if !self.open {
-            return;
-        }
-        let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
-        Window::new(words.about)
-            .id(Id::unique("about"))
-            .open(&mut open)
-            .collapsible(false)
-            .default_width(560.0)
-            .show(ui.ctx(), |ui| contents(ui, context));
-        self.open = open;
     }
 }
 

@@ -36,7 +36,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
     let settings = &mut *context.settings;
     ui.label(
         RichText::new(words.locked)
-            .size(sizes.text)
+            .size(sizes.lead)
             .color(Palette::of(ui).warn)
             .strong(),
     );

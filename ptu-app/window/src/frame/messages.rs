@@ -1,17 +1,21 @@
-//! Shows the latest trouble until it is acknowledged, the latest message, and all messages on demand. A message that tells
-//! what was written has a button that takes it back.
+//! What was told: trouble until it is taken note of, the latest message for a while, and all of them under the bell. A message
+//! that tells what was written has a button that takes it back.
 
 use std::time::Duration;
 
-use eframe::egui::{RichText, ScrollArea, TextWrapMode, Ui};
+use eframe::egui::{Align2, Area, Frame, Id, Popup, Response, RichText, ScrollArea, Ui, vec2};
+use egui_material_icons::icons::ICON_UNDO;
 use fault_db::ToWithdraw;
 
 use crate::messages::{Message, Written};
-use crate::parts::ActionPlace;
+use crate::parts::{ActionPlace, Face, Look};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
+
+/// Width of what is told, points.
+const WIDE: f32 = 560.0;
 
 /// A step that is being taken back.
 #[derive(Default)]
@@ -57,81 +61,99 @@ impl Undo {
     }
 }
 
-pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>, undo: &mut Undo) {
-    let ended = context.units.runs_ended();
-    let undoable = context
-        .messages
-        .undoable(ui.input(|input| input.time), ended);
+/// Shows what was told last, over the bottom left of the page: trouble until it was taken note of, anything else for a while.
+pub fn toasts(ui: &Ui, left: f32, context: &mut PageContext<'_>, undo: &mut Undo) {
+    let (ended, now_s) = (context.units.runs_ended(), ui.input(|input| input.time));
+    let undoable = context.messages.undoable(now_s, ended);
     // Who takes it back is written down with it.
     let named = !context.settings.operator.trim().is_empty();
     let undoable = undoable.filter(|_| named && !context.settings.locked);
+    let place = undoable.map(|(place, ..)| place);
+    let words = context.words;
+    let (mut noted, mut taken_back) = (false, None);
     let all = context.messages.all();
-    if all.is_empty() {
-        let quiet = Palette::of(ui).quiet;
-        ui.label(RichText::new(context.words.frame.title).color(quiet));
+    let trouble = context.messages.unread_trouble();
+    let last = context.messages.latest_note(place, now_s);
+    let told =
+        undoable.and_then(|(place, written, left_s)| Some((all.get(place)?, written, left_s)));
+    if trouble.is_none() && last.is_none() && told.is_none() {
         return;
     }
-    let mut clear = false;
-    let mut noted = false;
-    let mut taken_back = None;
-    ui.horizontal(|ui| {
-        let button = format!("{} ({})", context.words.frame.messages, all.len());
-        ui.menu_button(button, |ui| {
-            ui.set_min_width(560.0);
-            ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                for message in all.iter().rev() {
-                    ui.horizontal_wrapped(|ui| {
-                        ui.label(RichText::new(clock::local(message.at_us)).small());
-                        said(ui, message, context.words);
-                    });
-                }
-            });
-            clear = ui.button(context.words.frame.clear).clicked();
+    let palette = Palette::of(ui);
+    let area = Area::new(Id::unique("toasts")).anchor(Align2::LEFT_BOTTOM, vec2(left, -12.0));
+    area.show(ui.ctx(), |ui| {
+        let frame = Frame::popup(ui.style())
+            .fill(palette.raised)
+            .inner_margin(8);
+        frame.show(ui, |ui| {
+            ui.set_max_width((ui.ctx().content_rect().width() - left - 40.0).min(WIDE));
+            if let Some(trouble) = trouble {
+                ui.horizontal_wrapped(|ui| {
+                    noted = Face::new(Look::Secondary, words.frame.dismiss)
+                        .show(ui)
+                        .clicked();
+                    said(ui, trouble, words);
+                });
+            }
+            if let Some(last) = last {
+                ui.horizontal_wrapped(|ui| said(ui, last, words));
+            }
+            if let Some((told, written, left_s)) = told {
+                ui.horizontal_wrapped(|ui| {
+                    let place = ActionPlace::new(ui, "undo", written.at_us);
+                    let left = format!("{left_s:.0} s");
+                    let button = Face::new(Look::Secondary, words.frame.undo).icon(ICON_UNDO);
+                    let button = button.small(left).show(ui);
+                    taken_back = place.clicked(&button).then(|| (written, told.text.clone()));
+                    said(ui, told, words);
+                });
+            }
         });
-        // There is one line; what is cut is told when it is pointed at, and in the menu.
-        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        let trouble = context.messages.unread_trouble();
-        noted = trouble.is_some() && ui.button(context.words.frame.dismiss).clicked();
-        if let Some(trouble) = trouble {
-            said(ui, trouble, context.words);
-        }
-        // Trouble is shown until it was taken note of, and not again as the latest message.
-        let undone = undoable.map(|(place, ..)| place);
-        if let Some(last) = context.messages.latest_note(undone) {
-            said(ui, last, context.words);
-        }
-        if let Some((place, written, left_s)) = undoable
-            && let Some(told) = all.get(place)
-        {
-            let place = ActionPlace::new(ui, "undo", written.at_us);
-            let button = ui
-                .button(context.words.frame.undo)
-                .on_hover_text(&told.text);
-            taken_back = place.clicked(&button).then(|| (written, told.text.clone()));
-            ui.ctx()
-                .request_repaint_after(Duration::from_secs_f64(left_s));
-            said(ui, told, context.words);
-        }
     });
+    ui.ctx().request_repaint_after(Duration::from_secs(1));
     if let Some((written, what)) = taken_back {
         undo.begin(written, what, context);
     }
     if noted {
         context.messages.acknowledge();
     }
-    if clear {
-        context.messages.clear();
-    }
+}
+
+/// All that was told, under the bell.
+pub fn bell(response: &Response, context: &mut PageContext<'_>) {
+    let words = context.words;
+    Popup::menu(response).show(|ui| {
+        ui.set_min_width(WIDE);
+        let all = context.messages.all();
+        if all.is_empty() {
+            ui.label(words.common.nothing);
+            return;
+        }
+        ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for message in all.iter().rev() {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(RichText::new(clock::local(message.at_us)).small());
+                    said(ui, message, words);
+                });
+            }
+        });
+        if Face::new(Look::Secondary, words.frame.clear)
+            .show(ui)
+            .clicked()
+        {
+            context.messages.clear();
+        }
+    });
 }
 
 fn said(ui: &mut Ui, message: &Message, words: &Words) {
     let palette = Palette::of(ui);
     let (mark, colour) = match message.bad {
         true => ("⚠ ", palette.bad),
-        false => ("", ui.visuals().text_color()),
+        false => ("", palette.ink),
     };
     let text = format!("{mark}{}", message.text);
-    ui.label(RichText::new(text).color(colour).strong());
+    ui.label(RichText::new(text).color(colour));
     let detail = words.trouble(&message.detail);
     if !detail.is_empty() {
         ui.label(&*detail);

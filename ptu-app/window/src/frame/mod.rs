@@ -1,18 +1,24 @@
-//! The frame around the pages: connection bar, navigation, messages, keys.
+//! The frame around the pages: bar of the unit, rail of the pages, what is told, dialogs, keys.
 
 mod about;
+mod bar;
 mod care;
-mod connection;
 mod keys;
 mod lock;
 mod lost;
+mod menu;
 mod messages;
-mod navigation;
+mod rail;
 mod setup;
+mod unit_menu;
 
-use eframe::egui::{Align2, Area, Context, Id, Order, RichText, Spinner, Ui};
+use eframe::egui::{
+    Align2, Area, Context, Frame as Ground, Id, Margin, Order, Panel, RichText, Role, Spinner, Ui,
+    WidgetInfo,
+};
 
 use super::{PageContext, Palette, Sizes};
+use crate::parts::dialog_is_open;
 use about::About;
 use care::Care;
 pub use lock::only_look;
@@ -34,33 +40,42 @@ impl Frame {
         keys::keys(ui.ctx(), context);
     }
 
-    pub fn connection(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        Sizes::of(ui).set(ui);
-        connection::bar(ui, context, &mut self.setup);
-    }
-
-    pub fn navigation(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        Sizes::of(ui).set(ui);
-        navigation::bar(ui, context, (&mut self.about, &mut self.care));
+    /// Bar and rail; what is left of `ui` is the page's, and can be used unless a dialog is over it.
+    pub fn around(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+        let ground = Ground::new().fill(palette.panel);
+        let bar = Panel::top("bar").exact_size(sizes.bar).resizable(false);
+        bar.frame(ground.inner_margin(Margin::symmetric(8, 0)))
+            .show(ui, |ui| bar::bar(self, ui, context));
+        if dialog_is_open(ui.ctx()) {
+            // The dialog dims it.
+            ui.visuals_mut().disabled_alpha = 1.0;
+            ui.disable();
+        }
+        let rail = Panel::left("rail")
+            .exact_size(rail::wide(ui))
+            .resizable(false);
+        rail.frame(ground.inner_margin(4))
+            .show(ui, |ui| rail::rail(self, ui, context));
     }
 
     /// What a locked window says, and the name that opens it.
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        Sizes::of(ui).set(ui);
         lock::bar(ui, context);
     }
 
     /// A run that broke off with the link, and how it goes on.
     pub fn lost(&self, ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
-        Sizes::of(ui).set(ui);
         lost::row(ui, goes_on, context);
     }
 
-    /// The latest message, and all of them.
-    pub fn messages(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    /// What stands over the page: what was told, and the dialogs that are open.
+    pub fn over(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         self.undo.poll(context);
-        Sizes::of(ui).set(ui);
-        messages::bar(ui, context, &mut self.undo);
+        messages::toasts(ui, rail::wide(ui) + 12.0, context, &mut self.undo);
+        self.setup.show(ui, context);
+        self.care.show(ui, context);
+        self.about.show(ui, context);
     }
 
     /// Over everything while the window is being closed; true once the person has taken note that
@@ -84,11 +99,16 @@ impl Frame {
     }
 }
 
+/// A button whose name is not all that is written in it.
+fn button_named(name: &str, enabled: bool) -> WidgetInfo {
+    WidgetInfo::labeled(Role::Button, enabled, name)
+}
+
 fn over_everything(context: &Context, content: impl FnOnce(&mut Ui)) {
     Area::new(Id::unique("over everything"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .show(context, |ui| {
-            eframe::egui::Frame::popup(ui.style()).show(ui, content);
+            Ground::popup(ui.style()).show(ui, content);
         });
 }

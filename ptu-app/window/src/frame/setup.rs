@@ -2,11 +2,10 @@
 
 use btu_rig::rig::Harness;
 use eframe::egui::{
-    ComboBox, DragValue, Grid, Id, Key, Label, PopupCloseBehavior, Pos2, RichText, Role,
-    ScrollArea, TextEdit, Ui, WidgetInfo, Window,
+    ComboBox, DragValue, Grid, Label, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo,
 };
 
-use crate::parts::{field, go_on, name_edit, named_combo};
+use crate::parts::{Face, Look, dialog, field, go_on, last_row, name_edit, named_combo, segments};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::Words;
@@ -14,12 +13,9 @@ use ptu_runs::bench_worker::Phase;
 use ptu_runs::link::ports;
 use ptu_runs::run::BenchChoice;
 
-/// A window so wide has the faults beside what else is set up, points.
-const BESIDE: f32 = 1000.0;
-/// Width of the faults, and of the field that finds one.
-const FAULTS: f32 = 430.0;
+/// Width of the field that finds a fault, points.
 const FIND: f32 = 220.0;
-/// Title and edges of the dialog, and the least height of what scrolls in it.
+/// Of what the list of faults leaves to the rest of the dialog, and its least height.
 const AROUND: f32 = 60.0;
 const LOWEST: f32 = 120.0;
 
@@ -38,88 +34,55 @@ pub struct Setup {
     find: String,
     open: bool,
     opened: bool,
+    /// The second tab is shown: injected faults.
+    practice: bool,
 }
 
 impl Setup {
-    /// Where the unit is; what is around it behind a button.
-    pub fn endpoint(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    pub fn open(&mut self) {
+        self.open = true;
+        self.opened = true;
+        self.names = Request::Idle;
+    }
+
+    /// The dialog while it is open, which it is while the unit is not connected.
+    pub fn show(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
+        self.open &= context.units.chosen().phase() == Phase::Offline;
+        if !self.open {
+            return;
+        }
         if self.names.is_idle() {
             self.ask(context);
         }
         if self.names.poll()
             && let Request::Failed(why) = &self.names
         {
-            context
-                .messages
-                .trouble(context.words.frame.cannot_list, why.clone());
+            let said = context.words.frame.cannot_list;
+            context.messages.trouble(said, why.clone());
         }
-        let free = context.units.chosen().phase() == Phase::Offline && ui.is_enabled();
         let words = context.words;
         let choice = &mut context.units.chosen_mut().choice;
-        let shown = if choice.is_simulated() {
-            words.frame.simulated.to_owned()
-        } else {
-            choice.endpoint.clone()
-        };
-        let mut opened = false;
-        let mut below = ui.cursor().min;
-        ui.add_enabled_ui(free, |ui| {
-            let combo = ComboBox::from_id_salt("endpoint")
-                .selected_text(&shown)
-                .width(150.0);
-            let combo = combo.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-            let response = combo.show_ui(ui, |ui| self.endpoints(ui, words, choice));
-            named_combo(&response.response, words.common.unit, &shown);
-            opened = response.response.clicked();
-            let setup = ui.selectable_label(self.open, words.frame.setup);
-            if setup.clicked() {
-                self.open = !self.open;
-                self.opened = self.open;
+        let mut done = false;
+        let open = dialog(ui, "setup", words.frame.setup, |ui| {
+            if choice.is_simulated() {
+                let tabs = [
+                    (false, words.frame.connection),
+                    (true, words.frame.practice),
+                ];
+                segments(ui, &mut self.practice, tabs);
+                ui.add_space(8.0);
             }
-            below = setup.rect.left_bottom();
-        });
-        if opened {
-            self.ask(context);
-        }
-        self.open &= free;
-        if self.open {
-            self.window(ui, below, context);
-        }
-    }
-
-    /// A window rather than a menu: lists open over it, and several things are chosen before it is closed.
-    fn window(&mut self, ui: &Ui, below: Pos2, context: &mut PageContext<'_>) {
-        let words = context.words;
-        let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
-        let choice = &mut context.units.chosen_mut().choice;
-        let depot = &mut context.settings.depot;
-        let screen = ui.ctx().content_rect();
-        let high = (screen.bottom() - below.y - AROUND).max(LOWEST);
-        Window::new(words.frame.setup)
-            .id(Id::unique("setup"))
-            .open(&mut open)
-            .collapsible(false)
-            .resizable(false)
-            .default_pos(below)
-            .show(ui.ctx(), |ui| {
-                if screen.width() >= BESIDE && choice.is_simulated() {
-                    ui.horizontal_top(|ui| {
-                        ui.vertical(|ui| self.surroundings(ui, words, choice, depot));
-                        ui.separator();
-                        ui.vertical(|ui| self.injected(ui, words, choice, Some(high)));
-                    });
-                    return;
-                }
-                let area = ScrollArea::vertical().max_height(high);
-                area.min_scrolled_height(high).show(ui, |ui| {
-                    self.surroundings(ui, words, choice, depot);
-                    if choice.is_simulated() {
-                        ui.separator();
-                        self.injected(ui, words, choice, None);
-                    }
-                });
+            match self.practice && choice.is_simulated() {
+                true => self.injected(ui, words, choice),
+                false => self.connection(ui, words, choice),
+            }
+            last_row(ui, |ui| {
+                done = Face::new(Look::Primary, words.frame.close_anyway)
+                    .show(ui)
+                    .clicked();
             });
-        self.open = open;
+        });
+        self.open = open && !done;
     }
 
     fn ask(&mut self, context: &PageContext<'_>) {
@@ -139,55 +102,40 @@ impl Setup {
         }));
     }
 
-    fn endpoints(&self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
-        ui.set_min_width(260.0);
-        let endpoint = &mut choice.endpoint;
-        if ui
-            .selectable_value(endpoint, "sim".into(), words.frame.simulated)
-            .clicked()
-        {
-            ui.close();
-        }
-        for port in self
+    fn connection(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
+        let simulated = Some(("sim".to_owned(), words.frame.simulated.to_owned()));
+        let found = self
             .names
             .value()
-            .map(|names| &names.ports)
             .into_iter()
-            .flatten()
-        {
-            let value = format!("serial:{port}");
-            if ui.selectable_value(endpoint, value, port).clicked() {
-                ui.close();
+            .flat_map(|names| &names.ports);
+        let ports = found.map(|port| (format!("serial:{port}"), port.clone()));
+        ui.horizontal_wrapped(|ui| {
+            for (value, name) in simulated.into_iter().chain(ports) {
+                ui.selectable_value(&mut choice.endpoint, value, name);
             }
-        }
+        });
         let label = ui.label(words.frame.other_port);
-        ui.add(TextEdit::singleline(endpoint).desired_width(250.0))
+        let wide = ui.available_width();
+        ui.add(TextEdit::singleline(&mut choice.endpoint).desired_width(wide))
             .labelled_by(label.id);
+        ui.add_space(8.0);
+        self.surroundings(ui, words, choice);
     }
 
-    fn surroundings(
-        &mut self,
-        ui: &mut Ui,
-        words: &Words,
-        choice: &mut BenchChoice,
-        depot: &mut String,
-    ) {
+    fn surroundings(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let frame = &words.frame;
-        ui.set_min_width(430.0);
         let none = Vec::new();
         let names = self.names.value();
         let of = |pick: fn(&Names) -> &Vec<String>| names.map_or(&none, pick);
         Grid::new("surroundings").num_columns(2).show(ui, |ui| {
             ui.label(frame.connection_kind);
-            ui.horizontal(|ui| {
-                for (harness, text) in [
-                    (Harness::Auto, frame.harness_auto),
-                    (Harness::Bench, frame.as_btu),
-                    (Harness::None, frame.as_ptu),
-                ] {
-                    ui.selectable_value(&mut choice.harness, harness, text);
-                }
-            });
+            let ways = [
+                (Harness::Auto, frame.harness_auto),
+                (Harness::Bench, frame.as_btu),
+                (Harness::None, frame.as_ptu),
+            ];
+            segments(ui, &mut choice.harness, ways);
             ui.end_row();
             pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));
             let configs = of(|names| &names.configs);
@@ -202,8 +150,6 @@ impl Setup {
             let train_no = name_edit(&mut choice.train_no, 140.0);
             let train_no = field(ui, words.common.train_no, train_no);
             go_on(ui, &[serial, train_no]);
-            // It stays with the window, whatever unit is chosen.
-            field(ui, words.report.depot, name_edit(depot, 140.0));
             if choice.is_simulated() {
                 let label = ui.label(frame.seed);
                 ui.horizontal(|ui| {
@@ -219,17 +165,8 @@ impl Setup {
         }
     }
 
-    /// The injected faults, each with a button that takes it out, and all there are: in a list of its own that ends at
-    /// this height, or as a part of what scrolls already.
-    fn injected(
-        &mut self,
-        ui: &mut Ui,
-        words: &Words,
-        choice: &mut BenchChoice,
-        high: Option<f32>,
-    ) {
-        let top = ui.cursor().top();
-        ui.set_width(FAULTS);
+    /// The injected faults, each with a button that takes it out, and all there are.
+    fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let frame = &words.frame;
         ui.label(RichText::new(frame.inject).strong());
         if choice.faults.is_empty() {
@@ -254,12 +191,9 @@ impl Setup {
             }
             find.labelled_by(label.id);
         });
-        let Some(high) = high else {
-            return self.all_faults(ui, words, choice);
-        };
-        let left = (high - (ui.cursor().top() - top)).max(LOWEST);
-        let area = ScrollArea::vertical().max_height(left).auto_shrink(false);
-        let area = area.min_scrolled_height(left);
+        let high = (ui.ctx().content_rect().height() / 2.0 - AROUND).max(LOWEST);
+        let area = ScrollArea::vertical().max_height(high).auto_shrink(false);
+        let area = area.min_scrolled_height(high);
         area.show(ui, |ui| self.all_faults(ui, words, choice));
     }
 

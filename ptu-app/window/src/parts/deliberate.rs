@@ -2,7 +2,7 @@
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher, Hash};
 
-use eframe::egui::{Button, Id, Key, Response, Sense, Ui};
+use eframe::egui::{Id, Key, Response, Ui};
 
 /// A click so soon after the place changed or acted was meant for what was there before, s.
 const MOMENT_S: f64 = 0.6;
@@ -58,11 +58,8 @@ impl ActionPlace {
         meant
     }
 
-    /// A button that has to be held down, by pointer or by key: true once it was long enough. Meanwhile a bar in it grows.
-    pub fn held(&self, ui: &mut Ui, button: Button<'_>, enabled: bool, hint: &str) -> bool {
-        // What is only clicked is not down any more after a while.
-        let button = button.sense(Sense::click_and_drag());
-        let response = ui.add_enabled(enabled, button).on_hover_text(hint);
+    /// How far a button that has to be held down is, by pointer or by key: 1 once it was long enough.
+    pub fn held(&self, ui: &Ui, response: &Response) -> f32 {
         let id = self.id.with("held since");
         let by_key = response.has_focus()
             && ui.input(|input| input.key_down(Key::Space) || input.key_down(Key::Enter));
@@ -71,21 +68,16 @@ impl ActionPlace {
             && (response.is_pointer_button_down_on() || by_key))
         {
             ui.data_mut(|data| data.remove_temp::<f64>(id));
-            return false;
+            return 0.0;
         }
         let since_s = ui.data_mut(|data| *data.get_temp_mut_or(id, self.now_s));
         let share = ((self.now_s - since_s) / HOLD_S).min(1.0) as f32;
-        let mut bar = response.rect;
-        bar.set_top(bar.bottom() - 4.0);
-        bar.set_width(bar.width() * share);
-        ui.painter()
-            .rect_filled(bar, 2.0, ui.visuals().selection.stroke.color);
         ui.ctx().request_repaint();
         if share >= 1.0 {
             ui.data_mut(|data| data.remove_temp::<f64>(id));
-            self.acted(&response);
+            self.acted(response);
         }
-        share >= 1.0
+        share
     }
 
     fn acted(&self, response: &Response) {

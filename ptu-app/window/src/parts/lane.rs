@@ -148,7 +148,7 @@ pub fn choice(
     label: impl Fn(f64) -> String,
 ) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
-    let text = palette.ink();
+    let text = palette.ink;
     let ground = colour.gamma_multiply(0.18);
     let mut narrow = RectangleMesh::new(&painter);
     for span in spans {

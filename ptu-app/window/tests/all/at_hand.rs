@@ -11,7 +11,8 @@ fn an_injected_fault_is_taken_out_where_it_is_listed() {
     let mut settings = settings(Page::Bench);
     settings.unit.faults = vec!["eb_relay.slow".into(), "tra.dead".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Setup");
+    window.set_up();
+    window.click("Practice");
     // Most of the list is in view at once.
     window.wait_for("atp_receiver.dead");
     window.click("Remove: eb_relay.slow");
@@ -49,7 +50,7 @@ fn faults_and_traces_are_those_of_the_connected_unit_until_all_are_asked_for() {
     record_bad_unit(&place);
     let mut window = Window::with(place, scripts(), settings(Page::Faults));
     window.wait_for_part(" · BAD-1 · ");
-    window.click("Connect");
+    window.connect();
     window.wait_for("only unit SIM-0001");
     assert!(!window.shows_part(" · BAD-1 · "));
     window.click("only unit SIM-0001");

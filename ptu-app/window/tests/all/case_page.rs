@@ -61,10 +61,8 @@ fn window(language: Language, size: [f32; 2], density: Density, faults: &str) ->
         window,
         clicks: 0,
         lowest: match density {
-            // An operator's sizes are those of a window of this width.
-            Density::Operator if size[0] >= 1280.0 => 48.0,
-            Density::Operator => 38.0,
-            Density::Engineer => 24.0,
+            Density::Operator => 48.0,
+            Density::Engineer => 28.0,
         },
         wrong: Vec::new(),
     }

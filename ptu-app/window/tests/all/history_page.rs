@@ -166,7 +166,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     let words = Language::Korean.words();
     window.click(words.procedures.none);
     window.click("과속에 따른 ATP 제동 체결");
-    window.click(words.frame.connect);
+    window.connect();
     window.wait_for("SIM-0001");
     window.click(words.procedures.run);
     window.wait_for_part("교체 대상: 비상제동 계전기 (eb_relay, ");

@@ -115,7 +115,7 @@ fn the_way_of_a_case_has_no_internal_names() {
             let bad = shown.filter(|text| is_wrong(text, language));
             wrong.extend(bad.map(|text| format!("{fault}, {what}: {text}")));
         };
-        window.click(words.frame.connect);
+        window.connect();
         window.wait_for("SIM-0001");
         window.wait_for(words.case.unknown);
         look(&window, "symptom");

@@ -27,7 +27,7 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
         };
         settings.unit.realtime = true;
         let mut window = Window::sized([900.0, 600.0], Place::new(), scripts(), settings);
-        window.click(frame.connect);
+        window.connect();
         window.wait_for("SIM-0001");
         window.click(words.procedures.run);
         window.until("the run", |window| phase(window) == Phase::Running);

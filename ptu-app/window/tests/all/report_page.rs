@@ -84,7 +84,7 @@ fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
     settings.unit.serial = "ABC-1".into();
     let mut window = Window::with(place, &own, settings);
     window.wait_for_part("Unit SIM-0001, run");
-    window.click("Connect");
+    window.connect();
     window.wait_for("ABC-1");
     window.wait_for("Choose a run in the list.");
     window.page(Page::Diagnosis);
@@ -189,7 +189,7 @@ fn a_note_is_written_as_soon_as_a_run_is_over() {
     };
     settings.unit.faults = vec!["tra.dead".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Find the part");
     window.wait_for_part("Run over: failed");

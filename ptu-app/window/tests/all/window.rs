@@ -23,14 +23,14 @@ fn running(window: &Window) -> bool {
 #[test]
 fn connects_arms_and_stops_everything_with_one_key() {
     let mut window = Window::open(Page::Bench);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
-    window.wait_for("disarmed");
+    window.wait_for("Arm");
     window.hold("Arm", 1.3);
-    window.wait_for("ARMED: test signals act");
+    window.wait_for("ARMED");
     window.key(Key::F12);
-    window.wait_for("disarmed");
-    window.click("Disconnect");
+    window.wait_for("Arm");
+    window.disconnect();
     window.wait_for("not connected");
 }
 
@@ -39,7 +39,7 @@ fn connects_arms_and_stops_everything_with_one_key() {
 #[test]
 fn a_run_is_followed_by_its_signals() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     let plot = "Plot: speed ";
     assert!(!window.shows_part(plot));
@@ -63,11 +63,12 @@ fn a_run_is_followed_by_its_signals() {
 #[test]
 fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     let mut window = Window::open(Page::Procedures);
-    window.click("Setup");
+    window.set_up();
+    window.click("Practice");
     window.write("find a fault", "eb_relay.slow");
     window.click("eb_relay.slow");
     window.key(Key::Escape);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.wait_for_part("Run over: failed");
@@ -101,12 +102,14 @@ fn an_operator_reads_no_source_and_a_passed_run_says_so() {
     settings.density = Density::Operator;
     let mut window = Window::with(Place::new(), &scripts, settings);
     let words = Language::English.words();
-    window.click(words.frame.connect);
+    window.connect();
     window.wait_for("SIM-0001");
     window.click(words.procedures.run);
     window.wait_for("There?");
     assert!(!window.shows_part("own.star:"));
+    window.click(words.frame.menu);
     window.click(words.frame.engineer);
+    window.key(Key::Escape);
     window.wait_for_part("own.star:");
     window.click("Yes");
     window.wait_for_part("Run over: passed");
@@ -129,7 +132,7 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     let mut settings = settings(Page::Procedures);
     settings.operator = "Lee".into();
     let mut window = Window::with(Place::new(), &scripts, settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.wait_for("Quiet here?");
@@ -162,7 +165,7 @@ fn the_least_of_steps_finds_the_part_too() {
     let mut settings = settings(Page::Procedures);
     settings.unit.faults = vec!["tra.dead".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Find the part");
     window.wait_for_part("replace the TRA (tra, ");
@@ -193,7 +196,7 @@ fn speaks_korean_from_one_frame_to_the_next() {
 #[test]
 fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.until("the run", running);
@@ -222,7 +225,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
 #[test]
 fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.until("a step", |window| {
@@ -252,11 +255,11 @@ fn what_is_over_is_no_longer_said() {
     let mut settings = realtime(Page::Procedures);
     settings.unit.endpoint = "serial:/dev/no-such-port".into();
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for_part("Not connected");
     window.click("unit");
     window.click("simulated unit");
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     assert!(!window.shows_part("Not connected"));
     window.click("Run");
@@ -272,11 +275,11 @@ fn what_is_over_is_no_longer_said() {
 #[test]
 fn letting_go_in_a_run_closes_its_record_first() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.until("the run", running);
-    window.click("Disconnect");
+    window.disconnect();
     window.wait_for_part("outputs safe");
     window.wait_for("not connected");
     assert_eq!(latest(&window)["run"]["verdict"], "aborted");
@@ -289,7 +292,7 @@ fn reaching_a_unit_can_be_given_up() {
     let mut settings = settings(Page::Bench);
     settings.unit.endpoint = format!("tcp:{}", silent.local_addr().expect("its address"));
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.click("cancel");
     // Whether its files were still being read or its port already open: it is let go and stays so.
     window.wait_for("not connected");
@@ -309,7 +312,7 @@ fn a_script_asks_and_the_answer_decides() {
     );
     for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
         let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));
-        window.click("Connect");
+        window.connect();
         window.wait_for("SIM-0001");
         window.click("Run");
         window.wait_for("Does the lamp light?");
@@ -324,7 +327,7 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     let good = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(s(1))], measure = value(\"v\", speed))\n";
     let folder = own_scripts(&place, good);
     let mut window = Window::with(Place::new(), &folder, settings(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.wait_for("Wait");
     std::fs::write(folder.join("own/own.star"), "procedure(title = \n").expect("written");
@@ -353,7 +356,7 @@ fn a_unit_that_starts_again_by_itself_is_said() {
     let mut settings = settings(Page::Bench);
     settings.unit.faults = vec!["power_supply.dips".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for_part("The unit was started again");
     assert!(window.app().units().chosen().is_connected());
 }
@@ -363,7 +366,7 @@ fn a_port_that_is_not_there_is_said() {
     let mut settings = settings(Page::Bench);
     settings.unit.endpoint = "serial:/dev/no-such-port".into();
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for_part("Not connected");
     window.wait_for_part("/dev/no-such-port");
     window.wait_for("not connected");
@@ -374,7 +377,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     let place = Place::new();
     place.write("history.db", "this is no database");
     let mut window = Window::with(place, scripts(), settings(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.wait_for_part("The run was not begun");
@@ -408,7 +411,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
 fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
     let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
     window.write("operator", "Kim");
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.until("the run", |window| {
@@ -439,10 +442,10 @@ fn two_units_are_tested_side_by_side() {
     let mut settings = settings(Page::Procedures);
     settings.unit.faults = vec!["tra.dead".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
-    window.click("+");
-    window.click("Connect");
+    window.click("Add a unit");
+    window.connect();
     window.until("both", |window| {
         window
             .app()
@@ -472,15 +475,16 @@ fn every_page_is_reached_by_its_key_and_shows_something_in_both_languages() {
             assert!(window.shows(page.name(language.words())));
         }
         if language == Language::English {
-            window.click("language");
+            window.click("Menu");
             window.click("한국어");
+            window.key(Key::Escape);
         }
     }
 }
 
 #[test]
 fn tab_and_space_are_enough_to_connect() {
-    let mut window = Window::open(Page::Bench);
+    let mut window = Window::open(Page::Case);
     window.wait_for("Connect");
     let focused = |window: &mut Window| {
         let harness = window.harness();

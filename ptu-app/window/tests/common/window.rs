@@ -7,6 +7,7 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_options::Page;
+use ptu_runs::bench_worker::Phase;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
@@ -19,6 +20,8 @@ const PATIENCE: Duration = Duration::from_secs(300);
 const MOMENT_S: f64 = 0.7;
 /// Height of the messages below every page, points.
 const MESSAGES: f32 = 45.0;
+/// What was told is shown as long as on a display.
+const FRAME_S: f32 = 1.0 / 60.0;
 const STEP: Duration = Duration::from_millis(15);
 /// Longest pause between two frames of one that waits.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
@@ -84,6 +87,7 @@ impl Window {
         let harness = Harness::builder()
             .with_size(size)
             .with_max_steps(8)
+            .with_step_dt(FRAME_S)
             .build_ui_state(show, None);
         Self { harness, place }
     }
@@ -202,6 +206,31 @@ impl Window {
         self.harness.input_mut().time = Some(now_s + by_s);
         self.harness.step();
         self.harness.input_mut().time = None;
+    }
+
+    /// Presses the key that connects the unit, once it is not.
+    pub fn connect(&mut self) {
+        self.until("a unit that is not connected", |window| {
+            window.app().units().chosen().phase() == Phase::Offline
+        });
+        self.key(Key::F9);
+    }
+
+    /// Presses the key that lets it go.
+    pub fn disconnect(&mut self) {
+        self.key(Key::F9);
+    }
+
+    /// Opens the dialog that sets the unit up.
+    pub fn set_up(&mut self) {
+        let words = self.app().settings().language.words();
+        let choice = &self.app().units().chosen().choice;
+        let name = match choice.is_simulated() {
+            true => words.frame.simulated.to_owned(),
+            false => choice.endpoint.clone(),
+        };
+        self.click(&name);
+        self.click(words.frame.setup);
     }
 
     /// Presses the key that shows this page.

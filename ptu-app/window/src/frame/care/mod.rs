@@ -4,21 +4,17 @@ mod work;
 
 use std::path::PathBuf;
 
-use eframe::egui::{Button, Id, Key, RichText, ScrollArea, TextEdit, Ui, Window, pos2};
+use eframe::egui::{Button, RichText, TextEdit, Ui};
 use fault_db::{Address, LastSync};
 
-use crate::parts::{Job, typed};
+use crate::parts::{Face, Job, Look, dialog, last_row, typed};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::words::fill;
 use ptu_runs::clock;
 
-/// Width of the dialog and of its fields, points.
-const WIDE: f32 = 560.0;
+/// Width of its fields, points.
 const FIELD: f32 = 380.0;
-/// From the edge of the window to the dialog, and title and edges of the dialog.
-const LEFT: f32 = 20.0;
-const AROUND: f32 = 120.0;
 
 /// The dialog, and what it does.
 #[derive(Default)]
@@ -36,35 +32,29 @@ pub struct Care {
 }
 
 impl Care {
-    /// The button that opens it, and the dialog while it is open.
-    pub fn button(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    pub fn toggle(&mut self) {
+        self.open = !self.open;
+    }
+
+    /// Takes what has come, and shows the dialog while it is open.
+    pub fn show(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         if self.job.poll(context, words.care.failed) {
             self.asked = None;
-        }
-        let button = ui.selectable_label(self.open, words.care.title);
-        if button.clicked() {
-            self.open = !self.open;
         }
         if !self.open {
             return;
         }
         self.keep_up(context);
-        let mut open = !ui.input(|input| input.key_pressed(Key::Escape));
-        let high = ui.ctx().content_rect().height() - AROUND;
-        Window::new(words.care.title)
-            .id(Id::unique("care"))
-            .open(&mut open)
-            .collapsible(false)
-            .resizable(false)
-            .default_width(WIDE)
-            .default_pos(pos2(LEFT, button.rect.bottom() + LEFT))
-            .show(ui.ctx(), |ui| {
-                ScrollArea::vertical()
-                    .max_height(high)
-                    .show(ui, |ui| self.contents(ui, context));
+        let mut closed = false;
+        self.open = dialog(ui, "care", words.care.title, |ui| {
+            self.contents(ui, context);
+            last_row(ui, |ui| {
+                closed = Face::new(Look::Quiet, words.frame.close_anyway)
+                    .show(ui)
+                    .clicked();
             });
-        self.open = open;
+        }) && !closed;
     }
 
     fn keep_up(&mut self, context: &PageContext<'_>) {
@@ -85,7 +75,6 @@ impl Care {
         if context.settings.locked {
             super::only_look(ui);
         }
-        ui.set_width(WIDE);
         let file = context.queries.paths().database.display().to_string();
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(words.care.file).color(Palette::of(ui).quiet));

@@ -107,7 +107,7 @@ impl KnownUnit {
 /// A title above the first line.
 fn heading(ui: &mut Ui, title: &str, place: usize) {
     if place == 0 {
-        ui.label(RichText::new(title).size(Sizes::of(ui).text).strong());
+        ui.label(RichText::new(title).size(Sizes::of(ui).lead).strong());
     }
 }
 

@@ -142,7 +142,6 @@ impl CasePage {
         has_orders: bool,
         context: &mut PageContext<'_>,
     ) -> Option<SheetOf> {
-        Sizes::of(ui).set(ui);
         self.way(ui, context);
         ui.separator();
         if self.stage == Stage::Sheet {
@@ -174,7 +173,7 @@ impl CasePage {
         ui.horizontal_wrapped(|ui| {
             for (place, stage) in (1..).zip(Stage::ALL) {
                 let text = format!("{place} {}", stage.name(context.words));
-                let text = RichText::new(text).size(Sizes::of(ui).text);
+                let text = RichText::new(text).size(Sizes::of(ui).lead);
                 ui.label(match stage == self.stage {
                     true => text.strong().color(palette.accent),
                     false => text.color(palette.quiet),
@@ -200,13 +199,13 @@ impl CasePage {
     fn start(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some(why) = context.only_reads() {
-            ui.label(RichText::new(why).size(Sizes::of(ui).text));
+            ui.label(RichText::new(why).size(Sizes::of(ui).lead));
             return;
         }
         self.name(ui, context);
         let unit = context.units.chosen_mut();
         let place = fill(words.reached_at, &[("place", &unit.choice.endpoint)]);
-        ui.label(RichText::new(place).size(Sizes::of(ui).text));
+        ui.label(RichText::new(place).size(Sizes::of(ui).lead));
         let offline = unit.phase() == Phase::Offline;
         let action = ActionPlace::new(ui, "case connect", offline);
         let connect = large(ui, context.words.frame.connect, offline);
@@ -224,7 +223,7 @@ impl CasePage {
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.horizontal(|ui| {
             let label =
-                ui.label(RichText::new(context.words.case.your_name).size(Sizes::of(ui).text));
+                ui.label(RichText::new(context.words.case.your_name).size(Sizes::of(ui).lead));
             ui.add(name_edit(&mut context.settings.operator, 220.0))
                 .labelled_by(label.id);
         });
@@ -250,7 +249,7 @@ fn primary(ui: &mut Ui, text: &str, enabled: bool) -> Response {
 
 /// A button that is found and hit at arm's length.
 fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
-    let button = Button::new(RichText::new(text).size(Sizes::of(ui).text));
+    let button = Button::new(RichText::new(text).size(Sizes::of(ui).lead));
     let button = button.min_size(vec2(180.0, Sizes::of(ui).target));
     if ui.layout().is_horizontal() {
         return ui.add_enabled(enabled, button);

@@ -68,14 +68,14 @@ impl Proof {
     pub fn sign(&mut self, ui: &mut Ui, run: Id, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some(said) = &self.said {
-            ui.label(RichText::new(said).size(Sizes::of(ui).text).strong());
+            ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
         }
         ui.horizontal_wrapped(|ui| {
             if let Some((_, who)) = self.signing.value().filter(|(of, _)| *of == run) {
                 let said = fill(words.signed_by, &[("who", who)]);
                 ui.label(
                     RichText::new(said)
-                        .size(Sizes::of(ui).text)
+                        .size(Sizes::of(ui).lead)
                         .color(Palette::of(ui).good),
                 );
                 return;
@@ -104,7 +104,7 @@ impl CasePage {
             return;
         }
         if let Some(said) = &self.proof.said {
-            ui.label(RichText::new(said).size(Sizes::of(ui).text).strong());
+            ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
         }
         let quiet = Palette::of(ui).quiet;
         ui.label(RichText::new(words.fitted_hint).color(quiet));

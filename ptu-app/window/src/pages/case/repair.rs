@@ -107,7 +107,7 @@ impl CasePage {
         let known = &self.known;
         let form = &mut self.repair;
         Grid::new("repair").num_columns(2).show(ui, |ui| {
-            ui.label(RichText::new(words.part).size(Sizes::of(ui).text));
+            ui.label(RichText::new(words.part).size(Sizes::of(ui).lead));
             let before = form.part.clone();
             let name = |part: &str| known.part_name(part, context.words).to_owned();
             let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
@@ -121,7 +121,7 @@ impl CasePage {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
             ui.end_row();
-            let size = Sizes::of(ui).text;
+            let size = Sizes::of(ui).lead;
             let title = |name: &str| RichText::new(name).size(size);
             let (old, new) = (&mut form.serial_old, &mut form.serial_new);
             let fields = [

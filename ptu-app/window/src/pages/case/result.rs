@@ -155,7 +155,7 @@ impl CasePage {
         let headline = RichText::new(&found.headline).size(Sizes::of(ui).headline);
         ui.label(headline.strong());
         if let Some((step, measured)) = &found.shown_by {
-            ui.label(RichText::new(&*words.content(step)).size(Sizes::of(ui).text));
+            ui.label(RichText::new(&*words.content(step)).size(Sizes::of(ui).lead));
             measurements(ui, words, measured);
         }
         reasons(ui, words, found);
@@ -261,7 +261,7 @@ fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
     if !tells.is_empty() {
         said = format!("{said}: {tells}");
     }
-    let said = ui.label(RichText::new(said).size(Sizes::of(ui).text));
+    let said = ui.label(RichText::new(said).size(Sizes::of(ui).lead));
     if Sizes::of(ui).density == Density::Engineer {
         said.on_hover_text(next.check.to_string());
     }

@@ -33,7 +33,7 @@ impl CasePage {
                 true => words.case.preparing,
                 false => words.case.not_begun,
             };
-            ui.label(RichText::new(said).size(Sizes::of(ui).text));
+            ui.label(RichText::new(said).size(Sizes::of(ui).lead));
             let place = ActionPlace::new(ui, "case back", has_orders);
             if place.clicked(&large(ui, words.case.back, !has_orders)) {
                 self.stage = back;
@@ -74,7 +74,7 @@ fn live(ui: &mut Ui, words: &Words, sample: &Sample) {
                 continue;
             };
             let value = known(&words.bench, signal, value);
-            ui.label(RichText::new(format!("{name} {value}")).size(Sizes::of(ui).text));
+            ui.label(RichText::new(format!("{name} {value}")).size(Sizes::of(ui).lead));
         }
     });
 }

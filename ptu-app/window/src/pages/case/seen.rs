@@ -42,7 +42,7 @@ impl SeenUnits {
         ui.add_space(8.0);
         ui.label(
             RichText::new(words.case.seen_last)
-                .size(Sizes::of(ui).text)
+                .size(Sizes::of(ui).lead)
                 .strong(),
         );
         let choice = &mut context.units.chosen_mut().choice;
@@ -55,7 +55,7 @@ impl SeenUnits {
                 let at = clock::local(run.started_at_us);
                 let name = [&*run.unit_serial, place, &at].join(DOT);
                 let on = choice.serial == run.unit_serial && choice.endpoint == run.source;
-                let button = Button::new(RichText::new(name).size(Sizes::of(ui).text)).selected(on);
+                let button = Button::new(RichText::new(name).size(Sizes::of(ui).lead)).selected(on);
                 if ui
                     .add(button.min_size(vec2(0.0, Sizes::of(ui).target)))
                     .clicked()
@@ -100,7 +100,7 @@ impl SeenUnits {
 fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.case;
     ui.add_space(8.0);
-    ui.label(RichText::new(words.first_start).size(Sizes::of(ui).text));
+    ui.label(RichText::new(words.first_start).size(Sizes::of(ui).lead));
     let place = ActionPlace::new(ui, "demonstration", ());
     let begin = super::large(ui, words.demonstrate, true);
     if place.clicked(&begin) {

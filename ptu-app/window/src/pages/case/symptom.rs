@@ -50,7 +50,7 @@ impl SymptomTiles {
         ui.horizontal_wrapped(|ui| {
             for (name, symptom) in tiles.chain([unknown]) {
                 let on = self.chosen.as_ref() == Some(&symptom);
-                let button = Button::new(RichText::new(name).size(Sizes::of(ui).text)).selected(on);
+                let button = Button::new(RichText::new(name).size(Sizes::of(ui).lead)).selected(on);
                 if ui
                     .add(button.min_size(vec2(WIDE, Sizes::of(ui).target)))
                     .clicked()
@@ -74,7 +74,7 @@ impl CasePage {
         ui.add_space(8.0);
         ui.label(
             RichText::new(words.what_is_wrong)
-                .size(Sizes::of(ui).text)
+                .size(Sizes::of(ui).lead)
                 .strong(),
         );
         self.tiles.show(ui, context);

@@ -1,17 +1,11 @@
 //! The dialog before faults are closed: every fault that closes, and why. A reason is required of faults that nobody repaired.
 
-use eframe::egui::{Align2, Button, Id, Key, RichText, ScrollArea, Ui, Window};
+use eframe::egui::{RichText, Ui};
 use fault_db::{FaultAction, FaultDetail, FaultState, FaultSummary};
 
-use crate::parts::{ActionPlace, note_edit};
-use crate::{Palette, Sizes};
+use crate::parts::{ActionPlace, Face, Look, dialog, last_row, note_edit};
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Faults, Words, fill};
-
-/// Width of the dialog, points.
-const WIDE: f32 = 560.0;
-/// Height of its title and its last rows with what is above it, points.
-const AROUND: f32 = 240.0;
 
 /// What is written before faults are closed.
 #[derive(Default)]
@@ -54,45 +48,36 @@ impl Closing {
             false => said.close_unrepaired,
         };
         let place = ActionPlace::new(ui, "close faults", detail.fault.id);
-        let mut chosen = ui
-            .input(|input| input.key_pressed(Key::Escape))
-            .then_some(Chosen::Cancel);
-        let dialog = Window::new(fill(title, &n)).id(Id::unique("close faults"));
-        let dialog = dialog.collapsible(false).resizable(false);
-        let dialog = dialog.anchor(Align2::CENTER_CENTER, [0.0, 0.0]);
-        dialog.show(ui.ctx(), |ui| {
-            Sizes::of(ui).set(ui);
-            ui.set_width(WIDE.min(ui.ctx().content_rect().width() - 40.0));
-            let high = ui.ctx().content_rect().height() - AROUND;
-            ScrollArea::vertical().max_height(high).show(ui, |ui| {
-                if closing.len() > 1 {
-                    let part = parts.name(detail.fault.cause(), words.language);
-                    ui.label(fill(said.close_together, &[("part", &part)]));
-                }
-                for fault in &closing {
-                    let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
-                    ui.label(RichText::new(name).strong());
-                }
-                if !repaired {
-                    self.why(ui, said);
-                }
-            });
-            let note = self.note(said, repaired);
-            let missing = note.is_none();
-            if missing {
-                let quiet = Palette::of(ui).quiet;
-                ui.label(RichText::new(said.close_reason).color(quiet));
+        let mut chosen = None;
+        let open = dialog(ui, "close faults", &fill(title, &n), |ui| {
+            if closing.len() > 1 {
+                let part = parts.name(detail.fault.cause(), words.language);
+                ui.label(fill(said.close_together, &[("part", &part)]));
             }
-            ui.horizontal(|ui| {
-                if place.clicked(&ui.button(words.common.cancel)) {
-                    chosen = Some(Chosen::Cancel);
-                }
-                let close = ui.add_enabled(!missing, Button::new(fill(said.close_n, &n)));
-                if place.clicked(&close.on_disabled_hover_text(said.close_reason)) {
+            for fault in &closing {
+                let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
+                ui.label(RichText::new(name).strong());
+            }
+            if !repaired {
+                self.why(ui, said);
+            }
+            let note = self.note(said, repaired);
+            last_row(ui, |ui| {
+                let close = fill(said.close_n, &n);
+                let why_not = note.is_none().then_some(said.close_reason);
+                let close = Face::new(Look::Primary, close).off(why_not).show(ui);
+                if place.clicked(&close) {
                     chosen = note.map(Chosen::Close);
+                }
+                let cancel = Face::new(Look::Quiet, words.common.cancel).show(ui);
+                if place.clicked(&cancel) {
+                    chosen = Some(Chosen::Cancel);
                 }
             });
         });
+        if !open {
+            return Some(Chosen::Cancel);
+        }
         chosen
     }
 

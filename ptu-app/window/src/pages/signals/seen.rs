@@ -252,7 +252,7 @@ impl View {
             let font = FontId::proportional(lane::TEXT);
             if place.width() > 18.0 {
                 let inner = place.shrink2(vec2(3.0, 0.0));
-                lane::cut_text(&painter, inner, what, font, palette.ink());
+                lane::cut_text(&painter, inner, what, font, palette.ink);
             }
         }
     }

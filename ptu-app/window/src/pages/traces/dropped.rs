@@ -28,7 +28,7 @@ pub fn file(ui: &Ui, context: &mut PageContext<'_>) -> Option<PathBuf> {
             Align2::CENTER_CENTER,
             words.drop_here,
             FontId::proportional(TEXT),
-            palette.ink(),
+            palette.ink,
         );
     }
     let file = dropped.pop()?;

@@ -91,7 +91,7 @@ impl TraceNotes {
 
     /// A flag with the note's number at each place in view; its tooltip says the note.
     pub fn flags(&self, ui: &Ui, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
-        let ink = sheet.palette.ink();
+        let ink = sheet.palette.ink;
         let ground = ui.visuals().window_fill;
         for (number, note) in (1..).zip(self.notes.items()) {
             let Some(row) = row_of(note, sheet.scene.view()) else {

@@ -13,7 +13,7 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
          step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
     );
     let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-    window.click("Connect");
+    window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
     window.wait_for("Does the lamp light?");

@@ -35,8 +35,8 @@ fn the_whole_way(language: Language) {
     settings.unit.endpoint = train.address.clone();
     settings.unit.train_no = "301".into();
     let mut window = Window::with(place, scripts(), settings);
-    window.click(words.frame.connect);
-    window.wait_for(words.frame.disarmed);
+    window.connect();
+    window.wait_for(words.frame.arm);
 
     let test_code = format!("{}: 55", words.bench.test_code);
     window.wait_for(&test_code);
@@ -58,7 +58,7 @@ fn the_whole_way(language: Language) {
                 .any(|text| of_item(text, words.bench.item_test_board))
     });
     window.click(words.frame.disarm);
-    window.wait_for(words.frame.disarmed);
+    window.wait_for(words.frame.arm);
 
     window.page(Page::Procedures);
     // The list of procedures is longer than the window is high.
@@ -87,7 +87,7 @@ fn the_whole_way(language: Language) {
         }
     }
 
-    window.click(words.frame.disconnect);
+    window.disconnect();
     window.wait_for(words.frame.not_connected);
     window.page(Page::Faults);
     window.click(words.memory.import);
@@ -128,15 +128,15 @@ fn another_unit_than_asked_for_is_said_and_forgotten_once_connected() {
     settings.unit.endpoint = unit.address.clone();
     settings.unit.serial = "TCP-8".into();
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Connect");
+    window.connect();
     window.wait_for_part("is TCP-7, not TCP-8");
     for text in window.shown() {
         assert!(!text.contains("--") && !text.contains("reached"), "{text}");
     }
-    window.click("Setup");
+    window.set_up();
     window.write_over("serial number", "TCP-7");
     window.key(Key::Escape);
-    window.click("Connect");
+    window.connect();
     window.wait_for("TCP-7");
     assert!(!window.shows_part("not TCP-8"));
 }
@@ -183,7 +183,7 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), &scripts, settings);
     let words = Language::English.words();
-    window.click(words.frame.connect);
+    window.connect();
     window.wait_for("SIM-0001");
     window.click(words.procedures.run);
     window.wait_for("There?");

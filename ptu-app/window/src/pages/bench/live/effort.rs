@@ -152,7 +152,7 @@ fn paint(ui: &mut Ui, name: &str, bar: Bar, palette: &Palette) {
     }
     let middle = Stroke::new(1.0, palette.quiet);
     painter.vline(frame.center().x, frame.y_range(), middle);
-    let ink = palette.ink();
+    let ink = palette.ink;
     let right = pos2(area.right(), area.center().y);
     put(painter, right, Align2::RIGHT_CENTER, 14.0, ink, &bar.said);
     named(ui, area, ("bar", name), || format!("{name}: {}", bar.said));

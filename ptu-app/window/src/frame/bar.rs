@@ -1,0 +1,360 @@
+//! The bar of the unit: which one, how it is reached, what runs, whether it is armed, and what stops all. It is one line.
+
+use btu_rig::stimulus::Stimulus;
+use eframe::egui::{Align, Layout, Popup, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
+use egui_material_icons::icons::{
+    ICON_ADD, ICON_BOLT, ICON_EXPAND_MORE, ICON_HELP, ICON_LINK, ICON_LINK_OFF, ICON_MEMORY,
+    ICON_NOTIFICATIONS, ICON_PAUSE_CIRCLE, ICON_PLAY_CIRCLE, ICON_SCIENCE, ICON_STOP_CIRCLE,
+    ICON_WARNING,
+};
+use protocol::signal::{Sample, Signal};
+
+use super::keys::STOP_ALL;
+use super::lock::only_look;
+use super::unit_menu::unit_menu;
+use super::{Frame, messages};
+use crate::parts::{ActionPlace, Face, Look};
+use crate::units::Unit;
+use crate::{Page, PageContext, Palette, Sizes};
+use ptu_report::naming::DOT;
+use ptu_report::words::{self, fill};
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::table::cut;
+
+/// Between what stands in the bar, points.
+const GAP: f32 = 8.0;
+/// Width of the bar of a run, points.
+const RUN_BAR: f32 = 72.0;
+/// Letters of a name, at most.
+const NAME: usize = 24;
+
+/// What gives way where the bar is too narrow, in this order.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Without {
+    Nothing,
+    Subtitle,
+    Practice,
+    RunBar,
+    LinkWord,
+    Keys,
+    OtherUnits,
+    States,
+}
+
+impl Without {
+    const ALL: [Self; 8] = [
+        Self::Nothing,
+        Self::Subtitle,
+        Self::Practice,
+        Self::RunBar,
+        Self::LinkWord,
+        Self::Keys,
+        Self::OtherUnits,
+        Self::States,
+    ];
+}
+
+/// Something in the bar, and what it does.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum What {
+    Unit(usize),
+    Add,
+    State,
+    Cancel,
+    Run,
+    RunBar,
+    Bell,
+    Arm,
+    Disarm,
+    StopAll,
+}
+
+type Item = (What, Face<'static>);
+
+pub fn bar(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+    ui.spacing_mut().interact_size.y = Sizes::of(ui).bar - GAP;
+    ui.spacing_mut().item_spacing.x = GAP;
+    let wide = |items: &[Item]| {
+        let one = |(what, face): &Item| match what {
+            What::RunBar => RUN_BAR,
+            _ => face.wide(ui),
+        };
+        items.iter().map(one).sum::<f32>() + GAP * items.len() as f32
+    };
+    let room = ui.available_width();
+    let both = |without| (left(context, without), right(context, without));
+    let fits = |(left, right): &(Vec<Item>, Vec<Item>)| wide(left) + wide(right) <= room;
+    let (left, right) = Without::ALL
+        .map(both)
+        .into_iter()
+        .find(fits)
+        .unwrap_or_else(|| both(Without::States));
+    let ends = Layout::right_to_left(Align::Center);
+    ui.with_layout(ends, |ui| {
+        for item in right.iter().rev() {
+            shown(frame, ui, item, context);
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            for item in &left {
+                shown(frame, ui, item, context);
+            }
+        });
+    });
+}
+
+fn shown(frame: &mut Frame, ui: &mut Ui, (what, face): &Item, context: &mut PageContext<'_>) {
+    ui.scope(|ui| {
+        if context.settings.locked && !matches!(what, What::StopAll | What::Bell) {
+            only_look(ui);
+        }
+        match what {
+            What::RunBar => run_bar(ui, context.units.chosen()),
+            What::Arm => {
+                let unit = context.units.chosen();
+                let place = ActionPlace::new(ui, "arming", (unit.id, false));
+                if face.held(ui, &place) {
+                    unit.bench.arm();
+                }
+            }
+            _ => {
+                let response = face.show(ui);
+                act(frame, *what, &response, ui, context);
+            }
+        }
+    });
+}
+
+fn act(frame: &mut Frame, what: What, response: &Response, ui: &Ui, context: &mut PageContext<'_>) {
+    let chosen = context.units.chosen_place();
+    match what {
+        What::Unit(place) if place == chosen => {
+            Popup::menu(response).show(|ui| unit_menu(ui, &mut frame.setup, context));
+        }
+        What::Unit(place) if response.clicked() => context.units.choose(place),
+        What::Bell => messages::bell(response, context),
+        What::Run if response.clicked() => context.settings.page = Page::Procedures,
+        What::StopAll if response.clicked() => context.units.stop_all(),
+        What::Add if response.clicked() => {
+            let choice = context.units.chosen().choice.clone();
+            if let Err(failure) = context.units.add(choice) {
+                let said = context.words.frame.cannot_connect;
+                context.messages.trouble(said, failure.message);
+            }
+        }
+        What::Cancel => {
+            let unit = context.units.chosen_mut();
+            let place = ActionPlace::new(ui, "connection", (unit.id, true));
+            if place.clicked(response) {
+                unit.disconnect();
+            }
+        }
+        What::Disarm => {
+            let unit = context.units.chosen();
+            let place = ActionPlace::new(ui, "arming", (unit.id, true));
+            if place.clicked(response) {
+                // Refused only while a run has the bench, when the button is off.
+                let _ = unit.bench.apply(Stimulus::PtuDisarm);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
+    let words = &context.words.frame;
+    let mut items = Vec::new();
+    let chosen = context.units.chosen_place();
+    for (place, unit) in context.units.iter().enumerate() {
+        if place == chosen {
+            items.push((What::Unit(place), unit_face(unit, words, without)));
+        } else if without < Without::OtherUnits {
+            let name = format!("{}: {}", place + 1, unit.name());
+            items.push((What::Unit(place), Face::new(Look::Quiet, name)));
+        }
+    }
+    let add = Face::new(Look::Quiet, "").icon(ICON_ADD);
+    items.push((What::Add, add.named(words.add_unit)));
+    let unit = context.units.chosen();
+    link(unit, context.words, without, &mut items);
+    if let Some(setup) = unit.setup.value().filter(|setup| !setup.faults.is_empty()) {
+        let said = fill(words.practice_faults, &[("n", &setup.faults.len())]);
+        let shown = if without < Without::Practice {
+            said.clone()
+        } else {
+            String::new()
+        };
+        let face = Face::new(Look::Dashed, shown).icon(ICON_SCIENCE);
+        let names = setup.injected().unwrap_or_default();
+        items.push((What::State, face.named(said).hint(names)));
+    }
+    run(unit, words, without, &mut items);
+    if without < Without::States {
+        states(context, &mut items);
+    }
+    items
+}
+
+fn unit_face(unit: &Unit, words: &words::Frame, without: Without) -> Face<'static> {
+    let place = match unit.choice.is_simulated() {
+        true => words.simulated.to_owned(),
+        false => unit.choice.endpoint.clone(),
+    };
+    let serial = unit.serial();
+    let name = serial.clone().unwrap_or_else(|| place.clone());
+    let mut small = vec![place];
+    if serial.is_none() {
+        small.clear();
+    }
+    small.push(unit.choice.line.clone());
+    let shown = cut(&name, NAME).into_owned();
+    let face = Face::new(Look::Secondary, shown).icon(ICON_MEMORY);
+    let face = face.named(name).end(ICON_EXPAND_MORE);
+    match without < Without::Subtitle {
+        true => face.small(small.join(DOT)),
+        false => face,
+    }
+}
+
+/// How the unit is reached, and how well.
+fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Item>) {
+    let common = &words.common;
+    let words = &words.frame;
+    let share = unit.bench.live().link.share();
+    let (look, icon, said) = match unit.phase() {
+        _ if unit.is_lost() => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
+        Phase::Offline => (Look::State, ICON_LINK_OFF, words.not_connected.to_owned()),
+        Phase::Connecting => (Look::State, ICON_LINK, words.connecting.to_owned()),
+        Phase::Idle | Phase::Running | Phase::MakingSafe => {
+            let share = 100.0 * share.unwrap_or(1.0);
+            let said = format!("{}", (share * 10.0).floor() / 10.0);
+            let look = if share >= 99.95 {
+                Look::State
+            } else {
+                Look::Warned
+            };
+            (look, ICON_LINK, fill(words.link_good, &[("share", &said)]))
+        }
+    };
+    let shown = if without < Without::LinkWord {
+        said.clone()
+    } else {
+        String::new()
+    };
+    items.push((What::State, Face::new(look, shown).icon(icon).named(said)));
+    if unit.phase() == Phase::Connecting {
+        items.push((What::Cancel, Face::new(Look::Quiet, common.cancel)));
+    }
+}
+
+/// What a run is at, whatever page is in front.
+fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item>) {
+    let Some(run) = unit.run.as_ref().filter(|run| run.is_running()) else {
+        return;
+    };
+    let present = run.present.as_ref();
+    let counts = run.counts();
+    let counts: [(&str, &dyn std::fmt::Display); 2] =
+        [("n", &counts.run()), ("all", &counts.planned)];
+    let (look, icon, said) = if present.is_some_and(|present| present.prompt.is_some()) {
+        (Look::Warned, ICON_HELP, words.asks.to_owned())
+    } else if present.is_some_and(|present| present.paused.is_some()) {
+        (Look::Warned, ICON_PAUSE_CIRCLE, words.is_paused.to_owned())
+    } else {
+        (Look::Quiet, ICON_PLAY_CIRCLE, fill(words.running, &counts))
+    };
+    let is_button = look == Look::Quiet || present.is_some_and(|present| present.prompt.is_some());
+    let look = if is_button { Look::Quiet } else { look };
+    items.push((What::Run, Face::new(look, said).icon(icon)));
+    if without < Without::RunBar {
+        items.push((What::RunBar, Face::new(Look::State, "")));
+    }
+}
+
+fn run_bar(ui: &mut Ui, unit: &Unit) {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(RUN_BAR, 4.0), Sense::hover());
+    let share = unit.run.as_ref().map_or(0.0, |run| run.share());
+    let name = format!("{:.0} %", 100.0 * share);
+    response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &name));
+    ui.painter().rect_filled(rect, 2.0, palette.grid);
+    let done = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
+    ui.painter().rect_filled(done, 2.0, palette.accent);
+}
+
+/// What else wants a look.
+fn states(context: &PageContext<'_>, items: &mut Vec<Item>) {
+    let words = context.words;
+    let unit = context.units.chosen();
+    let warned = |said: String, hint: String| {
+        let shown = cut(&said, NAME).into_owned();
+        let face = Face::new(Look::Warned, shown).icon(ICON_WARNING);
+        (What::State, face.named(said).hint(hint))
+    };
+    let sample = &unit.bench.live().sample;
+    if let Some(differs) = differs_from_record(sample, &words.frame).filter(|_| unit.is_connected())
+    {
+        items.push(warned(differs.clone(), differs));
+    }
+    if context.only_reads().is_some() {
+        let server = context.queries.paths().database.display().to_string();
+        let said = fill(words.care.reads, &[("server", &server)]);
+        let hint = format!("{said}. {}", words.care.is_server);
+        items.push(warned(said, hint));
+    }
+    if context.units.iter().any(|unit| unit.stopping) {
+        items.push(warned(words.frame.stopping.to_owned(), String::new()));
+    }
+}
+
+/// What of the unit is not as the record of its train says.
+fn differs_from_record(sample: &Sample, frame: &words::Frame) -> Option<String> {
+    let compared = [
+        (Signal::IdentitySerial, frame.recorded_serial),
+        (Signal::IdentitySoftware, frame.recorded_software),
+        (Signal::IdentityConfig, frame.recorded_config),
+        (Signal::IdentityLine, frame.recorded_line),
+    ];
+    let differs = |(signal, _): &(Signal, &str)| sample.get(*signal) == Some(0.0);
+    let parts: Vec<_> = compared.into_iter().filter(differs).collect();
+    let what: Vec<_> = parts.iter().map(|(_, name)| *name).collect();
+    (!what.is_empty()).then(|| fill(frame.not_as_recorded, &[("what", &what.join(", "))]))
+}
+
+fn right(context: &PageContext<'_>, without: Without) -> Vec<Item> {
+    let words = &context.words.frame;
+    let mut items = Vec::new();
+    let n = context.messages.all().len();
+    let count = if n > 0 { n.to_string() } else { String::new() };
+    let bell = Face::new(Look::Quiet, count).icon(ICON_NOTIFICATIONS);
+    items.push((What::Bell, bell.named(words.messages)));
+    let chosen = context.units.chosen_place();
+    for (place, other) in context.units.iter().enumerate() {
+        if place != chosen && other.is_armed() {
+            let said = fill(words.armed_unit, &[("unit", &other.name())]);
+            items.push((What::State, Face::new(Look::Acting, said).icon(ICON_BOLT)));
+        }
+    }
+    let unit = context.units.chosen();
+    let keys = without < Without::Keys;
+    let small = |text: &'static str| if keys { text } else { "" };
+    if unit.is_armed() && unit.is_connected() {
+        let sign = Face::new(Look::Acting, words.armed).icon(ICON_BOLT);
+        items.push((What::State, sign.hint(words.armed_hint)));
+        let may = unit.bench.permits(&Stimulus::PtuDisarm).is_ok();
+        let face = Face::new(Look::Secondary, words.disarm).off((!may).then_some(""));
+        items.push((What::Disarm, face));
+    } else if !matches!(unit.phase(), Phase::Offline | Phase::Connecting) {
+        let idle = unit.phase() == Phase::Idle;
+        let face = Face::new(Look::Outlined, words.arm).icon(ICON_BOLT);
+        let face = face.small(small(words.hold)).hint(words.arm_hint);
+        items.push((What::Arm, face.off((!idle).then_some(""))));
+    }
+    let acts = |unit: &Unit| unit.phase() == Phase::Running || unit.is_armed() || unit.stopping;
+    let look = match context.units.iter().any(acts) {
+        true => Look::Acting,
+        false => Look::Danger,
+    };
+    let stop = Face::new(look, words.stop_all).icon(ICON_STOP_CIRCLE);
+    items.push((What::StopAll, stop.small(small(STOP_ALL.name()))));
+    items
+}

@@ -1,0 +1,67 @@
+//! The one menu: language, theme, density, size, who works here, the lock, and what this program is.
+
+use eframe::egui::{Grid, Ui};
+
+use super::Frame;
+use crate::parts::{ActionPlace, Face, Look, field, name_edit, segments};
+use crate::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
+use crate::{Density, PageContext};
+use ptu_report::words::Language;
+
+const STEP: f32 = 0.1;
+/// Width of a field, points.
+const FIELD: f32 = 200.0;
+
+pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+    let words = &context.words.frame;
+    let settings = &mut *context.settings;
+    Grid::new("menu").num_columns(2).show(ui, |ui| {
+        ui.label(words.language);
+        let names = Language::ALL.map(|language| (language, language.name()));
+        segments(ui, &mut settings.language, names);
+        ui.end_row();
+        ui.label(words.theme);
+        let themes = [(true, words.dark), (false, words.light)];
+        segments(ui, &mut settings.dark, themes);
+        ui.end_row();
+        ui.label(words.view);
+        let views = [
+            (Density::Operator, words.operator),
+            (Density::Engineer, words.engineer),
+        ];
+        segments(ui, &mut settings.density, views);
+        ui.end_row();
+        ui.label(words.scale);
+        ui.horizontal(|ui| {
+            // It moves all of them under the pointer.
+            let place = ActionPlace::new(ui, "size", settings.zoom.to_bits());
+            let smaller = Face::new(Look::Secondary, "−").show(ui);
+            let shown = format!("{:.0} %", 100.0 * settings.zoom);
+            Face::new(Look::State, shown).show(ui);
+            let larger = Face::new(Look::Secondary, "+").show(ui);
+            let by = match (place.clicked(&smaller), place.clicked(&larger)) {
+                (true, _) => -STEP,
+                (_, true) => STEP,
+                _ => 0.0,
+            };
+            settings.zoom = (settings.zoom + by).clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
+        });
+        ui.end_row();
+        let name = name_edit(&mut settings.operator, FIELD);
+        field(ui, context.words.common.operator, name);
+        // It stays with the window, whatever unit is chosen.
+        let depot = name_edit(&mut settings.depot, FIELD);
+        field(ui, context.words.report.depot, depot);
+    });
+    ui.horizontal(|ui| {
+        if Face::new(Look::Quiet, words.about).show(ui).clicked() {
+            frame.about.open();
+            ui.close();
+        }
+        let lock = Face::new(Look::Quiet, words.lock).hint(words.lock_hint);
+        if lock.show(ui).clicked() {
+            settings.lock();
+            ui.close();
+        }
+    });
+}

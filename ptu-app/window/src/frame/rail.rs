@@ -1,0 +1,175 @@
+//! The rail of the pages: an icon, the key and the name of each; below them the history and the menu.
+
+use eframe::egui::{
+    Align, Align2, FontId, Layout, Popup, RectAlign, Response, Role, Sense, Ui, WidgetInfo, pos2,
+    vec2,
+};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_ASSIGNMENT, ICON_BAR_CHART, ICON_CHECKLIST, ICON_DATABASE, ICON_DESCRIPTION,
+    ICON_GRAPHIC_EQ, ICON_MENU, ICON_REPORT, ICON_SHOW_CHART, ICON_SPEED, ICON_TRAIN,
+    ICON_TROUBLESHOOT,
+};
+
+use super::{Frame, menu};
+use crate::parts::focus_ring;
+use crate::{Density, Page, PageContext, Palette, Sizes};
+
+/// Width of a window whose rail has names beside the icons, and that width, points.
+const WIDE: [f32; 2] = [1600.0, 200.0];
+/// Between two of the rail, points.
+const GAP: f32 = 2.0;
+
+/// A page, the history or the menu in the rail.
+struct Place<'a> {
+    icon: MaterialIcon,
+    key: &'a str,
+    name: &'a str,
+    chosen: bool,
+}
+
+/// Width of the rail, points.
+pub fn wide(ui: &Ui) -> f32 {
+    match Sizes::of(ui).density {
+        _ if ui.ctx().content_rect().width() >= WIDE[0] => WIDE[1],
+        Density::Operator => 80.0,
+        Density::Engineer => 76.0,
+    }
+}
+
+pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+    ui.spacing_mut().item_spacing.y = GAP;
+    let usual = match Sizes::of(ui).density {
+        Density::Operator => 56.0,
+        Density::Engineer => 46.0,
+    };
+    let all = Page::ALL.len() as f32 + 2.0;
+    let high = (ui.available_height() / all - GAP).floor().min(usual);
+    for page in Page::ALL {
+        let place = Place {
+            icon: icon(page),
+            key: page.key(),
+            name: page.name(context.words),
+            chosen: context.settings.page == page,
+        };
+        if shown(ui, high, &place).clicked() {
+            context.settings.page = page;
+        }
+    }
+    let other = |icon, name| Place {
+        icon,
+        key: "",
+        name,
+        chosen: false,
+    };
+    ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
+        let menu = shown(ui, high, &other(ICON_MENU, context.words.frame.menu));
+        let popup = Popup::menu(&menu).align(RectAlign::RIGHT_END);
+        let popup = popup.close_behavior(eframe::egui::PopupCloseBehavior::CloseOnClickOutside);
+        popup.show(|ui| menu::menu(frame, ui, context));
+        let history = other(ICON_DATABASE, context.words.care.title);
+        if shown(ui, high, &history).clicked() {
+            frame.care.toggle();
+        }
+    });
+}
+
+fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    let size = vec2(ui.available_width(), high);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let enabled = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, place.chosen, place.name));
+    let (icon, ink) = match place.chosen {
+        true => (palette.accent, palette.ink),
+        false => (palette.second, palette.second),
+    };
+    let painter = ui.painter();
+    if place.chosen || response.hovered() {
+        let ground = if place.chosen {
+            palette.chosen
+        } else {
+            palette.hover
+        };
+        painter.rect_filled(rect, 6.0, ground);
+    }
+    let draw =
+        |at, align, text: &str, font, colour| painter.text(at, align, text, font, colour).right();
+    let of_icon = FontId::new(sizes.icon, place.icon.font_family());
+    let caption = FontId::proportional(12.0);
+    let (left, top, middle) = (rect.left(), rect.top(), rect.center());
+    let sign = place.icon.codepoint;
+    if rect.width() > 100.0 {
+        let at = pos2(left + 12.0, middle.y);
+        let x = draw(at, Align2::LEFT_CENTER, sign, of_icon, icon) + 12.0;
+        let font = FontId::proportional(sizes.body);
+        draw(
+            pos2(x, middle.y),
+            Align2::LEFT_CENTER,
+            place.name,
+            font,
+            ink,
+        );
+        let at = pos2(rect.right() - 8.0, middle.y);
+        draw(at, Align2::RIGHT_CENTER, place.key, caption, palette.quiet);
+    } else if high >= 2.0 * 12.0 + sizes.icon {
+        // Icon and key in one line, the name below.
+        let y = top + high * 0.34;
+        let shift = if place.key.is_empty() { 0.0 } else { 11.0 };
+        let at = pos2(middle.x - shift, y);
+        let x = draw(at, Align2::CENTER_CENTER, sign, of_icon, icon) + 4.0;
+        draw(
+            pos2(x, y),
+            Align2::LEFT_CENTER,
+            place.key,
+            FontId::proportional(11.0),
+            palette.quiet,
+        );
+        let at = pos2(middle.x, top + high * 0.74);
+        draw(at, Align2::CENTER_CENTER, place.name, caption, ink);
+    } else if high >= 12.0 + sizes.icon {
+        let y = top + high * if place.key.is_empty() { 0.5 } else { 0.34 };
+        draw(
+            pos2(middle.x, y),
+            Align2::CENTER_CENTER,
+            sign,
+            of_icon,
+            icon,
+        );
+        let at = pos2(middle.x, top + high * 0.8);
+        draw(
+            at,
+            Align2::CENTER_CENTER,
+            place.key,
+            FontId::proportional(11.0),
+            palette.quiet,
+        );
+    } else {
+        let at = pos2(left + 8.0, middle.y);
+        let x = draw(at, Align2::LEFT_CENTER, sign, of_icon, icon) + 4.0;
+        draw(
+            pos2(x, middle.y),
+            Align2::LEFT_CENTER,
+            place.key,
+            FontId::proportional(11.0),
+            palette.quiet,
+        );
+    }
+    focus_ring(ui, rect.shrink(3.0), &response);
+    response.on_hover_text(place.name)
+}
+
+fn icon(page: Page) -> MaterialIcon {
+    match page {
+        Page::Case => ICON_ASSIGNMENT,
+        Page::Bench => ICON_SPEED,
+        Page::Procedures => ICON_CHECKLIST,
+        Page::Traces => ICON_SHOW_CHART,
+        Page::Faults => ICON_REPORT,
+        Page::Diagnosis => ICON_TROUBLESHOOT,
+        Page::Report => ICON_DESCRIPTION,
+        Page::Statistics => ICON_BAR_CHART,
+        Page::Drive => ICON_TRAIN,
+        Page::Signals => ICON_GRAPHIC_EQ,
+    }
+}

@@ -1,0 +1,85 @@
+//! The menu of a unit: connect it or let it go, what it is set up for, who it is.
+
+use eframe::egui::{Button, RichText, Ui};
+use protocol::message::Identity;
+
+use super::keys::CONNECT;
+use super::setup::Setup;
+use crate::parts::ActionPlace;
+use crate::{PageContext, Palette};
+use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::Phase;
+
+/// Least width, points.
+const WIDE: f32 = 260.0;
+
+pub fn unit_menu(ui: &mut Ui, setup: &mut Setup, context: &mut PageContext<'_>) {
+    let (words, frame) = (context.words, &context.words.frame);
+    ui.set_min_width(WIDE);
+    for place in 0..context.units.count() {
+        let unit = context.units.iter().nth(place);
+        let name = unit.map(|unit| format!("{}: {}", place + 1, unit.name()));
+        let is_other = place != context.units.chosen_place();
+        if is_other && ui.button(name.unwrap_or_default()).clicked() {
+            context.units.choose(place);
+        }
+    }
+    let only_reads = context.only_reads();
+    let unit = context.units.chosen_mut();
+    let phase = unit.phase();
+    let place = ActionPlace::new(ui, "unit menu", (unit.id, phase == Phase::Offline));
+    let key = CONNECT.name();
+    if phase == Phase::Offline {
+        let connect = Button::new(frame.connect).shortcut_text(key);
+        let button = ui.add_enabled(only_reads.is_none(), connect);
+        button.widget_info(|| super::button_named(frame.connect, only_reads.is_none()));
+        if let Some(why) = only_reads {
+            ui.label(RichText::new(why).small());
+        }
+        if place.clicked(&button) {
+            unit.connect(context.queries);
+        }
+    } else {
+        let button = ui.add(Button::new(frame.disconnect).shortcut_text(key));
+        button.widget_info(|| super::button_named(frame.disconnect, true));
+        if place.clicked(&button) {
+            unit.disconnect();
+        }
+    }
+    let free = phase == Phase::Offline;
+    if ui.add_enabled(free, Button::new(frame.setup)).clicked() {
+        setup.open();
+    }
+    if !free {
+        ui.label(RichText::new(frame.setup_hint).small());
+    }
+    if context.units.count() > 1 {
+        let remove = ui.add_enabled(free, Button::new(frame.remove_unit));
+        if remove.clicked() {
+            context.units.remove(context.units.chosen_place());
+        }
+    }
+    if let Some(identity) = context.units.chosen().identity() {
+        ui.separator();
+        let quiet = Palette::of(ui).quiet;
+        ui.label(
+            RichText::new(versions(&identity, words))
+                .small()
+                .color(quiet),
+        );
+    }
+}
+
+/// Software and data of the unit.
+fn versions(identity: &Identity, words: &Words) -> String {
+    let software = identity.software.map(|number| number.to_string()).join(".");
+    let config = ptu_runs::run::unit_text::config_name(identity);
+    let config = format!("{config} {:08x}", identity.config_crc);
+    let line = format!("{:08x}", identity.tdb_crc);
+    let said: [(&str, &dyn std::fmt::Display); 3] = [
+        ("software", &software),
+        ("config", &config),
+        ("line", &line),
+    ];
+    fill(words.frame.versions, &said)
+}

@@ -1,0 +1,73 @@
+//! A dialog over the page. The page is dimmed and does nothing meanwhile; the bar above it does, so that all can be stopped.
+
+use eframe::egui::{
+    Align, Align2, Area, Color32, Context, Frame, Id, Key, Layout, Margin, Rect, RichText,
+    ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+};
+
+use crate::{Palette, Sizes};
+
+/// Width of what is in it, and around that, points.
+const WIDE: f32 = 520.0;
+const AROUND: f32 = 20.0;
+/// Radius of its corners, and how dark the page is behind it, of 255.
+const CORNER: u8 = 12;
+const DIM: u8 = 150;
+
+/// Shows it; false once it is to be closed.
+pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -> bool {
+    let (context, sizes, palette) = (ui.ctx(), Sizes::of(ui), Palette::of(ui));
+    let screen = context.content_rect();
+    let page = Rect::from_min_max(pos2(screen.left(), screen.top() + sizes.bar), screen.max);
+    let behind = Area::new(Id::unique("behind a dialog")).fixed_pos(page.min);
+    let behind = behind.show(context, |ui| {
+        let (_, response) = ui.allocate_exact_size(page.size(), Sense::click_and_drag());
+        let dim = Color32::from_black_alpha(DIM);
+        ui.painter().rect_filled(page, 0.0, dim);
+        response
+    });
+    let area = Area::new(Id::unique("dialog").with(name));
+    let area = area.anchor(Align2::CENTER_CENTER, vec2(0.0, sizes.bar / 2.0));
+    let shown = area.show(context, |ui| {
+        let frame = Frame::new()
+            .fill(palette.raised)
+            .stroke(Stroke::new(1.0, palette.edge))
+            .corner_radius(CORNER)
+            .shadow(ui.visuals().window_shadow)
+            .inner_margin(Margin::same(AROUND as i8));
+        frame.show(ui, |ui| {
+            let most = page.size() - vec2(4.0, 4.0) * AROUND;
+            ui.set_width(WIDE.min(most.x));
+            let title = RichText::new(title).size(sizes.title).color(palette.ink);
+            ui.label(title);
+            ui.add_space(AROUND / 2.0);
+            let high = most.y - ui.min_rect().height();
+            let area = ScrollArea::vertical().max_height(high);
+            area.show(ui, content);
+        });
+    });
+    for layer in [behind.response.layer_id, shown.response.layer_id] {
+        context.move_to_top(layer);
+    }
+    let now = context.cumulative_frame_nr();
+    context.data_mut(|data| data.insert_temp(id(), now));
+    !ui.input(|input| input.key_pressed(Key::Escape))
+}
+
+/// The last row of a dialog: from its right end, what is clicked first.
+pub fn last_row(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    ui.add_space(AROUND / 2.0);
+    let size = vec2(ui.available_width(), Sizes::of(ui).target);
+    let ends = Layout::right_to_left(Align::Center);
+    ui.allocate_ui_with_layout(size, ends, content);
+}
+
+/// A dialog is open, or was in the frame before.
+pub fn dialog_is_open(context: &Context) -> bool {
+    let shown = context.data(|data| data.get_temp::<u64>(id()));
+    shown.is_some_and(|shown| shown + 1 >= context.cumulative_frame_nr())
+}
+
+fn id() -> Id {
+    Id::unique("dialog shown")
+}

@@ -1,0 +1,282 @@
+//! Buttons, and states that look like them: an icon, words, and the reason beside one that is off.
+
+use std::borrow::Cow;
+
+use eframe::egui::{
+    Color32, FontId, Galley, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
+};
+use egui_material_icons::MaterialIcon;
+
+use super::ActionPlace;
+use crate::{Palette, Sizes};
+
+/// Between the parts of a face, and its edge and what is in it, points.
+const GAP: f32 = 8.0;
+/// The focus stands so far outside, points.
+const OUTSIDE: f32 = 2.0;
+/// Strokes of a dashed edge, points.
+const DASH: f32 = 4.0;
+
+/// What a face looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// The one button of a screen that is pressed first.
+    Primary,
+    Secondary,
+    /// No ground until the pointer is over it.
+    Quiet,
+    /// One of a few, which is chosen.
+    Chosen,
+    /// Stops or ends something.
+    Danger,
+    /// The same while there is something to stop; an armed unit.
+    Acting,
+    /// A line and no ground.
+    Outlined,
+    /// Says something and cannot be clicked.
+    State,
+    /// The same of what wants a look.
+    Warned,
+    /// The same of what is practice.
+    Dashed,
+}
+
+/// A button or a state.
+pub struct Face<'a> {
+    look: Look,
+    icon: Option<MaterialIcon>,
+    text: Cow<'a, str>,
+    small: Cow<'a, str>,
+    end: Option<MaterialIcon>,
+    name: Option<Cow<'a, str>>,
+    why_not: Option<&'a str>,
+    hint: Cow<'a, str>,
+}
+
+/// What is written in a face, laid out.
+struct Laid {
+    parts: Vec<std::sync::Arc<Galley>>,
+    size: Vec2,
+}
+
+impl<'a> Face<'a> {
+    pub fn new(look: Look, text: impl Into<Cow<'a, str>>) -> Self {
+        Self {
+            look,
+            icon: None,
+            text: text.into(),
+            small: Cow::Borrowed(""),
+            end: None,
+            name: None,
+            why_not: None,
+            hint: Cow::Borrowed(""),
+        }
+    }
+
+    pub fn icon(mut self, icon: MaterialIcon) -> Self {
+        self.icon = Some(icon);
+        self
+    }
+
+    /// An icon behind the words.
+    pub fn end(mut self, icon: MaterialIcon) -> Self {
+        self.end = Some(icon);
+        self
+    }
+
+    /// Small words behind the others.
+    pub fn small(mut self, small: impl Into<Cow<'a, str>>) -> Self {
+        self.small = small.into();
+        self
+    }
+
+    /// What it is called where that is not what is written in it.
+    pub fn named(mut self, name: impl Into<Cow<'a, str>>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// Off, for this reason.
+    pub fn off(mut self, why_not: Option<&'a str>) -> Self {
+        self.why_not = why_not;
+        self
+    }
+
+    /// Said when the pointer is over it.
+    pub fn hint(mut self, hint: impl Into<Cow<'a, str>>) -> Self {
+        self.hint = hint.into();
+        self
+    }
+
+    /// Its width, points.
+    pub fn wide(&self, ui: &Ui) -> f32 {
+        self.laid(ui, Color32::WHITE, Color32::WHITE).size.x
+    }
+
+    /// Shows it, and the reason why it is off beside it.
+    pub fn show(&self, ui: &mut Ui) -> Response {
+        self.shown(ui, Sense::click(), &|_, _| 0.0)
+    }
+
+    /// Shows one that is to be held down; true once it was long enough. Meanwhile it fills.
+    pub fn held(&self, ui: &mut Ui, place: &ActionPlace) -> bool {
+        let done = std::cell::Cell::new(false);
+        // What is only clicked is not down any more after a while.
+        self.shown(ui, Sense::click_and_drag(), &|ui, response| {
+            let share = place.held(ui, response);
+            done.set(share >= 1.0);
+            share
+        });
+        done.get()
+    }
+
+    fn shown(&self, ui: &mut Ui, sense: Sense, held: &dyn Fn(&Ui, &Response) -> f32) -> Response {
+        let palette = Palette::of(ui);
+        let is_state = matches!(self.look, Look::State | Look::Warned | Look::Dashed);
+        let on = self.why_not.is_none() && ui.is_enabled();
+        let sense = match on && !is_state {
+            true => sense,
+            false => Sense::hover(),
+        };
+        let (ink, quiet) = self.inks(&palette, on);
+        let laid = self.laid(ui, ink, quiet);
+        let (rect, response) = ui.allocate_exact_size(laid.size, sense);
+        let role = if is_state { Role::Label } else { Role::Button };
+        let name = self.name.as_ref().unwrap_or(&self.text);
+        response.widget_info(|| match self.look {
+            Look::Chosen => WidgetInfo::selected(role, on, true, &**name),
+            _ => WidgetInfo::labeled(role, on, &**name),
+        });
+        let share = if on { held(ui, &response) } else { 0.0 };
+        self.paint(ui, rect, (&response, on, share), &palette);
+        let mut x = match is_state && self.look == Look::State {
+            true => rect.left(),
+            false => rect.left() + padding(ui),
+        };
+        for part in laid.parts {
+            let at = pos2(x, rect.center().y - part.size().y / 2.0);
+            x += part.size().x + GAP;
+            ui.painter().galley(at, part, ink);
+        }
+        match self.why_not {
+            Some(why) if !why.is_empty() => {
+                ui.small(why);
+            }
+            _ => {}
+        }
+        match self.hint.is_empty() {
+            true => response,
+            false => response.on_hover_text(&*self.hint),
+        }
+    }
+
+    fn paint(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        (response, on, share): (&Response, bool, f32),
+        palette: &Palette,
+    ) {
+        let over = on && response.hovered();
+        let none = Color32::TRANSPARENT;
+        let (ground, line) = match (self.look, on) {
+            (Look::State, _) => (none, none),
+            (Look::Warned, _) => (palette.warn_ground, none),
+            (Look::Dashed, _) => (none, none),
+            (Look::Quiet, false) => (none, none),
+            (_, false) => (none, palette.grid),
+            (Look::Primary, true) if over => {
+                (palette.fill.lerp_to_gamma(palette.accent, 0.2), none)
+            }
+            (Look::Primary, true) => (palette.fill, none),
+            (Look::Acting, true) => (palette.armed, palette.armed),
+            (Look::Chosen, true) => (palette.chosen, none),
+            (Look::Danger, true) if over => (palette.bad_ground, palette.bad),
+            (Look::Danger, true) => (none, palette.bad),
+            (Look::Secondary, true) if !over => (palette.control, none),
+            (Look::Outlined, true) if !over => (none, palette.edge),
+            (Look::Outlined, true) => (palette.hover, palette.edge),
+            (Look::Quiet, true) if !over => (none, none),
+            (_, true) => (palette.hover, none),
+        };
+        let painter = ui.painter();
+        let stroke = Stroke::new(1.0, line);
+        painter.rect(rect, 6.0, ground, stroke, StrokeKind::Inside);
+        if share > 0.0 {
+            let wide = vec2(rect.width() * share, rect.height());
+            let filled = Rect::from_min_size(rect.min, wide);
+            painter.rect_filled(filled, 6.0, palette.armed);
+        }
+        if self.look == Look::Dashed {
+            let edge = rect.shrink(0.5);
+            let corners = [
+                edge.left_top(),
+                edge.right_top(),
+                edge.right_bottom(),
+                edge.left_bottom(),
+                edge.left_top(),
+            ];
+            let dashed = Stroke::new(1.0, palette.edge);
+            painter.extend(Shape::dashed_line(&corners, dashed, DASH, DASH));
+        }
+        focus_ring(ui, rect, response);
+    }
+
+    fn inks(&self, palette: &Palette, on: bool) -> (Color32, Color32) {
+        match self.look {
+            Look::State => (palette.second, palette.quiet),
+            Look::Dashed => (palette.second, palette.quiet),
+            Look::Warned => (palette.warn, palette.warn),
+            _ if !on => (palette.quiet, palette.quiet),
+            Look::Primary | Look::Acting => (Color32::WHITE, Color32::WHITE),
+            Look::Danger => (palette.bad, palette.bad),
+            Look::Secondary | Look::Outlined | Look::Chosen => (palette.ink, palette.quiet),
+            Look::Quiet => (palette.second, palette.quiet),
+        }
+    }
+
+    fn laid(&self, ui: &Ui, ink: Color32, quiet: Color32) -> Laid {
+        let sizes = Sizes::of(ui);
+        let painter = ui.painter();
+        let icon = |icon: MaterialIcon| {
+            let font = FontId::new(sizes.icon, icon.font_family());
+            painter.layout_no_wrap(icon.codepoint.to_owned(), font, ink)
+        };
+        let words = |text: &Cow<'_, str>, size, ink| {
+            let font = FontId::proportional(size);
+            (!text.is_empty()).then(|| painter.layout_no_wrap(text.to_string(), font, ink))
+        };
+        let parts = [
+            self.icon.map(icon),
+            words(&self.text, sizes.body, ink),
+            words(&self.small, sizes.caption, quiet),
+            self.end.map(icon),
+        ];
+        let parts: Vec<_> = parts.into_iter().flatten().collect();
+        let around = match self.look {
+            Look::State => 0.0,
+            _ => 2.0 * padding(ui),
+        };
+        let gaps = GAP * parts.len().saturating_sub(1) as f32;
+        let wide = parts.iter().map(|part| part.size().x).sum::<f32>() + gaps + around;
+        let high = ui.spacing().interact_size.y;
+        Laid {
+            parts,
+            size: vec2(wide.ceil(), high),
+        }
+    }
+}
+
+/// Marks what has the keyboard.
+pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
+    if response.has_focus() {
+        let stroke = Stroke::new(2.0, Palette::of(ui).accent);
+        let painter = ui.painter();
+        painter.rect_stroke(rect.expand(OUTSIDE), 8.0, stroke, StrokeKind::Outside);
+    }
+}
+
+fn padding(ui: &Ui) -> f32 {
+    Sizes::of(ui).body * 0.75
+}
