@@ -60,8 +60,8 @@ pub use maintenance::{
     Samples, SchemaObject, SealPlace, Verification, WrongSignature,
 };
 pub use query::{
-    ConfirmedCase, ConfirmedRepairs, DailyCount, FaultDetail, FaultFilter, FaultStat, FaultSummary,
-    Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,
+    ConfirmedCase, ConfirmedRepairs, FaultDetail, FaultFilter, FaultStat, FaultSummary, Life,
+    LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,
     PartRepair, QueryBounds, QueryResult, RepairsOf, RunDetail, RunFault, RunFilter, RunOccurrence,
     RunState, RunSummary, SAME_ENTRY_US, SqlValue, StatKey, StatQuery, Stay, TraceHead,
     TraceSummary, TrendDay, TrendLimits, TrendPoint, TrendQuery, TrendStep, TrendUnit, code_number,

@@ -1,7 +1,6 @@
 //! Queries: lists, single rows with their details, statistics, and free SQL.
 
 mod confirmed;
-mod daily;
 mod distinct_names;
 mod fault_filter;
 mod faults;
@@ -19,7 +18,6 @@ mod traces;
 mod trend;
 
 pub use confirmed::{ConfirmedCase, ConfirmedRepairs, RepairsOf, is_practice};
-pub use daily::DailyCount;
 pub use fault_filter::FaultFilter;
 pub use faults::{FaultDetail, FaultSummary, Occurrence};
 pub use filter_names::code_number;

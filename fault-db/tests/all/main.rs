@@ -9,7 +9,6 @@ mod cases;
 mod checking;
 mod counting;
 mod counting_filters;
-mod daily;
 mod dictionaries;
 mod foreign_files;
 mod forged;

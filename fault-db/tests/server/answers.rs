@@ -224,9 +224,6 @@ fn lists() -> Vec<Question> {
             assert!(names.iter().all(|names| !names.is_empty()), "{names:?}");
             Ok(names)
         }),
-        question("by day", |store| {
-            store.daily_occurrences(day(2), 9 * 3_600_000_000)
-        }),
         question("a unit's history", |store| {
             let parts = store.part_history("U-1", (0, day(60)), None)?;
             let spans = store.tested_spans("U-2")?;

@@ -7,10 +7,8 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
-use ptu_runs::clock;
 use ptu_runs::failure::Failure;
-use ptu_runs::keys::{KeyFile, KeyList, Standing, located, own_folder};
-use ptu_runs::owner_only;
+use ptu_runs::{keys, owner_only};
 
 /// Longest file with a PIN, bytes.
 const LONGEST_PIN: u64 = 4096;
@@ -64,34 +62,12 @@ impl SigningOption {
         let Some(path) = self.named() else {
             return Ok(None);
         };
-        let file = KeyFile::read(path)?;
-        owner_only::refuse_shared(&located(path))?;
-        check(path, &file)?;
+        let file = keys::usable(path)?;
         let pin = self
             .pin
             .ask(&format!("PIN of {}'s key: ", file.entry().who))?;
         Ok(Some(Arc::new(file.open(&pin)?)))
     }
-}
-
-/// Refuses a key that does not hold today, by its own file or by the list of this computer.
-fn check(path: &Path, file: &KeyFile) -> Result<(), Failure> {
-    let (entry, now) = (file.entry(), clock::now_us());
-    let listed = own_folder().ok().filter(|folder| folder.is_dir());
-    let listed = listed.map(|folder| KeyList::read(&folder)).transpose()?;
-    let listed = listed
-        .unwrap_or_default()
-        .standing(&entry.key, &entry.who, &entry.kind, now);
-    for standing in [entry.standing(now), listed] {
-        if !matches!(standing, Standing::Held | Standing::Unknown) {
-            return Err(Failure::usage(format!(
-                "the key in {} {}: nothing is signed with it; `ptu key new` makes another",
-                path.display(),
-                standing.text()
-            )));
-        }
-    }
-    Ok(())
 }
 
 impl PinOption {

@@ -133,7 +133,12 @@ impl App {
             Page::Procedures if page_context.settings.live_plot => Watched::Curves,
             _ => Watched::Bar,
         });
-        CentralPanel::default().show(ui, |ui| {
+        let panel = match page {
+            // Its own panels reach to the edges.
+            Page::Case => CentralPanel::no_frame(),
+            _ => CentralPanel::default(),
+        };
+        panel.show(ui, |ui| {
             if page_context.settings.locked {
                 only_look(ui);
             }
@@ -145,6 +150,9 @@ impl App {
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
         for to in std::mem::take(page_context.go_to) {
+            if to == Destination::Setup {
+                self.frame.set_up();
+            }
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }

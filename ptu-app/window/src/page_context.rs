@@ -80,6 +80,8 @@ pub enum Destination {
         procedures: BTreeSet<String>,
         part: String,
     },
+    /// What the chosen unit is set up for; stays where it is.
+    Setup,
     /// What the chosen unit's run left when its link was lost; stays where it is.
     GoOn,
     /// The procedures, running one step at once.

@@ -16,7 +16,8 @@ wordings! {
         new_case: "New case", "새 작업";
         your_name: "Your name", "시험자 이름";
         name_first: "Write your name first", "먼저 이름을 적으십시오";
-        reached_at: "The unit is reached at {place}; another place is chosen above, at Setup.", "장치 연결 위치: {place}. 다른 위치는 위의 설정에서 고르십시오.";
+        where_is: "Where is the unit?", "장치가 어디에 있습니까?";
+        practice_hint: "practice, no hardware needed", "연습, 장비 없이 가능";
         seen_last: "Units seen last", "최근 시험한 장치";
         first_start: "Nothing is recorded yet. A demonstration shows the way of a case on the simulated unit, which has a fault: its brakes come late.", "아직 기록이 없습니다. 고장이 하나 있는 모의 장치로 작업 순서를 시연할 수 있습니다. 증상: 제동이 늦음.";
         demonstrate: "Start the demonstration", "시연 시작";
@@ -28,6 +29,15 @@ wordings! {
         find_part: "Find the part", "고장 부품 찾기";
         preparing: "The run is being prepared", "시험을 준비하는 중";
         not_begun: "No run is under way.", "진행 중인 시험이 없습니다.";
+        under_way: "the test is under way", "시험 진행 중";
+        connect_first: "connect first", "먼저 연결";
+        after_symptom: "after the symptom", "증상 선택 후";
+        after_test: "after the test", "시험 후";
+        after_result: "after the result", "결과 후";
+        after_repair: "after the repair", "수리 후";
+        after_proof: "after the proof", "확인 시험 후";
+        run: "Run", "시험";
+        test_sheet: "Test sheet", "시험 성적서";
         back: "Back", "뒤로";
         is_failed: "Failed", "불합격";
         is_unsure: "Not certain yet", "아직 불확실";
@@ -46,9 +56,10 @@ wordings! {
         show_failed: "Show what failed", "불합격 항목 보기";
         run_whole: "Run the whole suite", "전체 시험";
         run_again: "Run again", "다시 시험";
-        because: "Because", "근거";
         next_check: "Next check: {check}", "다음 점검: {check}";
-        way: "The way of the signal, from the sensor to what the check judges", "센서에서 판정 신호까지의 신호 경로";
+        why: "Why", "근거";
+        way: "Way of the signal", "신호 경로";
+        beside: "Beside a good unit", "정상 장치와 비교";
         suspected: "suspected", "고장 추정";
         fails_with_it: "fails with it", "함께 불합격";
         needed_by_all: "needed by all", "모두에 필요";
@@ -65,13 +76,19 @@ wordings! {
         recorded: "Repair of {part} recorded", "{part} 수리를 기록함";
         not_recorded: "The repair was not recorded", "수리를 기록하지 못했습니다";
         fitted: "Fitted: connect again", "조립 완료: 다시 연결";
-        fitted_hint: "Switch the unit off before the part is changed. In practice the injected faults of the part go with it.", "부품을 바꾸기 전에 장치 전원을 끄십시오. 연습에서는 그 부품에 주입한 고장도 함께 없어집니다.";
+        switch_off: "Switch the unit off before the part is changed.", "부품을 바꾸기 전에 장치 전원을 끄십시오.";
+        fitted_hint: "In practice the injected faults of the part go with it.", "연습에서는 그 부품에 주입한 고장도 함께 없어집니다.";
         prove: "Prove the repair", "수리 확인 시험";
         prove_hint: "Runs what failed, and what this part can break", "불합격한 절차와 이 부품이 영향을 주는 절차를 시험합니다";
-        sign: "Checked", "확인";
+        sign: "Sign …", "서명 …";
+        sign_title: "Sign the sheet", "성적서 서명";
+        sign_as: "Sign as {who}", "{who} 이름으로 서명";
+        sign_hint: "The sheet and the history keep this name. A signature cannot be undone.", "성적서와 기록에 이 이름이 남습니다. 서명은 되돌릴 수 없습니다.";
+        key: "Key", "서명 키";
+        no_key: "none: the name alone", "없음: 이름만";
+        pin: "PIN of the key", "키의 PIN";
         signed: "Checked", "확인함";
         signed_by: "Checked by {who}", "확인: {who}";
         not_signed: "That it was checked was not stored", "확인한 것을 저장하지 못했습니다";
-        print: "PDF", "PDF";
     }
 }

@@ -63,6 +63,9 @@ wordings! {
         refresh: "refresh", "새로 고침";
         save: "save", "저장";
         cancel: "cancel", "취소";
+        at_most: "at most {n}", "{n} 이하";
+        at_least: "at least {n}", "{n} 이상";
+        from_to: "{low} to {high}", "{low}~{high}";
         close: "close", "닫기";
         file: "file", "파일";
         saved: "saved: {file}", "저장됨: {file}";

@@ -14,11 +14,6 @@ wordings! {
         shown: "{n} of {of} faults", "고장 {of}건 중 {n}건";
         seen: "seen", "횟수";
         last_seen: "last seen", "최근 발생";
-        charts: "charts", "차트";
-        over_time: "occurrences, {days} day(s) a bar", "발생 횟수, 막대당 {days}일";
-        by_unit: "by unit", "장치별";
-        by_code: "by code", "코드별";
-        others: "others", "기타";
         cause: "cause", "원인";
         with_cause: "{part}; cause {cause}", "{part}; 원인 {cause}";
         case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";

@@ -37,6 +37,7 @@ wordings! {
         link_gone: "link lost", "링크 끊김";
         go_on: "Reconnect and continue", "다시 연결하고 계속";
         go_on_not: "The scripts are others since: the run cannot go on", "그 뒤 스크립트가 바뀌어 계속할 수 없습니다";
+        go_on_other: "Another unit is connected: the run cannot go on", "다른 장치가 연결되어 시험을 계속할 수 없습니다";
         go_on_hint: "Connects the unit, sets the procedure up again and repeats its step. Another unit does not continue the run.", "장치를 연결하고 절차를 다시 준비한 뒤 중단된 단계를 반복합니다. 다른 장치로는 계속할 수 없습니다.";
         end_run: "End the run", "시험 끝내기";
         link_lost: "The connection to the unit is lost", "장치와의 링크가 끊어졌습니다";

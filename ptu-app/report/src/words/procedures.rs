@@ -29,7 +29,6 @@ wordings! {
         stop_on_fail: "stop at the first failure", "첫 불합격에서 정지";
         connect_first: "Connect a unit first", "먼저 장치를 연결하십시오";
         about_to_begin: "A run is about to begin", "시험이 곧 시작됩니다";
-        operator: "operator", "시험자";
         script_errors: "The scripts have errors; nothing can be run until they are corrected", "스크립트에 오류가 있습니다. 고칠 때까지 실행할 수 없습니다";
         scripts_changed: "Scripts changed since they were shown: look again, then run", "표시된 뒤 스크립트가 바뀌었습니다. 다시 확인한 후 시작하십시오";
         not_loaded: "The scripts cannot be read", "스크립트를 읽을 수 없습니다";

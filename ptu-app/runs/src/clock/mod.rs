@@ -105,11 +105,6 @@ pub fn local_zoned(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d %H:%M:%S UTC%:z")
 }
 
-/// How far local time is ahead of UTC now, microseconds.
-pub fn utc_offset_us() -> i64 {
-    i64::from(Local::now().offset().local_minus_utc()) * 1_000_000
-}
-
 /// Local date and time to the minute, for tables with little room.
 pub fn local_minute(at_us: i64) -> String {
     local_as(at_us, "%Y-%m-%d %H:%M")

@@ -6,10 +6,13 @@ mod list;
 
 use std::path::{Path, PathBuf};
 
+use fault_db::Signer;
+
 pub use file::{KeyFile, NewKey, public_name};
 pub use list::{KeyEntry, KeyList, Standing, day_argument, day_of, day_text, name_argument};
 
 use crate::failure::Failure;
+use crate::{clock, owner_only};
 
 /// The folder of one's own keys and of the list of those that are trusted.
 ///
@@ -48,3 +51,56 @@ fn own_of(named: &Path) -> Option<PathBuf> {
 
 /// The list in the folder of one's own keys.
 pub const TRUSTED: &str = "trusted.keys";
+
+/// The key in this file, if it holds today by itself and by the list of this computer.
+///
+/// # Errors
+/// It is not there, can be read by others, or holds no longer.
+pub fn usable(path: &Path) -> Result<KeyFile, Failure> {
+    let file = KeyFile::read(path)?;
+    owner_only::refuse_shared(&located(path))?;
+    check(path, &file)?;
+    Ok(file)
+}
+
+/// What signs with the key in this file.
+///
+/// # Errors
+/// As [`usable`], or its PIN is wrong.
+pub fn signer(path: &Path, pin: &str) -> Result<Signer, Failure> {
+    usable(path)?.open(pin)
+}
+
+/// The key files of this computer's user.
+pub fn own() -> Vec<PathBuf> {
+    let files = own_folder().ok().and_then(|folder| folder.read_dir().ok());
+    let paths = files
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|file| file.path());
+    let is_key = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "key");
+    let mut keys: Vec<_> = paths.filter(is_key).collect();
+    keys.sort();
+    keys
+}
+
+/// Refuses a key that does not hold today, by its own file or by the list of this computer.
+fn check(path: &Path, file: &KeyFile) -> Result<(), Failure> {
+    let (entry, now) = (file.entry(), clock::now_us());
+    let listed = own_folder().ok().filter(|folder| folder.is_dir());
+    let listed = listed.map(|folder| KeyList::read(&folder)).transpose()?;
+    let listed = listed
+        .unwrap_or_default()
+        .standing(&entry.key, &entry.who, &entry.kind, now);
+    for standing in [entry.standing(now), listed] {
+        if !matches!(standing, Standing::Held | Standing::Unknown) {
+            return Err(Failure::usage(format!(
+                "the key in {} {}: nothing is signed with it; `ptu key new` makes another",
+                path.display(),
+                standing.text()
+            )));
+        }
+    }
+    Ok(())
+}

@@ -1,7 +1,9 @@
 //! The bar of the unit: which one, how it is reached, what runs, whether it is armed, and what stops all. It is one line.
 
 use btu_rig::stimulus::Stimulus;
-use eframe::egui::{Align, Layout, Popup, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{
+    Align, Layout, Popup, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
 use egui_material_icons::icons::{
     ICON_ADD, ICON_BOLT, ICON_EXPAND_MORE, ICON_HELP, ICON_LINK, ICON_LINK_OFF, ICON_MEMORY,
     ICON_NOTIFICATIONS, ICON_PAUSE_CIRCLE, ICON_PLAY_CIRCLE, ICON_SCIENCE, ICON_STOP_CIRCLE,
@@ -74,32 +76,32 @@ type Item = (What, Face<'static>);
 pub fn bar(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
     ui.spacing_mut().interact_size.y = Sizes::of(ui).bar - GAP;
     ui.spacing_mut().item_spacing.x = GAP;
-    let wide = |items: &[Item]| {
-        let one = |(what, face): &Item| match what {
-            What::RunBar => RUN_BAR,
-            _ => face.wide(ui),
-        };
-        items.iter().map(one).sum::<f32>() + GAP * items.len() as f32
-    };
-    let room = ui.available_width();
+    let all = |ui: &Ui, items: &[Item]| items.iter().map(|item| wide(ui, item) + GAP).sum::<f32>();
+    let room = ui.max_rect();
     let both = |without| (left(context, without), right(context, without));
-    let fits = |(left, right): &(Vec<Item>, Vec<Item>)| wide(left) + wide(right) <= room;
-    let (left, right) = Without::ALL
-        .map(both)
-        .into_iter()
-        .find(fits)
-        .unwrap_or_else(|| both(Without::States));
-    let ends = Layout::right_to_left(Align::Center);
-    ui.with_layout(ends, |ui| {
-        for item in right.iter().rev() {
-            shown(frame, ui, item, context);
+    let fits =
+        |(left, right): &(Vec<Item>, Vec<Item>)| all(ui, left) + all(ui, right) <= room.width();
+    let fitting = Without::ALL.map(both).into_iter().find(fits);
+    let (left, right) = fitting.unwrap_or_else(|| both(Without::States));
+    let from_right = all(ui, &right) - GAP;
+    let high = ui.spacing().interact_size.y;
+    for (items, mut x) in [(left, room.left()), (right, room.right() - from_right)] {
+        for item in items {
+            let size = vec2(wide(ui, &item), high);
+            let place = Rect::from_min_size(pos2(x, room.center().y - high / 2.0), size);
+            x += size.x + GAP;
+            let place = UiBuilder::new().max_rect(place);
+            let place = place.layout(Layout::left_to_right(Align::Center));
+            ui.scope_builder(place, |ui| shown(frame, ui, &item, context));
         }
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            for item in &left {
-                shown(frame, ui, item, context);
-            }
-        });
-    });
+    }
+}
+
+fn wide(ui: &Ui, (what, face): &Item) -> f32 {
+    match what {
+        What::RunBar => RUN_BAR,
+        _ => face.wide(ui),
+    }
 }
 
 fn shown(frame: &mut Frame, ui: &mut Ui, (what, face): &Item, context: &mut PageContext<'_>) {
@@ -172,11 +174,15 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
             items.push((What::Unit(place), Face::new(Look::Quiet, name)));
         }
     }
-    let add = Face::new(Look::Quiet, "").icon(ICON_ADD);
-    items.push((What::Add, add.named(words.add_unit)));
+    let all = without < Without::States;
+    if all {
+        let add = Face::new(Look::Quiet, "").icon(ICON_ADD);
+        items.push((What::Add, add.named(words.add_unit)));
+    }
     let unit = context.units.chosen();
     link(unit, context.words, without, &mut items);
-    if let Some(setup) = unit.setup.value().filter(|setup| !setup.faults.is_empty()) {
+    let setup = unit.setup.value().filter(|_| all);
+    if let Some(setup) = setup.filter(|setup| !setup.faults.is_empty()) {
         let said = fill(words.practice_faults, &[("n", &setup.faults.len())]);
         let shown = if without < Without::Practice {
             said.clone()
@@ -188,7 +194,7 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         items.push((What::State, face.named(said).hint(names)));
     }
     run(unit, words, without, &mut items);
-    if without < Without::States {
+    if all {
         states(context, &mut items);
     }
     items
@@ -206,7 +212,10 @@ fn unit_face(unit: &Unit, words: &words::Frame, without: Without) -> Face<'stati
         small.clear();
     }
     small.push(unit.choice.line.clone());
-    let shown = cut(&name, NAME).into_owned();
+    let shown = match without < Without::States {
+        true => cut(&name, NAME).into_owned(),
+        false => String::new(),
+    };
     let face = Face::new(Look::Secondary, shown).icon(ICON_MEMORY);
     let face = face.named(name).end(ICON_EXPAND_MORE);
     match without < Without::Subtitle {
@@ -240,7 +249,9 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
     } else {
         String::new()
     };
-    items.push((What::State, Face::new(look, shown).icon(icon).named(said)));
+    if look == Look::Warned || without < Without::States {
+        items.push((What::State, Face::new(look, shown).icon(icon).named(said)));
+    }
     if unit.phase() == Phase::Connecting {
         items.push((What::Cancel, Face::new(Look::Quiet, common.cancel)));
     }

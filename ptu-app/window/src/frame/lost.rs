@@ -1,9 +1,10 @@
 //! The row below the bar after a link was lost in a run: where it broke off, and how it goes on.
 
-use eframe::egui::{Button, RichText, Ui};
+use eframe::egui::Ui;
+use egui_material_icons::icons::{ICON_LINK, ICON_LINK_OFF};
 
-use crate::parts::ActionPlace;
-use crate::{Destination, PageContext, Palette};
+use crate::parts::{ActionPlace, Face, Look};
+use crate::{Destination, PageContext};
 
 /// The row, if the chosen unit's run broke off so; `goes_on` = its scripts are still those of the run.
 pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
@@ -13,20 +14,28 @@ pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
     let Some((_, loss)) = unit.waiting_run() else {
         return;
     };
-    let said = format!("⚠ {}", words.finding(loss));
+    let said = words.finding(loss);
     let place = ActionPlace::new(ui, "lost run", unit.id);
+    let why_not = match (unit.is_other(), goes_on) {
+        (true, _) => Some(frame.go_on_other),
+        (false, false) => Some(frame.go_on_not),
+        (false, true) => None,
+    };
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(said).color(Palette::of(ui).warn).strong());
-        let reconnect = ui.add_enabled(goes_on, Button::new(frame.go_on));
-        if place.clicked(&reconnect.on_hover_text(frame.go_on_hint)) {
-            unit.connect(context.queries);
-            context.go_to.push(Destination::GoOn);
+        Face::new(Look::Warned, said).icon(ICON_LINK_OFF).show(ui);
+        match why_not {
+            // Nothing else can be done then.
+            Some(why) => drop(ui.label(why)),
+            None => {
+                let go_on = Face::new(Look::Primary, frame.go_on).hint(frame.go_on_hint);
+                if place.clicked(&go_on.icon(ICON_LINK).show(ui)) {
+                    unit.connect(context.queries);
+                    context.go_to.push(Destination::GoOn);
+                }
+            }
         }
-        if place.clicked(&ui.button(frame.end_run)) {
+        if place.clicked(&Face::new(Look::Quiet, frame.end_run).show(ui)) {
             unit.end_run();
-        }
-        if !goes_on {
-            ui.label(frame.go_on_not);
         }
     });
 }

@@ -2,6 +2,8 @@
 
 use eframe::egui::{Grid, Ui};
 
+use egui_material_icons::icons::ICON_DATABASE;
+
 use super::Frame;
 use crate::parts::{ActionPlace, Face, Look, field, name_edit, segments};
 use crate::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
@@ -54,6 +56,13 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         field(ui, context.words.report.depot, depot);
     });
     ui.horizontal(|ui| {
+        if frame.is_low {
+            let history = Face::new(Look::Quiet, context.words.care.title).icon(ICON_DATABASE);
+            if history.show(ui).clicked() {
+                frame.care.toggle();
+                ui.close();
+            }
+        }
         if Face::new(Look::Quiet, words.about).show(ui).clicked() {
             frame.about.open();
             ui.close();

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use eframe::egui::{Align2, Area, Frame, Id, Popup, Response, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{Align2, Area, Frame, Id, Popup, Response, RichText, ScrollArea, Ui, Vec2};
 use egui_material_icons::icons::ICON_UNDO;
 use fault_db::ToWithdraw;
 
@@ -62,7 +62,7 @@ impl Undo {
 }
 
 /// Shows what was told last, over the bottom left of the page: trouble until it was taken note of, anything else for a while.
-pub fn toasts(ui: &Ui, left: f32, context: &mut PageContext<'_>, undo: &mut Undo) {
+pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo) {
     let (ended, now_s) = (context.units.runs_ended(), ui.input(|input| input.time));
     let undoable = context.messages.undoable(now_s, ended);
     // Who takes it back is written down with it.
@@ -80,13 +80,13 @@ pub fn toasts(ui: &Ui, left: f32, context: &mut PageContext<'_>, undo: &mut Undo
         return;
     }
     let palette = Palette::of(ui);
-    let area = Area::new(Id::unique("toasts")).anchor(Align2::LEFT_BOTTOM, vec2(left, -12.0));
+    let area = Area::new(Id::unique("toasts")).anchor(Align2::LEFT_BOTTOM, at);
     area.show(ui.ctx(), |ui| {
         let frame = Frame::popup(ui.style())
             .fill(palette.raised)
             .inner_margin(8);
         frame.show(ui, |ui| {
-            ui.set_max_width((ui.ctx().content_rect().width() - left - 40.0).min(WIDE));
+            ui.set_max_width((ui.ctx().content_rect().width() - at.x - 40.0).min(WIDE));
             if let Some(trouble) = trouble {
                 ui.horizontal_wrapped(|ui| {
                     noted = Face::new(Look::Secondary, words.frame.dismiss)

@@ -14,16 +14,20 @@ mod unit_menu;
 
 use eframe::egui::{
     Align2, Area, Context, Frame as Ground, Id, Margin, Order, Panel, RichText, Role, Spinner, Ui,
-    WidgetInfo,
+    WidgetInfo, vec2,
 };
 
-use super::{PageContext, Palette, Sizes};
+use super::{Page, PageContext, Palette, Sizes};
+use crate::pages::case_steps;
 use crate::parts::dialog_is_open;
 use about::About;
 use care::Care;
 pub use lock::only_look;
 use ptu_report::words::Words;
 use setup::Setup;
+
+/// Between what was told and the edges of the page, points.
+const AROUND: f32 = 12.0;
 
 /// What the frame keeps while the window is open.
 #[derive(Default)]
@@ -32,6 +36,8 @@ pub struct Frame {
     about: About,
     care: Care,
     undo: messages::Undo,
+    /// The rail has no room for the history.
+    is_low: bool,
 }
 
 impl Frame {
@@ -59,6 +65,11 @@ impl Frame {
             .show(ui, |ui| rail::rail(self, ui, context));
     }
 
+    /// Opens what the unit is set up for.
+    pub fn set_up(&mut self) {
+        self.setup.open();
+    }
+
     /// What a locked window says, and the name that opens it.
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         lock::bar(ui, context);
@@ -72,7 +83,14 @@ impl Frame {
     /// What stands over the page: what was told, and the dialogs that are open.
     pub fn over(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         self.undo.poll(context);
-        messages::toasts(ui, rail::wide(ui) + 12.0, context, &mut self.undo);
+        // Not over the steps and the foot of a case.
+        let wide = ui.ctx().content_rect().width();
+        let (left, below) = match context.settings.page {
+            Page::Case => (case_steps(wide), Sizes::of(ui).footer),
+            _ => (0.0, 0.0),
+        };
+        let at = vec2(rail::wide(ui) + left + AROUND, -below - AROUND);
+        messages::toasts(ui, at, context, &mut self.undo);
         self.setup.show(ui, context);
         self.care.show(ui, context);
         self.about.show(ui, context);

@@ -44,6 +44,9 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         Density::Engineer => 46.0,
     };
     let all = Page::ALL.len() as f32 + 2.0;
+    // In a low window the history is in the menu.
+    frame.is_low = ui.available_height() < all * (usual + GAP);
+    let all = all - f32::from(u8::from(frame.is_low));
     let high = (ui.available_height() / all - GAP).floor().min(usual);
     for page in Page::ALL {
         let place = Place {
@@ -68,7 +71,7 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         let popup = popup.close_behavior(eframe::egui::PopupCloseBehavior::CloseOnClickOutside);
         popup.show(|ui| menu::menu(frame, ui, context));
         let history = other(ICON_DATABASE, context.words.care.title);
-        if shown(ui, high, &history).clicked() {
+        if !frame.is_low && shown(ui, high, &history).clicked() {
             frame.care.toggle();
         }
     });

@@ -117,7 +117,7 @@ impl Setup {
         });
         let label = ui.label(words.frame.other_port);
         let wide = ui.available_width();
-        ui.add(TextEdit::singleline(&mut choice.endpoint).desired_width(wide))
+        ui.add(name_edit(&mut choice.endpoint, wide))
             .labelled_by(label.id);
         ui.add_space(8.0);
         self.surroundings(ui, words, choice);

@@ -11,6 +11,7 @@ mod signals;
 mod statistics;
 mod traces;
 
+pub use case::case_steps;
 use eframe::egui::Ui;
 
 use super::Page;
@@ -104,6 +105,8 @@ impl Pages {
                 self.procedures.prove(procedures, part, context);
                 Page::Case
             }
+            // The frame has opened it.
+            Destination::Setup => context.settings.page,
             Destination::GoOn => {
                 self.procedures.go_on(context);
                 context.settings.page

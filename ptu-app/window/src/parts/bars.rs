@@ -12,7 +12,7 @@ const HEIGHT: f32 = 86.0;
 /// Rows of a low chart by name.
 const ROWS: f32 = 7.0;
 /// Height of a row that leads somewhere, points.
-const TARGET: f32 = 26.0;
+const TARGET: f32 = 30.0;
 /// Room a name takes in a low chart by name.
 const NAME: f32 = 120.0;
 /// Between a bar and what is said behind it.

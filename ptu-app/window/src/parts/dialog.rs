@@ -43,6 +43,8 @@ pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -
             ui.add_space(AROUND / 2.0);
             let high = most.y - ui.min_rect().height();
             let area = ScrollArea::vertical().max_height(high);
+            // While it is placed it has less room than it takes in the end.
+            let area = area.min_scrolled_height(high);
             area.show(ui, content);
         });
     });

@@ -1,6 +1,7 @@
 //! Widgets that several pages use.
 
 pub mod bars;
+mod card;
 mod chip;
 mod deliberate;
 mod dialog;
@@ -24,8 +25,10 @@ mod serial_link;
 mod share_bar;
 mod sheet_view;
 mod split;
+mod stepper;
 mod unit_filter;
 
+pub use card::{Card, choice, fact, ground};
 pub use chip::{chip, verdict_chip};
 pub use deliberate::ActionPlace;
 pub use dialog::{dialog, dialog_is_open, last_row};
@@ -33,7 +36,7 @@ pub use edit::{field, go_on, name_edit, note_edit, typed};
 pub use face::{Face, Look, focus_ring};
 pub use file::usual_folder;
 pub use job::{Done, Job, Told};
-pub use limit_bar::{limit_bar, value_text};
+pub use limit_bar::{limit_bar, limit_scale, value_text};
 pub use link::link;
 pub use memory::{MemoryReader, Stored};
 pub use named::named_combo;
@@ -47,4 +50,5 @@ pub use serial_link::{repair_line, serial_link};
 pub use share_bar::share_bar;
 pub use sheet_view::show_sheet;
 pub use split::FirstHalf;
+pub use stepper::Step;
 pub use unit_filter::UnitFilter;

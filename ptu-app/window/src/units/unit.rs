@@ -39,6 +39,8 @@ pub struct Unit {
     lost: bool,
     /// Its run broke off with the link, and nobody has ended it.
     waits: bool,
+    /// That run is of another unit than the one connected now.
+    is_other: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
     /// Nothing is begun: no name has been given.
@@ -60,6 +62,7 @@ impl Unit {
             runs_ended: 0,
             lost: false,
             waits: false,
+            is_other: false,
             stopping: false,
             locked: false,
             not_safe: false,
@@ -131,7 +134,7 @@ impl Unit {
         }
         self.run = Some(Progress::new(&order.plan, self.name()));
         self.is_run_of_case = of_case;
-        self.waits = false;
+        (self.waits, self.is_other) = (false, false);
         self.bench.run(order);
         true
     }
@@ -157,9 +160,17 @@ impl Unit {
         Some((run, link_loss(run)?))
     }
 
+    /// Its run that broke off is of another unit than the one that is connected now.
+    pub fn is_other(&self) -> bool {
+        self.is_other
+    }
+
     /// The run that broke off stays as it is.
     pub fn end_run(&mut self) {
         self.waits = false;
+        if std::mem::take(&mut self.is_other) {
+            self.run = None;
+        }
     }
 
     /// Answers what the run's script asks; it asks nothing more then.
@@ -219,8 +230,10 @@ impl Unit {
                 self.log.clear();
                 self.lost = false;
                 self.not_safe = false;
-                // The run shown belongs to another unit.
-                if self.run.as_ref().is_some_and(|run| run.unit != serial) {
+                // The run shown belongs to another unit; one that broke off stays until a person ends it.
+                let other = self.run.as_ref().is_some_and(|run| run.unit != serial);
+                self.is_other = other && self.waits;
+                if other && !self.waits {
                     self.run = None;
                 }
                 said.note(connection, fill(frame.is_connected, &[("unit", &serial)]));

@@ -61,6 +61,8 @@ fn window(language: Language, size: [f32; 2], density: Density, faults: &str) ->
         window,
         clicks: 0,
         lowest: match density {
+            // A low window has a lower rail.
+            Density::Operator if size[1] < 660.0 => 44.0,
             Density::Operator => 48.0,
             Density::Engineer => 28.0,
         },
@@ -101,7 +103,15 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     counted.click(case.find_part);
     counted.window.wait_for(case.record_repair);
     counted.window.wait_for_part("eb_relay");
+    let path = counted.window.shows_part("atp/power_up: ");
+    assert_eq!(
+        path,
+        density == Density::Engineer,
+        "an operator reads no paths"
+    );
+    counted.look("why");
     // Where the part is on the way of the signal, and what a good unit did.
+    counted.window.click(case.way);
     let suspected = format!("{relay} · ");
     counted.window.until("the marked part", |window| {
         let shown = window.shown().into_iter();
@@ -109,14 +119,10 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
             .filter(|said| said.starts_with(&suspected))
             .any(|said| said.ends_with(case.suspected))
     });
+    counted.look("way");
+    counted.window.click(case.beside);
     counted.window.wait_for(case.beside_twin);
     counted.look("result");
-    let path = counted.window.shows_part("atp/power_up: ");
-    assert_eq!(
-        path,
-        density == Density::Engineer,
-        "an operator reads no paths"
-    );
     let found = latest(&counted.window);
     assert_eq!(found["run"]["symptom"], "brakes_late");
     let part = match language {
@@ -155,6 +161,9 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
         }
     }
     counted.click(case.sign);
+    counted.window.wait_for(case.sign_hint);
+    counted.look("signature");
+    counted.click(&fill(case.sign_as, &[("who", &"Kim")]));
     let signed = fill(case.signed_by, &[("who", &"Kim")]);
     counted.window.wait_for(&signed);
     let file = counted.window.place.text_path("sheet.pdf");

@@ -287,8 +287,7 @@ fn the_window_says_what_the_command_line_says() {
         assert!(said_by_text.out.contains(&said("conclusion")));
         let mut window = on(place, Page::Diagnosis, Language::English);
         window.wait_for(&said("conclusion"));
-        window.click("language");
-        window.click("한국어");
+        window.speak_korean();
         window.wait_for(&said("conclusion_ko"));
         let sheet = window.place.text_path("sheet.html");
         let show = ["runs", "show", "latest", "--report", &sheet, "--lang", "ko"];

@@ -122,9 +122,14 @@ fn the_way_of_a_case_has_no_internal_names() {
         window.click_last(words.case.unknown);
         window.click_last(words.case.find_part);
         window.wait_for(words.case.record_repair);
-        window.wait_for(words.case.because);
+        window.wait_for(words.case.why);
+        look(&window, "why");
+        window.click(words.case.beside);
         window.wait_for(words.case.beside_twin);
-        look(&window, "result");
+        look(&window, "beside a good unit");
+        window.click(words.case.way);
+        window.step();
+        look(&window, "way of the signal");
         for (page, said) in [
             (Page::Faults, words.faults.find),
             (Page::Diagnosis, words.diagnosis.reasons),

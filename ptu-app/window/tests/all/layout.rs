@@ -48,6 +48,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     let words = language.words();
     let mut settings = settings(Page::Faults);
     settings.language = language;
+    settings.operator = "kim".into();
     settings.unit.faults = vec!["eb_relay.slow".into()];
     let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
     settings.distances = place.write("odometers.csv", readings);
@@ -76,7 +77,6 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
             look(&mut window, "signals of a trace");
             window.click_last(words.traces.signals);
             window.click(words.traces.cursor_a);
-            window.write(words.common.operator, "kim");
             window.write(words.traces.note_field, &"a note of many words ".repeat(12));
             window.click(words.report.note_save);
             window.wait_for_part(" s a note of many words");
@@ -113,6 +113,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.click(words.life.show);
     window.wait_for(words.life.stored);
     look(&mut window, "life");
+    // A low window has it in the menu.
+    if !window.shows(words.care.title) {
+        window.click(words.frame.menu);
+    }
     window.click(words.care.title);
     window.wait_for(words.care.never_synced);
     look(&mut window, "care");
@@ -328,7 +332,8 @@ fn the_bar_is_one_line_and_every_page_is_reached_at_every_size() {
             let harness = window.harness();
             for name in ["SIM-0001", words.frame.disarm, words.frame.stop_all] {
                 let rect = harness.get_by_label(name).rect();
-                let bar = density.sizes().bar;
+                // Below the margin of the harness.
+                let bar = density.sizes().bar + 8.0;
                 assert!(
                     rect.bottom() <= bar && rect.right() <= size[0],
                     "{said} {name} {rect}"

@@ -348,12 +348,14 @@ fn a_dropped_file_is_laid_behind_the_trace() {
 /// window, by the commands, in an exported file and on the run's sheet.
 #[test]
 fn a_note_at_the_cursor_is_kept_with_its_place() {
-    let mut window = window(Settings::default());
+    let mut window = window(Settings {
+        operator: "kim".into(),
+        ..Settings::default()
+    });
     window.wait_for("0.00 s trigger");
     assert!(!window.shows("note at cursor A"));
     window.click("Cursor A");
     let at_s = told_place(&window, "A");
-    window.write("operator", "kim");
     window.write("note at cursor A", "the wheel slips");
     window.click("Save note");
     window.wait_for_part("s the wheel slips");

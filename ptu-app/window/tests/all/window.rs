@@ -175,21 +175,20 @@ fn the_least_of_steps_finds_the_part_too() {
 #[test]
 fn speaks_korean_from_one_frame_to_the_next() {
     let mut window = Window::open(Page::Procedures);
-    window.wait_for("Connect");
-    window.click("language");
-    window.click("한국어");
+    window.wait_for("not connected");
+    window.speak_korean();
     for name in [
         "시험대",
         "시험 절차",
         "고장 이력",
         "진단",
         "시험 성적서",
-        "연결",
+        "연결 안 됨",
     ] {
         window.wait_for(name);
     }
-    assert!(!window.shows("Connect"), "no English is left over");
-    window.click("연결");
+    assert!(!window.shows("not connected"), "no English is left over");
+    window.connect();
     window.wait_for("SIM-0001");
 }
 
@@ -257,8 +256,9 @@ fn what_is_over_is_no_longer_said() {
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.connect();
     window.wait_for_part("Not connected");
-    window.click("unit");
+    window.set_up();
     window.click("simulated unit");
+    window.key(Key::Escape);
     window.connect();
     window.wait_for("SIM-0001");
     assert!(!window.shows_part("Not connected"));
@@ -409,8 +409,11 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
 
 #[test]
 fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
-    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.write("operator", "Kim");
+    let settings = Settings {
+        operator: "Kim".into(),
+        ..realtime(Page::Procedures)
+    };
+    let mut window = Window::with(Place::new(), scripts(), settings);
     window.connect();
     window.wait_for("SIM-0001");
     window.click("Run");
@@ -475,9 +478,7 @@ fn every_page_is_reached_by_its_key_and_shows_something_in_both_languages() {
             assert!(window.shows(page.name(language.words())));
         }
         if language == Language::English {
-            window.click("Menu");
-            window.click("한국어");
-            window.key(Key::Escape);
+            window.speak_korean();
         }
     }
 }

@@ -18,8 +18,6 @@ use super::{Place, scripts};
 const PATIENCE: Duration = Duration::from_secs(300);
 /// A person takes longer between two things that are meant, s.
 const MOMENT_S: f64 = 0.7;
-/// Height of the messages below every page, points.
-const MESSAGES: f32 = 45.0;
 /// What was told is shown as long as on a display.
 const FRAME_S: f32 = 1.0 / 60.0;
 const STEP: Duration = Duration::from_millis(15);
@@ -168,8 +166,7 @@ impl Window {
 
     /// Clicks the last of several of this name that is in view.
     pub fn click_last(&mut self, label: &str) {
-        let mut seen = self.harness.ctx.content_rect();
-        seen.max.y -= MESSAGES;
+        let seen = self.harness.ctx.content_rect();
         let last = |places: &[Rect]| {
             let mut places = places.iter().rev();
             places.find(|place| seen.contains_rect(**place)).copied()
@@ -219,6 +216,14 @@ impl Window {
     /// Presses the key that lets it go.
     pub fn disconnect(&mut self) {
         self.key(Key::F9);
+    }
+
+    /// Chooses Korean in the menu.
+    pub fn speak_korean(&mut self) {
+        let words = self.app().settings().language.words();
+        self.click(words.frame.menu);
+        self.click("한국어");
+        self.key(Key::Escape);
     }
 
     /// Opens the dialog that sets the unit up.

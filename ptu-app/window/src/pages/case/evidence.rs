@@ -83,17 +83,25 @@ impl Evidence {
         }
     }
 
-    pub fn show(&mut self, ui: &mut Ui, words: &Words) {
-        let quiet = Palette::of(ui).quiet;
+    pub fn has_way(&self) -> bool {
+        self.chain.is_some()
+    }
+
+    pub fn has_trace(&self) -> bool {
+        self.trace.is_some()
+    }
+
+    pub fn way(&self, ui: &mut Ui, words: &Words) {
         if let Some(way) = &self.chain {
-            ui.add_space(6.0);
-            ui.label(RichText::new(words.case.way).color(quiet));
             chain(ui, way, &self.part, &self.names, words);
         }
+    }
+
+    pub fn trace(&mut self, ui: &mut Ui, words: &Words) {
         let Some(trace) = &mut self.trace else {
             return;
         };
-        ui.add_space(6.0);
+        let quiet = Palette::of(ui).quiet;
         ui.horizontal_wrapped(|ui| {
             let said = match (trace.is_pending(), trace.has_twin()) {
                 (true, _) => words.traces.making_twin,

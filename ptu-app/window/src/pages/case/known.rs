@@ -3,7 +3,7 @@
 use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
 
-use crate::parts::{link, repair_line};
+use crate::parts::{fact, link, repair_line};
 use crate::request::{CachedResponse, Request};
 use crate::{DataPaths, Destination, PageContext, Palette, Sizes};
 use ptu_report::naming::PartNames;
@@ -59,6 +59,18 @@ impl KnownUnit {
     pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
         let history = self.history.get().value();
         history.map_or(id, |known| known.parts.name(id, words.language))
+    }
+
+    /// How many faults are open, and how often it was repaired.
+    pub fn facts(&self, ui: &mut Ui, words: &Words) {
+        if let Some(history) = self.history.get().value() {
+            let number = |n: usize| match n {
+                0 => words.frame.none.to_owned(),
+                n => n.to_string(),
+            };
+            fact(ui, words.case.open_faults, &number(history.open.len()));
+            fact(ui, words.case.repairs, &number(history.repairs.len()));
+        }
     }
 
     pub fn show(&self, ui: &mut Ui, words: &Words, go_to: &mut Vec<Destination>) {

@@ -9,27 +9,32 @@ mod result;
 mod running;
 mod seen;
 mod stage;
+mod steps;
 mod symptom;
 mod verdict;
 
-use eframe::egui::{Button, Color32, Response, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
+use egui_material_icons::icons::{ICON_ARROW_BACK, ICON_ARROW_FORWARD, ICON_LINK, ICON_TUNE};
 use fault_db::Id;
 
 use super::procedures::Concluded;
 use super::report::SheetOf;
-use crate::parts::{ActionPlace, name_edit};
+use crate::parts::{ActionPlace, Face, Look, choice as choice_card, name_edit};
 use crate::request::Request;
 use crate::units::Unit;
-use crate::{PageContext, Palette, Sizes};
+use crate::{Destination, PageContext, Palette, Sizes};
 use known::KnownUnit;
 use prove::Proof;
-use ptu_report::words::fill;
 use ptu_runs::bench_worker::{Phase, Progress};
 use repair::Repair;
 use result::Found;
 use seen::SeenUnits;
 use stage::Stage;
+pub use steps::wide as case_steps;
 use symptom::SymptomTiles;
+
+/// Width of a window that has the strip beside the step, and that of the strip, points.
+const STRIP: [f32; 2] = [1200.0, 232.0];
 
 #[derive(Default)]
 pub struct CasePage {
@@ -130,130 +135,195 @@ impl CasePage {
             // Another repair is to be fitted and proved.
             self.proof = Proof::default();
         } else {
-            self.proof.ran(said, run, outcome, context.words);
+            self.proof.ran(said, (run, outcome, proven), context.words);
         }
         self.stage = next;
     }
 
-    /// Draws it; the sheet that is to be drawn below.
+    /// Draws it; the sheet that is to be drawn.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         has_orders: bool,
         context: &mut PageContext<'_>,
     ) -> Option<SheetOf> {
-        self.way(ui, context);
-        ui.separator();
+        let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+        let screen = ui.ctx().content_rect().size();
+        let ground = Frame::new()
+            .fill(palette.panel)
+            .inner_margin(Margin::same(8));
+        let panel = Panel::left("steps of a case")
+            .resizable(false)
+            .frame(ground);
+        panel
+            .exact_size(steps::wide(screen.x))
+            .show(ui, |ui| self.steps(ui, context));
+        if screen.x >= STRIP[0] {
+            let panel = Panel::right("strip of a case")
+                .resizable(false)
+                .frame(ground);
+            panel
+                .exact_size(STRIP[1])
+                .show(ui, |ui| self.strip(ui, context));
+        }
+        let ground = ground.inner_margin(Margin::symmetric(16, 0));
+        let panel = Panel::bottom("foot of a case")
+            .resizable(false)
+            .frame(ground);
+        panel.exact_size(sizes.footer).show(ui, |ui| {
+            let whole = Layout::left_to_right(Align::Center);
+            ui.with_layout(whole, |ui| self.foot(ui, has_orders, context));
+        });
         if self.stage == Stage::Sheet {
             let run = self.seen?;
-            self.proof.sign(ui, run, context);
+            self.proof.told(ui);
+            let found = self.found.as_ref();
+            let verdict = found.map_or("", |found| found.told.word(&context.words.case));
+            let of = (&self.unit, &self.repair);
+            self.proof.sign(ui, (run, verdict), of, context);
             return Some(match self.repair.fault() {
                 Some(fault) => SheetOf::Case { fault, run },
                 None => SheetOf::Run(run),
             });
         }
-        ScrollArea::vertical()
-            .auto_shrink(false)
-            .show(ui, |ui| match self.stage {
-                Stage::Start => self.start(ui, context),
-                Stage::Unit if !context.units.chosen().is_connected() => self.start(ui, context),
-                Stage::Unit => self.unit(ui, context),
-                Stage::Find => self.running(ui, has_orders, Stage::Unit, context),
-                Stage::Result => self.result(ui, context),
-                Stage::Repair => self.repair(ui, context),
-                Stage::Prove => self.prove(ui, has_orders, context),
-                Stage::Sheet => {}
-            });
+        let margin = Frame::new().inner_margin(Margin::symmetric(
+            if screen.x < STRIP[0] { 8 } else { 16 },
+            8,
+        ));
+        margin.show(ui, |ui| {
+            ScrollArea::vertical()
+                .id_salt(self.stage)
+                .auto_shrink(false)
+                .show(ui, |ui| match self.stage {
+                    Stage::Start => self.start(ui, context),
+                    Stage::Unit if !context.units.chosen().is_connected() => {
+                        self.start(ui, context)
+                    }
+                    Stage::Unit => self.unit(ui, context),
+                    Stage::Find => self.running(ui, has_orders, context),
+                    Stage::Result => self.result(ui, context),
+                    Stage::Repair => self.repair(ui, context),
+                    Stage::Prove => self.prove(ui, has_orders, context),
+                    Stage::Sheet => {}
+                });
+        });
         None
     }
 
-    /// The stages with the present one marked, the way to a new case, and the lock of the window.
-    fn way(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let palette = Palette::of(ui);
-        ui.horizontal_wrapped(|ui| {
-            for (place, stage) in (1..).zip(Stage::ALL) {
-                let text = format!("{place} {}", stage.name(context.words));
-                let text = RichText::new(text).size(Sizes::of(ui).lead);
-                ui.label(match stage == self.stage {
-                    true => text.strong().color(palette.accent),
-                    false => text.color(palette.quiet),
-                });
-            }
-            let place = ActionPlace::new(ui, "new case", self.stage);
-            let begun = !matches!(self.stage, Stage::Start | Stage::Unit);
+    /// The way back, why the accent button is off, and it.
+    fn foot(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        let place = ActionPlace::new(ui, "case back", self.stage);
+        if self.is_running(has_orders, context) {
             let unit = context.units.chosen();
-            let new = ui.add_enabled(
-                begun && unit.phase() != Phase::Running,
-                Button::new(context.words.case.new_case),
-            );
-            if place.clicked(&new) {
-                self.begin(unit);
+            let place = ActionPlace::new(ui, "case stop", unit.bench.stop_presses());
+            let stop = Face::new(Look::Danger, context.words.procedures.stop).show(ui);
+            if place.clicked(&stop) {
+                unit.bench.stop_run();
             }
-            let lock = ui.button(context.words.frame.lock);
-            if place.clicked(&lock.on_hover_text(context.words.frame.lock_hint)) {
-                context.settings.lock();
+        } else {
+            let back = self.back(context);
+            let face = Face::new(Look::Quiet, words.back).icon(ICON_ARROW_BACK);
+            let button = face.off(back.is_none().then_some("")).show(ui);
+            if let (true, Some(back)) = (place.clicked(&button), back) {
+                self.stage = back;
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            match self.stage {
+                Stage::Start => self.start_foot(ui, context),
+                Stage::Unit if !context.units.chosen().is_connected() => {
+                    self.start_foot(ui, context)
+                }
+                Stage::Unit => self.unit_foot(ui, context),
+                Stage::Find => {
+                    let why = self.found.is_none().then_some(words.under_way);
+                    let next = Face::new(Look::Primary, words.stage_result).off(why);
+                    if next.end(ICON_ARROW_FORWARD).show(ui).clicked() {
+                        self.stage = Stage::Result;
+                    }
+                }
+                Stage::Result => self.result_foot(ui, context),
+                Stage::Repair => self.repair_foot(ui, context),
+                Stage::Prove => self.prove_foot(ui, has_orders, context),
+                Stage::Sheet => self.proof.sign_foot(ui, self.seen, context),
             }
         });
     }
 
     fn start(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.case;
-        if let Some(why) = context.only_reads() {
-            ui.label(RichText::new(why).size(Sizes::of(ui).lead));
-            return;
-        }
         self.name(ui, context);
+        title(ui, words.where_is);
         let unit = context.units.chosen_mut();
-        let place = fill(words.reached_at, &[("place", &unit.choice.endpoint)]);
-        ui.label(RichText::new(place).size(Sizes::of(ui).lead));
+        let choice = &mut unit.choice;
+        let simulated = choice.is_simulated();
+        let below = match simulated {
+            true => words.practice_hint,
+            false => "",
+        };
+        let name = match simulated {
+            true => context.words.frame.simulated,
+            false => &choice.endpoint,
+        };
+        let size = [ui.available_width(), 56.0];
+        choice_card(ui, (name, below), true, size);
+        ui.add_space(8.0);
+        ui.horizontal_wrapped(|ui| {
+            let frame = &context.words.frame;
+            for (name, value) in [
+                (frame.line, &choice.line),
+                (frame.unit_config, &choice.unit_config),
+                (frame.train, &choice.train),
+            ] {
+                let quiet = Palette::of(ui).quiet;
+                ui.label(RichText::new(name).color(quiet));
+                ui.label(RichText::new(value).strong());
+            }
+            let setup = Face::new(Look::Quiet, frame.setup).icon(ICON_TUNE);
+            if setup.show(ui).clicked() {
+                context.go_to.push(Destination::Setup);
+            }
+        });
+        if unit.phase() == Phase::Offline {
+            self.units.show(ui, context);
+        } else {
+            ui.spinner();
+        }
+    }
+
+    fn start_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let why = context.only_reads();
+        let unit = context.units.chosen_mut();
         let offline = unit.phase() == Phase::Offline;
-        let action = ActionPlace::new(ui, "case connect", offline);
-        let connect = large(ui, context.words.frame.connect, offline);
-        if action.clicked(&connect) {
+        let place = ActionPlace::new(ui, "case connect", offline);
+        let connecting = (!offline).then_some(context.words.frame.connecting);
+        let face = Face::new(Look::Primary, context.words.frame.connect).icon(ICON_LINK);
+        let connect = face.small("F9").off(why.or(connecting)).show(ui);
+        if place.clicked(&connect) {
             unit.connect(context.queries);
         }
-        if !offline {
-            ui.spinner();
-            return;
-        }
-        self.units.show(ui, context);
     }
 
-    /// Who works on the case.
+    /// Who works on the case, where the strip does not say it.
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        ui.horizontal(|ui| {
-            let label =
-                ui.label(RichText::new(context.words.case.your_name).size(Sizes::of(ui).lead));
-            ui.add(name_edit(&mut context.settings.operator, 220.0))
-                .labelled_by(label.id);
-        });
+        if ui.ctx().content_rect().width() < STRIP[0] {
+            ui.horizontal(|ui| name_field(ui, context));
+        }
     }
 }
 
-/// The button of a page that is pressed first.
-fn primary(ui: &mut Ui, text: &str, enabled: bool) -> Response {
-    let fill = Palette::of(ui).fill;
-    ui.scope(|ui| {
-        if !(enabled && ui.is_enabled()) {
-            return large(ui, text, enabled);
-        }
-        let widgets = &mut ui.visuals_mut().widgets;
-        for widget in [&mut widgets.inactive, &mut widgets.hovered] {
-            widget.weak_bg_fill = fill;
-            widget.fg_stroke.color = Color32::WHITE;
-        }
-        large(ui, text, true)
-    })
-    .inner
+fn name_field(ui: &mut Ui, context: &mut PageContext<'_>) {
+    let quiet = Palette::of(ui).quiet;
+    let label = ui.label(RichText::new(context.words.case.your_name).color(quiet));
+    let wide = ui.available_width().min(220.0);
+    ui.add(name_edit(&mut context.settings.operator, wide))
+        .labelled_by(label.id);
 }
 
-/// A button that is found and hit at arm's length.
-fn large(ui: &mut Ui, text: &str, enabled: bool) -> Response {
-    let button = Button::new(RichText::new(text).size(Sizes::of(ui).lead));
-    let button = button.min_size(vec2(180.0, Sizes::of(ui).target));
-    if ui.layout().is_horizontal() {
-        return ui.add_enabled(enabled, button);
-    }
-    // A row has its text in the middle of a button.
-    ui.horizontal(|ui| ui.add_enabled(enabled, button)).inner
+/// What the step is about.
+fn title(ui: &mut Ui, text: &str) {
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    ui.label(RichText::new(text).size(sizes.title).color(palette.ink));
+    ui.add_space(4.0);
 }

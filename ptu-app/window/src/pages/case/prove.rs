@@ -1,20 +1,26 @@
 //! The part is fitted: the unit is connected again, a run shows that the fault is gone, and its sheet is signed.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
 use btu_rig::procedure::Verdict;
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{ComboBox, Grid, RichText, Ui};
+use egui_material_icons::icons::ICON_DRAW;
 use fault_db::Id;
 
+use super::repair::Repair;
 use super::result::headline;
 use super::verdict::Told;
-use super::{CasePage, Stage, large};
+use super::{CasePage, Stage, title};
 use crate::pages::procedures::Concluded;
-use crate::parts::ActionPlace;
+use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, named_combo};
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette, Sizes};
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::clock::now_us;
+use ptu_runs::keys;
 use ptu_runs::run::Outcome;
 
 /// How far the proof is.
@@ -26,9 +32,15 @@ pub struct Proof {
     /// What the last run says of the repair, or what it came to itself.
     said: Option<String>,
     verdict: Option<Verdict>,
+    /// The same in a word or two.
+    word: Option<&'static str>,
     /// Answers with the run that was signed, and by whom.
     signing: Request<(Id, String)>,
+    sign: Option<Sign>,
 }
+
+/// Width of a field of the dialog, points.
+const FIELD: f32 = 300.0;
 
 impl Proof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
@@ -50,68 +62,225 @@ impl Proof {
     pub fn ran(
         &mut self,
         said: Option<&Concluded>,
-        run: &Progress,
-        outcome: &Outcome,
+        (run, outcome, proven): (&Progress, &Outcome, bool),
         words: &Words,
     ) {
+        let told = Told::of(outcome.verdict, None);
+        self.word = Some(match proven {
+            true => words.report.proved,
+            false => told.word(&words.case),
+        });
         let of_repair = said.map(|said| said.text.clone());
         let of_repair = of_repair.filter(|text| !text.is_empty());
         self.said = Some(of_repair.unwrap_or_else(|| {
-            let told = Told::of(outcome.verdict, None);
             let headline = headline(told, run, outcome, None, words);
             [told.word(&words.case), &headline].join(DOT)
         }));
         self.verdict = Some(outcome.verdict);
     }
 
-    /// Who checked the sheet of this run.
-    pub fn sign(&mut self, ui: &mut Ui, run: Id, context: &mut PageContext<'_>) {
-        let words = &context.words.case;
+    pub fn has_run(&self) -> bool {
+        self.verdict.is_some()
+    }
+
+    /// What the runs say of the repair.
+    pub fn told(&self, ui: &mut Ui) {
         if let Some(said) = &self.said {
             ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
         }
-        ui.horizontal_wrapped(|ui| {
-            if let Some((_, who)) = self.signing.value().filter(|(of, _)| *of == run) {
-                let said = fill(words.signed_by, &[("who", who)]);
-                ui.label(
-                    RichText::new(said)
-                        .size(Sizes::of(ui).lead)
-                        .color(Palette::of(ui).good),
-                );
-                return;
-            }
-            let who = context.settings.operator.trim().to_owned();
-            let may = !who.is_empty() && !matches!(self.signing, Request::Pending(_));
-            let place = ActionPlace::new(ui, "case sign", run);
-            let sign = large(ui, words.sign, may).on_disabled_hover_text(words.name_first);
-            if place.clicked(&sign) {
-                let text = words.signed;
+    }
+
+    /// Who checked the sheet, or the button that asks who does.
+    pub fn sign_foot(&mut self, ui: &mut Ui, run: Option<Id>, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        if let Some((_, who)) = self.signing.value().filter(|(of, _)| Some(*of) == run) {
+            let said = fill(words.signed_by, &[("who", who)]);
+            let good = Palette::of(ui).good;
+            ui.label(RichText::new(said).size(Sizes::of(ui).lead).color(good));
+            return;
+        }
+        let place = ActionPlace::new(ui, "case sign", run);
+        let may = run.is_some() && !matches!(self.signing, Request::Pending(_));
+        let sign = Face::new(Look::Primary, words.sign).icon(ICON_DRAW);
+        if place.clicked(&sign.off((!may).then_some("")).show(ui)) {
+            self.sign = Some(Sign::default());
+        }
+    }
+
+    /// The dialog of a signature, while it is open: what is signed, by whom, with which key.
+    pub fn sign(
+        &mut self,
+        ui: &Ui,
+        (run, verdict): (Id, &'static str),
+        (unit, repair): (&Option<String>, &Repair),
+        context: &mut PageContext<'_>,
+    ) {
+        let Some(sign) = &mut self.sign else { return };
+        let words = context.words;
+        let facts = [
+            (
+                words.common.verdict,
+                self.word.unwrap_or(verdict).to_owned(),
+            ),
+            (words.common.unit, unit.clone().unwrap_or_default()),
+            (words.case.part, repair.said()),
+            (words.case.run, run.short()),
+        ];
+        let mut chosen = None;
+        let open = dialog(ui, "sign", words.case.sign_title, |ui| {
+            chosen = sign.show(ui, &facts, context);
+        });
+        match chosen {
+            Some(true) => {
+                let who = context.settings.operator.trim().to_owned();
+                let (text, key) = (words.case.signed, sign.key());
                 self.signing = Request::Pending(context.queries.run(move |paths| {
-                    paths.open()?.add_run_note(run, &who, text, now_us())?;
+                    let store = paths.open()?;
+                    let signer = key.map(|(key, pin)| keys::signer(&key, &pin)).transpose()?;
+                    // A key signs in its own name.
+                    let who = signer
+                        .as_ref()
+                        .map_or(who, |signer| signer.who().to_owned());
+                    store.sign_with(signer.map(Arc::new));
+                    store.add_run_note(run, &who, text, now_us())?;
                     Ok((run, who))
                 }));
+                self.sign = None;
+            }
+            Some(false) => self.sign = None,
+            None if !open => self.sign = None,
+            None => {}
+        }
+    }
+}
+
+/// What is chosen before a sheet is signed.
+#[derive(Default)]
+struct Sign {
+    /// Key files of this computer, once they were looked for.
+    keys: Option<Vec<PathBuf>>,
+    chosen: Option<PathBuf>,
+    pin: String,
+}
+
+impl Sign {
+    fn key(&self) -> Option<(PathBuf, String)> {
+        Some((self.chosen.clone()?, self.pin.clone()))
+    }
+
+    /// True = sign, false = do not.
+    fn show(
+        &mut self,
+        ui: &mut Ui,
+        facts: &[(&str, String)],
+        context: &mut PageContext<'_>,
+    ) -> Option<bool> {
+        let words = context.words;
+        let quiet = Palette::of(ui).quiet;
+        Grid::new("signed").num_columns(2).show(ui, |ui| {
+            for (name, value) in facts.iter().filter(|(_, value)| !value.is_empty()) {
+                ui.label(RichText::new(*name).color(quiet));
+                ui.label(value);
+                ui.end_row();
+            }
+            let name = name_edit(&mut context.settings.operator, FIELD);
+            field(ui, words.case.your_name, name);
+            ui.label(words.case.key);
+            let keys = self.keys.get_or_insert_with(keys::own);
+            let name = |key: &Option<PathBuf>| match key.as_ref().and_then(|key| key.file_stem()) {
+                Some(name) => name.to_string_lossy().into_owned(),
+                None => words.case.no_key.to_owned(),
+            };
+            let shown = name(&self.chosen);
+            let combo = ComboBox::from_id_salt("key")
+                .selected_text(&shown)
+                .width(FIELD);
+            let combo = combo.show_ui(ui, |ui| {
+                for key in std::iter::once(None).chain(keys.iter().cloned().map(Some)) {
+                    let name = name(&key);
+                    ui.selectable_value(&mut self.chosen, key, name);
+                }
+            });
+            named_combo(&combo.response, words.case.key, &shown);
+            ui.end_row();
+            if self.chosen.is_some() {
+                let pin = name_edit(&mut self.pin, FIELD).password(true);
+                field(ui, words.case.pin, pin);
             }
         });
+        ui.label(RichText::new(words.case.sign_hint).color(quiet));
+        let who = context.settings.operator.trim();
+        let missing = match (who.is_empty(), self.chosen.is_some() && self.pin.is_empty()) {
+            (true, _) => Some(words.case.name_first),
+            (_, true) => Some(words.case.pin),
+            _ => None,
+        };
+        let place = ActionPlace::new(ui, "sign", ());
+        let mut chosen = None;
+        last_row(ui, |ui| {
+            let sign = fill(words.case.sign_as, &[("who", &who)]);
+            let sign = Face::new(Look::Primary, sign).icon(ICON_DRAW).off(missing);
+            if place.clicked(&sign.show(ui)) {
+                chosen = Some(true);
+            }
+            if Face::new(Look::Quiet, words.common.cancel)
+                .show(ui)
+                .clicked()
+            {
+                chosen = Some(false);
+            }
+        });
+        chosen
     }
 }
 
 impl CasePage {
     pub(super) fn prove(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
-        let words = &context.words.case;
-        let unit = context.units.chosen();
-        if has_orders || unit.run.as_ref().is_some_and(Progress::is_running) {
-            self.running(ui, has_orders, Stage::Prove, context);
+        if self.is_running(has_orders, context) {
+            self.running(ui, has_orders, context);
             return;
         }
-        if let Some(said) = &self.proof.said {
-            ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
+        let words = &context.words.case;
+        title(ui, words.stage_prove);
+        self.proof.told(ui);
+        ui.label(words.fitted_hint);
+        ui.label(words.prove_hint);
+    }
+
+    pub(super) fn prove_foot(
+        &mut self,
+        ui: &mut Ui,
+        has_orders: bool,
+        context: &mut PageContext<'_>,
+    ) {
+        let words = &context.words.case;
+        if self.is_running(has_orders, context) {
+            let next = Face::new(Look::Primary, words.stage_sheet);
+            next.off(Some(words.under_way)).show(ui);
+            return;
         }
-        let quiet = Palette::of(ui).quiet;
-        ui.label(RichText::new(words.fitted_hint).color(quiet));
+        let unit = context.units.chosen();
         let phase = unit.phase();
         let place = ActionPlace::new(ui, "case prove", (phase == Phase::Idle, self.proof.fitted));
+        let fitted = self.proof.fitted && !self.proof.reconnects;
+        let may = fitted && unit.may_run();
+        let look = |first| match first {
+            true => Look::Primary,
+            false => Look::Secondary,
+        };
+        // The reason of the button that is off is the other one.
+        let prove = Face::new(look(fitted), words.prove)
+            .off((!may).then_some(""))
+            .show(ui);
+        if let (true, Some(found)) = (place.clicked(&prove), &self.found) {
+            context.go_to.push(Destination::Prove {
+                procedures: found.procedures.clone(),
+                part: self.repair.part.clone(),
+            });
+        }
         let at_rest = matches!(phase, Phase::Idle | Phase::Offline);
-        if place.clicked(&large(ui, words.fitted, at_rest)) {
+        let face = Face::new(look(!fitted), words.fitted).off((!at_rest).then_some(""));
+        if place.clicked(&face.show(ui)) {
             let part = &self.repair.part;
             let unit = context.units.chosen_mut();
             // In practice the part takes the faults with it that were injected into it; others stay.
@@ -122,18 +291,9 @@ impl CasePage {
             unit.disconnect();
             (self.proof.fitted, self.proof.reconnects) = (true, true);
         }
-        let unit = context.units.chosen();
-        let may = self.proof.fitted && !self.proof.reconnects && unit.may_run();
-        let prove = large(ui, words.prove, may).on_hover_text(words.prove_hint);
-        if let (true, Some(found)) = (place.clicked(&prove), &self.found) {
-            context.go_to.push(Destination::Prove {
-                procedures: found.procedures.clone(),
-                part: self.repair.part.clone(),
-            });
-        }
         // Its sheet says that the repair is not proved.
         let passed = self.proof.verdict == Some(Verdict::Passed);
-        if passed && place.clicked(&large(ui, words.to_sheet, true)) {
+        if passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui)) {
             self.stage = Stage::Sheet;
         }
     }

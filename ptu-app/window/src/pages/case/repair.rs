@@ -2,16 +2,18 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{ComboBox, Grid, RichText, Ui};
+use eframe::egui::{ComboBox, Grid, Ui};
 use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
-use super::{CasePage, large};
+use super::{CasePage, title};
 use crate::messages::Written;
-use crate::parts::{ActionPlace, field, go_on, name_edit, named_combo, note_edit, typed};
+use crate::parts::{
+    ActionPlace, Face, Look, field, go_on, name_edit, named_combo, note_edit, typed,
+};
 use crate::request::Request;
-use crate::{DataPaths, PageContext, Sizes};
+use crate::{DataPaths, PageContext};
 use ptu_report::words::fill;
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::Failure;
@@ -26,6 +28,8 @@ pub struct Repair {
     /// Parts to choose from, the likeliest first.
     parts: Vec<String>,
     pub part: String,
+    /// What people call it.
+    part_name: String,
     serial_old: String,
     serial_new: String,
     note: String,
@@ -63,8 +67,8 @@ impl Repair {
             }
             Request::Ready(written) => {
                 self.written = written;
-                let part = known.part_name(&self.part, context.words);
-                let said = fill(words.recorded, &[("part", &part)]);
+                self.part_name = known.part_name(&self.part, context.words).to_owned();
+                let said = fill(words.recorded, &[("part", &self.part_name)]);
                 match written {
                     Some(written) => context.messages.note_written(said, written),
                     None => context.messages.note(said),
@@ -78,6 +82,23 @@ impl Repair {
     /// A fault that was repaired: its case is this one.
     pub fn fault(&self) -> Option<Id> {
         self.written.map(|written| written.fault)
+    }
+
+    /// It is stored, and was not taken back.
+    pub fn is_written(&self) -> bool {
+        self.written.is_some()
+    }
+
+    /// The part and the serial number that was put in.
+    pub fn said(&self) -> String {
+        [&*self.part_name, self.serial_new()]
+            .join(" ")
+            .trim()
+            .to_owned()
+    }
+
+    pub fn serial_new(&self) -> &str {
+        self.serial_new.trim()
     }
 
     /// True once if the repair was taken back.
@@ -106,8 +127,11 @@ impl CasePage {
         let words = &context.words.case;
         let known = &self.known;
         let form = &mut self.repair;
+        title(ui, known.part_name(&form.part, context.words));
+        ui.label(words.switch_off);
+        ui.add_space(8.0);
         Grid::new("repair").num_columns(2).show(ui, |ui| {
-            ui.label(RichText::new(words.part).size(Sizes::of(ui).lead));
+            ui.label(words.part);
             let before = form.part.clone();
             let name = |part: &str| known.part_name(part, context.words).to_owned();
             let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
@@ -121,17 +145,19 @@ impl CasePage {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
             ui.end_row();
-            let size = Sizes::of(ui).lead;
-            let title = |name: &str| RichText::new(name).size(size);
             let (old, new) = (&mut form.serial_old, &mut form.serial_new);
             let fields = [
-                field(ui, title(words.serial_old), name_edit(old, FIELD)),
-                field(ui, title(words.serial_new), name_edit(new, FIELD)),
-                field(ui, title(words.note), note_edit(&mut form.note, FIELD)),
+                field(ui, words.serial_old, name_edit(old, FIELD)),
+                field(ui, words.serial_new, name_edit(new, FIELD)),
+                field(ui, words.note, note_edit(&mut form.note, FIELD)),
             ];
             go_on(ui, &fields);
         });
         self.name(ui, context);
+    }
+
+    pub(super) fn repair_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
         let form = &mut self.repair;
         let who = context.settings.operator.trim().to_owned();
         let may = !who.is_empty() && form.says_what() && form.saving.is_idle();
@@ -140,8 +166,8 @@ impl CasePage {
             true => words.name_first,
             false => words.serial_or_note,
         };
-        let save = large(ui, words.save, may).on_disabled_hover_text(hint);
-        if let (true, Some(run)) = (place.clicked(&save), form.run) {
+        let save = Face::new(Look::Primary, words.save).off((!may).then_some(hint));
+        if let (true, Some(run)) = (place.clicked(&save.show(ui)), form.run) {
             let repair = form.record();
             let store = move |paths: &DataPaths| store(paths, run, &repair, &who);
             form.saving = Request::Pending(context.queries.run(store));

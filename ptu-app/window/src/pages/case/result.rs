@@ -4,28 +4,36 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
+use diagnosis::CheckName;
 use eframe::egui::{RichText, Ui};
-use fault_db::Id;
+use fault_db::{Id, StepCounts};
 
 use super::evidence::Evidence;
 use super::verdict::{Next, Told, named};
-use super::{CasePage, Stage, large, primary};
-use crate::pages::procedures::{Concluded, measurements};
-use crate::parts::{ActionPlace, chip};
+use super::{CasePage, Stage, title};
+use crate::pages::procedures::Concluded;
+use crate::parts::{ActionPlace, Card, Face, Look, limit_scale, segments};
 use crate::{Density, Destination, PageContext, Palette, Sizes};
+use ptu_report::count_text;
 use ptu_report::diagnosis::MOST_REASONS;
+use ptu_report::naming::{self, DOT};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::clock;
 use ptu_runs::run::Outcome;
 use ptu_runs::run_diagnosis::Answer;
 
+/// Width of a window that shows all of a result at once, points.
+const WIDE: f32 = 1600.0;
+/// Values that are drawn large, at most.
+const MOST_BARS: usize = 2;
+
 /// What was found in a run.
 pub struct Found {
     pub run: Id,
     /// When it ended, µs since 1970.
-    ended_us: i64,
-    told: Told,
+    pub ended_us: i64,
+    pub told: Told,
     /// In the language of the window.
     headline: String,
     /// The conclusion of the diagnosis, likewise.
@@ -35,8 +43,10 @@ pub struct Found {
     answer: Option<Arc<Answer>>,
     /// The first measured values that were out of their limits, with their step.
     shown_by: Option<(String, Vec<Measurement>)>,
-    trace: Option<Id>,
+    /// How many of its steps came to what.
+    pub counts: StepCounts,
     evidence: Option<Evidence>,
+    shown: Part,
     /// Procedures that did not pass.
     pub procedures: BTreeSet<String>,
 }
@@ -73,14 +83,36 @@ impl Found {
             answer: said.and_then(|said| said.answer.clone()),
             shown_by: shown_by(run),
             evidence: part.map(shown),
-            trace,
+            counts: outcome.counts,
+            shown: Part::default(),
             procedures: not_passed(run),
             parts,
         }
     }
 }
 
+/// A part of a result that is looked at.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub enum Part {
+    #[default]
+    Why,
+    Way,
+    Beside,
+}
+
 impl Found {
+    fn part(&mut self, ui: &mut Ui, part: Part, words: &Words) {
+        if part == Part::Why {
+            reasons(ui, words, self);
+            next_check(ui, self, words);
+        } else if let Some(evidence) = &mut self.evidence {
+            match part {
+                Part::Way => evidence.way(ui, words),
+                _ => evidence.trace(ui, words),
+            }
+        }
+    }
+
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if let Some(evidence) = &mut self.evidence {
             evidence.poll(context);
@@ -142,107 +174,141 @@ impl CasePage {
         let Some(found) = &mut self.found else {
             return;
         };
-        let palette = Palette::of(ui);
-        ui.horizontal_wrapped(|ui| {
-            let word = found.told.word(&words.case);
-            chip(ui, word, found.told.colour(&palette));
-            let said: [(&str, &dyn std::fmt::Display); 2] = [
-                ("id", &found.run.short()),
-                ("time", &clock::local(found.ended_us)),
-            ];
-            ui.label(RichText::new(fill(words.case.of_run, &said)).color(palette.quiet));
+        let said: [(&str, &dyn std::fmt::Display); 2] = [
+            ("id", &found.run.short()),
+            ("time", &clock::local(found.ended_us)),
+        ];
+        let count = count_text(&found.counts, words);
+        let of_run = fill(words.case.of_run, &said);
+        let card = Card {
+            icon: found.told.icon(),
+            word: found.told.word(&words.case),
+            colour: found.told.colour(&Palette::of(ui)),
+            count: &[&*count, &of_run].join(DOT),
+            headline: &found.headline,
+        };
+        card.show(ui, |ui| {
+            if let Some((step, measured)) = &found.shown_by {
+                ui.label(&*words.content(step));
+                for measured in measured.iter().take(MOST_BARS) {
+                    let name = naming::measurement(&measured.name, words);
+                    ui.label(RichText::new(&name).color(Palette::of(ui).quiet));
+                    limit_scale(ui, words, (&name, measured));
+                }
+            }
         });
-        let headline = RichText::new(&found.headline).size(Sizes::of(ui).headline);
-        ui.label(headline.strong());
-        if let Some((step, measured)) = &found.shown_by {
-            ui.label(RichText::new(&*words.content(step)).size(Sizes::of(ui).lead));
-            measurements(ui, words, measured);
+        ui.add_space(8.0);
+        let has = |part| match part {
+            Part::Why => found.answer.is_some(),
+            Part::Way => found.evidence.as_ref().is_some_and(Evidence::has_way),
+            Part::Beside => found.evidence.as_ref().is_some_and(Evidence::has_trace),
+        };
+        let parts = [
+            (Part::Why, words.case.why),
+            (Part::Way, words.case.way),
+            (Part::Beside, words.case.beside),
+        ];
+        let parts: Vec<_> = parts.into_iter().filter(|(part, _)| has(*part)).collect();
+        if ui.ctx().content_rect().width() >= WIDE {
+            for (part, name) in parts {
+                title(ui, name);
+                found.part(ui, part, words);
+            }
+            return;
         }
-        reasons(ui, words, found);
+        segments(ui, &mut found.shown, parts);
+        ui.add_space(8.0);
+        found.part(ui, found.shown, words);
+    }
+
+    pub(super) fn result_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let Some(found) = &self.found else {
+            return;
+        };
         let place = ActionPlace::new(ui, "case result", found.run);
         let check = found.answer.as_ref();
         let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
         let first = found.told.next(check.is_some());
         let failed = matches!(found.told, Told::Part | Told::Unsure | Told::NoPart);
         let may_run = context.units.chosen().may_run();
+        let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
+        let is_first = |way| way == first;
+        let mut ways = [
+            (Next::Repair, words.case.record_repair, failed),
+            (Next::Check, words.case.run_next, check.is_some()),
+            (
+                Next::ShowFailed,
+                words.case.show_failed,
+                is_first(Next::ShowFailed),
+            ),
+            (
+                Next::WholeSuite,
+                words.case.run_whole,
+                is_first(Next::WholeSuite),
+            ),
+            (
+                Next::RunAgain,
+                words.case.run_again,
+                is_first(Next::RunAgain),
+            ),
+            (Next::Sheet, words.case.to_sheet, !failed),
+        ];
+        ways.sort_by_key(|(way, ..)| *way != first);
         let mut asked = None;
-        ui.horizontal_wrapped(|ui| {
-            let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
-            let mut ways = [
-                (Next::Repair, words.case.record_repair, failed),
-                (Next::Check, words.case.run_next, check.is_some()),
-                (
-                    Next::ShowFailed,
-                    words.case.show_failed,
-                    first == Next::ShowFailed,
-                ),
-                (
-                    Next::WholeSuite,
-                    words.case.run_whole,
-                    first == Next::WholeSuite,
-                ),
-                (
-                    Next::RunAgain,
-                    words.case.run_again,
-                    first == Next::RunAgain,
-                ),
-                (Next::Sheet, words.case.to_sheet, true),
-            ];
-            ways.sort_by_key(|(way, ..)| *way != first);
-            for (way, text, _) in ways.iter().filter(|(.., offered)| *offered) {
-                let text = fill(text, &[("time", &time.as_deref().unwrap_or_default())]);
-                let runs = matches!(way, Next::Check | Next::WholeSuite | Next::RunAgain);
-                let button = match *way == first {
-                    true => primary(ui, &text, may_run || !runs),
-                    false => large(ui, &text, may_run || !runs),
-                };
-                if runs && !may_run {
-                    ui.label(RichText::new(words.procedures.connect_first).color(palette.quiet));
-                }
-                if place.clicked(&button) {
-                    asked = Some(*way);
-                }
+        for (way, text, _) in ways.iter().filter(|(.., offered)| *offered) {
+            let text = fill(text, &[("time", &time.as_deref().unwrap_or_default())]);
+            let runs = matches!(way, Next::Check | Next::WholeSuite | Next::RunAgain);
+            let look = if is_first(*way) {
+                Look::Primary
+            } else {
+                Look::Secondary
+            };
+            let why_not = (runs && !may_run).then_some(words.procedures.connect_first);
+            let button = Face::new(look, text).off(why_not);
+            // What there is no room for is reached by the steps.
+            if !is_first(*way) && button.wide(ui) > ui.available_width() {
+                continue;
             }
-            if let Some(trace) = found.trace
-                && ui.button(words.diagnosis.traces).clicked()
-            {
-                context.go_to.push(Destination::Trace(trace));
+            if place.clicked(&button.show(ui)) {
+                asked = Some(*way);
             }
-            if ui.button(words.procedures.to_diagnosis).clicked() {
-                context.go_to.push(Destination::Diagnosis(found.run));
-            }
-        });
-        next_check(ui, found, words);
-        if let Some(evidence) = &mut found.evidence {
-            evidence.show(ui, words);
         }
-        match asked {
-            Some(Next::Repair) => {
+        let check = check.map(|next| next.check.clone());
+        if let Some(way) = asked {
+            self.next(way, check, context);
+        }
+    }
+
+    fn next(&mut self, way: Next, check: Option<CheckName>, context: &mut PageContext<'_>) {
+        let Some(found) = &self.found else {
+            return;
+        };
+        match way {
+            Next::Repair => {
                 self.repair.prepare(found, &self.known);
                 self.stage = Stage::Repair;
             }
-            Some(Next::Sheet) => self.stage = Stage::Sheet,
-            Some(Next::ShowFailed) => context.go_to.push(Destination::Report(found.run)),
-            Some(Next::Check) => {
-                let check = check.map(|next| &next.check).zip(self.unit.clone());
+            Next::Sheet => self.stage = Stage::Sheet,
+            Next::ShowFailed => context.go_to.push(Destination::Report(found.run)),
+            Next::Check => {
+                let check = check.zip(self.unit.clone());
                 context
                     .go_to
                     .extend(check.map(|(check, unit)| Destination::RunStep {
-                        procedure: check.procedure.clone(),
-                        step: check.step.clone(),
+                        procedure: check.procedure,
+                        step: check.step,
                         unit,
                     }));
             }
-            Some(again @ (Next::WholeSuite | Next::RunAgain)) => {
+            Next::WholeSuite | Next::RunAgain => {
                 let symptom = self.tiles.symptom();
-                context.go_to.push(match again {
+                context.go_to.push(match way {
                     Next::WholeSuite => Destination::RunAll(symptom),
                     _ => Destination::FindPart(symptom),
                 });
-                self.found = None;
-                self.stage = Stage::Find;
+                (self.found, self.stage) = (None, Stage::Find);
             }
-            None => {}
         }
     }
 }
@@ -261,7 +327,7 @@ fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
     if !tells.is_empty() {
         said = format!("{said}: {tells}");
     }
-    let said = ui.label(RichText::new(said).size(Sizes::of(ui).lead));
+    let said = ui.label(said);
     if Sizes::of(ui).density == Density::Engineer {
         said.on_hover_text(next.check.to_string());
     }
@@ -275,7 +341,6 @@ fn reasons(ui: &mut Ui, words: &Words, found: &Found) {
         return;
     };
     let quiet = Palette::of(ui).quiet;
-    ui.label(RichText::new(words.case.because).color(quiet));
     for reason in first.for_it.iter().take(MOST_REASONS) {
         let said = match Sizes::of(ui).density {
             Density::Operator => words.reason_in_procedure(reason, &answer.run),

@@ -1,14 +1,14 @@
 //! A run of the case under way: what happens now, the unit live, and failures as they come.
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{RichText, Ui};
+use eframe::egui::Ui;
 use protocol::signal::{Sample, Signal};
 
-use super::{CasePage, Stage, large};
+use super::{CasePage, title};
 use crate::pages::bench::text::known;
 use crate::pages::procedures::{measurements, present};
-use crate::parts::{ActionPlace, verdict_chip};
-use crate::{Density, PageContext, Sizes};
+use crate::parts::{fact, ground, verdict_chip};
+use crate::{Density, PageContext, Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
 
@@ -16,38 +16,38 @@ use ptu_runs::bench_worker::{Phase, Progress};
 const FAILURES: usize = 4;
 
 impl CasePage {
-    /// The run, or that there is none and the way back.
-    pub(super) fn running(
-        &mut self,
-        ui: &mut Ui,
-        has_orders: bool,
-        back: Stage,
-        context: &mut PageContext<'_>,
-    ) {
+    /// A run of the case goes on, or is about to.
+    pub(super) fn is_running(&self, has_orders: bool, context: &PageContext<'_>) -> bool {
+        let runs = context
+            .units
+            .chosen()
+            .run_of_case()
+            .is_some_and(Progress::is_running);
+        runs || has_orders
+    }
+
+    /// The run, what it was, or that there is none.
+    pub(super) fn running(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
         let words = context.words;
         let unit = context.units.chosen();
-        let under_way = unit.run_of_case().filter(|run| run.is_running());
-        let Some(run) = under_way else {
-            // It has ended, and what it says is worked out; or it never began.
-            let said = match has_orders || unit.phase() == Phase::Running || self.is_over(context) {
-                true => words.case.preparing,
-                false => words.case.not_begun,
-            };
-            ui.label(RichText::new(said).size(Sizes::of(ui).lead));
-            let place = ActionPlace::new(ui, "case back", has_orders);
-            if place.clicked(&large(ui, words.case.back, !has_orders)) {
-                self.stage = back;
-            }
+        let waits = has_orders || self.is_over(context);
+        let Some(run) = unit.run_of_case().filter(|_| !waits) else {
+            // It is about to begin, or it has ended, and what it says is worked out; or it never began.
+            title(
+                ui,
+                match waits || unit.phase() == Phase::Running {
+                    true => words.case.preparing,
+                    false => words.case.not_begun,
+                },
+            );
             return;
         };
         let with_path = Sizes::of(ui).density == Density::Engineer;
         let answer = present(ui, words, run, None, with_path);
-        live(ui, words, &unit.bench.live().sample);
-        failures(ui, words, run);
-        let place = ActionPlace::new(ui, "case stop", unit.bench.stop_presses());
-        if place.clicked(&large(ui, words.procedures.stop, true)) {
-            unit.bench.stop_run();
+        if run.is_running() {
+            live(ui, words, &unit.bench.live().sample);
         }
+        failures(ui, words, run);
         if let Some(yes) = answer {
             context.units.chosen_mut().answer(yes);
         }
@@ -62,19 +62,20 @@ impl CasePage {
 
 /// Speed, limit and brakes as they are now.
 fn live(ui: &mut Ui, words: &Words, sample: &Sample) {
-    ui.horizontal_wrapped(|ui| {
-        let bench = &words.bench;
-        for (name, signal) in [
-            (bench.group_speed, Signal::Speed),
-            (bench.limit, Signal::Limit),
-            (bench.fsb, Signal::Fsb),
-            (bench.eb, Signal::Eb),
-        ] {
-            let Some(value) = sample.get(signal) else {
-                continue;
-            };
-            let value = known(&words.bench, signal, value);
-            ui.label(RichText::new(format!("{name} {value}")).size(Sizes::of(ui).lead));
+    let bench = &words.bench;
+    let signals = [
+        (bench.group_speed, Signal::Speed),
+        (bench.limit, Signal::Limit),
+        (bench.fsb, Signal::Fsb),
+        (bench.eb, Signal::Eb),
+    ];
+    ui.columns(signals.len(), |columns| {
+        for (ui, (name, signal)) in columns.iter_mut().zip(signals) {
+            let value = sample.get(signal).map(|value| known(bench, signal, value));
+            ground(&Palette::of(ui)).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                fact(ui, name, value.as_deref().unwrap_or("–"));
+            });
         }
     });
 }

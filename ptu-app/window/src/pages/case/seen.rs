@@ -1,9 +1,10 @@
 //! The units seen last: a click fills in where one is reached and its serial number.
 
-use eframe::egui::{Button, RichText, Ui, vec2};
+use eframe::egui::Ui;
 use fault_db::{RunFilter, RunSummary};
 
-use crate::parts::ActionPlace;
+use super::title;
+use crate::parts::{ActionPlace, Face, Look, choice as choice_card};
 use crate::request::CachedResponse;
 use crate::{PageContext, Sizes};
 use ptu_report::naming::DOT;
@@ -14,6 +15,8 @@ use ptu_runs::run::BenchChoice;
 const MOST: u32 = 200;
 /// As many units are offered.
 const SHOWN: usize = 4;
+/// Least height of one, points.
+const HIGH: f32 = 40.0;
 /// The fault of the demonstration: a check shows it, and its part can be replaced and proved.
 const DEMONSTRATED: &str = "eb_relay.slow";
 
@@ -40,31 +43,22 @@ impl SeenUnits {
         }
         let words = context.words;
         ui.add_space(8.0);
-        ui.label(
-            RichText::new(words.case.seen_last)
-                .size(Sizes::of(ui).lead)
-                .strong(),
-        );
+        title(ui, words.case.seen_last);
         let choice = &mut context.units.chosen_mut().choice;
-        ui.horizontal_wrapped(|ui| {
-            for run in self.runs.items() {
-                let place = match run.source.as_str() {
-                    "sim" => words.frame.simulated,
-                    other => other,
-                };
-                let at = clock::local(run.started_at_us);
-                let name = [&*run.unit_serial, place, &at].join(DOT);
-                let on = choice.serial == run.unit_serial && choice.endpoint == run.source;
-                let button = Button::new(RichText::new(name).size(Sizes::of(ui).lead)).selected(on);
-                if ui
-                    .add(button.min_size(vec2(0.0, Sizes::of(ui).target)))
-                    .clicked()
-                {
-                    choice.endpoint.clone_from(&run.source);
-                    choice.serial.clone_from(&run.unit_serial);
-                }
+        for run in self.runs.items() {
+            let place = match run.source.as_str() {
+                "sim" => words.frame.simulated,
+                other => other,
+            };
+            let at = clock::local(run.started_at_us);
+            let name = [&*run.unit_serial, place, &at].join(DOT);
+            let on = choice.serial == run.unit_serial && choice.endpoint == run.source;
+            let size = [ui.available_width(), Sizes::of(ui).target.max(HIGH)];
+            if choice_card(ui, (&*name, ""), on, size).clicked() {
+                choice.endpoint.clone_from(&run.source);
+                choice.serial.clone_from(&run.unit_serial);
             }
-        });
+        }
     }
 
     fn keep_up(&mut self, context: &PageContext<'_>) {
@@ -100,9 +94,9 @@ impl SeenUnits {
 fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.case;
     ui.add_space(8.0);
-    ui.label(RichText::new(words.first_start).size(Sizes::of(ui).lead));
+    ui.label(words.first_start);
     let place = ActionPlace::new(ui, "demonstration", ());
-    let begin = super::large(ui, words.demonstrate, true);
+    let begin = Face::new(Look::Secondary, words.demonstrate).show(ui);
     if place.clicked(&begin) {
         let unit = context.units.chosen_mut();
         unit.choice = BenchChoice {

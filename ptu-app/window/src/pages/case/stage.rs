@@ -4,7 +4,7 @@ use ptu_report::words::Words;
 use ptu_runs::failure::Exit;
 
 /// A place on the way of a case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// No unit is connected.
     #[default]

@@ -1,15 +1,19 @@
 //! The unit and its symptom: what is known, tiles to choose from, and the search for the part.
 
-use eframe::egui::{Button, RichText, Ui, vec2};
+use eframe::egui::Ui;
+use egui_material_icons::icons::ICON_ARROW_FORWARD;
 
-use super::{CasePage, Stage, large};
-use crate::parts::ActionPlace;
+use super::{CasePage, Stage, title};
+use crate::parts::{ActionPlace, Face, Look, choice};
 use crate::request::Request;
 use crate::{Destination, PageContext, Sizes};
+use ptu_report::words::Words;
 use ptu_runs::symptoms::{self, Symptom};
 
-/// Width of a tile, points.
-const WIDE: f32 = 260.0;
+/// Least width and height of a tile, and between two, points.
+const WIDE: f32 = 230.0;
+const HIGH: f32 = 44.0;
+const GAP: f32 = 8.0;
 
 /// The symptoms of the scripts directory, and the one chosen.
 #[derive(Default)]
@@ -23,6 +27,15 @@ impl SymptomTiles {
     /// The one chosen, if it is known.
     pub fn symptom(&self) -> Option<Symptom> {
         self.chosen.clone().flatten()
+    }
+
+    /// The one chosen, in words.
+    pub fn said(&self, words: &Words) -> String {
+        match &self.chosen {
+            Some(Some(symptom)) => words.content(&symptom.name).into_owned(),
+            Some(None) => words.case.unknown.to_owned(),
+            None => String::new(),
+        }
     }
 
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
@@ -47,14 +60,16 @@ impl SymptomTiles {
         let tiles = known.map(|symptom| (words.content(&symptom.name), Some(symptom.clone())));
         let unknown = (words.case.unknown.into(), None);
         let mut clicked = None;
+        let high = Sizes::of(ui).target.max(HIGH);
+        let columns = ((ui.available_width() + GAP) / (WIDE + GAP))
+            .floor()
+            .clamp(1.0, 3.0);
+        let wide = (ui.available_width() - GAP * (columns - 1.0)) / columns;
         ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = [GAP, GAP].into();
             for (name, symptom) in tiles.chain([unknown]) {
                 let on = self.chosen.as_ref() == Some(&symptom);
-                let button = Button::new(RichText::new(name).size(Sizes::of(ui).lead)).selected(on);
-                if ui
-                    .add(button.min_size(vec2(WIDE, Sizes::of(ui).target)))
-                    .clicked()
-                {
+                if choice(ui, (&*name, ""), on, [wide.floor(), high]).clicked() {
                     clicked = Some(symptom);
                 }
             }
@@ -65,36 +80,30 @@ impl SymptomTiles {
 
 impl CasePage {
     pub(super) fn unit(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let words = &context.words.case;
-        let unit = context.units.chosen();
-        let (serial, may) = (unit.name(), unit.may_run());
-        ui.label(RichText::new(&serial).size(Sizes::of(ui).headline).strong());
+        let serial = context.units.chosen().name();
         self.known.keep(&serial, context);
-        self.known.show(ui, context.words, context.go_to);
-        ui.add_space(8.0);
-        ui.label(
-            RichText::new(words.what_is_wrong)
-                .size(Sizes::of(ui).lead)
-                .strong(),
-        );
+        self.name(ui, context);
+        title(ui, context.words.case.what_is_wrong);
         self.tiles.show(ui, context);
         ui.add_space(8.0);
-        self.name(ui, context);
+        self.known.show(ui, context.words, context.go_to);
+    }
+
+    pub(super) fn unit_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.case;
+        let may = context.units.chosen().may_run();
         let named = !context.settings.operator.trim().is_empty();
         let place = ActionPlace::new(ui, "case find", may);
-        let find = large(
-            ui,
-            words.find_part,
-            may && named && self.tiles.chosen.is_some(),
-        );
-        let hint = match named {
-            true => words.what_is_wrong,
-            false => words.name_first,
+        let why_not = match (named, self.tiles.chosen.is_some()) {
+            (false, _) => Some(words.name_first),
+            (true, false) => Some(words.what_is_wrong),
+            (true, true) => (!may).then_some(words.under_way),
         };
-        if place.clicked(&find.on_disabled_hover_text(hint)) {
+        let find = Face::new(Look::Primary, words.find_part).off(why_not);
+        if place.clicked(&find.end(ICON_ARROW_FORWARD).show(ui)) {
             let symptom = self.tiles.symptom();
             context.go_to.push(Destination::FindPart(symptom));
-            self.stage = Stage::Find;
+            (self.found, self.stage) = (None, Stage::Find);
         }
     }
 }

@@ -3,6 +3,10 @@
 use btu_rig::procedure::Verdict;
 use diagnosis::{Conclusion, Diagnosis};
 use eframe::egui::Color32;
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_CANCEL, ICON_CHECK_CIRCLE, ICON_DO_NOT_DISTURB_ON, ICON_HELP, ICON_WARNING,
+};
 use protocol::LruId;
 
 use crate::Palette;
@@ -83,6 +87,16 @@ impl Told {
             Self::NotTested => "{why}",
             Self::Stopped => words.stopped_at,
             Self::NoFault => words.no_fault,
+        }
+    }
+
+    pub fn icon(self) -> MaterialIcon {
+        match self {
+            Self::Part | Self::NoPart => ICON_CANCEL,
+            Self::Unsure | Self::NotAll => ICON_HELP,
+            Self::NotTested => ICON_WARNING,
+            Self::Stopped => ICON_DO_NOT_DISTURB_ON,
+            Self::NoFault => ICON_CHECK_CIRCLE,
         }
     }
 

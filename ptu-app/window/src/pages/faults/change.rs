@@ -124,8 +124,6 @@ impl Change {
         }
         let wide = (ui.available_width() - NAMES).clamp(NARROWEST, WIDEST);
         Grid::new("change").num_columns(2).show(ui, |ui| {
-            let operator = &mut context.settings.operator;
-            field(ui, words.common.operator, name_edit(operator, wide));
             field(ui, words.common.note, note_edit(&mut self.form.note, wide));
             if fault.state.next(FaultAction::Repair).is_ok() {
                 let (old, new) = (&mut self.form.serial_old, &mut self.form.serial_new);
@@ -134,6 +132,9 @@ impl Change {
             }
         });
         let who = context.settings.operator.trim().to_owned();
+        if who.is_empty() {
+            ui.label(words.case.name_first);
+        }
         let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
         let place = ActionPlace::new(ui, "fault", (fault.id, fault.state.as_str()));
         ui.add_enabled_ui(may, |ui| {

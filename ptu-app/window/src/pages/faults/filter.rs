@@ -1,6 +1,6 @@
 //! Which faults are shown.
 
-use fault_db::{DailyCount, FaultState, FaultSummary};
+use fault_db::{FaultState, FaultSummary};
 
 use crate::page_context::FaultsOf;
 use crate::settings::FaultsQuestion;
@@ -59,20 +59,6 @@ impl Filter {
                 || has(&fault.lru)
                 || has(&fault.unit_serial)
                 || has(&fault.severity))
-    }
-
-    /// Whether an occurrence counts in the charts; states are of faults, not of occurrences.
-    pub fn counts(&self, count: &DailyCount) -> bool {
-        let text = self.text.trim().to_lowercase();
-        let has = |what: &str| what.to_lowercase().contains(&text);
-        self.unit
-            .as_ref()
-            .is_none_or(|unit| *unit == count.unit_serial)
-            && self.lru.as_ref().is_none_or(|lru| *lru == count.lru)
-            && (has(&count.code_name)
-                || has(&count.code.to_string())
-                || has(&count.lru)
-                || has(&count.unit_serial))
     }
 }
 

@@ -1,15 +1,13 @@
-//! The fault history: filters, charts, one fault with its freeze frame and what was done about it.
+//! The fault history: filters, one fault with its freeze frame and what was done about it.
 
-mod bars;
 mod change;
-mod charts;
 mod closing;
 mod detail;
 mod filter;
 mod list;
 
-use eframe::egui::{CentralPanel, CollapsingHeader, RichText, ScrollArea, Ui};
-use fault_db::{DailyCount, FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
+use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use fault_db::{FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 
 use crate::page_context::FaultsOf;
 use crate::parts::look_back::since_us;
@@ -25,18 +23,15 @@ use ptu_runs::clock;
 
 /// As many faults as are listed.
 const MOST: u32 = 20_000;
-/// Height that the charts are shown in from the beginning, points.
-const HIGH: f32 = 400.0;
 const LIST: FirstHalf = FirstHalf {
     name: "fault list",
     width: 620.0,
     share: 0.5,
 };
 
-/// What the list and the charts show.
+/// What the list shows.
 struct History {
     faults: Vec<FaultSummary>,
-    daily: Vec<DailyCount>,
     parts: PartNames,
 }
 
@@ -97,7 +92,6 @@ impl FaultsPage {
                 self.reread(context);
             }
             let since_us = since_us(self.filter.days, clock::now_us()).unwrap_or_default();
-            let utc_offset_us = clock::utc_offset_us();
             self.history.request(context.queries.run(move |paths| {
                 let store = paths.read()?;
                 let filter = FaultFilter {
@@ -108,7 +102,6 @@ impl FaultsPage {
                 Ok(History {
                     faults: store.faults(&filter)?,
                     parts: PartNames::of(&paths.scripts),
-                    daily: store.daily_occurrences(since_us, utc_offset_us)?,
                 })
             }));
         }
@@ -155,14 +148,6 @@ impl FaultsPage {
                     self.units.show(ui, context);
                     list::of_bar(ui, words, &mut self.filter, &history.parts);
                 });
-                let counts = (history.daily.iter())
-                    .filter(|count| self.filter.counts(count))
-                    .filter(|count| self.units.takes(&count.unit_serial));
-                let counts: Vec<_> = counts.collect();
-                // In a low window they would leave no room for the list.
-                CollapsingHeader::new(words.faults.charts)
-                    .default_open(ui.available_height() > HIGH)
-                    .show_unindented(ui, |ui| bars::charts(ui, words, &counts));
                 let shown = (&self.filter, &self.units);
                 let known = (history.faults.as_slice(), &history.parts);
                 list::list(ui, words, shown, known, self.chosen)

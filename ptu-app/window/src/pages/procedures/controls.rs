@@ -3,7 +3,7 @@
 use eframe::egui::{Button, DragValue, RichText, Ui};
 
 use super::ProceduresPage;
-use crate::parts::{ActionPlace, name_edit};
+use crate::parts::ActionPlace;
 use crate::request::Request;
 use crate::units::Unit;
 use crate::{PageContext, Palette};
@@ -74,9 +74,6 @@ impl ProceduresPage {
                 .suffix(format!(" × {}", words.repeat)),
         );
         ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
-        let label = ui.label(words.operator);
-        ui.add(name_edit(&mut context.settings.operator, 120.0))
-            .labelled_by(label.id);
         if phase != Phase::Idle {
             ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
         }

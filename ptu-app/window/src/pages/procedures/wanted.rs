@@ -104,9 +104,8 @@ impl ProceduresPage {
             return;
         };
         let connection = of.connection();
-        let rest = of
-            .waiting_run()
-            .map(|(run, _)| (Selection::rest(run), run.id()));
+        let same = of.waiting_run().filter(|_| !of.is_other());
+        let rest = same.map(|(run, _)| (Selection::rest(run), run.id()));
         if let Wanted::Rest = wanted
             && rest.is_some()
             && !of.may_run()

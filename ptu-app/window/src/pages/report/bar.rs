@@ -4,15 +4,13 @@ use eframe::egui::{Align2, Button, ComboBox, Label, RichText, TextEdit, Ui};
 
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::data_paths::DataPaths;
-use crate::parts::{NoteOn, name_edit, named_combo, open_file};
+use crate::parts::{NoteOn, named_combo, open_file};
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette, Sizes};
 use ptu_report::words::{Language, Words, fill};
 
 /// Room for the buttons beside the file's name, points.
 const BUTTONS: f32 = 190.0;
-/// Width of the operator's name, points.
-const NAME: f32 = 120.0;
 
 impl ReportPage {
     pub(super) fn bar(&mut self, ui: &mut Ui, brief: bool, context: &mut PageContext<'_>) {
@@ -37,9 +35,6 @@ impl ReportPage {
         ui.horizontal(|ui| self.files(ui, context));
         self.open_written(ui, context);
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label(words.common.operator);
-            ui.add(name_edit(&mut context.settings.operator, NAME))
-                .labelled_by(label.id);
             let who = &context.settings.operator;
             self.note
                 .show(ui, words, context.queries, who, NoteOn::Run(of.run()));
@@ -49,7 +44,7 @@ impl ReportPage {
     fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.report;
         let label = ui.label(words.file);
-        let buttons = BUTTONS * Sizes::of(ui).body / 14.5;
+        let buttons = BUTTONS * Sizes::of(ui).body / 14.0;
         let wide = (ui.available_width() - buttons).max(BUTTONS);
         let file = TextEdit::singleline(&mut self.file).align(Align2::LEFT_CENTER);
         ui.add(file.desired_width(wide)).labelled_by(label.id);

@@ -37,7 +37,7 @@ use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
 /// Height of a row of controls.
-const ROW: f32 = 24.0;
+const ROW: f32 = 28.0;
 const LIST: FirstHalf = FirstHalf {
     name: "recorded traces",
     width: 300.0,

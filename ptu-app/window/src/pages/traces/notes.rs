@@ -4,7 +4,7 @@ use eframe::egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, pos2, vec2
 use fault_db::{Id, TracePlace};
 
 use super::row::Sheet;
-use crate::parts::{NoteOn, RunNoteForm, lane, link, name_edit};
+use crate::parts::{NoteOn, RunNoteForm, lane, link};
 use crate::request::CachedResponse;
 use crate::{PageContext, Palette};
 use ptu_report::trace_notes::TraceNote;
@@ -17,8 +17,6 @@ const MOST: usize = 60;
 const LINKS: usize = 40;
 /// Size of a flag, points.
 const FLAG: f32 = 14.0;
-/// Room for the operator's name, points.
-const NAME: f32 = 140.0;
 
 /// The notes on the trace that is open.
 #[derive(Default)]
@@ -80,9 +78,6 @@ impl TraceNotes {
             at_us: rows.saturating_mul(view.data().period_us),
         };
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label(words.common.operator);
-            ui.add(name_edit(&mut context.settings.operator, NAME))
-                .labelled_by(label.id);
             let who = &context.settings.operator;
             self.form
                 .show(ui, words, context.queries, who, NoteOn::Place(place));

@@ -25,7 +25,7 @@ const TWO: f32 = 1.7;
 /// How much taller than usual a quantity gets where there is room.
 const TALLEST: f32 = 2.0;
 /// Height of a name among several in a lane.
-const LINE: f32 = 24.0;
+const LINE: f32 = 28.0;
 /// Between lanes.
 pub const GAP: f32 = 4.0;
 

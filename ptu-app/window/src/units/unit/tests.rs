@@ -110,3 +110,30 @@ fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
     until(&mut unit, &|unit| unit.may_run());
     assert_eq!(unit.runs_ended, 2);
 }
+
+/// Goal: a run is not continued on another unit. Method: one broke off, and another unit answers at its port, then the same again.
+#[test]
+fn a_run_that_broke_off_can_only_be_ended_once_another_unit_is_connected() {
+    let mut unit = Unit::new(0, BenchChoice::default(), Arc::new(|| {})).expect("a thread");
+    let setup = unit.choice.setup(&scripts()).expect("its configuration");
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = order(&folder.path().join("history.db"), &setup).plan;
+    let mut messages = Messages::default();
+    let mut connected = |unit: &mut Unit, serial: &str| {
+        let serial = serial.to_owned();
+        let mut said = UnitMessages {
+            unit: None,
+            messages: &mut messages,
+        };
+        let words = Language::English.words();
+        unit.on_event(BenchEvent::Connected { serial }, words, &mut said);
+    };
+    (unit.run, unit.waits) = (Some(Progress::new(&plan, "A-1".into())), true);
+    connected(&mut unit, "B-2");
+    assert!(unit.is_other() && unit.run.is_some());
+    connected(&mut unit, "A-1");
+    assert!(!unit.is_other() && unit.run.is_some());
+    connected(&mut unit, "B-2");
+    unit.end_run();
+    assert!(!unit.is_other() && unit.run.is_none());
+}

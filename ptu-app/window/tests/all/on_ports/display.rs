@@ -22,10 +22,10 @@ const PAGES: [&str; 6] = [
 ];
 
 /// Where the button that begins a run is on the page of procedures.
-const RUN: [&str; 2] = ["545", "95"];
+const RUN: [&str; 2] = ["494", "68"];
 
 /// Where a field is on the page of sheets.
-const FIND: [&str; 2] = ["104", "129"];
+const FIND: [&str; 2] = ["190", "90"];
 
 /// It is clicked again after this time.
 const AGAIN: Duration = Duration::from_secs(3);

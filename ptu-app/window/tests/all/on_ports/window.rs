@@ -148,7 +148,7 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     settings.language = Language::Korean;
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("연결");
+    window.connect();
     window.until("the unit", |window| {
         window.app().units().chosen().phase() == Phase::Idle
     });

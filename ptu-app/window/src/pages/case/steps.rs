@@ -1,0 +1,189 @@
+//! The seven steps beside the page, where each can be gone to, and the strip that says of what the case is.
+
+use eframe::egui::{Align, Layout, RichText, ScrollArea, Ui};
+use egui_material_icons::icons::{ICON_ADD_CIRCLE, ICON_DESCRIPTION, ICON_LOCK};
+
+use super::verdict::Told;
+use super::{CasePage, Stage, name_field};
+use crate::parts::{ActionPlace, Face, Look, Step, fact};
+use crate::{Destination, PageContext, Palette, Sizes};
+use ptu_report::count_text;
+use ptu_report::words::fill;
+use ptu_runs::bench_worker::Phase;
+use ptu_runs::clock;
+
+/// Height of a step, and of one in a low window, points.
+const HIGH: [f32; 2] = [64.0, 48.0];
+
+/// Width of the steps in a window of this one, points: numbers alone where it is narrow.
+pub fn wide(screen: f32) -> f32 {
+    match screen {
+        narrow if narrow < 1000.0 => 64.0,
+        usual if usual < 1600.0 => 208.0,
+        _ => 240.0,
+    }
+}
+
+impl CasePage {
+    pub(super) fn steps(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let narrow = ui.available_width() < 100.0;
+        let foot = 2.0 * (Sizes::of(ui).target + ui.spacing().item_spacing.y);
+        let room = ui.available_height() - foot;
+        let high =
+            (room / 7.0 - ui.spacing().item_spacing.y).clamp(28.0, HIGH[usize::from(narrow)]);
+        let mut to = None;
+        let area = ScrollArea::vertical()
+            .max_height(room)
+            .auto_shrink([false, true]);
+        area.show(ui, |ui| {
+            for (number, stage) in (1..).zip(Stage::ALL) {
+                let blocked = self.blocked(stage, context);
+                let below = match blocked {
+                    Some(why) => why.to_owned(),
+                    None => self.came_to(stage, context),
+                };
+                let step = Step {
+                    number,
+                    name: stage.name(words),
+                    below: &below,
+                    is_here: stage == self.stage,
+                    is_done: stage < self.stage,
+                    can_go: blocked.is_none(),
+                };
+                if step.show(ui, high).clicked() {
+                    to = Some(stage);
+                }
+            }
+        });
+        self.go(to);
+        ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
+            let text = |text: &'static str| if narrow { "" } else { text };
+            let lock = Face::new(Look::Quiet, text(words.frame.lock)).icon(ICON_LOCK);
+            let lock = lock.named(words.frame.lock).hint(words.frame.lock_hint);
+            if lock.show(ui).clicked() {
+                context.settings.lock();
+            }
+            let place = ActionPlace::new(ui, "new case", self.stage);
+            let begun = !matches!(self.stage, Stage::Start | Stage::Unit);
+            let unit = context.units.chosen();
+            let may = begun && unit.phase() != Phase::Running;
+            let new = Face::new(Look::Quiet, text(words.case.new_case)).icon(ICON_ADD_CIRCLE);
+            let new = new.named(words.case.new_case).hint(words.case.new_case);
+            if place.clicked(&new.off((!may).then_some("")).show(ui)) {
+                self.begin(unit);
+            }
+        });
+    }
+
+    fn go(&mut self, to: Option<Stage>) {
+        match (to, &self.found) {
+            (Some(Stage::Repair), Some(found)) => {
+                self.repair.prepare(found, &self.known);
+                self.stage = Stage::Repair;
+            }
+            (Some(to), _) => self.stage = to,
+            (None, _) => {}
+        }
+    }
+
+    /// Why this step cannot be gone to.
+    fn blocked(&self, stage: Stage, context: &PageContext<'_>) -> Option<&'static str> {
+        let words = &context.words.case;
+        let unit = context.units.chosen();
+        let failed = self
+            .found
+            .as_ref()
+            .is_some_and(|found| matches!(found.told, Told::Part | Told::Unsure | Told::NoPart));
+        // A run that goes on is looked at where it goes on.
+        let runs = unit.run_of_case().is_some_and(|run| run.is_running());
+        let (can, why) = match stage {
+            _ if runs => (stage == self.stage, words.under_way),
+            Stage::Start => (true, ""),
+            Stage::Unit => (unit.is_connected(), words.connect_first),
+            Stage::Find => (self.found.is_some(), words.after_symptom),
+            Stage::Result => (self.found.is_some(), words.after_test),
+            Stage::Repair => (failed, words.after_result),
+            Stage::Prove => (self.repair.is_written(), words.after_repair),
+            Stage::Sheet => (
+                self.found.is_some() && !self.repair.is_written() || self.proof.has_run(),
+                words.after_proof,
+            ),
+        };
+        (!can && stage != self.stage).then_some(why)
+    }
+
+    /// What a step came to, in few words.
+    fn came_to(&self, stage: Stage, context: &PageContext<'_>) -> String {
+        let words = context.words;
+        let run = context.units.chosen().run_of_case();
+        match stage {
+            Stage::Start => self.unit.clone().unwrap_or_default(),
+            Stage::Unit => self.tiles.said(words),
+            Stage::Find => match (run, stage == self.stage) {
+                (Some(run), true) => {
+                    let counts = run.counts();
+                    let said: [(&str, &dyn std::fmt::Display); 2] =
+                        [("n", &counts.run()), ("all", &counts.planned)];
+                    fill(words.frame.running, &said)
+                }
+                _ => self
+                    .found
+                    .as_ref()
+                    .map_or_else(String::new, |found| count_text(&found.counts, words)),
+            },
+            Stage::Result => {
+                let found = self.found.as_ref();
+                found.map_or_else(String::new, |found| found.told.word(&words.case).to_owned())
+            }
+            Stage::Repair => self.repair.serial_new().to_owned(),
+            Stage::Prove | Stage::Sheet => String::new(),
+        }
+    }
+
+    /// Where Back leads.
+    pub(super) fn back(&self, context: &PageContext<'_>) -> Option<Stage> {
+        let before = Stage::ALL
+            .into_iter()
+            .rev()
+            .filter(|stage| *stage < self.stage);
+        let mut before = before.filter(|stage| self.blocked(*stage, context).is_none());
+        before.next()
+    }
+
+    /// What the case is about.
+    pub(super) fn strip(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let none = "–";
+        let unit = context.units.chosen();
+        let name = self.unit.as_deref().unwrap_or(none);
+        fact(ui, words.common.unit, name);
+        if let Some(found) = &self.found {
+            fact(ui, words.case.run, &found.run.short());
+            let quiet = Palette::of(ui).quiet;
+            ui.label(
+                RichText::new(clock::local(found.ended_us))
+                    .small()
+                    .color(quiet),
+            );
+        } else {
+            let run = unit.run_of_case().and_then(|run| run.id());
+            let run = run.map_or_else(|| none.to_owned(), |run| run.short());
+            fact(ui, words.case.run, &run);
+        }
+        name_field(ui, context);
+        ui.separator();
+        self.known.facts(ui, words);
+        if self.stage == Stage::Result
+            && let Some(found) = &self.found
+        {
+            ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
+                let sheet =
+                    Face::new(Look::Secondary, words.case.test_sheet).icon(ICON_DESCRIPTION);
+                if sheet.show(ui).clicked() {
+                    context.go_to.push(Destination::Report(found.run));
+                }
+            });
+        }
+    }
+}
