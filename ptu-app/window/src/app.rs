@@ -144,7 +144,11 @@ impl App {
             }
             self.pages.show(page, ui, &mut page_context);
         });
-        self.frame.over(ui, &mut page_context);
+        let procedures = match self.frame.finds() {
+            true => self.pages.procedures(&page_context),
+            false => &[],
+        };
+        self.frame.over(ui, procedures, &mut page_context);
         if self.closing {
             let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);

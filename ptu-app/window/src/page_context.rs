@@ -84,6 +84,12 @@ pub enum Destination {
     Setup,
     /// What the chosen unit's run left when its link was lost; stays where it is.
     GoOn,
+    /// The procedures, with one step chosen and nothing run.
+    ChooseStep {
+        /// Procedure, as `atp/overspeed`.
+        procedure: String,
+        step: String,
+    },
     /// The procedures, running one step at once.
     RunStep {
         /// Procedure, as `atp/overspeed`.

@@ -127,7 +127,7 @@ wordings! {
         // Rolling plot.
         plot: "Plot", "그래프";
         plot_signals: "Signals …", "신호 …";
-        plot_last: "last {time} s", "최근 {time} 초";
+        plot_last: "{time} s", "{time} 초";
         plot_find: "find", "찾기";
         plot_nothing: "choose signals to plot", "그래프에 표시할 신호를 선택하십시오";
 

@@ -81,6 +81,14 @@ wordings! {
         inject: "injected faults", "주입 고장";
         take_out: "Remove", "제거";
         find: "find a fault", "고장 찾기";
+        find_anything: "Find anything", "전체 찾기";
+        find_what: "fault, step, unit, page or action", "고장, 단계, 장치, 화면, 동작";
+        faults: "faults", "고장";
+        steps: "steps", "단계";
+        units: "units", "장치";
+        pages: "pages", "화면";
+        actions: "actions", "동작";
+        life_of: "Life of {serial}", "{serial} 이력";
         none: "none", "없음";
         link_good: "link {share} %", "링크 {share} %";
         add_unit: "Add a unit", "장치 추가";

@@ -6,12 +6,12 @@ use eframe::egui::{
 };
 use egui_material_icons::icons::{
     ICON_ADD, ICON_BOLT, ICON_EXPAND_MORE, ICON_HELP, ICON_LINK, ICON_LINK_OFF, ICON_MEMORY,
-    ICON_NOTIFICATIONS, ICON_PAUSE_CIRCLE, ICON_PLAY_CIRCLE, ICON_SCIENCE, ICON_STOP_CIRCLE,
-    ICON_WARNING,
+    ICON_NOTIFICATIONS, ICON_PAUSE_CIRCLE, ICON_PLAY_CIRCLE, ICON_SCIENCE, ICON_SEARCH,
+    ICON_STOP_CIRCLE, ICON_WARNING,
 };
 use protocol::signal::{Sample, Signal};
 
-use super::keys::STOP_ALL;
+use super::keys::{FIND, STOP_ALL};
 use super::lock::only_look;
 use super::unit_menu::unit_menu;
 use super::{Frame, messages};
@@ -36,20 +36,24 @@ enum Without {
     Nothing,
     Subtitle,
     Practice,
+    FindKey,
     RunBar,
     LinkWord,
+    Find,
     Keys,
     OtherUnits,
     States,
 }
 
 impl Without {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 10] = [
         Self::Nothing,
         Self::Subtitle,
         Self::Practice,
+        Self::FindKey,
         Self::RunBar,
         Self::LinkWord,
+        Self::Find,
         Self::Keys,
         Self::OtherUnits,
         Self::States,
@@ -65,6 +69,7 @@ enum What {
     Cancel,
     Run,
     RunBar,
+    Find,
     Bell,
     Arm,
     Disarm,
@@ -133,6 +138,7 @@ fn act(frame: &mut Frame, what: What, response: &Response, ui: &Ui, context: &mu
             Popup::menu(response).show(|ui| unit_menu(ui, &mut frame.setup, context));
         }
         What::Unit(place) if response.clicked() => context.units.choose(place),
+        What::Find if response.clicked() => frame.find.toggle(context),
         What::Bell => messages::bell(response, context),
         What::Run if response.clicked() => context.settings.page = Page::Procedures,
         What::StopAll if response.clicked() => context.units.stop_all(),
@@ -334,6 +340,11 @@ fn differs_from_record(sample: &Sample, frame: &words::Frame) -> Option<String> 
 fn right(context: &PageContext<'_>, without: Without) -> Vec<Item> {
     let words = &context.words.frame;
     let mut items = Vec::new();
+    if without < Without::Find {
+        let key = if without < Without::FindKey { FIND } else { "" };
+        let find = Face::new(Look::Quiet, "").icon(ICON_SEARCH).small(key);
+        items.push((What::Find, find.named(words.find_anything)));
+    }
     let n = context.messages.all().len();
     let count = if n > 0 { n.to_string() } else { String::new() };
     let bell = Face::new(Look::Quiet, count).icon(ICON_NOTIFICATIONS);

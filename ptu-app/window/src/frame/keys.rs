@@ -8,27 +8,38 @@ use ptu_runs::bench_worker::Phase;
 /// Stops everything, whatever has the keyboard.
 pub const STOP_ALL: Key = Key::F12;
 
-/// Connects the chosen unit, or lets it go.
+/// Finds anything.
+pub const FIND: &str = "Ctrl K";
+
+/// Of [`connect`].
 pub const CONNECT: Key = Key::F9;
 
 pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
         context.units.stop_all();
     }
-    let connect = egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT));
-    if connect && !context.settings.locked {
-        let only_reads = context.only_reads();
-        let unit = context.units.chosen_mut();
-        if unit.phase() != Phase::Offline {
-            unit.disconnect();
-        } else if only_reads.is_none() {
-            unit.connect(context.queries);
-        }
+    if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
+        connect(context);
     }
     for page in Page::ALL {
         let key = Key::from_name(page.key()).expect("a key of egui");
         if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
             context.settings.page = page;
         }
+    }
+}
+
+/// Connects the chosen unit, or lets it go.
+pub fn connect(context: &mut PageContext<'_>) {
+    let only_reads = context.only_reads();
+    let locked = context.settings.locked;
+    let unit = context.units.chosen_mut();
+    if locked {
+        return;
+    }
+    if unit.phase() != Phase::Offline {
+        unit.disconnect();
+    } else if only_reads.is_none() {
+        unit.connect(context.queries);
     }
 }

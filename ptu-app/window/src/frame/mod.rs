@@ -3,6 +3,7 @@
 mod about;
 mod bar;
 mod care;
+mod find;
 mod keys;
 mod lock;
 mod lost;
@@ -12,9 +13,12 @@ mod rail;
 mod setup;
 mod unit_menu;
 
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
 use eframe::egui::{
-    Align2, Area, Context, Frame as Ground, Id, Margin, Order, Panel, RichText, Role, Spinner, Ui,
-    WidgetInfo, vec2,
+    Align2, Area, Context, Frame as Ground, Id, Key, Margin, Modifiers, Order, Panel, RichText,
+    Role, Spinner, Ui, WidgetInfo, vec2,
 };
 
 use super::{Page, PageContext, Palette, Sizes};
@@ -22,6 +26,7 @@ use crate::pages::case_steps;
 use crate::parts::dialog_is_open;
 use about::About;
 use care::Care;
+use find::Find;
 pub use lock::only_look;
 use ptu_report::words::Words;
 use setup::Setup;
@@ -36,6 +41,9 @@ pub struct Frame {
     about: About,
     care: Care,
     undo: messages::Undo,
+    find: Find,
+    /// The rail is hidden.
+    is_wide: bool,
     /// The rail has no room for the history.
     is_low: bool,
 }
@@ -44,6 +52,11 @@ impl Frame {
     /// Keys that work on every page.
     pub fn keys(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         keys::keys(ui.ctx(), context);
+        let key = |key| ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
+        if key(Key::K) {
+            self.find.toggle(context);
+        }
+        self.is_wide ^= key(Key::B);
     }
 
     /// Bar and rail; what is left of `ui` is the page's, and can be used unless a dialog is over it.
@@ -58,11 +71,19 @@ impl Frame {
             ui.visuals_mut().disabled_alpha = 1.0;
             ui.disable();
         }
+        if self.is_wide {
+            return;
+        }
         let rail = Panel::left("rail")
             .exact_size(rail::wide(ui))
             .resizable(false);
         rail.frame(ground.inner_margin(4))
             .show(ui, |ui| rail::rail(self, ui, context));
+    }
+
+    /// Something is being looked for.
+    pub fn finds(&self) -> bool {
+        self.find.is_open()
     }
 
     /// Opens what the unit is set up for.
@@ -81,7 +102,7 @@ impl Frame {
     }
 
     /// What stands over the page: what was told, and the dialogs that are open.
-    pub fn over(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
+    pub fn over(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         self.undo.poll(context);
         // Not over the steps and the foot of a case.
         let wide = ui.ctx().content_rect().width();
@@ -89,11 +110,13 @@ impl Frame {
             Page::Case => (case_steps(wide), Sizes::of(ui).footer),
             _ => (0.0, 0.0),
         };
-        let at = vec2(rail::wide(ui) + left + AROUND, -below - AROUND);
+        let rail = if self.is_wide { 0.0 } else { rail::wide(ui) };
+        let at = vec2(rail + left + AROUND, -below - AROUND);
         messages::toasts(ui, at, context, &mut self.undo);
         self.setup.show(ui, context);
         self.care.show(ui, context);
         self.about.show(ui, context);
+        Find::show(self, ui, procedures, context);
     }
 
     /// Over everything while the window is being closed; true once the person has taken note that

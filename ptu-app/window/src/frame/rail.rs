@@ -18,7 +18,7 @@ use crate::{Density, Page, PageContext, Palette, Sizes};
 /// Width of a window whose rail has names beside the icons, and that width, points.
 const WIDE: [f32; 2] = [1600.0, 200.0];
 /// Between two of the rail, points.
-const GAP: f32 = 2.0;
+const GAP: f32 = 1.0;
 
 /// A page, the history or the menu in the rail.
 struct Place<'a> {
@@ -162,7 +162,7 @@ fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
     response.on_hover_text(place.name)
 }
 
-fn icon(page: Page) -> MaterialIcon {
+pub fn icon(page: Page) -> MaterialIcon {
     match page {
         Page::Case => ICON_ASSIGNMENT,
         Page::Bench => ICON_SPEED,

@@ -12,6 +12,10 @@ mod statistics;
 mod traces;
 
 pub use case::case_steps;
+pub use procedures::title;
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
 use eframe::egui::Ui;
 
 use super::Page;
@@ -59,6 +63,11 @@ impl Pages {
             Page::Statistics => self.statistics.show(ui, context),
             Page::Signals => self.signals.show(ui, context),
         }
+    }
+
+    /// The procedures of the chosen unit, once they are loaded.
+    pub fn procedures(&mut self, context: &PageContext<'_>) -> &[Arc<Procedure>] {
+        self.procedures.loaded(context)
     }
 
     /// A run that broke off can go on: the scripts are those it is of.
@@ -110,6 +119,10 @@ impl Pages {
             Destination::GoOn => {
                 self.procedures.go_on(context);
                 context.settings.page
+            }
+            Destination::ChooseStep { procedure, step } => {
+                self.procedures.choose_step(&procedure, &step);
+                Page::Procedures
             }
             Destination::RunStep {
                 procedure,

@@ -16,6 +16,31 @@ const DIM: u8 = 150;
 
 /// Shows it; false once it is to be closed.
 pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -> bool {
+    let sizes = Sizes::of(ui);
+    let place = (Align2::CENTER_CENTER, sizes.bar / 2.0, WIDE);
+    let (open, ..) = over_page(ui, name, place, |ui| {
+        let title = RichText::new(title)
+            .size(sizes.title)
+            .color(Palette::of(ui).ink);
+        ui.label(title);
+        ui.add_space(AROUND / 2.0);
+        let high =
+            ui.ctx().content_rect().height() - sizes.bar - 4.0 * AROUND - ui.min_rect().height();
+        let area = ScrollArea::vertical().max_height(high);
+        // While it is placed it has less room than it takes in the end.
+        let area = area.min_scrolled_height(high);
+        area.show(ui, content);
+    });
+    open
+}
+
+/// Shows something so wide at this place over the page: whether Esc leaves it open, and whether the page behind it was clicked.
+pub fn over_page<R>(
+    ui: &Ui,
+    name: &str,
+    (at, lower, wide): (Align2, f32, f32),
+    content: impl FnOnce(&mut Ui) -> R,
+) -> (bool, bool, R) {
     let (context, sizes, palette) = (ui.ctx(), Sizes::of(ui), Palette::of(ui));
     let screen = context.content_rect();
     let page = Rect::from_min_max(pos2(screen.left(), screen.top() + sizes.bar), screen.max);
@@ -27,7 +52,7 @@ pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -
         response
     });
     let area = Area::new(Id::unique("dialog").with(name));
-    let area = area.anchor(Align2::CENTER_CENTER, vec2(0.0, sizes.bar / 2.0));
+    let area = area.anchor(at, vec2(0.0, lower));
     let shown = area.show(context, |ui| {
         let frame = Frame::new()
             .fill(palette.raised)
@@ -35,25 +60,20 @@ pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -
             .corner_radius(CORNER)
             .shadow(ui.visuals().window_shadow)
             .inner_margin(Margin::same(AROUND as i8));
-        frame.show(ui, |ui| {
-            let most = page.size() - vec2(4.0, 4.0) * AROUND;
-            ui.set_width(WIDE.min(most.x));
-            let title = RichText::new(title).size(sizes.title).color(palette.ink);
-            ui.label(title);
-            ui.add_space(AROUND / 2.0);
-            let high = most.y - ui.min_rect().height();
-            let area = ScrollArea::vertical().max_height(high);
-            // While it is placed it has less room than it takes in the end.
-            let area = area.min_scrolled_height(high);
-            area.show(ui, content);
-        });
+        frame
+            .show(ui, |ui| {
+                ui.set_width(wide.min(page.width() - 4.0 * AROUND));
+                content(ui)
+            })
+            .inner
     });
     for layer in [behind.response.layer_id, shown.response.layer_id] {
         context.move_to_top(layer);
     }
     let now = context.cumulative_frame_nr();
     context.data_mut(|data| data.insert_temp(id(), now));
-    !ui.input(|input| input.key_pressed(Key::Escape))
+    let escaped = ui.input(|input| input.key_pressed(Key::Escape));
+    (!escaped, behind.inner.clicked(), shown.inner)
 }
 
 /// The last row of a dialog: from its right end, what is clicked first.

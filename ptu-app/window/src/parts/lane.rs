@@ -175,13 +175,15 @@ pub fn choice(
     narrow.paint(&painter);
 }
 
-/// One line of text from the left of `area` on, with "…" where it has no room.
-pub fn cut_text(painter: &Painter, area: Rect, text: String, font: FontId, colour: Color32) {
+/// One line of text from the left of `area` on, with "…" where it has no room; its width.
+pub fn cut_text(painter: &Painter, area: Rect, text: String, font: FontId, colour: Color32) -> f32 {
     let mut job = LayoutJob::simple_singleline(text, font, colour);
     job.wrap = TextWrapping::truncate_at_width(area.width());
     let laid = painter.layout_job(job);
     let at = pos2(area.left(), area.center().y - laid.size().y / 2.0);
+    let wide = laid.size().x;
     painter.galley(at, laid, colour);
+    wide
 }
 
 /// A bit: a line that is up where it is set, with the ground below it filled.

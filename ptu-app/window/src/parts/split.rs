@@ -18,8 +18,13 @@ pub struct FirstHalf {
 }
 
 impl FirstHalf {
+    /// The window is so narrow that the halves are one above the other.
+    pub fn is_narrow(ui: &Ui) -> bool {
+        ui.ctx().content_rect().width() < BESIDE
+    }
+
     pub fn show<R>(&self, ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
-        let beside = ui.ctx().content_rect().width() >= BESIDE;
+        let beside = !Self::is_narrow(ui);
         let (panel, room, axis) = if beside {
             (Panel::left(self.name), ui.available_width(), 0)
         } else {

@@ -39,6 +39,11 @@ impl Counted {
         let found = complaints_of(&mut self.window, self.lowest).into_iter();
         self.wrong
             .extend(found.map(|said| format!("{stage}: {said}")));
+        let settings = self.window.app().settings();
+        let (language, density) = (settings.language, settings.density);
+        let wide = self.window.harness().ctx.content_rect().right();
+        let name = format!("case {stage} {wide} {language:?} {density:?}");
+        self.window.keep_picture(&name);
     }
 }
 
@@ -154,6 +159,14 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     counted.window.wait_for(case.sign);
     counted.window.wait_for(words.report.write_pdf);
     counted.look("sheet");
+    let proof = latest(&counted.window)["run"]["id"].clone();
+    let proof = text(&proof);
+    if size[0] >= 1280.0 {
+        assert!(
+            counted.window.shows(&proof[proof.len() - 8..]),
+            "the sheet's run is named"
+        );
+    }
     // What was said when the unit was brought, beside the check that found the part; a small screen shows less at once.
     if language == Language::English && size[0] >= 1280.0 {
         for said in [DEPOT, "Brakes late or not at all", "Found by"] {

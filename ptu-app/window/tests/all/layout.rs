@@ -34,6 +34,7 @@ fn every_page_can_be_read_and_clicked_at_every_size() {
         laid_out(size, language, &mut |window, what| {
             let found = complaints(window).into_iter();
             wrong.extend(found.map(|said| format!("{size:?} {language:?} {what}: {said}")));
+            window.keep_picture(&format!("{what} {} {language:?}", size[0]));
         });
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

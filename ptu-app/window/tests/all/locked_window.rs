@@ -3,7 +3,7 @@
 use crate::common::window::{Window, latest, settings};
 use crate::common::{Place, scripts};
 use crate::layout::complaints;
-use eframe::egui::Key;
+use eframe::egui::{Key, Modifiers};
 use ptu_options::Page;
 use ptu_report::words::Language;
 use ptu_runs::bench_worker::Phase;
@@ -59,8 +59,11 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
                 assert!(!window.enabled(name), "{} on {page:?}", name);
             }
         }
+        let harness = window.harness();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
         window.key(Key::F9);
         window.step();
+        assert!(!window.shows(frame.find_what));
         assert_eq!(phase(&window), Phase::Idle, "still connected");
         assert!(!window.enabled(frame.unlock), "without a name");
 

@@ -11,6 +11,7 @@ mod care_dialog;
 mod case_page;
 mod compare_runs;
 mod drive_page;
+mod find;
 mod history_page;
 mod internal_names;
 mod layout;

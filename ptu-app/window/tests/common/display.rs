@@ -1,12 +1,12 @@
 //! A private X server with the window on it, keys as a keyboard sends them, and pictures of what is shown.
 
-use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::Place;
+use super::picture::Picture;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 
@@ -29,14 +29,6 @@ pub struct Shown<'a> {
     display: &'a Display,
     /// From the start of the program to its first picture.
     pub first_picture: Duration,
-}
-
-/// What is on the screen.
-#[derive(PartialEq)]
-pub struct Picture {
-    width: u32,
-    height: u32,
-    rgb: Vec<u8>,
 }
 
 impl Display {
@@ -258,38 +250,5 @@ impl Drop for Shown<'_> {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
-    }
-}
-
-impl Picture {
-    pub fn colours(&self) -> usize {
-        let colours: BTreeSet<&[u8]> = self.rgb.chunks_exact(3).collect();
-        colours.len()
-    }
-
-    /// Share of the pixels that are not the same.
-    pub fn differs(&self, other: &Self) -> f64 {
-        // Most lines are the same, and are found so at once.
-        let line = 3 * self.width as usize;
-        let lines = self
-            .rgb
-            .chunks_exact(line)
-            .zip(other.rgb.chunks_exact(line));
-        let different = lines
-            .filter(|(one, other)| one != other)
-            .flat_map(|(one, other)| one.chunks_exact(3).zip(other.chunks_exact(3)))
-            .filter(|(a, b)| a != b)
-            .count();
-        different as f64 / f64::from(self.width * self.height)
-    }
-
-    pub fn keep(&self, name: &str) {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("window");
-        std::fs::create_dir_all(&folder).expect("folder");
-        let file = std::fs::File::create(folder.join(format!("{name}.png"))).expect("file");
-        let mut encoder = png::Encoder::new(file, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgb);
-        let mut writer = encoder.write_header().expect("header");
-        writer.write_image_data(&self.rgb).expect("pixels");
     }
 }

@@ -4,6 +4,7 @@
 mod shared;
 
 pub mod display;
+pub mod picture;
 pub mod window;
 
 pub use shared::*;

@@ -12,6 +12,7 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
+use super::picture::{Picture, Textures};
 use super::{Place, scripts};
 
 /// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
@@ -27,6 +28,7 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 /// A window in a place of its own.
 pub struct Window {
     harness: Harness<'static, Option<App>>,
+    textures: Textures,
     pub place: Place,
 }
 
@@ -82,12 +84,18 @@ impl Window {
                 *app = Some(App::new(ui.ctx(), options, Arc::new(|| {})).expect("a window"));
             }
         };
+        let textures = Textures::default();
         let harness = Harness::builder()
+            .renderer(textures.clone())
             .with_size(size)
             .with_max_steps(8)
             .with_step_dt(FRAME_S)
             .build_ui_state(show, None);
-        Self { harness, place }
+        Self {
+            harness,
+            textures,
+            place,
+        }
     }
 
     /// One frame, and a moment for the other threads.
@@ -307,6 +315,21 @@ impl Window {
     pub fn key(&mut self, key: eframe::egui::Key) {
         self.harness.key_press(key);
         self.harness.step();
+    }
+
+    /// Keeps a picture in the target directory to be looked at, if `PICTURES` is set.
+    pub fn keep_picture(&self, name: &str) {
+        if std::env::var_os("PICTURES").is_some() {
+            self.picture().keep(name);
+        }
+    }
+
+    /// What the last frame looks like.
+    pub fn picture(&self) -> Picture {
+        let context = &self.harness.ctx;
+        let ground = eframe::App::clear_color(self.app(), &context.global_style().visuals);
+        self.textures
+            .picture(context, self.harness.output(), ground)
     }
 
     /// The window itself.

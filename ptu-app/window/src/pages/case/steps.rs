@@ -9,7 +9,7 @@ use crate::parts::{ActionPlace, Face, Look, Step, fact};
 use crate::{Destination, PageContext, Palette, Sizes};
 use ptu_report::count_text;
 use ptu_report::words::fill;
-use ptu_runs::bench_worker::Phase;
+use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::clock;
 
 /// Height of a step, and of one in a low window, points.
@@ -158,18 +158,19 @@ impl CasePage {
         let unit = context.units.chosen();
         let name = self.unit.as_deref().unwrap_or(none);
         fact(ui, words.common.unit, name);
-        if let Some(found) = &self.found {
-            fact(ui, words.case.run, &found.run.short());
-            let quiet = Palette::of(ui).quiet;
-            ui.label(
-                RichText::new(clock::local(found.ended_us))
-                    .small()
-                    .color(quiet),
-            );
-        } else {
-            let run = unit.run_of_case().and_then(|run| run.id());
-            let run = run.map_or_else(|| none.to_owned(), |run| run.short());
-            fact(ui, words.case.run, &run);
+        let found = self.found.as_ref();
+        let run = match self.stage {
+            // Of the run that its sheet is of.
+            Stage::Sheet => self.seen,
+            _ => {
+                (found.map(|found| found.run)).or_else(|| unit.run_of_case().and_then(Progress::id))
+            }
+        };
+        let short = run.map_or_else(|| none.to_owned(), |run| run.short());
+        fact(ui, words.case.run, &short);
+        if let Some(found) = found.filter(|found| Some(found.run) == run) {
+            let ended = RichText::new(clock::local(found.ended_us)).small();
+            ui.label(ended.color(Palette::of(ui).quiet));
         }
         name_field(ui, context);
         ui.separator();

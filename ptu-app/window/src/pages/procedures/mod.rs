@@ -12,8 +12,8 @@ mod wanted;
 
 use std::sync::Arc;
 
-use btu_rig::procedure::Findings;
 use btu_rig::procedure::plan::Connection;
+use btu_rig::procedure::{Findings, Procedure};
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use super::bench::{BenchSnapshot, Plot, chosen};
@@ -30,6 +30,7 @@ use ptu_runs::run::{BenchChoice, Suite};
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
+pub use tree::title;
 use wanted::Wanted;
 
 const TREE: FirstHalf = FirstHalf {
@@ -142,6 +143,25 @@ impl ProceduresPage {
                     self.run(ui, context);
                 });
         });
+    }
+
+    /// The procedures of the chosen unit, once they are loaded.
+    pub fn loaded(&mut self, context: &PageContext<'_>) -> &[Arc<Procedure>] {
+        self.keep_loaded(context);
+        let suite = self.suite.value();
+        suite.map_or(&[], |suite| &suite.procedures)
+    }
+
+    /// Chooses this step and no other.
+    pub fn choose_step(&mut self, procedure: &str, step: &str) {
+        let all = self
+            .suite
+            .value()
+            .map_or(&[][..], |suite| &suite.procedures);
+        if let Some(found) = all.iter().find(|known| known.id == procedure) {
+            self.selection = Some(Selection::only(found, step));
+            found.id.clone_into(&mut self.find);
+        }
     }
 
     /// Something is about to be run.

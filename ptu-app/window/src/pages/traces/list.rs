@@ -129,7 +129,7 @@ impl TraceList {
     }
 
     /// Asks when it was not asked yet, and when the data have changed since.
-    fn keep_up(&mut self, context: &PageContext<'_>) {
+    pub fn keep_up(&mut self, context: &PageContext<'_>) {
         let version = context.data_version();
         if version != self.version || self.runs.get().is_idle() {
             self.version = version;

@@ -60,6 +60,8 @@ pub struct TracesPage {
     layout_name: String,
     choosing: bool,
     told: bool,
+    /// The list of traces was asked for.
+    listed: bool,
 }
 
 impl TracesPage {
@@ -68,7 +70,16 @@ impl TracesPage {
         self.poll(context);
         let words = &context.words.traces;
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
-        let clicked = LIST.show(ui, |ui| self.list.show(ui, context, chosen));
+        // In a narrow window the curves have all of the page, and the list comes when it is asked for.
+        let is_listed = self.listed || !FirstHalf::is_narrow(ui) || chosen.is_none();
+        let clicked = match is_listed {
+            true => LIST.show(ui, |ui| self.list.show(ui, context, chosen)),
+            false => {
+                self.list.keep_up(context);
+                None
+            }
+        };
+        self.listed &= clicked.is_none();
         // The latest trace is what most people come for.
         let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
@@ -139,7 +150,8 @@ impl TracesPage {
         };
         // Words stand on one line with what they name.
         ui.spacing_mut().interact_size.y = ROW;
-        heading(ui, scene, &self.list, context);
+        let listed = FirstHalf::is_narrow(ui).then_some(&mut self.listed);
+        heading(ui, scene, (&self.list, listed), context);
         bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
@@ -179,10 +191,18 @@ impl TracesPage {
 }
 
 /// Whose trace it is, what is amiss with it, and ways on from here.
-fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
+fn heading(
+    ui: &mut Ui,
+    scene: &TracePlot,
+    (list, listed): (&TraceList, Option<&mut bool>),
+    context: &mut PageContext<'_>,
+) {
     let words = context.words;
     let opened = scene.opened();
     ui.horizontal_wrapped(|ui| {
+        if let Some(listed) = listed {
+            ui.toggle_value(listed, words.traces.recorded);
+        }
         let (unit, when) = list.whose(opened.run);
         let known = |text| match text {
             "" => words.traces.not_known,

@@ -124,13 +124,26 @@ impl Sheet<'_> {
         ui.painter()
             .hline(places.names..=places.end, row.bottom() - GAP / 2.0, between);
         let lanes = &self.scene.lanes()[group.clone()];
-        let colours = &self.palette.curves;
-        let colour = |number: usize| colours[(group.start + number) % colours.len()];
+        // Colour tells curves of a lane apart; a state is grey unless it deviates.
+        let curves = &self.palette.curves;
+        let is_state = |lane: &Lane| {
+            let summary = lane.place.map(|place| self.scene.view().summary(place));
+            matches!(summary, Some(Summary::Choice(_) | Summary::Bit(_)))
+        };
+        let colour = |number: usize| match lanes {
+            [one] if is_state(one) => self.palette.edge,
+            [_] => self.palette.accent,
+            _ => curves[number % curves.len()],
+        };
         let high = rect.height() / lanes.len() as f32;
         for (number, lane) in lanes.iter().enumerate() {
             let top = rect.top() + number as f32 * high;
             let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
-            self.name(ui, lane, line, colour(number));
+            let ink = match lanes.len() {
+                1 => self.palette.ink,
+                _ => colour(number),
+            };
+            self.name(ui, lane, line, ink);
             if let Some(behind) = self.scene.behind().filter(|_| lane.place.is_some()) {
                 self.shade(ui, behind, &lane.signal, rect);
             }

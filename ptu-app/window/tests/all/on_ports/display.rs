@@ -4,7 +4,8 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use crate::common::display::{Display, Picture, Shown};
+use crate::common::display::{Display, Shown};
+use crate::common::picture::Picture;
 use crate::common::{Place, has, list};
 use fuzzing::draw;
 use ptu_options::Page;

@@ -1,0 +1,337 @@
+//! Finds anything by a few of its letters: a fault, a step, a unit, a page, an action. It opens and chooses; it arms and runs nothing.
+
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
+use eframe::egui::{
+    Align2, FontId, Key, Modifiers, Rect, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, pos2,
+    vec2,
+};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_ARROW_FORWARD, ICON_CHECKLIST, ICON_MEMORY, ICON_REPORT, ICON_SHOW_CHART,
+};
+use fault_db::{FaultFilter, FaultSummary};
+
+use super::{Frame, rail};
+use crate::pages::title;
+use crate::parts::lane::cut_text;
+use crate::parts::over_page;
+use crate::request::Request;
+use crate::{Density, Destination, Page, PageContext, Palette, Sizes};
+use ptu_report::naming::{DOT, PartNames};
+use ptu_report::words::{Language, fill};
+use ptu_runs::bench_worker::Phase;
+
+/// Width of it, and height of what was found, points.
+const WIDE: f32 = 640.0;
+const HIGH: f32 = 420.0;
+/// As many of a kind are shown.
+const MOST: usize = 6;
+/// As many faults are looked through, the latest.
+const FAULTS: u32 = 500;
+
+/// What is typed, and what it is looked for in.
+#[derive(Default)]
+pub struct Find {
+    open: bool,
+    typed: String,
+    /// The row that Enter takes.
+    at: usize,
+    faults: Request<(Vec<FaultSummary>, PartNames)>,
+}
+
+/// Something found, and what it does.
+struct Row {
+    kind: &'static str,
+    icon: MaterialIcon,
+    name: String,
+    more: String,
+    what: What,
+}
+
+#[derive(Clone)]
+enum What {
+    Open(Destination),
+    Page(Page),
+    Unit(usize),
+    Do(fn(&mut Frame, &mut PageContext<'_>)),
+}
+
+impl Find {
+    pub fn toggle(&mut self, context: &PageContext<'_>) {
+        let open = !self.open && !context.settings.locked;
+        *self = Self {
+            open,
+            ..Self::default()
+        };
+        if open {
+            self.faults = Request::Pending(context.queries.run(|paths| {
+                let filter = FaultFilter {
+                    limit: Some(FAULTS),
+                    ..FaultFilter::default()
+                };
+                let faults = match paths.is_there() {
+                    true => paths.read()?.faults(&filter)?,
+                    false => Vec::new(),
+                };
+                Ok((faults, PartNames::of(&paths.scripts)))
+            }));
+        }
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Draws it while it is open, with the steps of these procedures; does what was chosen.
+    pub fn show(
+        frame: &mut Frame,
+        ui: &Ui,
+        procedures: &[Arc<Procedure>],
+        context: &mut PageContext<'_>,
+    ) {
+        if !frame.find.open {
+            return;
+        }
+        frame.find.faults.poll();
+        let rows = frame.find.rows(procedures, context);
+        let find = &mut frame.find;
+        let key = |key| {
+            ui.ctx()
+                .input_mut(|input| input.consume_key(Modifiers::NONE, key))
+        };
+        let last = rows.len().saturating_sub(1);
+        let moved = match (key(Key::ArrowDown), key(Key::ArrowUp)) {
+            (true, _) => Some((find.at + 1).min(last)),
+            (_, true) => Some(find.at.saturating_sub(1)),
+            _ => None,
+        };
+        find.at = moved.unwrap_or(find.at).min(last);
+        let mut taken = key(Key::Enter).then_some(find.at);
+        // Never over the bar.
+        let place = (Align2::CENTER_TOP, Sizes::of(ui).bar + 24.0, WIDE);
+        let (open, beside, ()) = over_page(ui, "find", place, |ui| {
+            let edit = TextEdit::singleline(&mut find.typed)
+                .hint_text(context.words.frame.find_what)
+                .desired_width(f32::INFINITY);
+            let edit = ui.add(edit);
+            edit.request_focus();
+            let name = context.words.frame.find_what;
+            edit.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
+            if edit.changed() {
+                find.at = 0;
+            }
+            if rows.is_empty() {
+                ui.label(context.words.common.nothing);
+            }
+            ScrollArea::vertical().max_height(HIGH).show(ui, |ui| {
+                let mut kind = "";
+                for (place, row) in rows.iter().enumerate() {
+                    if std::mem::replace(&mut kind, row.kind) != row.kind {
+                        ui.small(row.kind);
+                    }
+                    if row.show(ui, place == find.at, moved.is_some()) {
+                        taken = Some(place);
+                    }
+                }
+            });
+        });
+        let taken = taken.and_then(|place| rows.get(place));
+        find.open = open && !beside && taken.is_none();
+        match taken.map(|row| row.what.clone()) {
+            Some(What::Open(to)) => context.go_to.push(to),
+            Some(What::Page(page)) => context.settings.page = page,
+            Some(What::Unit(place)) => context.units.choose(place),
+            Some(What::Do(action)) => action(frame, context),
+            None => {}
+        }
+    }
+
+    fn rows(&self, procedures: &[Arc<Procedure>], context: &PageContext<'_>) -> Vec<Row> {
+        let typed = self.typed.to_lowercase();
+        let parts: Vec<&str> = typed.split_whitespace().collect();
+        let fits = |row: &Row| {
+            let said = format!("{} {}", row.name, row.more).to_lowercase();
+            parts.iter().all(|part| said.contains(part))
+        };
+        let mut all = Vec::new();
+        let mut add = |rows: &mut dyn Iterator<Item = Row>, most: usize| {
+            all.extend(rows.filter(fits).take(most));
+        };
+        // Of hundreds nobody looks for one without a letter of it.
+        if !parts.is_empty() {
+            add(&mut self.faults(context), MOST);
+            add(&mut steps(procedures, context), MOST);
+        }
+        add(&mut units(context), MOST);
+        add(&mut pages(context), Page::ALL.len());
+        add(&mut actions(context), usize::MAX);
+        all
+    }
+
+    fn faults<'a>(&'a self, context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
+        let words = context.words;
+        let known = self.faults.value();
+        known.into_iter().flat_map(move |(faults, parts)| {
+            let row = move |fault: &FaultSummary| Row {
+                kind: words.frame.faults,
+                icon: ICON_REPORT,
+                name: parts.fault(&fault.lru, (&fault.findings, &fault.message), words),
+                more: [&*fault.unit_serial, words.common.fault_state(fault.state)].join(DOT),
+                what: What::Open(Destination::Fault(fault.id)),
+            };
+            let mut serials: Vec<&str> = faults.iter().map(|of| of.unit_serial.as_str()).collect();
+            serials.sort_unstable();
+            serials.dedup();
+            let life = move |serial: &str| Row {
+                kind: words.frame.faults,
+                icon: ICON_SHOW_CHART,
+                name: fill(words.frame.life_of, &[("serial", &serial)]),
+                more: String::new(),
+                what: What::Open(Destination::Life(serial.to_owned())),
+            };
+            faults.iter().map(row).chain(serials.into_iter().map(life))
+        })
+    }
+}
+
+fn steps<'a>(
+    procedures: &'a [Arc<Procedure>],
+    context: &PageContext<'_>,
+) -> impl Iterator<Item = Row> + 'a {
+    let words = context.words;
+    procedures.iter().flat_map(move |procedure| {
+        let title = title(procedure, words);
+        procedure.steps.iter().map(move |step| Row {
+            kind: words.frame.steps,
+            icon: ICON_CHECKLIST,
+            name: words.content(&step.name).into_owned(),
+            more: title.to_owned(),
+            what: What::Open(Destination::ChooseStep {
+                procedure: procedure.id.clone(),
+                step: step.name.clone(),
+            }),
+        })
+    })
+}
+
+fn units<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
+    let units = context.units.iter().enumerate();
+    units.map(|(place, unit)| Row {
+        kind: context.words.frame.units,
+        icon: ICON_MEMORY,
+        name: unit.name(),
+        more: unit.choice.line.clone(),
+        what: What::Unit(place),
+    })
+}
+
+fn pages<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
+    Page::ALL.into_iter().map(|page| Row {
+        kind: context.words.frame.pages,
+        icon: rail::icon(page),
+        name: page.name(context.words).to_owned(),
+        more: page.key().to_owned(),
+        what: What::Page(page),
+    })
+}
+
+fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
+    type Act = fn(&mut Frame, &mut PageContext<'_>);
+    let (words, frame) = (context.words, &context.words.frame);
+    let offline = context.units.chosen().phase() == Phase::Offline;
+    let connect = match offline {
+        true => frame.connect,
+        false => frame.disconnect,
+    };
+    let theme = match context.settings.dark {
+        true => frame.light,
+        false => frame.dark,
+    };
+    let view = match context.settings.density {
+        Density::Engineer => frame.operator,
+        Density::Operator => frame.engineer,
+    };
+    let other = |language: &Language| *language != context.settings.language;
+    let language = Language::ALL.into_iter().find(other);
+    let actions: [(&str, &str, Act); 8] = [
+        (connect, "F9", |_, context| super::keys::connect(context)),
+        (frame.setup, "", |frame, _| frame.setup.open()),
+        (words.care.title, "", |frame, _| frame.care.toggle()),
+        (
+            language.map_or("", Language::name),
+            frame.language,
+            |_, context| {
+                let now = context.settings.language;
+                let mut other = Language::ALL.into_iter().filter(|other| *other != now);
+                context.settings.language = other.next().unwrap_or(now);
+            },
+        ),
+        (theme, frame.theme, |_, context| {
+            context.settings.dark = !context.settings.dark;
+        }),
+        (view, frame.view, |_, context| {
+            context.settings.density = match context.settings.density {
+                Density::Engineer => Density::Operator,
+                Density::Operator => Density::Engineer,
+            };
+        }),
+        (frame.lock, "", |_, context| context.settings.lock()),
+        (frame.about, "", |frame, _| frame.about.open()),
+    ];
+    actions.into_iter().map(|(name, more, act)| Row {
+        kind: frame.actions,
+        icon: ICON_ARROW_FORWARD,
+        name: name.to_owned(),
+        more: more.to_owned(),
+        what: What::Do(act),
+    })
+}
+
+impl Row {
+    fn show(&self, ui: &mut Ui, chosen: bool, moved: bool) -> bool {
+        let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+        let size = vec2(ui.available_width(), sizes.target);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        let name = [&*self.name, &*self.more].join(DOT);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &name));
+        if chosen || response.hovered() {
+            let ground = match chosen {
+                true => palette.chosen,
+                false => palette.hover,
+            };
+            ui.painter().rect_filled(rect, 6.0, ground);
+        }
+        if chosen && moved {
+            response.scroll_to_me(None);
+        }
+        let font = FontId::new(sizes.icon, self.icon.font_family());
+        let at = pos2(rect.left() + 8.0, rect.center().y);
+        let sign = self.icon.codepoint;
+        let icon = ui
+            .painter()
+            .text(at, Align2::LEFT_CENTER, sign, font, palette.second);
+        let part = |from: f32| Rect::from_x_y_ranges(from..=rect.right() - 8.0, rect.y_range());
+        let body = FontId::proportional(sizes.body);
+        let of_name = part(icon.right() + 12.0);
+        let wide = cut_text(
+            ui.painter(),
+            of_name,
+            self.name.clone(),
+            body.clone(),
+            palette.ink,
+        );
+        let of_more = part(of_name.left() + wide + 12.0);
+        if of_more.width() > sizes.body {
+            cut_text(
+                ui.painter(),
+                of_more,
+                self.more.clone(),
+                body,
+                palette.quiet,
+            );
+        }
+        response.clicked()
+    }
+}

@@ -1,0 +1,86 @@
+//! Anything is found by a few of its letters, and nothing is armed or run by it.
+
+use crate::common::window::{Window, settings};
+use crate::common::{Place, record_bad_unit, scripts};
+use crate::layout::complaints;
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use ptu_options::Page;
+use ptu_report::words::{Language, fill};
+use ptu_runs::bench_worker::Phase;
+use ptu_window::{Density, Settings};
+
+/// A step of the procedures.
+const STEP: &str = "emergency brake released again with a cab";
+
+/// A window on the history of a bad unit, in this language, with its simulated unit connected.
+fn window(language: Language) -> Window {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let settings = Settings {
+        language,
+        ..settings(Page::Case)
+    };
+    let mut window = Window::with(place, scripts(), settings);
+    window.connect();
+    window.wait_for("SIM-0001");
+    window
+}
+
+fn look_for(window: &mut Window, typed: &str) {
+    window
+        .harness()
+        .key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.step();
+    let words = window.app().settings().language.words();
+    window.write(words.frame.find_what, typed);
+}
+
+/// Goal: a fault, a step, a life, a page and an action are each two keys and a few letters away. Method: each is looked for, and Enter
+/// takes the first row; what is shown then is what was found, and the unit waits as before.
+#[test]
+fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
+    for (language, fault, page) in [
+        (Language::English, "relay bad-1", "wave"),
+        (Language::Korean, "계전기 bad-1", "파형"),
+    ] {
+        let words = language.words();
+        let mut window = window(language);
+        look_for(&mut window, fault);
+        window.wait_for(words.frame.faults);
+        assert!(complaints(&mut window).is_empty());
+        let field = window.harness().get_by_label(words.frame.find_what).rect();
+        let bar = Density::Engineer.sizes().bar + 8.0;
+        assert!(field.top() > bar, "the bar is never covered: {field}");
+        window.keep_picture(&format!("find {language:?}"));
+        window.key(Key::Enter);
+        window.wait_for(words.faults.serial_new);
+        assert_eq!(window.app().page(), Page::Faults);
+
+        let step = words.content(STEP);
+        look_for(&mut window, &step);
+        window.wait_for_part(&step);
+        window.key(Key::Enter);
+        let one: [(&str, &dyn std::fmt::Display); 2] = [("steps", &1), ("time", &"")];
+        window.wait_for_part(&fill(words.procedures.chosen, &one));
+        assert_eq!(window.app().page(), Page::Procedures);
+
+        look_for(&mut window, page);
+        window.key(Key::Enter);
+        window.until("the page", |window| window.app().page() == Page::Signals);
+
+        look_for(&mut window, words.frame.light);
+        window.key(Key::ArrowDown);
+        window.key(Key::Enter);
+        window.until("a light window", |window| !window.app().settings().dark);
+
+        look_for(&mut window, "bad-1 no such thing");
+        window.wait_for(words.common.nothing);
+        window.key(Key::Escape);
+        window.step();
+        assert!(!window.shows(words.frame.find_what));
+        let unit = window.app().units().chosen();
+        assert_eq!(unit.phase(), Phase::Idle);
+        assert!(unit.run.is_none() && !unit.is_armed());
+    }
+}
