@@ -14,6 +14,9 @@ mod messages;
 mod page_context;
 mod pages;
 mod parts;
+#[cfg(test)]
+#[path = "../tests/common/picture.rs"]
+mod picture;
 mod query_worker;
 mod request;
 mod settings;

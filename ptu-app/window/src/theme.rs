@@ -4,8 +4,6 @@
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, Stroke, Theme, Ui, Visuals};
 
-use ptu_runs::stored::from_stored;
-
 /// Colours of the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Palette {
@@ -209,11 +207,6 @@ impl Palette {
             Verdict::Error | Verdict::Inconclusive | Verdict::Aborted => self.warn,
             Verdict::Skipped => self.quiet,
         }
-    }
-
-    /// A stored verdict's colour.
-    pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> Color32 {
-        self.verdict(from_stored(verdict))
     }
 }
 

@@ -53,6 +53,29 @@ wordings! {
         suspect: "suspect: {part}", "의심 부품: {part}";
         to_diagnosis: "Diagnosis", "진단";
         to_report: "Report", "성적서";
+        of_ato: "Automatic operation", "자동운전";
+        of_atp: "Train protection", "열차 방호";
+        of_cab: "Cab", "운전실";
+        of_door: "Doors", "출입문";
+        of_ptu: "Portable unit", "이동식 시험기";
+        of_tcms: "TCMS", "TCMS";
+        of_twc: "TWC", "TWC";
         choose_and_run: "Choose in the list what to run. Without a choice of your own everything runs but what is on request.", "목록에서 실행할 절차를 고르십시오. 따로 고르지 않으면 요청 시만 하는 것을 빼고 모두 실행합니다.";
+    }
+}
+
+impl Procedures {
+    /// What the procedures of a folder check; an own folder is called as it is.
+    pub fn folder<'a>(&self, name: &'a str) -> &'a str {
+        match name {
+            "ato" => self.of_ato,
+            "atp" => self.of_atp,
+            "cab" => self.of_cab,
+            "door" => self.of_door,
+            "ptu" => self.of_ptu,
+            "tcms" => self.of_tcms,
+            "twc" => self.of_twc,
+            own => own,
+        }
     }
 }

@@ -102,6 +102,7 @@ wordings! {
 
         // Export.
         file_name: "file name, without its ending", "파일 이름 (확장자 제외)";
+        save: "Save", "저장";
         save_png: "Save PNG", "PNG 저장";
         save_csv: "Save CSV", "CSV 저장";
         cannot_save: "The file cannot be written", "파일을 쓸 수 없습니다";

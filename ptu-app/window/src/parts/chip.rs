@@ -1,29 +1,30 @@
-//! A word on a coloured background.
+//! A state as an icon and a word. What is in order is grey; a colour says what is not.
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{
-    Button, Color32, Response, RichText, Role, Sense, TextWrapMode, Ui, WidgetInfo,
+use eframe::egui::{Color32, Response, Ui};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_CANCEL, ICON_CHECK, ICON_DO_NOT_DISTURB_ON, ICON_HELP, ICON_SKIP_NEXT, ICON_WARNING,
 };
 
+use super::{Face, Look};
 use crate::Palette;
 use ptu_report::words::Words;
 
-/// A word on a coloured ground.
-pub fn chip(ui: &mut Ui, text: &str, colour: Color32) -> Response {
-    let ground = colour.gamma_multiply(if ui.visuals().dark_mode { 0.22 } else { 0.15 });
-    let words = RichText::new(text).color(colour).strong();
-    // Its size is known before it is placed, so that it begins a new line rather than break its word.
-    let chip = Button::new(words)
-        .fill(ground)
-        .corner_radius(4)
-        .sense(Sense::hover())
-        .wrap_mode(TextWrapMode::Extend);
-    let response = ui.add(chip);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
-    response
+/// An icon and a word in a colour.
+pub fn chip(ui: &mut Ui, (icon, text): (MaterialIcon, &str), colour: Color32) -> Response {
+    Face::new(Look::State, text).icon(icon).ink(colour).show(ui)
 }
 
 pub fn verdict_chip(ui: &mut Ui, verdict: Verdict, words: &Words) -> Response {
-    let colour = Palette::of(ui).verdict(verdict);
-    chip(ui, words.common.verdict(verdict), colour)
+    let palette = Palette::of(ui);
+    let (icon, colour) = match verdict {
+        Verdict::Passed => (ICON_CHECK, palette.second),
+        Verdict::Failed => (ICON_CANCEL, palette.bad),
+        Verdict::Error => (ICON_WARNING, palette.warn),
+        Verdict::Inconclusive => (ICON_HELP, palette.warn),
+        Verdict::Aborted => (ICON_DO_NOT_DISTURB_ON, palette.warn),
+        Verdict::Skipped => (ICON_SKIP_NEXT, palette.quiet),
+    };
+    chip(ui, (icon, words.common.verdict(verdict)), colour)
 }

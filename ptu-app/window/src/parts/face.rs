@@ -52,6 +52,7 @@ pub struct Face<'a> {
     name: Option<Cow<'a, str>>,
     why_not: Option<&'a str>,
     hint: Cow<'a, str>,
+    ink: Option<Color32>,
 }
 
 /// What is written in a face, laid out.
@@ -71,6 +72,7 @@ impl<'a> Face<'a> {
             name: None,
             why_not: None,
             hint: Cow::Borrowed(""),
+            ink: None,
         }
     }
 
@@ -109,6 +111,12 @@ impl<'a> Face<'a> {
         self
     }
 
+    /// In this colour, whatever it looks like otherwise.
+    pub fn ink(mut self, ink: Color32) -> Self {
+        self.ink = Some(ink);
+        self
+    }
+
     /// Its width, points.
     pub fn wide(&self, ui: &Ui) -> f32 {
         self.laid(ui, Color32::WHITE, Color32::WHITE).size.x
@@ -140,6 +148,7 @@ impl<'a> Face<'a> {
             false => Sense::hover(),
         };
         let (ink, quiet) = self.inks(&palette, on);
+        let ink = self.ink.unwrap_or(ink);
         let laid = self.laid(ui, ink, quiet);
         let (rect, response) = ui.allocate_exact_size(laid.size, sense);
         let role = if is_state { Role::Label } else { Role::Button };

@@ -8,6 +8,8 @@ mod dialog;
 mod edit;
 mod face;
 mod file;
+#[cfg(test)]
+mod gallery;
 mod job;
 pub mod lane;
 mod limit_bar;

@@ -1,9 +1,10 @@
 //! A list of runs to choose from, the latest first.
 
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use egui_material_icons::icons::{ICON_DO_NOT_DISTURB_ON, ICON_PLAY_CIRCLE};
 use fault_db::{Id, RunFilter, RunState, RunSummary};
 
-use super::chip;
+use super::{chip, verdict_chip};
 use crate::request::CachedResponse;
 use crate::request::Request;
 use crate::{PageContext, Palette};
@@ -12,6 +13,7 @@ use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::coverage::counts_of;
+use ptu_runs::stored::from_stored;
 
 /// As many runs as are listed.
 const MOST: u32 = 2_000;
@@ -188,15 +190,16 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
         ui.add_space(14.0);
         let palette = Palette::of(ui);
         let common = &words.common;
-        let (said, colour) = match (run.verdict, run.state) {
-            (Some(verdict), _) => (
-                common.stored_verdict(verdict),
-                palette.stored_verdict(verdict),
-            ),
-            (None, RunState::Running) => (common.running, palette.accent),
-            (None, _) => (common.interrupted, palette.warn),
+        match (run.verdict, run.state) {
+            (Some(verdict), _) => verdict_chip(ui, from_stored(verdict), words),
+            (None, RunState::Running) => {
+                chip(ui, (ICON_PLAY_CIRCLE, common.running), palette.accent)
+            }
+            (None, _) => {
+                let broken = (ICON_DO_NOT_DISTURB_ON, common.interrupted);
+                chip(ui, broken, palette.warn)
+            }
         };
-        chip(ui, said, colour);
         let counts = count_text(&counts_of(run), words);
         ui.label(RichText::new(counts).color(palette.quiet));
     });

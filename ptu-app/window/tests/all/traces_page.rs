@@ -27,6 +27,8 @@ fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<St
     // Its own name each time: what was said of the last one is still shown.
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = window.place.text_path(&format!("view-{count}"));
+    window.click(window.app().settings().language.words().traces.save);
+    window.wait_for(field);
     clear(window, field);
     window.write(field, &name);
     window.click(save);

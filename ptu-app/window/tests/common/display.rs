@@ -1,7 +1,8 @@
 //! A private X server with the window on it, keys as a keyboard sends them, and pictures of what is shown.
 
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -250,5 +251,18 @@ impl Drop for Shown<'_> {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
+    }
+}
+
+impl Picture {
+    pub fn colours(&self) -> usize {
+        let colours: BTreeSet<&[u8]> = self.rgb.chunks_exact(3).collect();
+        colours.len()
+    }
+
+    pub fn keep(&self, name: &str) {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("window");
+        std::fs::create_dir_all(&folder).expect("folder");
+        self.write(&folder.join(format!("{name}.png")));
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures of the window: of a display, or painted from what a window without a screen has laid out.
 
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -138,11 +138,6 @@ fn triangle(
 }
 
 impl Picture {
-    pub fn colours(&self) -> usize {
-        let colours: BTreeSet<&[u8]> = self.rgb.chunks_exact(3).collect();
-        colours.len()
-    }
-
     /// Share of the pixels that are not the same.
     pub fn differs(&self, other: &Self) -> f64 {
         // Most lines are the same, and are found so at once.
@@ -159,13 +154,7 @@ impl Picture {
         different as f64 / f64::from(self.width * self.height)
     }
 
-    pub fn keep(&self, name: &str) {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("window");
-        std::fs::create_dir_all(&folder).expect("folder");
-        self.write(&folder.join(format!("{name}.png")));
-    }
-
-    fn write(&self, file: &Path) {
+    pub fn write(&self, file: &Path) {
         let file = std::fs::File::create(file).expect("file");
         let mut encoder = png::Encoder::new(file, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);

@@ -1,6 +1,9 @@
 //! The filters, and the list of faults that match.
 
 use eframe::egui::{ComboBox, RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use egui_material_icons::icons::{
+    ICON_BUILD, ICON_CHECK, ICON_ERROR, ICON_VERIFIED, ICON_VISIBILITY,
+};
 use fault_db::{FaultState, FaultSummary, Id};
 
 use super::History;
@@ -157,11 +160,12 @@ pub fn title(fault: &FaultSummary, parts: &PartNames, words: &Words) -> String {
 /// A fault's state.
 pub fn state_chip(ui: &mut Ui, words: &Words, state: FaultState) {
     let palette = Palette::of(ui);
-    let colour = match state {
-        FaultState::Open => palette.bad,
-        FaultState::Acknowledged => palette.warn,
-        FaultState::Repaired => palette.accent,
-        FaultState::Verified | FaultState::Closed => palette.good,
+    let (icon, colour) = match state {
+        FaultState::Open => (ICON_ERROR, palette.warn),
+        FaultState::Acknowledged => (ICON_VISIBILITY, palette.ink),
+        FaultState::Repaired => (ICON_BUILD, palette.ink),
+        FaultState::Verified => (ICON_VERIFIED, palette.second),
+        FaultState::Closed => (ICON_CHECK, palette.quiet),
     };
-    chip(ui, words.common.fault_state(state), colour);
+    chip(ui, (icon, words.common.fault_state(state)), colour);
 }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{
-    Checkbox, Label, Response, RichText, ScrollArea, TextEdit, Ui, collapsing_header,
+    Align, Checkbox, Label, Layout, Response, RichText, ScrollArea, TextEdit, TextWrapMode, Ui,
+    collapsing_header,
 };
 
 use super::ProceduresPage;
@@ -55,6 +56,7 @@ impl ProceduresPage {
         );
         ui.label(RichText::new(said).color(Palette::of(ui).quiet));
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
             for (folder, procedures) in folders(&suite.procedures) {
                 let found = procedures.iter().filter(|known| matches(known, &self.find));
                 let found: Vec<_> = found.collect();
@@ -88,7 +90,8 @@ fn show_folder(
     let id = ui.make_persistent_id(("folder", folder));
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true)
         .show_header(ui, |ui| {
-            if tick(ui, share, RichText::new(folder).strong()).clicked() {
+            let name = RichText::new(words.procedures.folder(folder)).strong();
+            if tick(ui, share, name).on_hover_text(folder).clicked() {
                 for procedure in can() {
                     chosen.set(procedure, share != Share::All && !procedure.on_request);
                 }
@@ -120,18 +123,19 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
     let id = ui.make_persistent_id(&procedure.id);
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false)
         .show_header(ui, |ui| {
-            let response = tick(ui, share, RichText::new(title(procedure, words)));
-            if response.on_hover_text(&procedure.id).clicked() {
-                chosen.set(procedure, share != Share::All);
-            }
-            if procedure.on_request {
-                let quiet = Palette::of(ui).quiet;
-                ui.label(
-                    RichText::new(words.procedures.on_request)
-                        .small()
-                        .color(quiet),
-                );
-            }
+            // What is on request stands at the end, and the title is cut before it.
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if procedure.on_request {
+                    let said = RichText::new(words.procedures.on_request).small();
+                    ui.label(said.color(Palette::of(ui).quiet));
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let response = tick(ui, share, RichText::new(title(procedure, words)));
+                    if response.on_hover_text(&procedure.id).clicked() {
+                        chosen.set(procedure, share != Share::All);
+                    }
+                });
+            });
         })
         .body(|ui| {
             ui.label(RichText::new(&procedure.id).italics());

@@ -1,7 +1,11 @@
 //! The tool bar: axis, zoom, cursors and the trace shown behind.
 
-use eframe::egui::{Button, RichText, Role, Ui, WidgetInfo};
+use eframe::egui::{RichText, Ui};
+use egui_material_icons::icons::{
+    ICON_FIT_SCREEN, ICON_FUNCTIONS, ICON_HEIGHT, ICON_TUNE, ICON_UNDO, ICON_ZOOM_IN, ICON_ZOOM_OUT,
+};
 
+use crate::parts::{Face, Look, segments};
 use crate::{PageContext, Palette};
 use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
 use ptu_report::words::fill;
@@ -17,67 +21,75 @@ pub fn view(
     context: &mut PageContext<'_>,
 ) {
     let words = &context.words.traces;
-    ui.horizontal_wrapped(|ui| {
-        for (kind, name) in [
-            (Kind::Time, words.over_time),
-            (Kind::Distance, words.over_distance),
-        ] {
-            let chosen = scene.axis().kind() == kind;
-            if ui.selectable_label(chosen, name).clicked() && !scene.set_axis(kind) {
-                context.messages.note(words.no_distance);
-            }
-        }
-        ui.separator();
-        for (sign, name, times) in [
-            ("−", words.zoom_out, 1.0 / ZOOM),
-            ("+", words.zoom_in, ZOOM),
-        ] {
-            let button = ui.button(sign);
-            button.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-            if button.on_hover_text(name).clicked() {
-                scene.remember();
-                scene.camera().zoom(0.5, times);
-            }
-        }
-        if ui.button(words.fit).clicked() {
+    let mut kind = scene.axis().kind();
+    let kinds = [
+        (Kind::Time, words.over_time),
+        (Kind::Distance, words.over_distance),
+    ];
+    segments(ui, &mut kind, kinds);
+    if kind != scene.axis().kind() && !scene.set_axis(kind) {
+        context.messages.note(words.no_distance);
+    }
+    let icon = |icon, name| Face::new(Look::Quiet, "").icon(icon).named(name).hint(name);
+    for (sign, name, times) in [
+        (ICON_ZOOM_OUT, words.zoom_out, 1.0 / ZOOM),
+        (ICON_ZOOM_IN, words.zoom_in, ZOOM),
+    ] {
+        if icon(sign, name).show(ui).clicked() {
             scene.remember();
-            scene.camera().fit();
+            scene.camera().zoom(0.5, times);
         }
-        let back = ui.add_enabled(scene.can_zoom_back(), Button::new(words.zoom_back));
-        if back.on_hover_text(words.zoom_back_hint).clicked() {
-            scene.zoom_back();
+    }
+    if icon(ICON_FIT_SCREEN, words.fit).show(ui).clicked() {
+        scene.remember();
+        scene.camera().fit();
+    }
+    let back = icon(ICON_UNDO, words.zoom_back).hint(words.zoom_back_hint);
+    let back = back.off((!scene.can_zoom_back()).then_some(""));
+    if back.show(ui).clicked() {
+        scene.zoom_back();
+    }
+    for (cursor, letter, name) in [
+        (Cursor::A, "A", words.cursor_a),
+        (Cursor::B, "B", words.cursor_b),
+    ] {
+        let face = Face::new(Look::Quiet, letter).named(name).hint(words.keys);
+        if face.show(ui).clicked() {
+            let middle = scene.window().at(0.5);
+            scene.put(cursor, middle);
         }
-        ui.separator();
-        for (cursor, name) in [(Cursor::A, words.cursor_a), (Cursor::B, words.cursor_b)] {
-            if ui.button(name).on_hover_text(words.keys).clicked() {
-                let middle = scene.window().at(0.5);
-                scene.put(cursor, middle);
-            }
-        }
-        if ui.button(words.clear_cursors).clicked() {
-            scene.clear_cursors();
-        }
-        ui.separator();
-        ui.toggle_value(scene.close(), words.close_axes)
-            .on_hover_text(words.close_axes_hint);
-        ui.toggle_value(choosing, words.signals);
-        ui.toggle_value(told, words.statistics);
-        if let Axis::Distance {
-            rows_back, back_m, ..
-        } = scene.axis()
-            && *rows_back > 0
-        {
-            let seconds = *rows_back as f64 * scene.view().data().period_us as f64 / 1e6;
-            let text = fill(
-                words.moved_back,
-                &[
-                    ("metres", &format!("{back_m:.2}")),
-                    ("seconds", &format!("{seconds:.1}")),
-                ],
-            );
-            ui.label(RichText::new(text).color(Palette::of(ui).warn));
-        }
-    });
+    }
+    let clear = Face::new(Look::Quiet, words.clear_cursors);
+    if clear.show(ui).clicked() {
+        scene.clear_cursors();
+    }
+    let toggled = |ui: &mut Ui, on: &mut bool, sign, (name, hint): (&str, &str)| {
+        let look = if *on { Look::Chosen } else { Look::Quiet };
+        *on ^= Face::new(look, name)
+            .icon(sign)
+            .hint(hint)
+            .show(ui)
+            .clicked();
+    };
+    let close = (words.close_axes, words.close_axes_hint);
+    toggled(ui, scene.close(), ICON_HEIGHT, close);
+    toggled(ui, choosing, ICON_TUNE, (words.signals, ""));
+    toggled(ui, told, ICON_FUNCTIONS, (words.statistics, ""));
+    if let Axis::Distance {
+        rows_back, back_m, ..
+    } = scene.axis()
+        && *rows_back > 0
+    {
+        let seconds = *rows_back as f64 * scene.view().data().period_us as f64 / 1e6;
+        let text = fill(
+            words.moved_back,
+            &[
+                ("metres", &format!("{back_m:.2}")),
+                ("seconds", &format!("{seconds:.1}")),
+            ],
+        );
+        ui.label(RichText::new(text).color(Palette::of(ui).warn));
+    }
 }
 
 /// A place on the axis, as `−9.55 s`.

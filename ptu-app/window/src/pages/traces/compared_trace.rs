@@ -80,11 +80,6 @@ impl OverlayRequest {
         matches!(self.overlay, Request::Pending(_))
     }
 
-    /// There is something to compare with, or will be.
-    pub fn is_asked(&self) -> bool {
-        self.against.is_some()
-    }
-
     /// What to compare with, and what the comparison says.
     pub fn bar(
         &mut self,

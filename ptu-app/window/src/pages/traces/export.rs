@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
-use eframe::egui::{Button, ColorImage, Rect, TextEdit, Ui};
+use eframe::egui::{Button, ColorImage, Popup, PopupCloseBehavior, Rect, TextEdit, Ui};
+use egui_material_icons::icons::ICON_DOWNLOAD;
 use fault_db::Id;
 
 use super::signals::name_input;
 use crate::PageContext;
-use crate::parts::usual_folder;
+use crate::parts::{Face, Look, usual_folder};
 use crate::query_worker::Pending;
 use ptu_report::trace_view::csv::csv;
 use ptu_report::trace_view::{Kind, TracePlot};
@@ -33,8 +34,15 @@ impl Export {
         self.name = name;
     }
 
-    /// Name and buttons; `rect` is what the picture is of.
+    /// The menu that saves; `rect` is what the picture is of.
     pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
+        let face = Face::new(Look::Quiet, context.words.traces.save).icon(ICON_DOWNLOAD);
+        let menu = Popup::menu(&face.show(ui));
+        let menu = menu.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        menu.show(|ui| self.menu(ui, scene, rect, context));
+    }
+
+    fn menu(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
         let words = &context.words.traces;
         ui.label(context.words.common.file);
         let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
@@ -44,6 +52,7 @@ impl Export {
         if ui.add_enabled(named, Button::new(words.save_png)).clicked() {
             // What has the keyboard is not part of the picture.
             edit.surrender_focus();
+            ui.close();
             let (sender, receiver) = mpsc::channel();
             let wake = context.queries.wake().clone();
             ui.ctx().request_screenshot(move |image| {
@@ -55,6 +64,7 @@ impl Export {
         }
         if ui.add_enabled(named, Button::new(words.save_csv)).clicked() {
             self.write_csv(scene, context);
+            ui.close();
         }
     }
 

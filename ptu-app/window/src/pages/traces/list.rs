@@ -1,14 +1,16 @@
 //! The list of recorded traces by run, latest first.
 
 use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use egui_material_icons::icons::ICON_DO_NOT_DISTURB_ON;
 use fault_db::Id;
 
-use crate::parts::{MemoryReader, Stored, UnitFilter};
+use crate::parts::{MemoryReader, Stored, UnitFilter, chip, verdict_chip};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::naming::PartNames;
 use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
 use ptu_report::words::{Words, fill};
+use ptu_runs::stored::from_stored;
 
 /// The list's own state.
 #[derive(Default)]
@@ -164,18 +166,17 @@ impl TraceList {
 
 fn run_row(ui: &mut Ui, run: &ListedRun, words: &Words) {
     let palette = Palette::of(ui);
-    let (verdict, colour) = match run.verdict {
-        Some(verdict) => (
-            words.common.stored_verdict(verdict),
-            palette.stored_verdict(verdict),
-        ),
-        None => (words.common.interrupted, palette.warn),
-    };
     let injected = run.injected.as_deref().unwrap_or_default();
     ui.horizontal(|ui| {
         ui.label(RichText::new(&run.unit).strong())
             .on_hover_text(format!("{} {injected}", run.id.short()));
-        ui.label(RichText::new(verdict).color(colour).small());
+        match run.verdict {
+            Some(verdict) => verdict_chip(ui, from_stored(verdict), words),
+            None => {
+                let broken = (ICON_DO_NOT_DISTURB_ON, words.common.interrupted);
+                chip(ui, broken, palette.warn)
+            }
+        };
         ui.label(RichText::new(&run.began).small().color(palette.quiet));
     });
 }

@@ -152,20 +152,13 @@ impl TracesPage {
         ui.spacing_mut().interact_size.y = ROW;
         let listed = FirstHalf::is_narrow(ui).then_some(&mut self.listed);
         heading(ui, scene, (&self.list, listed), context);
-        bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
+            bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
+            self.export.bar(ui, scene, rect, context);
             self.record.bar(ui, scene, context);
             self.behind.bar(ui, scene, &self.list, context);
-            // What the comparison says needs the row for itself.
-            if !self.behind.is_asked() {
-                ui.separator();
-                self.export.bar(ui, scene, rect, context);
-            }
         });
-        if self.behind.is_asked() {
-            ui.horizontal_wrapped(|ui| self.export.bar(ui, scene, rect, context));
-        }
         events::links(ui, scene, words);
         self.notes.bar(ui, scene, context);
         if self.choosing {
