@@ -1,9 +1,7 @@
 //! The bar of the unit: which one, how it is reached, what runs, whether it is armed, and what stops all. It is one line.
 
 use btu_rig::stimulus::Stimulus;
-use eframe::egui::{
-    Align, Layout, Popup, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{Align, Layout, Popup, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::icons::{
     ICON_ADD, ICON_BOLT, ICON_EXPAND_MORE, ICON_HELP, ICON_LINK, ICON_LINK_OFF, ICON_MEMORY,
     ICON_NOTIFICATIONS, ICON_PAUSE_CIRCLE, ICON_PLAY_CIRCLE, ICON_SCIENCE, ICON_SEARCH,
@@ -15,9 +13,9 @@ use super::keys::{FIND, STOP_ALL};
 use super::lock::only_look;
 use super::unit_menu::unit_menu;
 use super::{Frame, messages};
-use crate::parts::{ActionPlace, Face, Look};
+use crate::parts::{ActionPlace, Face, Look, progress};
 use crate::units::Unit;
-use crate::{Page, PageContext, Palette, Sizes};
+use crate::{Page, PageContext, Sizes};
 use ptu_report::naming::DOT;
 use ptu_report::words::{self, fill};
 use ptu_runs::bench_worker::Phase;
@@ -115,7 +113,11 @@ fn shown(frame: &mut Frame, ui: &mut Ui, (what, face): &Item, context: &mut Page
             only_look(ui);
         }
         match what {
-            What::RunBar => run_bar(ui, context.units.chosen()),
+            What::RunBar => {
+                if let Some(run) = &context.units.chosen().run {
+                    progress(ui, vec2(RUN_BAR, 4.0), run, context.words);
+                }
+            }
             What::Arm => {
                 let unit = context.units.chosen();
                 let place = ActionPlace::new(ui, "arming", (unit.id, false));
@@ -285,17 +287,6 @@ fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item
     if without < Without::RunBar {
         items.push((What::RunBar, Face::new(Look::State, "")));
     }
-}
-
-fn run_bar(ui: &mut Ui, unit: &Unit) {
-    let palette = Palette::of(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(RUN_BAR, 4.0), Sense::hover());
-    let share = unit.run.as_ref().map_or(0.0, |run| run.share());
-    let name = format!("{:.0} %", 100.0 * share);
-    response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &name));
-    ui.painter().rect_filled(rect, 2.0, palette.grid);
-    let done = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
-    ui.painter().rect_filled(done, 2.0, palette.accent);
 }
 
 /// What else wants a look.

@@ -3,7 +3,9 @@
 
 use std::time::Duration;
 
-use eframe::egui::{Align2, Area, Frame, Id, Popup, Response, RichText, ScrollArea, Ui, Vec2};
+use eframe::egui::{
+    Align2, Area, Frame, Id, Key, Modifiers, Popup, Response, RichText, ScrollArea, Ui, Vec2,
+};
 use egui_material_icons::icons::ICON_UNDO;
 use fault_db::ToWithdraw;
 
@@ -104,7 +106,12 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
                     let left = format!("{left_s:.0} s");
                     let button = Face::new(Look::Secondary, words.frame.undo).icon(ICON_UNDO);
                     let button = button.small(left).show(ui);
-                    taken_back = place.clicked(&button).then(|| (written, told.text.clone()));
+                    // In a field the key undoes what is typed.
+                    let typing = ui.ctx().egui_wants_keyboard_input();
+                    let by_key = !typing
+                        && ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Z));
+                    let wanted = place.clicked(&button) || by_key;
+                    taken_back = wanted.then(|| (written, told.text.clone()));
                     said(ui, told, words);
                 });
             }

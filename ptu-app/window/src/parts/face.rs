@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
+use eframe::egui::response::Flags;
 use eframe::egui::{
-    Color32, FontId, Galley, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Color32, FontId, Galley, Key, Modifiers, Rect, Response, Role, Sense, Shape, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_material_icons::MaterialIcon;
 
@@ -150,7 +151,11 @@ impl<'a> Face<'a> {
         let (ink, quiet) = self.inks(&palette, on);
         let ink = self.ink.unwrap_or(ink);
         let laid = self.laid(ui, ink, quiet);
-        let (rect, response) = ui.allocate_exact_size(laid.size, sense);
+        let (rect, mut response) = ui.allocate_exact_size(laid.size, sense);
+        let by_key = || ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Enter));
+        if self.look == Look::Primary && on && by_key() {
+            response.flags |= Flags::FAKE_PRIMARY_CLICKED;
+        }
         let role = if is_state { Role::Label } else { Role::Button };
         let name = self.name.as_ref().unwrap_or(&self.text);
         response.widget_info(|| match self.look {

@@ -53,7 +53,7 @@ pub fn limit_bar(
     let middle = rect.shrink2(vec2(0.0, 4.0));
     painter.rect_filled(middle, 2.0, palette.grid);
     let band = Rect::from_x_y_ranges(x(low)..=x(high), middle.y_range());
-    painter.rect_filled(band, 2.0, palette.good.gamma_multiply(0.45));
+    painter.rect_filled(band, 2.0, palette.edge);
     let colour = match measurement.verdict {
         Verdict::Passed => ui.visuals().strong_text_color(),
         _ => palette.bad,

@@ -4,7 +4,7 @@ use crate::common::Place;
 use crate::common::window::{Window, latest, settings};
 use crate::common::{list, record_bad_unit, scripts, text};
 use crate::layout::{complaints, complaints_of};
-use eframe::egui::{Event, Key};
+use eframe::egui::{Event, Key, Modifiers};
 use ptu_options::Page;
 use ptu_report::words::{Language, Words, fill};
 use ptu_window::{Density, Settings};
@@ -266,8 +266,11 @@ fn a_repair_that_did_not_help_leads_back_to_the_result() {
     }
     counted.click(case.save);
     // Undone, the form is there again as it was written, and nothing is repaired.
-    let undo = Language::English.words().frame.undo;
-    counted.window.click(undo);
+    counted
+        .window
+        .wait_for(Language::English.words().frame.undo);
+    let harness = counted.window.harness();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     counted.window.wait_for(case.save);
     let repaired = ["faults", "list", "--state", "repaired", "--json"];
     assert_eq!(list(&counted.window.place.json(&repaired)).len(), 0);

@@ -13,6 +13,27 @@ use ptu_window::{Density, Settings};
 /// A step of the procedures.
 const STEP: &str = "emergency brake released again with a cab";
 
+/// Goal: the one button that a page is for needs no pointer. Method: the case's connects; while something is being looked for it does not.
+#[test]
+fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
+    let mut window = Window::open(Page::Case);
+    let words = Language::English.words();
+    window.wait_for(words.case.first_start);
+    let accent = |window: &mut Window| {
+        window.pass(0.7);
+        let harness = window.harness();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+        window.step();
+        window.app().units().chosen().phase()
+    };
+    look_for(&mut window, "xyz");
+    assert_eq!(accent(&mut window), Phase::Offline);
+    window.key(Key::Escape);
+    window.step();
+    assert_ne!(accent(&mut window), Phase::Offline);
+    window.wait_for("SIM-0001");
+}
+
 /// A window on the history of a bad unit, in this language, with its simulated unit connected.
 fn window(language: Language) -> Window {
     let place = Place::new();

@@ -1,12 +1,13 @@
 //! Run, pause, single step, stop.
 
-use eframe::egui::{Button, DragValue, RichText, Ui};
+use eframe::egui::{DragValue, Ui};
+use egui_material_icons::icons::{ICON_PAUSE, ICON_SKIP_NEXT, ICON_STOP};
 
 use super::ProceduresPage;
-use crate::parts::ActionPlace;
+use crate::PageContext;
+use crate::parts::{ActionPlace, Face, Look};
 use crate::request::Request;
 use crate::units::Unit;
-use crate::{PageContext, Palette};
 use ptu_report::words::Procedures;
 use ptu_runs::bench_worker::Phase;
 
@@ -29,7 +30,7 @@ impl ProceduresPage {
             if phase == Phase::Running {
                 running(ui, context, &place);
             } else {
-                self.begin(ui, context, phase, &place);
+                self.begin(ui, context, &place);
             }
             let words = &context.words.procedures;
             ui.toggle_value(&mut context.settings.live_plot, words.live_signals)
@@ -37,32 +38,25 @@ impl ProceduresPage {
         });
     }
 
-    fn begin(
-        &mut self,
-        ui: &mut Ui,
-        context: &mut PageContext<'_>,
-        phase: Phase,
-        place: &ActionPlace,
-    ) {
+    fn begin(&mut self, ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
         let words = &context.words.procedures;
         let sound = matches!(&self.suite, Request::Ready(suite) if suite.errors.is_empty());
         let may = context.units.chosen().may_run() && sound && self.orders.is_empty();
-        let run = Button::new(RichText::new(words.run).strong().size(17.0));
-        let run = ui.add_enabled(may, run);
         let why_not = why_not(context.units.chosen(), words);
-        if place.clicked(&run.on_disabled_hover_text(why_not)) {
+        let run = Face::new(Look::Primary, words.run).off((!may).then_some(why_not));
+        if place.clicked(&run.show(ui)) {
             self.order(context.units.chosen().id, false, context);
         }
-        let find = ui.add_enabled(may, Button::new(words.find_part));
-        if place.clicked(&find.on_hover_text(words.find_part_hint)) {
+        let find = Face::new(Look::Secondary, words.find_part).hint(words.find_part_hint);
+        if place.clicked(&find.off((!may).then_some("")).show(ui)) {
             self.order(context.units.chosen().id, true, context);
         }
         if context.units.count() > 1 {
             let idle = context.units.iter().filter(|unit| unit.may_run());
             let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
             let may = sound && !ready.is_empty() && self.orders.is_empty();
-            let all = ui.add_enabled(may, Button::new(words.run_all));
-            if place.clicked(&all) {
+            let all = Face::new(Look::Secondary, words.run_all);
+            if place.clicked(&all.off((!may).then_some("")).show(ui)) {
                 for unit in ready {
                     self.order(unit, false, context);
                 }
@@ -74,9 +68,6 @@ impl ProceduresPage {
                 .suffix(format!(" × {}", words.repeat)),
         );
         ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
-        if phase != Phase::Idle {
-            ui.label(RichText::new(words.connect_first).color(Palette::of(ui).quiet));
-        }
     }
 }
 
@@ -94,13 +85,12 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     let live_state = worker.live_state();
     let paused = live_state.paused();
     let pause = if paused { words.resume } else { words.pause };
-    if place.clicked(&ui.button(pause)) {
+    let pause = Face::new(Look::Secondary, pause).icon(ICON_PAUSE);
+    if place.clicked(&pause.show(ui)) {
         live_state.pause(!paused);
     }
-    if ui
-        .add_enabled(paused, Button::new(words.single_step))
-        .clicked()
-    {
+    let step = Face::new(Look::Secondary, words.single_step).icon(ICON_SKIP_NEXT);
+    if step.off((!paused).then_some("")).show(ui).clicked() {
         live_state.single_step();
     }
     let stop = if worker.stop_presses() == 0 {
@@ -108,8 +98,8 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     } else {
         words.stop_again
     };
-    let stop = Button::new(RichText::new(stop).strong());
-    if place.clicked(&ui.add(stop)) {
+    let stop = Face::new(Look::Danger, stop).icon(ICON_STOP);
+    if place.clicked(&stop.show(ui)) {
         worker.stop_run();
     }
 }

@@ -1,8 +1,8 @@
 //! The progress of several units side by side.
 
-use eframe::egui::{Grid, ProgressBar, Ui};
+use eframe::egui::{Grid, Ui, vec2};
 
-use crate::parts::verdict_chip;
+use crate::parts::{progress, verdict_chip};
 use crate::{PageContext, Palette};
 use ptu_report::words::fill;
 use ptu_runs::bench_worker::Phase;
@@ -34,7 +34,7 @@ pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
                     ui.end_row();
                     continue;
                 };
-                ui.add(ProgressBar::new(run.share()).desired_width(160.0));
+                progress(ui, vec2(160.0, 8.0), run, words);
                 let counts = run.counts();
                 let counts: [(&str, &dyn std::fmt::Display); 3] = [
                     ("done", &counts.run()),

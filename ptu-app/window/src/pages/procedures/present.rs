@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use eframe::egui::{Frame, Margin, ProgressBar, RichText, Ui};
+use eframe::egui::{Frame, Margin, RichText, Ui, vec2};
 use fault_db::StepKind;
 
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
 use crate::Palette;
-use crate::parts::{ActionPlace, verdict_chip};
+use crate::parts::{ActionPlace, Face, Look, progress, verdict_chip};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, RunPosition};
 
+/// Height of the bar of a run, points.
+const BAR: f32 = 8.0;
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;
 
@@ -60,12 +62,8 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
     let quiet = Palette::of(ui).quiet;
     let of_unit = fill(procedures.of_unit, &[("unit", &run.unit)]);
     ui.label(RichText::new(of_unit).color(quiet));
+    progress(ui, vec2(ui.available_width(), BAR), run, words);
     ui.horizontal_wrapped(|ui| {
-        ui.add(
-            ProgressBar::new(run.share())
-                .desired_width(260.0)
-                .show_percentage(),
-        );
         let counts = run.counts();
         let counts: [(&str, &dyn std::fmt::Display); 3] = [
             ("done", &counts.run()),
@@ -118,12 +116,13 @@ fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
             ui.label(RichText::new(words.procedures.asked).color(warn).small());
             ui.label(RichText::new(&prompt.what).size(17.0));
             ui.horizontal(|ui| {
-                let yes = ui.button(RichText::new(words.procedures.yes).strong());
-                if place.clicked(&yes) {
-                    answer = Some(true);
-                }
-                if place.clicked(&ui.button(words.procedures.no)) {
-                    answer = Some(false);
+                for (look, text, yes) in [
+                    (Look::Primary, words.procedures.yes, true),
+                    (Look::Secondary, words.procedures.no, false),
+                ] {
+                    if place.clicked(&Face::new(look, text).show(ui)) {
+                        answer = Some(yes);
+                    }
                 }
                 ui.label(format!("{:.0} s", prompt.left_s()));
             });

@@ -1,0 +1,31 @@
+//! How far a run is: what passed, what did not and what is left of it, in one bar.
+
+use eframe::egui::{Rect, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
+
+use crate::Palette;
+use ptu_report::words::{Words, fill};
+use ptu_runs::bench_worker::Progress;
+
+pub fn progress(ui: &mut Ui, size: Vec2, run: &Progress, words: &Words) {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let counts = run.counts();
+    let said: [(&str, &dyn std::fmt::Display); 2] =
+        [("n", &counts.run()), ("all", &counts.planned)];
+    let name = fill(words.frame.running, &said);
+    response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &name));
+    let done = match run.is_running() {
+        true => palette.accent,
+        false => palette.edge,
+    };
+    // Repetitions count for how far it is, and not as steps.
+    let bad = f64::from(counts.not_passed()) / f64::from(counts.run().max(1));
+    let end = rect.left() + rect.width() * run.share();
+    let bad = end - rect.width() * run.share() * bad as f32;
+    let part =
+        |from: f32, to: f32| Rect::from_min_max(pos2(from, rect.top()), pos2(to, rect.bottom()));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 2.0, palette.grid);
+    painter.rect_filled(part(rect.left(), bad), 2.0, done);
+    painter.rect_filled(part(bad, end), 2.0, palette.bad);
+}
