@@ -150,7 +150,11 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.step();
     look(&mut window, "live signals");
     window.click(words.procedures.run);
-    window.wait_for(words.procedures.to_report);
+    // The rail has a page of the name of the button that leads to the sheet.
+    window.until("the end of the run", |window| {
+        let run = window.app().units().chosen().run.as_ref();
+        run.is_some_and(|run| run.id().is_some())
+    });
     window.step();
     look(&mut window, "results");
 }
