@@ -203,35 +203,35 @@ fn sampled() -> BenchSetup {
 }
 
 /// Goal: the search finds what is there. Method: with a fault that takes a protection away, some scenes show the breach.
+/// A door that opens while an emergency brake is dead is rare: its scenes are looked for where they are.
 #[test]
 fn a_protection_that_is_taken_away_shows() {
     use Invariant::*;
-    for (mode, invariants) in draw::drawn(
+    for (mode, invariant, from) in draw::drawn(
         [
-            ("fsb_output.dead", &[I2][..]),
-            ("eb_relay.welded", &[I3]),
-            ("io_board.door_enable_stuck", &[I4]),
-            ("atp_receiver.unselective", &[I2]),
-            ("atp_cpu.wheel_guard_dead", &[I2]),
+            ("fsb_output.dead", I2, 0),
+            ("eb_relay.welded", I3, 1_170),
+            ("io_board.door_enable_stuck", I4, 0),
+            ("atp_receiver.unselective", I2, 0),
+            ("atp_cpu.wheel_guard_dead", I2, 0),
         ],
         2,
     ) {
-        shows(mode, invariants);
+        shows(mode, invariant, from);
     }
 }
 
-/// Plays 1 500 scenes at most, in blocks so small that few are played after the one that shows the last breach.
-fn shows(mode: &str, invariants: &[Invariant]) {
+/// Plays 300 scenes at most, in blocks so small that few are played after the one that shows the breach.
+fn shows(mode: &str, invariant: Invariant, from: u64) {
     let search = Search::new(setup(&[]), mode);
-    let mut not_shown = invariants.to_vec();
-    for block in 0..100 {
-        let (finds, _) = search.run(block * 15..(block + 1) * 15);
-        not_shown.retain(|one| !finds.iter().any(|(_, find)| find.breach.invariant == *one));
-        if not_shown.is_empty() {
-            return;
-        }
-    }
-    panic!("{mode}: no {not_shown:?}");
+    let shown = (0..20).any(|block| {
+        let first = from + block * 15;
+        let (finds, _) = search.run(first..first + 15);
+        finds
+            .iter()
+            .any(|(_, find)| find.breach.invariant == invariant)
+    });
+    assert!(shown, "{mode}: no {invariant:?}");
 }
 
 /// The scenes of the promise, or those of `HAZARD_SEEDS`, on `HAZARD_BENCH`: `seoul34` or `sampled`.
