@@ -50,8 +50,12 @@ const THROUGH_THE_PROGRAM: [&str; 5] = [
 /// Modes that diagnosis takes for another part's at the default seed, and why.
 const NOT_DIAGNOSED: &[(&str, &str)] = &[
     (
-        "door_contact.loose",
-        "doors that seem open for moments: by the input or by a contact, in the same steps",
+        "atp_cpu.enables_dropped",
+        "doors that are not enabled again and doors that are not opened again fail the same steps",
+    ),
+    (
+        "twc_cpu.hangs",
+        "a processor that hangs for moments and an antenna that is loose lose the same frames",
     ),
     (
         "twc_antenna.weak",
@@ -83,10 +87,6 @@ const PART_NOT_NAMED: &[(&str, &str)] = &[
         "what is stored is the emergency brake of a train that goes the wrong way, whoever sends it there",
     ),
     (
-        "atp_cpu.enables_dropped",
-        "what is stored is a door that is not ordered open again, which ATO orders",
-    ),
-    (
         "ato_cpu.loops_unknown",
         "what is stored is the loss of the wayside, which the step looks for in TWC's processor",
     ),
@@ -109,6 +109,10 @@ const TRAIN_SUSPECTED: &[(&str, &str)] = &[
     (
         "atp_cpu.clock_fast",
         "a unit that no longer hears its inputs brakes a train that is tested",
+    ),
+    (
+        "atp_cpu.clock_slow",
+        "TCMS refuses frames that come ever later, and brakes a train that is tested",
     ),
 ];
 
