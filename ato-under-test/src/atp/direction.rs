@@ -57,8 +57,8 @@ const LONE_M: f64 = 0.04;
 
 impl Rollback {
     /// One scan, with the way of each tachometer and whether the wheels stand still; true once the distance against the
-    /// reverser exceeds `allowed_m`, until the way is counted from 0 again. It is not by standing still: what a train rolls
-    /// in small steps is a sum.
+    /// reverser exceeds `allowed_m`, until the way is counted from 0 again. Standing still does not reset it, so that many
+    /// small rolls add up; nor does a reverser that is turned in motion.
     pub fn step(
         &mut self,
         now: Instant,
@@ -71,7 +71,7 @@ impl Rollback {
         let turned = self.towards.replace(towards) != Some(towards);
         let sums = self.against_m.iter_mut().zip(&mut self.stood_m);
         for ((against_m, stood_m), moved_m) in sums.zip(moved_m) {
-            *against_m = match from_zero || turned {
+            *against_m = match from_zero || turned && still {
                 true => 0.0,
                 false => (*against_m + towards.wrong_m(moved_m)).max(0.0),
             };
@@ -88,5 +88,27 @@ impl Rollback {
             log.push(now, Event::Rollback, libm::round(farthest_m * 100.0) as i32);
         }
         trips
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: a reverser whose contact flickers lets no train roll. Method: 2 km/h backward, the reverser at forward and at
+    /// neutral by turns of 100 ms.
+    #[test]
+    fn a_reverser_that_flickers_in_motion_does_not_reset_the_sum() {
+        let (mut rollback, mut log) = (Rollback::default(), EventLog::default());
+        let back_m = [-2.0 / 3.6 * 0.01; 2];
+        let trips = |scan: u64| {
+            let towards = match scan / 10 % 2 {
+                0 => Towards::Forward,
+                _ => Towards::Nowhere,
+            };
+            let now = Instant::from_ms(10 * scan);
+            rollback.step(now, (back_m, false), towards, false, 0.5, &mut log)
+        };
+        assert_eq!((0..200).map(trips).position(|trips| trips), Some(90));
     }
 }

@@ -22,8 +22,8 @@ pub struct Interlock {
 }
 
 impl Interlock {
-    /// One scan: whether something holds the train, or its brake line is open, and the notch of the controller. A line that
-    /// has still to follow the relay holds nobody.
+    /// One scan: whether something holds the train, or its brake line is open, and the notch of the controller. For 300 ms
+    /// after the brake is released the line may still be open: that alone does not latch the interlock.
     pub fn step(&mut self, now: Instant, held: bool, open: bool, controller: i8) {
         let stays_open = self.open.update(now, open && !held, LINE_FOLLOWS);
         self.held = held || open;
@@ -57,7 +57,7 @@ impl BrakePath {
         let stays = self.stays.update(now, asked && line_stays, FOLLOWS);
         let denied = asked && tcms == Some(false);
         let denied = self.denied.update(now, denied, FOLLOWS);
-        let failed = asked && (stays || denied || self.failed.value());
+        let failed = stays || denied || asked && self.failed.value();
         if self.failed.rises(failed) {
             log.push(now, Event::EbIneffective, i32::from(!stays));
         }

@@ -159,6 +159,7 @@ impl Atp {
         let witness = self.witness(inputs, context);
         self.tachometers.step(now, inputs, witness, config, log);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
+        let still = self.tachometers.still();
         let mode = self.sequence.mode();
         let known = self.decoder.known(&config.codes);
         self.yard
@@ -201,13 +202,17 @@ impl Atp {
             at_platform: context.at_platform,
             side: context.door_side,
             speed,
-            way_m: self.tachometers.farthest_m(),
+            // A lone pulse of wheels that stand is spurious.
+            way_m: if still {
+                0.0
+            } else {
+                self.tachometers.farthest_m()
+            },
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
         self.door_orders
             .step(now, context.door_order, self.doors.enable(), log);
         let moved_m = self.tachometers.ways_m();
-        let still = self.tachometers.still();
         let jog_inputs = JogInputs {
             backward: context.jogs_backward,
             permitted: self.may_jog_backward(inputs.lines),
@@ -220,7 +225,8 @@ impl Atp {
         };
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
-        // Way that was permitted is no roll back when the permission has gone; nor is what a brake has ended, or a departure.
+        // The sum begins anew when a jog's permission ends, when the train stands with its brake applied or after a jog, and
+        // when an automatic run begins.
         let stopped = still && (self.brake.applied() || self.jog.back_m() > 0.0);
         let from_zero = self.jog.ended() || stopped || self.sequence.begins();
         let towards = Towards::of(inputs.lines, inputs.test_speed, guards.neutral);
@@ -247,7 +253,7 @@ impl Atp {
             compares_cause: guards.release,
         };
         self.brake.step(now, brake_inputs, log);
-        // A standing unit asks for the brake from its power-up on, before others tell anything of the line.
+        // The brake of a power-up is not judged at standstill: TCMS may not have told of the line yet.
         let asked =
             self.brake.applied() && (self.brake.cause() != EbCause::NotReleased || !standstill);
         self.path

@@ -12,8 +12,9 @@
 //! after silence says when it was given. One that is given while the emergency brake is applied, or before such a failure
 //! is acknowledged, is not: it was given to a train that may not go, and has to be given again.
 //!
-//! An emergency brake line that others open ends a run at once, and bars the next while it is open. When it is closed
-//! again the service brake goes on stopping the train, and a driverless one waits for a new departure.
+//! An emergency brake line that others open ends a run at once, and bars the next while it is open. The service brake stops
+//! the train, whether the line is closed again or not, and a driverless one waits for a new departure. So it is when a
+//! door or the cab ends a run in motion, as TCMS reads it, too.
 
 use protocol::event::Event;
 use protocol::message::{Mode, ModeSwitch, Refusals};
@@ -38,6 +39,9 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
 
 /// Time at driverless by which the position was chosen, and not passed on the way to another [default].
 const CHOSEN: Duration = Duration::from_ms(1_000);
+
+/// Of these, what leaves a train in motion without a driver or with a door open: it is stopped.
+const STOPS: Refusals = Refusals::DOORS_OPEN.union(Refusals::CAB_INACTIVE);
 
 /// Of these, what is kept until it is acknowledged: braking clears it, and driving on would cause it again.
 const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
@@ -104,7 +108,7 @@ impl ModeSequence {
     pub fn step(&mut self, now: Instant, inputs: ModeInputs, log: &mut EventLog) {
         let pressed = self.start.rises(inputs.start);
         self.keep_failure(&inputs);
-        self.stop_after_line(now, &inputs, log);
+        self.stop_after_end(now, &inputs, log);
         let mut inputs = inputs;
         inputs.lacking.insert(self.failed);
         let driverless = inputs.switch == ModeSwitch::Driverless;
@@ -175,18 +179,22 @@ impl ModeSequence {
         }
     }
 
-    /// A run that the line ends: the train is stopped, and does not go on by itself.
-    fn stop_after_line(&mut self, now: Instant, inputs: &ModeInputs, log: &mut EventLog) {
-        if self.mode == Mode::AutomaticRun && inputs.line_open {
+    /// A run that the line ends, or in motion a door or the cab: the train is stopped, and does not go on by itself.
+    fn stop_after_end(&mut self, now: Instant, inputs: &ModeInputs, log: &mut EventLog) {
+        let moves = inputs.lacking.contains(Refusals::NOT_STANDSTILL);
+        let lost = moves && inputs.lacking.intersects(STOPS);
+        if self.mode == Mode::AutomaticRun && (inputs.line_open || lost) {
             self.departs_anew = true;
             self.stops = true;
+        }
+        if self.mode == Mode::AutomaticRun && inputs.line_open {
             log.push(now, Event::LineOpened, 0);
         }
         let by_ato = matches!(
             inputs.switch,
             ModeSwitch::Automatic | ModeSwitch::Driverless
         );
-        self.stops &= by_ato && inputs.lacking.contains(Refusals::NOT_STANDSTILL);
+        self.stops &= by_ato && moves;
     }
 
     /// An automatic run has begun in the last cycle.
@@ -198,7 +206,7 @@ impl ModeSequence {
         self.mode
     }
 
-    /// The service brake stops a train whose run the line has ended.
+    /// The service brake stops a train whose run the line, a door or the cab has ended.
     pub fn stops(&self) -> bool {
         self.stops
     }

@@ -7,6 +7,9 @@ use protocol::{Duration, Instant};
 use crate::kernel::EventLog;
 use crate::timer::OnDelay;
 
+/// Time for which the line is dead before others count as having opened it: a contact that bounces does not [default].
+const FALLS: Duration = Duration::from_ms(50);
+
 /// The line must die with the relay, and live with it as long as it is fed: a button, the master controller,
 /// low air or an empty cab opens it before the relay.
 #[derive(Debug)]
@@ -17,6 +20,7 @@ pub struct RelayWatch {
     line_due: bool,
     /// The line was due since the relay was energised.
     followed: bool,
+    fell: OnDelay,
     line_fell: bool,
     sound: bool,
     feedback: Duration,
@@ -31,6 +35,7 @@ impl RelayWatch {
             due: OnDelay::default(),
             line_due: false,
             followed: false,
+            fell: OnDelay::default(),
             line_fell: false,
             sound: true,
             feedback,
@@ -52,7 +57,8 @@ impl RelayWatch {
         let due = energised && line(TrainLines::EB_LOOP_FED);
         self.line_due = self.due.update(now, due, self.feedback);
         self.followed = energised && (self.followed || self.line_due && alive);
-        self.line_fell = self.followed && lines.is_some() && !alive;
+        let fell = self.followed && lines.is_some() && !alive;
+        self.line_fell = self.fell.update(now, fell, FALLS);
         let welded = self.welded.update(now, welded, self.feedback);
         let open = self.open.update(now, open, self.feedback);
         if (welded || open) && self.sound {

@@ -64,6 +64,8 @@ pub struct Locator {
     came_from: Option<Section>,
     /// Ways between believed markers of this section.
     ways: Ways,
+    /// Wheels of another diameter were keyed in since the last believed marker: this way was measured with both.
+    rescaled: bool,
     holds_ways: bool,
     /// Markers are held against the way: nothing is wrong with that.
     holds_markers: bool,
@@ -106,6 +108,7 @@ impl Locator {
             placed: false,
             came_from: None,
             ways: Ways::default(),
+            rescaled: false,
             holds_ways: true,
             holds_markers: true,
             wheel_reported: false,
@@ -120,6 +123,8 @@ impl Locator {
         self.odometer.set_pulse(pulse_m);
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
         self.wheel_reported = false;
+        self.ways.clear();
+        self.rescaled = true;
     }
 
     /// At a departure loop a new section begins.
@@ -256,6 +261,7 @@ impl Locator {
         self.expected = marker % MARKERS + 1;
         self.pending = None;
         self.slid_m = 0.0;
+        self.rescaled = false;
         self.unsure_since_m = None;
         self.early_m = 0.0;
         if marker == MARKERS {

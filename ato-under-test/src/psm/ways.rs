@@ -10,7 +10,7 @@ const MOST: usize = 4;
 /// A way by the track database and by the wheels.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
-    /// Share by which the wheels tell too little.
+    /// Way by the track over way by the wheels, less 1.
     share: f64,
     /// Share by which its ends may be off.
     off: f64,

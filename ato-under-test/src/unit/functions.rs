@@ -8,7 +8,7 @@ mod operation;
 use protocol::config::{TachoConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines};
+use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines, TwcWayside};
 use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
@@ -274,9 +274,15 @@ impl Functions {
         }
     }
 
+    /// Station data that are valid and of the place where the train stands.
+    pub(super) fn station_data(&self) -> Option<&TwcWayside> {
+        let refused = !self.twc.valid() || self.elsewhere.value();
+        self.twc.data().filter(|_| !refused)
+    }
+
     /// Departure as valid station data have it, given or withheld; `None` = nothing is heard, or no run may begin.
     fn departure(&self, around: &Surroundings<'_>) -> Option<bool> {
-        let data = self.twc.data().filter(|_| self.twc.valid())?;
+        let data = self.station_data()?;
         (!around.barred).then_some(data.departure == 1)
     }
 
@@ -301,8 +307,7 @@ impl Functions {
         lacking.set(Refusals::DOORS_OPEN, !unproved && open);
         lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits());
         lacking.set(Refusals::NO_TWC, !self.twc.up());
-        let invalid = !self.twc.valid() || self.elsewhere.value();
-        lacking.set(Refusals::STATION_INVALID, invalid);
+        lacking.set(Refusals::STATION_INVALID, self.station_data().is_none());
         lacking.set(Refusals::NO_CODE, !code);
         lacking.set(
             Refusals::CAB_INACTIVE,

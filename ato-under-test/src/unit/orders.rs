@@ -168,7 +168,7 @@ impl Functions {
         log: &mut EventLog,
     ) {
         let setup = around.setup;
-        let data = self.twc.data().filter(|_| self.twc.valid());
+        let data = self.station_data();
         let departure = data.is_some_and(|data| data.departure == 1);
         let running = self.atp.sequence().mode() == Mode::AutomaticRun;
         let begins = data.filter(|data| {

@@ -25,7 +25,7 @@ const QUICK: [&str; 6] = [
     "ptu/limit_speed",
     "tcms/power_cut",
 ];
-const STEPS: u64 = 104;
+const STEPS: u64 = 106;
 /// Memory after the first tenth may grow by one part of so many; in the check, which is over before caches, queues and
 /// the recorder's ring are full, by as much as these take, kB.
 const MOST_GROWTH: u64 = 10;

@@ -87,6 +87,42 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
     }
 }
 
+/// Goal: no run that ends on the way leaves the train to roll. Method: a door or the cab, as others read them, for a cycle.
+#[test]
+fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
+    let moves = Refusals::NOT_STANDSTILL;
+    for (lost, stops) in [
+        (Refusals::DOORS_OPEN, true),
+        (Refusals::CAB_INACTIVE, true),
+        (Refusals::CONTROLLER_NOT_NEUTRAL, false),
+    ] {
+        let mut sequence = ModeSequence::new();
+        let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
+        let mut after = |departure, lacking| {
+            now += Duration::from_ms(1_100);
+            let inputs = ModeInputs {
+                switch: ModeSwitch::Driverless,
+                departure,
+                heard: Some(departure),
+                lacking,
+                ..GOOD
+            };
+            sequence.step(now, inputs, &mut log);
+            (sequence.mode(), sequence.stops())
+        };
+        after(false, Refusals::empty());
+        after(false, Refusals::empty());
+        after(true, Refusals::empty());
+        assert_eq!(after(true, moves), (Mode::AutomaticRun, false), "{lost:?}");
+        assert_eq!(after(true, moves | lost), (Mode::Manual, stops), "{lost:?}");
+        assert_eq!(after(true, moves), (Mode::Manual, stops), "{lost:?}");
+        after(true, Refusals::empty());
+        let departs = after(true, Refusals::empty()).0 == Mode::AutomaticRun;
+        assert_eq!(departs, !stops, "{lost:?}: by the departure from before");
+    }
+}
+
 #[test]
 fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
     let mut sequence = ModeSequence::new();

@@ -8,17 +8,34 @@ use super::{Locator, MARKERS};
 use crate::kernel::EventLog;
 
 impl Locator {
-    /// Notes the way from the marker before, or from the section's begin, which is known less well.
+    /// Notes the way from the marker before; from the section's begin, which is known less well, only where the train
+    /// stopped at the stop point before. Where the marker agrees with one that was not believed and not with the fix, both
+    /// ways are noted: from the fix to the one between, and on from there.
     pub(super) fn note_way(&mut self, place_m: f64, end: &MarkerDetection) {
-        let scatter_m = 3.0 * core::f64::consts::SQRT_2 * self.config.scatter_m;
-        let (from, off_m) = match self.span_from(end, self.fix.marker != 0) {
-            Some((from, _)) => (from, scatter_m),
-            None => (self.fix, self.config.start_window_m),
-        };
-        if self.slid_m == 0.0 {
-            let wheel_m = end.distance_m - from.distance_m;
-            self.ways.note(place_m - from.place_m, wheel_m, off_m);
+        let known = self.fix.marker != 0 || self.came_from.is_some();
+        if !known || self.slid_m != 0.0 || self.rescaled {
+            return;
         }
+        let mut from = self.fix;
+        if let Some((between, _)) = self.span_from(end, false).filter(|_| self.contradicted) {
+            self.note_between(from, between);
+            from = between;
+        }
+        let to = PositionFix {
+            place_m,
+            distance_m: end.distance_m,
+            marker: end.marker,
+        };
+        self.note_between(from, to);
+    }
+
+    fn note_between(&mut self, from: PositionFix, to: PositionFix) {
+        let off_m = match from.marker {
+            0 => self.config.start_window_m,
+            _ => 3.0 * core::f64::consts::SQRT_2 * self.config.scatter_m,
+        };
+        let wheel_m = to.distance_m - from.distance_m;
+        self.ways.note(to.place_m - from.place_m, wheel_m, off_m);
     }
 
     /// Wheels of any size make the same share of each way. Where they do not, markers are displaced: no doors, and nothing

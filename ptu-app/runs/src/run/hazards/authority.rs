@@ -25,6 +25,7 @@ pub(super) struct Authority {
     given: Option<Instant>,
     stood: bool,
     begun: bool,
+    traction_n: f64,
 }
 
 impl Authority {
@@ -35,8 +36,9 @@ impl Authority {
         self.begin(seen);
         self.begun = self.by_hand && !before_hand || self.by_ato && !before_ato;
         let jogs = seen.to_stop_m.is_some_and(|m| m.abs() < JOG_M) && seen.kmh() < JOG_KMH;
-        // What fades under the brake is no start.
-        let powers = powers && !seen.on(Signal::EbLoop);
+        // What fades under the brake, and after it, is no start.
+        let fades = seen.traction_n < std::mem::replace(&mut self.traction_n, seen.traction_n);
+        let powers = powers && !seen.on(Signal::EbLoop) && !fades;
         match seen.by_ato() {
             true => powers && !self.by_ato && !jogs,
             false => powers && !self.by_hand,

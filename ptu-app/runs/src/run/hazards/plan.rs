@@ -35,6 +35,9 @@ pub enum Scene {
     Ride(ModeSwitch),
 }
 
+/// Step from a pair of kinds to the next; it has no divisor in common with their number.
+const STRIDE: usize = 100;
+
 const SCENES: [Scene; 10] = [
     Scene::Standing,
     Scene::ByHand,
@@ -109,7 +112,8 @@ impl Plan {
             station: StationData::at_departure(&sections[section]),
             drawn: Vec::new(),
         };
-        let pair = turn / SCENES.len();
+        // In steps that meet all kinds soon, and each pair once in a turn.
+        let pair = turn / SCENES.len() * STRIDE;
         let mut kinds: Vec<Kind> = Vec::new();
         let quiet = ride && displaced_m != [0.0; 4] && draw.random.chance(0.6);
         if !quiet {
