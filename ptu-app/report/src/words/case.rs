@@ -31,6 +31,7 @@ wordings! {
         not_begun: "No run is under way.", "진행 중인 시험이 없습니다.";
         under_way: "the test is under way", "시험 진행 중";
         connect_first: "connect first", "먼저 연결";
+        disconnect_first: "disconnect first", "먼저 연결 해제";
         after_symptom: "after the symptom", "증상 선택 후";
         after_test: "after the test", "시험 후";
         after_result: "after the result", "결과 후";
@@ -87,6 +88,7 @@ wordings! {
         key: "Key", "서명 키";
         no_key: "none: the name alone", "없음: 이름만";
         pin: "PIN of the key", "키의 PIN";
+        pin_first: "Write the PIN", "PIN을 적으십시오";
         signed: "Checked", "확인함";
         signed_by: "Checked by {who}", "확인: {who}";
         not_signed: "That it was checked was not stored", "확인한 것을 저장하지 못했습니다";

@@ -71,8 +71,8 @@ pub fn signer(path: &Path, pin: &str) -> Result<Signer, Failure> {
     usable(path)?.open(pin)
 }
 
-/// The key files of this computer's user.
-pub fn own() -> Vec<PathBuf> {
+/// The key files of this computer's user, and in whose name each signs: empty of one that cannot be read.
+pub fn own() -> Vec<(PathBuf, String)> {
     let files = own_folder().ok().and_then(|folder| folder.read_dir().ok());
     let paths = files
         .into_iter()
@@ -82,7 +82,12 @@ pub fn own() -> Vec<PathBuf> {
     let is_key = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "key");
     let mut keys: Vec<_> = paths.filter(is_key).collect();
     keys.sort();
-    keys
+    let who = |path: &PathBuf| KeyFile::read(path).map(|file| file.entry().who.clone());
+    let whose: Vec<_> = keys
+        .iter()
+        .map(|path| who(path).unwrap_or_default())
+        .collect();
+    keys.into_iter().zip(whose).collect()
 }
 
 /// Refuses a key that does not hold today, by its own file or by the list of this computer.

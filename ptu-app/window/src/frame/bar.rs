@@ -84,7 +84,7 @@ pub fn bar(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
     let both = |without| (left(context, without), right(context, without));
     let fits =
         |(left, right): &(Vec<Item>, Vec<Item>)| all(ui, left) + all(ui, right) <= room.width();
-    let fitting = Without::ALL.map(both).into_iter().find(fits);
+    let fitting = Without::ALL.into_iter().map(both).find(fits);
     let (left, right) = fitting.unwrap_or_else(|| both(Without::States));
     let from_right = all(ui, &right) - GAP;
     let high = ui.spacing().interact_size.y;

@@ -240,8 +240,8 @@ fn pages<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
 fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
     type Act = fn(&mut Frame, &mut PageContext<'_>);
     let (words, frame) = (context.words, &context.words.frame);
-    let offline = context.units.chosen().phase() == Phase::Offline;
-    let connect = match offline {
+    let phase = context.units.chosen().phase();
+    let connect = match phase == Phase::Offline {
         true => frame.connect,
         false => frame.disconnect,
     };
@@ -280,7 +280,9 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
         (frame.lock, "", |_, context| context.settings.lock()),
         (frame.about, "", |frame, _| frame.about.open()),
     ];
-    actions.into_iter().map(|(name, more, act)| Row {
+    // What has a run is let go by the unit's menu alone.
+    let has_run = usize::from(phase == Phase::Running);
+    (actions.into_iter().skip(has_run)).map(|(name, more, act)| Row {
         kind: frame.actions,
         icon: ICON_ARROW_FORWARD,
         name: name.to_owned(),

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Context, Key, Modifiers};
 
+use crate::parts::key_pressed;
 use crate::{Page, PageContext};
 use ptu_runs::bench_worker::Phase;
 
@@ -18,7 +19,7 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, STOP_ALL)) {
         context.units.stop_all();
     }
-    if egui_context.input_mut(|input| input.consume_key(Modifiers::NONE, CONNECT)) {
+    if key_pressed(egui_context, Modifiers::NONE, CONNECT) {
         connect(context);
     }
     for page in Page::ALL {
@@ -29,12 +30,12 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     }
 }
 
-/// Connects the chosen unit, or lets it go.
+/// Connects the chosen unit, or lets it go unless a run has it: page keys are beside this one.
 pub fn connect(context: &mut PageContext<'_>) {
     let only_reads = context.only_reads();
     let locked = context.settings.locked;
     let unit = context.units.chosen_mut();
-    if locked {
+    if locked || unit.phase() == Phase::Running {
         return;
     }
     if unit.phase() != Phase::Offline {

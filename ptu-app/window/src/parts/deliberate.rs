@@ -2,12 +2,23 @@
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher, Hash};
 
-use eframe::egui::{Id, Key, Response, Ui};
+use eframe::egui::{Context, Event, Id, Key, Modifiers, Response, Ui};
 
 /// A click so soon after the place changed or acted was meant for what was there before, s.
 const MOMENT_S: f64 = 0.6;
 /// What arms is held so long, s.
 const HOLD_S: f64 = 1.0;
+
+/// This key was pressed just now; one that is held down acts once.
+pub fn key_pressed(context: &Context, modifiers: Modifiers, key: Key) -> bool {
+    context.input_mut(|input| {
+        let is_held = input
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::Key { key: of, repeat: true, .. } if *of == key));
+        input.consume_key(modifiers, key) && !is_held
+    })
+}
 
 /// A place on the screen where one action follows another: buttons that a click replaces by others.
 pub struct ActionPlace {

@@ -44,7 +44,7 @@ pub fn over_page<R>(
     let (context, sizes, palette) = (ui.ctx(), Sizes::of(ui), Palette::of(ui));
     let screen = context.content_rect();
     let page = Rect::from_min_max(pos2(screen.left(), screen.top() + sizes.bar), screen.max);
-    let behind = Area::new(Id::unique("behind a dialog")).fixed_pos(page.min);
+    let behind = Area::new(Id::unique("behind a dialog").with(name)).fixed_pos(page.min);
     let behind = behind.show(context, |ui| {
         let (_, response) = ui.allocate_exact_size(page.size(), Sense::click_and_drag());
         let dim = Color32::from_black_alpha(DIM);

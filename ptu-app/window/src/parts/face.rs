@@ -9,7 +9,7 @@ use eframe::egui::{
 };
 use egui_material_icons::MaterialIcon;
 
-use super::ActionPlace;
+use super::{ActionPlace, key_pressed};
 use crate::{Palette, Sizes};
 
 /// Between the parts of a face, and its edge and what is in it, points.
@@ -152,7 +152,7 @@ impl<'a> Face<'a> {
         let ink = self.ink.unwrap_or(ink);
         let laid = self.laid(ui, ink, quiet);
         let (rect, mut response) = ui.allocate_exact_size(laid.size, sense);
-        let by_key = || ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Enter));
+        let by_key = || key_pressed(ui.ctx(), Modifiers::COMMAND, Key::Enter);
         if self.look == Look::Primary && on && by_key() {
             response.flags |= Flags::FAKE_PRIMARY_CLICKED;
         }

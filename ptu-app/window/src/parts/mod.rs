@@ -33,7 +33,7 @@ mod unit_filter;
 
 pub use card::{Card, choice, fact, ground};
 pub use chip::{chip, verdict_chip};
-pub use deliberate::ActionPlace;
+pub use deliberate::{ActionPlace, key_pressed};
 pub use dialog::{dialog, dialog_is_open, last_row, over_page};
 pub use edit::{field, go_on, name_edit, note_edit, typed};
 pub use face::{Face, Look, focus_ring};

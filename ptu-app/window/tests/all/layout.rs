@@ -202,10 +202,8 @@ pub fn complaints_of(window: &mut Window, lowest: f32) -> Vec<String> {
         .iter()
         .filter_map(|widget| {
             let (role, name) = known.get(&widget.id.value())?;
-            // A divider is a line; the dialog's cross does what the button does that opened it.
-            let is_meant = is_input(*role)
-                && !matches!(role, Role::Splitter | Role::ScrollBar)
-                && name != "Close window";
+            // A divider is a line.
+            let is_meant = is_input(*role) && !matches!(role, Role::Splitter | Role::ScrollBar);
             is_meant.then_some(Input {
                 widget,
                 role: *role,

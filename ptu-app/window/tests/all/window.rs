@@ -279,7 +279,12 @@ fn letting_go_in_a_run_closes_its_record_first() {
     window.wait_for("SIM-0001");
     window.click("Run");
     window.until("the run", running);
+    // A key beside those of the pages ends no run.
     window.disconnect();
+    window.step();
+    assert!(running(&window));
+    window.click("SIM-0001");
+    window.click("Disconnect");
     window.wait_for_part("outputs safe");
     window.wait_for("not connected");
     assert_eq!(latest(&window)["run"]["verdict"], "aborted");

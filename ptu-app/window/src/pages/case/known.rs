@@ -38,11 +38,11 @@ impl KnownUnit {
 
     /// Reads the history of this unit unless it is known.
     pub fn keep(&mut self, serial: &str, context: &PageContext<'_>) {
-        let of = (serial.to_owned(), context.data_version());
-        if self.of.as_ref() == Some(&of) {
+        let version = context.data_version();
+        if (self.of.as_ref()).is_some_and(|(of, at)| of == serial && *at == version) {
             return;
         }
-        self.of = Some(of);
+        self.of = Some((serial.to_owned(), version));
         let serial = serial.to_owned();
         let asked = context.queries.run(move |paths| read(paths, serial));
         self.history.request(asked);

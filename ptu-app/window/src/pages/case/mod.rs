@@ -59,6 +59,9 @@ impl CasePage {
         context: &mut PageContext<'_>,
     ) {
         self.follow_unit(context);
+        if let Some(serial) = &self.unit {
+            self.known.keep(serial, context);
+        }
         self.known.poll();
         self.units.poll();
         self.tiles.poll(context);
@@ -237,7 +240,13 @@ impl CasePage {
                 }
                 Stage::Unit => self.unit_foot(ui, context),
                 Stage::Find => {
-                    let why = self.found.is_none().then_some(words.under_way);
+                    let goes_on = has_orders
+                        || self.is_over(context)
+                        || context.units.chosen().phase() == Phase::Running;
+                    let why = self.found.is_none().then_some(match goes_on {
+                        true => words.under_way,
+                        false => words.not_begun,
+                    });
                     let next = Face::new(Look::Primary, words.stage_result).off(why);
                     if next.end(ICON_ARROW_FORWARD).show(ui).clicked() {
                         self.stage = Stage::Result;
@@ -297,7 +306,11 @@ impl CasePage {
         let unit = context.units.chosen_mut();
         let offline = unit.phase() == Phase::Offline;
         let place = ActionPlace::new(ui, "case connect", offline);
-        let connecting = (!offline).then_some(context.words.frame.connecting);
+        let connecting = match unit.phase() {
+            Phase::Offline => None,
+            Phase::MakingSafe => Some(context.words.frame.stopping),
+            _ => Some(context.words.frame.connecting),
+        };
         let face = Face::new(Look::Primary, context.words.frame.connect).icon(ICON_LINK);
         let connect = face.small("F9").off(why.or(connecting)).show(ui);
         if place.clicked(&connect) {

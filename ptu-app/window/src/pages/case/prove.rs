@@ -1,5 +1,6 @@
 //! The part is fitted: the unit is connected again, a run shows that the fault is gone, and its sheet is signed.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -15,7 +16,7 @@ use super::{CasePage, Stage, title};
 use crate::pages::procedures::Concluded;
 use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, named_combo};
 use crate::request::Request;
-use crate::{Destination, PageContext, Palette, Sizes};
+use crate::{Destination, Page, PageContext, Palette, Sizes};
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
@@ -45,6 +46,10 @@ const FIELD: f32 = 300.0;
 impl Proof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let locked = context.settings.locked;
+        if locked || context.settings.page != Page::Case {
+            // A PIN that was typed is its owner's alone.
+            self.sign = None;
+        }
         let unit = context.units.chosen_mut();
         if self.reconnects && !locked && unit.phase() == Phase::Offline {
             self.reconnects = false;
@@ -158,14 +163,16 @@ impl Proof {
 #[derive(Default)]
 struct Sign {
     /// Key files of this computer, once they were looked for.
-    keys: Option<Vec<PathBuf>>,
-    chosen: Option<PathBuf>,
+    keys: Option<Vec<(PathBuf, String)>>,
+    /// The one that signs, and in whose name.
+    chosen: Option<(PathBuf, String)>,
     pin: String,
 }
 
 impl Sign {
     fn key(&self) -> Option<(PathBuf, String)> {
-        Some((self.chosen.clone()?, self.pin.clone()))
+        let (key, _) = self.chosen.clone()?;
+        Some((key, self.pin.clone()))
     }
 
     /// True = sign, false = do not.
@@ -183,11 +190,10 @@ impl Sign {
                 ui.label(value);
                 ui.end_row();
             }
-            let name = name_edit(&mut context.settings.operator, FIELD);
-            field(ui, words.case.your_name, name);
             ui.label(words.case.key);
             let keys = self.keys.get_or_insert_with(keys::own);
-            let name = |key: &Option<PathBuf>| match key.as_ref().and_then(|key| key.file_stem()) {
+            let stem = |(key, _): &(PathBuf, String)| key.file_stem().map(OsStr::to_os_string);
+            let name = |key: &Option<(PathBuf, String)>| match key.as_ref().and_then(stem) {
                 Some(name) => name.to_string_lossy().into_owned(),
                 None => words.case.no_key.to_owned(),
             };
@@ -203,17 +209,29 @@ impl Sign {
             });
             named_combo(&combo.response, words.case.key, &shown);
             ui.end_row();
-            if self.chosen.is_some() {
-                let pin = name_edit(&mut self.pin, FIELD).password(true);
-                field(ui, words.case.pin, pin);
-            }
+            let (named, edit) = match self.chosen {
+                Some(_) => (
+                    words.case.pin,
+                    name_edit(&mut self.pin, FIELD).password(true),
+                ),
+                None => {
+                    let operator = &mut context.settings.operator;
+                    (words.case.your_name, name_edit(operator, FIELD))
+                }
+            };
+            field(ui, named, edit);
         });
         ui.label(RichText::new(words.case.sign_hint).color(quiet));
-        let who = context.settings.operator.trim();
-        let missing = match (who.is_empty(), self.chosen.is_some() && self.pin.is_empty()) {
-            (true, _) => Some(words.case.name_first),
-            (_, true) => Some(words.case.pin),
-            _ => None,
+        let operator = context.settings.operator.trim();
+        let (who, missing) = match &self.chosen {
+            Some((_, who)) => (
+                who.as_str(),
+                self.pin.is_empty().then_some(words.case.pin_first),
+            ),
+            None => (
+                operator,
+                operator.is_empty().then_some(words.case.name_first),
+            ),
         };
         let place = ActionPlace::new(ui, "sign", ());
         let mut chosen = None;

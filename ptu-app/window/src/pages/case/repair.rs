@@ -89,8 +89,11 @@ impl Repair {
         self.written.is_some()
     }
 
-    /// The part and the serial number that was put in.
+    /// The part and the serial number that was put in, once that is stored.
     pub fn said(&self) -> String {
+        if !self.is_written() {
+            return String::new();
+        }
         [&*self.part_name, self.serial_new()]
             .join(" ")
             .trim()

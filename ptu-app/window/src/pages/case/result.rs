@@ -11,7 +11,7 @@ use fault_db::{Id, StepCounts};
 use super::evidence::Evidence;
 use super::verdict::{Next, Told, named};
 use super::{CasePage, Stage, title};
-use crate::pages::procedures::Concluded;
+use crate::pages::procedures::{Concluded, why_not};
 use crate::parts::{ActionPlace, Card, Face, Look, limit_scale, segments};
 use crate::{Density, Destination, PageContext, Palette, Sizes};
 use ptu_report::count_text;
@@ -229,9 +229,9 @@ impl CasePage {
         let place = ActionPlace::new(ui, "case result", found.run);
         let check = found.answer.as_ref();
         let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
-        let first = found.told.next(check.is_some());
+        let first = (found.told).next(found.counts.run() == found.counts.planned);
         let failed = matches!(found.told, Told::Part | Told::Unsure | Told::NoPart);
-        let may_run = context.units.chosen().may_run();
+        let unit = context.units.chosen();
         let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
         let is_first = |way| way == first;
         let mut ways = [
@@ -264,7 +264,7 @@ impl CasePage {
             } else {
                 Look::Secondary
             };
-            let why_not = (runs && !may_run).then_some(words.procedures.connect_first);
+            let why_not = (runs && !unit.may_run()).then(|| why_not(unit, words));
             let button = Face::new(look, text).off(why_not);
             // What there is no room for is reached by the steps.
             if !is_first(*way) && button.wide(ui) > ui.available_width() {

@@ -54,7 +54,7 @@ impl CasePage {
     }
 
     /// The last run has ended and was not looked at yet.
-    fn is_over(&self, context: &PageContext<'_>) -> bool {
+    pub(super) fn is_over(&self, context: &PageContext<'_>) -> bool {
         let id = context.units.chosen().run_of_case().and_then(Progress::id);
         id.is_some() && id != self.seen
     }

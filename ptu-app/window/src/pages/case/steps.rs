@@ -40,8 +40,8 @@ impl CasePage {
             for (number, stage) in (1..).zip(Stage::ALL) {
                 let blocked = self.blocked(stage, context);
                 let below = match blocked {
-                    Some(why) => why.to_owned(),
-                    None => self.came_to(stage, context),
+                    Some(why) if stage != Stage::Start => why.to_owned(),
+                    _ => self.came_to(stage, context),
                 };
                 let step = Step {
                     number,
@@ -96,10 +96,13 @@ impl CasePage {
             .as_ref()
             .is_some_and(|found| matches!(found.told, Told::Part | Told::Unsure | Told::NoPart));
         // A run that goes on is looked at where it goes on.
-        let runs = unit.run_of_case().is_some_and(|run| run.is_running());
+        // So is one that is over until it is taken, which only these two steps do.
+        let takes = matches!(self.stage, Stage::Find | Stage::Prove);
+        let runs =
+            unit.run_of_case().is_some_and(Progress::is_running) || takes && self.is_over(context);
         let (can, why) = match stage {
             _ if runs => (stage == self.stage, words.under_way),
-            Stage::Start => (true, ""),
+            Stage::Start => (!unit.is_connected(), words.disconnect_first),
             Stage::Unit => (unit.is_connected(), words.connect_first),
             Stage::Find => (self.found.is_some(), words.after_symptom),
             Stage::Result => (self.found.is_some(), words.after_test),
@@ -136,8 +139,8 @@ impl CasePage {
                 let found = self.found.as_ref();
                 found.map_or_else(String::new, |found| found.told.word(&words.case).to_owned())
             }
-            Stage::Repair => self.repair.serial_new().to_owned(),
-            Stage::Prove | Stage::Sheet => String::new(),
+            Stage::Repair if self.repair.is_written() => self.repair.serial_new().to_owned(),
+            Stage::Repair | Stage::Prove | Stage::Sheet => String::new(),
         }
     }
 

@@ -80,8 +80,6 @@ impl SymptomTiles {
 
 impl CasePage {
     pub(super) fn unit(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let serial = context.units.chosen().name();
-        self.known.keep(&serial, context);
         self.name(ui, context);
         title(ui, context.words.case.what_is_wrong);
         self.tiles.show(ui, context);

@@ -169,7 +169,8 @@ impl Change {
                 }
             });
         });
-        let closes = may && fault.state.next(FaultAction::Close).is_ok();
+        let closes =
+            may && !context.settings.locked && fault.state.next(FaultAction::Close).is_ok();
         let dialog = self.form.closing.as_mut().filter(|_| closes);
         match dialog.and_then(|dialog| dialog.show(ui, (words, parts), detail)) {
             Some(Chosen::Close(note)) => {

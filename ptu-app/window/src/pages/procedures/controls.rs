@@ -8,7 +8,7 @@ use crate::PageContext;
 use crate::parts::{ActionPlace, Face, Look};
 use crate::request::Request;
 use crate::units::Unit;
-use ptu_report::words::Procedures;
+use ptu_report::words::Words;
 use ptu_runs::bench_worker::Phase;
 
 /// Most repetitions of a run.
@@ -42,7 +42,7 @@ impl ProceduresPage {
         let words = &context.words.procedures;
         let sound = matches!(&self.suite, Request::Ready(suite) if suite.errors.is_empty());
         let may = context.units.chosen().may_run() && sound && self.orders.is_empty();
-        let why_not = why_not(context.units.chosen(), words);
+        let why_not = why_not(context.units.chosen(), context.words);
         let run = Face::new(Look::Primary, words.run).off((!may).then_some(why_not));
         if place.clicked(&run.show(ui)) {
             self.order(context.units.chosen().id, false, context);
@@ -72,10 +72,12 @@ impl ProceduresPage {
 }
 
 /// Why a unit cannot be run now.
-pub(super) fn why_not(unit: &Unit, words: &Procedures) -> &'static str {
+pub fn why_not(unit: &Unit, words: &Words) -> &'static str {
     match unit.phase() {
-        Phase::Idle => words.about_to_begin,
-        _ => words.connect_first,
+        Phase::Idle => words.procedures.about_to_begin,
+        Phase::Running => words.case.under_way,
+        Phase::MakingSafe => words.frame.stopping,
+        Phase::Offline | Phase::Connecting => words.procedures.connect_first,
     }
 }
 

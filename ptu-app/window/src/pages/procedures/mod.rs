@@ -22,6 +22,7 @@ use crate::parts::{FirstHalf, RunNoteForm};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 pub use conclusion::Concluded;
+pub use controls::why_not;
 use prepare::{Prepared, RunSettings, ShownSuite};
 pub use present::present;
 use ptu_report::naming::PartNames;

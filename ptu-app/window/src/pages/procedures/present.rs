@@ -116,11 +116,9 @@ fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
             ui.label(RichText::new(words.procedures.asked).color(warn).small());
             ui.label(RichText::new(&prompt.what).size(17.0));
             ui.horizontal(|ui| {
-                for (look, text, yes) in [
-                    (Look::Primary, words.procedures.yes, true),
-                    (Look::Secondary, words.procedures.no, false),
-                ] {
-                    if place.clicked(&Face::new(look, text).show(ui)) {
+                // Evidence: no key and no colour suggests it.
+                for (text, yes) in [(words.procedures.yes, true), (words.procedures.no, false)] {
+                    if place.clicked(&Face::new(Look::Secondary, text).show(ui)) {
                         answer = Some(yes);
                     }
                 }

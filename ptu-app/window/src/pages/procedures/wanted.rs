@@ -43,7 +43,7 @@ impl ProceduresPage {
         if !chosen.may_run() {
             context
                 .messages
-                .trouble(controls::why_not(chosen, words), "");
+                .trouble(controls::why_not(chosen, context.words), "");
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
             context.messages.trouble(said, "");

@@ -1,9 +1,10 @@
 //! A run of a unit's own record beside what it should have been: the button, and what it found.
 
-use eframe::egui::{ScrollArea, Ui, Window};
+use eframe::egui::Ui;
 use fault_db::Id;
 
 use crate::PageContext;
+use crate::parts::{Face, Look, dialog, last_row};
 use crate::request::Request;
 use ptu_report::record;
 use ptu_report::trace_view::TracePlot;
@@ -49,14 +50,15 @@ impl RecordComparison {
             }));
         }
         if let Some(text) = self.found.value() {
-            let mut open = true;
-            let window = Window::new(words.memory.compare).open(&mut open);
-            // Beside the connection bar, not over it.
-            let window = window.default_pos([320.0, 240.0]).default_width(560.0);
-            window.show(ui.ctx(), |ui| {
-                ScrollArea::vertical().show(ui, |ui| ui.label(text));
+            let mut close = false;
+            let open = dialog(ui, "compared record", words.memory.compare, |ui| {
+                ui.label(text);
+                last_row(ui, |ui| {
+                    let face = Face::new(Look::Secondary, words.frame.close_anyway);
+                    close = face.show(ui).clicked();
+                });
             });
-            if !open {
+            if close || !open {
                 self.found = Request::Idle;
             }
         }
