@@ -84,9 +84,49 @@ fn repairing(faults: &str) -> Counted {
     counted.window.wait_for("SIM-0001");
     counted.click(case.unknown);
     counted.click(case.find_part);
+    counted.window.until("the result", |window| {
+        let run = window.app().units().chosen().run_of_case();
+        let is_told = window.shows(case.record_repair);
+        // While it is worked out what a run says, no way leads away from it.
+        if run.is_some_and(|run| !run.is_running()) && !is_told {
+            assert!(!window.enabled(case.back) && !window.enabled("2 Symptom"));
+        }
+        is_told
+    });
     counted.click(case.record_repair);
     counted.window.wait_for(case.serial_new);
     counted
+}
+
+/// Goal: a signature that was begun is nobody else's. Method: its dialog is open when another page is shown, and there the window is
+/// locked; back at the case there is no dialog.
+#[test]
+fn a_signature_that_was_begun_goes_with_its_page() {
+    let words = Language::English.words();
+    let case = &words.case;
+    let mut counted = window(
+        Language::English,
+        [1280.0, 800.0],
+        Density::Operator,
+        "eb_relay.slow",
+    );
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.window.wait_for(case.record_repair);
+    counted.click(&format!("7 {}", case.stage_sheet));
+    counted.click(case.sign);
+    let window = &mut counted.window;
+    window.wait_for(case.sign_hint);
+    window.page(Page::Procedures);
+    window.click(words.frame.menu);
+    window.click(words.frame.lock);
+    window.wait_for(words.frame.locked);
+    window.page(Page::Case);
+    window.wait_for(case.sign);
+    window.step();
+    assert!(!window.shows(case.sign_hint));
 }
 
 /// Goal: the part is found, replaced and proven by as few clicks as there are decisions, and what is stored is what was

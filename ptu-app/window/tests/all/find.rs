@@ -3,7 +3,7 @@
 use crate::common::window::{Window, settings};
 use crate::common::{Place, record_bad_unit, scripts};
 use crate::layout::complaints;
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
@@ -30,8 +30,37 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
     assert_eq!(accent(&mut window), Phase::Offline);
     window.key(Key::Escape);
     window.step();
+    // Held down since, it acts no more.
+    let hold = |window: &mut Window, key, modifiers, pressed| {
+        window.pass(0.7);
+        window.harness().event(Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers,
+        });
+        window.step();
+        window.app().units().chosen().phase()
+    };
+    look_for(&mut window, "xyz");
+    hold(&mut window, Key::Enter, Modifiers::COMMAND, true);
+    window.key(Key::Escape);
+    window.step();
+    let held = hold(&mut window, Key::Enter, Modifiers::COMMAND, true);
+    assert_eq!(held, Phase::Offline);
+    hold(&mut window, Key::Enter, Modifiers::COMMAND, false);
     assert_ne!(accent(&mut window), Phase::Offline);
     window.wait_for("SIM-0001");
+    // Nor does the key that lets the unit go.
+    window.key(Key::F9);
+    window.wait_for("not connected");
+    hold(&mut window, Key::F9, Modifiers::NONE, true);
+    window.until("the unit", |window| {
+        window.app().units().chosen().phase() == Phase::Idle
+    });
+    let held = hold(&mut window, Key::F9, Modifiers::NONE, true);
+    assert_eq!(held, Phase::Idle);
 }
 
 /// A window on the history of a bad unit, in this language, with its simulated unit connected.
