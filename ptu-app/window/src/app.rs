@@ -215,11 +215,7 @@ impl App {
     }
 
     fn apply_settings(&mut self, context: &Context) {
-        let theme = if self.settings.dark {
-            egui::Theme::Dark
-        } else {
-            egui::Theme::Light
-        };
+        let theme = egui::Theme::from_dark_mode(self.settings.dark);
         if context.theme() != theme {
             context.set_theme(theme);
         }

@@ -21,7 +21,7 @@ wordings! {
         seen_last: "Units seen last", "최근 시험한 장치";
         first_start: "Nothing is recorded yet. A demonstration shows the way of a case on the simulated unit, which has a fault: its brakes come late.", "아직 기록이 없습니다. 고장이 하나 있는 모의 장치로 작업 순서를 시연할 수 있습니다. 증상: 제동이 늦음.";
         demonstrate: "Start the demonstration", "시연 시작";
-        open_faults: "Open faults of this unit", "이 장치의 미해결 고장";
+        open_faults: "Open faults of this unit", "이 장치의 미조치 고장";
         repairs: "Earlier repairs", "이전 수리";
         nothing_known: "Nothing is recorded about this unit.", "이 장치에 대한 기록이 없습니다.";
         what_is_wrong: "What is wrong with it?", "증상이 무엇입니까?";
@@ -76,7 +76,7 @@ wordings! {
         serial_or_note: "Write the new serial number, or in the note what was done instead", "새 일련번호를 적거나, 다른 조치를 했으면 비고에 적으십시오";
         recorded: "Repair of {part} recorded", "{part} 수리를 기록함";
         not_recorded: "The repair was not recorded", "수리를 기록하지 못했습니다";
-        fitted: "Fitted: connect again", "조립 완료: 다시 연결";
+        fitted: "Fitted: connect again", "부품 교체 완료: 다시 연결";
         switch_off: "Switch the unit off before the part is changed.", "부품을 바꾸기 전에 장치 전원을 끄십시오.";
         fitted_hint: "In practice the injected faults of the part go with it.", "연습에서는 그 부품에 주입한 고장도 함께 없어집니다.";
         prove: "Prove the repair", "수리 확인 시험";
@@ -91,6 +91,6 @@ wordings! {
         pin_first: "Write the PIN", "PIN을 적으십시오";
         signed: "Checked", "확인함";
         signed_by: "Checked by {who}", "확인: {who}";
-        not_signed: "That it was checked was not stored", "확인한 것을 저장하지 못했습니다";
+        not_signed: "Not signed", "서명하지 못했습니다";
     }
 }

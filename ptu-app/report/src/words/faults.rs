@@ -43,7 +43,6 @@ wordings! {
         serial_new: "serial number put in", "장착한 부품 일련번호";
         verify_reason: "Runs verify a repair. Write in the note why it is verified without one", "수리는 시험으로 검증됩니다. 시험 없이 검증하는 이유를 메모에 적으십시오";
         repair_reason: "Write a serial number, or in the note what was done", "일련번호를 적거나, 조치 내용을 메모에 적으십시오";
-        who_first: "Write your name (operator) first", "먼저 시험자 이름을 적으십시오";
         recorded: "Recorded: {what}", "기록 완료: {what}";
         not_changed: "The fault was not changed", "고장 상태를 바꾸지 못했습니다";
         withdrawn: "withdrawn {at} by {who}:", "{at} {who} 되돌림:";

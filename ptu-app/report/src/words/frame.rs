@@ -47,7 +47,7 @@ wordings! {
         dismiss: "Noted", "확인";
         armed_unit: "ARMED: {unit}", "ARMED: {unit}";
         running: "{n} of {all}", "{n}/{all}";
-        asks: "a script asks", "스크립트 질문 있음";
+        asks: "a script asks", "확인 요청 있음";
         is_paused: "run paused", "시험 일시 정지";
         not_safe: "Outputs were not confirmed safe: switch the unit off", "출력이 안전한지 확인되지 않았습니다: 장치 전원을 끄십시오";
         unit_restarted: "The unit was started again", "장치가 다시 시작되었습니다";
@@ -63,7 +63,7 @@ wordings! {
         closing: "Stopping the run and making outputs safe …", "시험을 멈추고 출력을 안전하게 하는 중 …";
         other_port: "other: serial:PATH or tcp:HOST:PORT", "직접 입력: serial:PATH 또는 tcp:HOST:PORT";
         setup: "Setup", "설정";
-        setup_hint: "while it is not connected", "연결되지 않았을 때";
+        setup_hint: "while it is not connected", "연결 해제 후 설정할 수 있습니다";
         harness_auto: "found out", "자동 판별";
         as_btu: "BTU (bench)", "BTU (시험대)";
         as_ptu: "PTU (laptop)", "PTU (노트북)";

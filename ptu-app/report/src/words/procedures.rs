@@ -42,7 +42,7 @@ wordings! {
         bringing_up: "bringing the unit up", "장치 준비 중";
         waiting: "waiting for {what}: {left} s left", "대기 중: {what}, {left}초 남음";
         paused: "Paused before: {step}", "일시 정지, 다음 단계: {step}";
-        asked: "The script asks", "스크립트 질문";
+        asked: "The script asks", "확인 요청";
         yes: "Yes", "예";
         no: "No", "아니요";
         all_passed: "No step failed; passed: {n}", "불합격 단계 없음, 합격 {n}";

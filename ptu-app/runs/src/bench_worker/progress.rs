@@ -11,6 +11,7 @@ use btu_rig::procedure::{
 use fault_db::{StepCounter, StepCounts};
 use protocol::Duration;
 
+use crate::clock::now_us;
 use crate::coverage::Coverage;
 use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, different_steps, steps_of};
 use crate::stored::{WHOLE_RUN, stored, whole_run};
@@ -44,6 +45,8 @@ pub struct Progress {
     pub faults: Vec<FaultSeen>,
     /// The outcome once the run has ended; the inner `None` = it could not be started or recorded.
     pub ended: Option<Option<Outcome>>,
+    /// When it ended, µs since 1970.
+    pub ended_us: i64,
     began: time::Instant,
     /// Worst-case time of the steps that are still to come.
     worst_left: Duration,
@@ -158,6 +161,7 @@ impl Progress {
             present: None,
             faults: Vec::new(),
             ended: None,
+            ended_us: 0,
             began: time::Instant::now(),
             worst_left,
         }
@@ -188,6 +192,7 @@ impl Progress {
     pub fn end(&mut self, outcome: Option<Outcome>) {
         self.present = None;
         self.ended = Some(outcome);
+        self.ended_us = now_us();
     }
 
     /// It goes on.

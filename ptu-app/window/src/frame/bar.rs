@@ -202,9 +202,7 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         items.push((What::State, face.named(said).hint(names)));
     }
     run(unit, words, without, &mut items);
-    if all {
-        states(context, &mut items);
-    }
+    states(context, all, &mut items);
     items
 }
 
@@ -241,8 +239,9 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
         _ if unit.is_lost() => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
         Phase::Offline => (Look::State, ICON_LINK_OFF, words.not_connected.to_owned()),
         Phase::Connecting => (Look::State, ICON_LINK, words.connecting.to_owned()),
+        _ if share.is_none() => (Look::State, ICON_LINK, words.connected.to_owned()),
         Phase::Idle | Phase::Running | Phase::MakingSafe => {
-            let share = 100.0 * share.unwrap_or(1.0);
+            let share = 100.0 * share.unwrap_or_default();
             let said = format!("{}", (share * 10.0).floor() / 10.0);
             let look = if share >= 99.95 {
                 Look::State
@@ -289,12 +288,13 @@ fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item
     }
 }
 
-/// What else wants a look.
-fn states(context: &PageContext<'_>, items: &mut Vec<Item>) {
+/// What else wants a look; at last without its words.
+fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
     let words = context.words;
     let unit = context.units.chosen();
     let warned = |said: String, hint: String| {
-        let shown = cut(&said, NAME).into_owned();
+        let shown = if with_words { &*said } else { "" };
+        let shown = cut(shown, NAME).into_owned();
         let face = Face::new(Look::Warned, shown).icon(ICON_WARNING);
         (What::State, face.named(said).hint(hint))
     };
@@ -310,7 +310,10 @@ fn states(context: &PageContext<'_>, items: &mut Vec<Item>) {
         items.push(warned(said, hint));
     }
     if context.units.iter().any(|unit| unit.stopping) {
-        items.push(warned(words.frame.stopping.to_owned(), String::new()));
+        items.push(warned(
+            words.frame.stopping.to_owned(),
+            words.frame.stopping.to_owned(),
+        ));
     }
 }
 
@@ -354,13 +357,18 @@ fn right(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         let sign = Face::new(Look::Acting, words.armed).icon(ICON_BOLT);
         items.push((What::State, sign.hint(words.armed_hint)));
         let may = unit.bench.permits(&Stimulus::PtuDisarm).is_ok();
-        let face = Face::new(Look::Secondary, words.disarm).off((!may).then_some(""));
+        let face = Face::new(Look::Secondary, words.disarm);
+        let face = face.because((!may).then_some(context.words.case.under_way));
         items.push((What::Disarm, face));
     } else if !matches!(unit.phase(), Phase::Offline | Phase::Connecting) {
-        let idle = unit.phase() == Phase::Idle;
         let face = Face::new(Look::Outlined, words.arm).icon(ICON_BOLT);
         let face = face.small(small(words.hold)).hint(words.arm_hint);
-        items.push((What::Arm, face.off((!idle).then_some(""))));
+        let why_not = match unit.phase() {
+            Phase::Idle => None,
+            Phase::Running => Some(context.words.case.under_way),
+            _ => Some(words.stopping),
+        };
+        items.push((What::Arm, face.because(why_not)));
     }
     let acts = |unit: &Unit| unit.phase() == Phase::Running || unit.is_armed() || unit.stopping;
     let look = match context.units.iter().any(acts) {

@@ -106,6 +106,14 @@ impl<'a> Face<'a> {
         self
     }
 
+    /// The same where there is no room beside it: the reason is said when the pointer is over it.
+    pub fn because(mut self, why_not: Option<&'a str>) -> Self {
+        if let Some(why) = why_not {
+            (self.why_not, self.hint) = (Some(""), why.into());
+        }
+        self
+    }
+
     /// Said when the pointer is over it.
     pub fn hint(mut self, hint: impl Into<Cow<'a, str>>) -> Self {
         self.hint = hint.into();

@@ -29,12 +29,7 @@ fn gallery(language: Language, density: Density, dark: bool) -> Picture {
         fonts::set(context);
         theme::set(context);
         density.keep(context);
-        let theme = if dark {
-            eframe::egui::Theme::Dark
-        } else {
-            eframe::egui::Theme::Light
-        };
-        context.set_theme(theme);
+        context.set_theme(eframe::egui::Theme::from_dark_mode(dark));
     };
     let harness = Harness::builder().renderer(textures.clone());
     let mut harness = harness.with_size([1280.0, 800.0]).build_ui(show);

@@ -16,7 +16,7 @@ pub fn korean(trouble: &LinkTrouble) -> String {
         T::NotOneByte { within } => format!("장치 무응답: {:.1} s 동안 수신한 데이터 없음. 케이블, 포트, 장치 전원을 확인하십시오", within.as_secs()),
         T::OtherVersion { frames } => format!("통신 버전이 다른 전문 {frames}개 수신: 장치와 시험기의 프로그램 버전이 다릅니다"),
         T::Garbage { bytes, refused, cause } => {
-            let refused = refused.map_or_else(String::new, |(frames, reason)| format!(", {frames}개 거부 ({})", reason.label()));
+            let refused = refused.map_or_else(String::new, |(frames, _)| format!(", {frames}개 거부"));
             let cause = match cause {
                 GarbageCause::BaudRate => "통신 속도를 확인하십시오",
                 GarbageCause::Echo => "시험기가 보낸 전문이 되돌아옵니다. 이 포트에 장치가 연결되었는지 확인하십시오",

@@ -227,7 +227,8 @@ impl CasePage {
         } else {
             let back = self.back(context);
             let face = Face::new(Look::Quiet, words.back).icon(ICON_ARROW_BACK);
-            let button = face.off(back.is_none().then_some("")).show(ui);
+            let why_not = self.why_not_back(context).filter(|_| back.is_none());
+            let button = face.because(why_not).show(ui);
             if let (true, Some(back)) = (place.clicked(&button), back) {
                 self.stage = back;
             }

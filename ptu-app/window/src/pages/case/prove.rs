@@ -13,7 +13,7 @@ use super::repair::Repair;
 use super::result::headline;
 use super::verdict::Told;
 use super::{CasePage, Stage, title};
-use crate::pages::procedures::Concluded;
+use crate::pages::procedures::{Concluded, why_not};
 use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, named_combo};
 use crate::request::Request;
 use crate::{Destination, Page, PageContext, Palette, Sizes};
@@ -107,7 +107,11 @@ impl Proof {
         let place = ActionPlace::new(ui, "case sign", run);
         let may = run.is_some() && !matches!(self.signing, Request::Pending(_));
         let sign = Face::new(Look::Primary, words.sign).icon(ICON_DRAW);
-        if place.clicked(&sign.off((!may).then_some("")).show(ui)) {
+        let why_not = match run {
+            Some(_) => context.words.common.loading,
+            None => words.after_test,
+        };
+        if place.clicked(&sign.because((!may).then_some(why_not)).show(ui)) {
             self.sign = Some(Sign::default());
         }
     }
@@ -286,10 +290,11 @@ impl CasePage {
             true => Look::Primary,
             false => Look::Secondary,
         };
-        // The reason of the button that is off is the other one.
-        let prove = Face::new(look(fitted), words.prove)
-            .off((!may).then_some(""))
-            .show(ui);
+        let why_not = why_not(unit, context.words);
+        // Before it is fitted, the other button is the reason.
+        let first = if fitted { why_not } else { words.fitted };
+        let prove = Face::new(look(fitted), words.prove);
+        let prove = prove.because((!may).then_some(first)).show(ui);
         if let (true, Some(found)) = (place.clicked(&prove), &self.found) {
             context.go_to.push(Destination::Prove {
                 procedures: found.procedures.clone(),
@@ -297,7 +302,8 @@ impl CasePage {
             });
         }
         let at_rest = matches!(phase, Phase::Idle | Phase::Offline);
-        let face = Face::new(look(!fitted), words.fitted).off((!at_rest).then_some(""));
+        let face = Face::new(look(!fitted), words.fitted);
+        let face = face.because((!at_rest).then_some(why_not));
         if place.clicked(&face.show(ui)) {
             let part = &self.repair.part;
             let unit = context.units.chosen_mut();

@@ -76,7 +76,7 @@ impl Found {
         let shown = |part: &String| Evidence::ask(part, (outcome.id, trace), run, context);
         Self {
             run: outcome.id,
-            ended_us: clock::now_us(),
+            ended_us: run.ended_us,
             told,
             headline: headline(told, run, outcome, answer, context.words),
             concluded: said.map(|said| said.text.clone()).unwrap_or_default(),
@@ -133,9 +133,18 @@ pub fn headline(
     let why = || {
         let mut results = run.procedures.iter().rev().flat_map(|of| &of.results);
         let result = results.find(error);
-        result.map(|result| words.findings(&result.findings))
+        let of_step = result.map(|result| words.findings(&result.findings));
+        // What was found outside the steps says it otherwise.
+        let outside = run
+            .procedures
+            .iter()
+            .rev()
+            .map(|of| words.findings(&of.findings));
+        let mut said = of_step.into_iter().chain(outside);
+        said.find(|said| !said.is_empty())
+            .unwrap_or_else(|| words.case.is_not_tested.into())
     };
-    let why = why().filter(|_| told == Told::NotTested);
+    let why = (told == Told::NotTested).then(why);
     let counts: [(&str, &dyn std::fmt::Display); 4] = [
         ("part", &parts.unwrap_or_default()),
         ("why", &why.unwrap_or_default()),

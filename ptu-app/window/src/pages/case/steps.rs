@@ -70,7 +70,11 @@ impl CasePage {
             let may = begun && unit.phase() != Phase::Running;
             let new = Face::new(Look::Quiet, text(words.case.new_case)).icon(ICON_ADD_CIRCLE);
             let new = new.named(words.case.new_case).hint(words.case.new_case);
-            if place.clicked(&new.off((!may).then_some("")).show(ui)) {
+            let why_not = match begun {
+                true => words.case.under_way,
+                false => words.case.after_symptom,
+            };
+            if place.clicked(&new.because((!may).then_some(why_not)).show(ui)) {
                 self.begin(unit);
             }
         });
@@ -152,6 +156,13 @@ impl CasePage {
             .filter(|stage| *stage < self.stage);
         let mut before = before.filter(|stage| self.blocked(*stage, context).is_none());
         before.next()
+    }
+
+    /// Why Back leads nowhere: what is said of the step before, if there is one.
+    pub(super) fn why_not_back(&self, context: &PageContext<'_>) -> Option<&'static str> {
+        let mut before = (Stage::ALL.into_iter().rev()).filter(|stage| *stage < self.stage);
+        let why = before.next().and_then(|stage| self.blocked(stage, context));
+        Some(why.unwrap_or_default())
     }
 
     /// What the case is about.

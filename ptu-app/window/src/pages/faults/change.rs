@@ -181,9 +181,6 @@ impl Change {
             Some(Chosen::Cancel) => self.form.closing = None,
             None => {}
         }
-        if who.is_empty() {
-            ui.label(RichText::new(words.faults.who_first).color(Palette::of(ui).quiet));
-        }
     }
 
     fn bring(

@@ -48,7 +48,7 @@ impl ProceduresPage {
             self.order(context.units.chosen().id, false, context);
         }
         let find = Face::new(Look::Secondary, words.find_part).hint(words.find_part_hint);
-        if place.clicked(&find.off((!may).then_some("")).show(ui)) {
+        if place.clicked(&find.because((!may).then_some(why_not)).show(ui)) {
             self.order(context.units.chosen().id, true, context);
         }
         if context.units.count() > 1 {
@@ -56,7 +56,7 @@ impl ProceduresPage {
             let ready: Vec<u64> = idle.map(|unit| unit.id).collect();
             let may = sound && !ready.is_empty() && self.orders.is_empty();
             let all = Face::new(Look::Secondary, words.run_all);
-            if place.clicked(&all.off((!may).then_some("")).show(ui)) {
+            if place.clicked(&all.because((!may).then_some(why_not)).show(ui)) {
                 for unit in ready {
                     self.order(unit, false, context);
                 }
@@ -92,7 +92,11 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
         live_state.pause(!paused);
     }
     let step = Face::new(Look::Secondary, words.single_step).icon(ICON_SKIP_NEXT);
-    if step.off((!paused).then_some("")).show(ui).clicked() {
+    if step
+        .because((!paused).then_some(words.pause))
+        .show(ui)
+        .clicked()
+    {
         live_state.single_step();
     }
     let stop = if worker.stop_presses() == 0 {
