@@ -1,9 +1,7 @@
 //! Ways between the markers of a section, held against each other.
 
-/// Share of a way by which creep and short slips falsify it [default].
-const CREEP: f64 = 5e-4;
-/// Shortest way that tells anything, m [default].
-const SHORTEST_M: f64 = 50.0;
+use super::wheel::{CREEP, share};
+
 /// Most ways of a section: its begin and four markers.
 const MOST: usize = 4;
 
@@ -31,11 +29,11 @@ impl Ways {
 
     /// Notes a way of `track_m` that the wheels measured as `wheel_m`, whose ends may be off by `off_m` together.
     pub fn note(&mut self, track_m: f64, wheel_m: f64, off_m: f64) {
-        if track_m < SHORTEST_M || wheel_m < SHORTEST_M / 2.0 || self.count == MOST {
+        let Some(share) = share(track_m, wheel_m).filter(|_| self.count < MOST) else {
             return;
-        }
+        };
         self.noted[self.count] = Way {
-            share: track_m / wheel_m - 1.0,
+            share,
             off: off_m / track_m + CREEP,
         };
         self.count += 1;

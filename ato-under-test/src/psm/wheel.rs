@@ -4,11 +4,17 @@
 //! tells the more the longer it is, because markers lie some centimetres off their places.
 
 /// Share of the distance by which creep and short slips falsify any span, however long [default].
-const CREEP: f64 = 5e-4;
+pub(super) const CREEP: f64 = 5e-4;
 /// Share by which a wheel may change from one span to the next [default].
 const WEAR: f64 = 1e-4;
 /// Shortest span that tells anything, m [default].
 const SHORTEST_M: f64 = 50.0;
+
+/// Span by the track over span by the wheel, less 1; `None` for one so short that it tells nothing.
+pub(super) fn share(track_m: f64, wheel_m: f64) -> Option<f64> {
+    let tells = track_m >= SHORTEST_M && wheel_m >= SHORTEST_M / 2.0;
+    tells.then(|| track_m / wheel_m - 1.0)
+}
 
 /// The estimate; kept until power goes.
 #[derive(Clone, Copy, Debug)]
@@ -38,10 +44,9 @@ impl WheelCalibration {
 
     /// Takes a span of `track_m` between two markers that the wheel measured as `wheel_m`.
     pub fn learn(&mut self, track_m: f64, wheel_m: f64) {
-        if track_m < SHORTEST_M || wheel_m < SHORTEST_M / 2.0 {
+        let Some(measured) = share(track_m, wheel_m) else {
             return;
-        }
-        let measured = track_m / wheel_m - 1.0;
+        };
         let places = core::f64::consts::SQRT_2 * self.scatter_m / track_m;
         let variance = places * places + CREEP * CREEP;
         self.variance += WEAR * WEAR;

@@ -186,7 +186,7 @@ pub struct Changed {
     pub is: String,
 }
 
-/// What tells two units apart.
+/// Property of its identity by which a unit is seen to be another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Property {

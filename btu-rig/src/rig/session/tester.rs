@@ -360,7 +360,7 @@ impl Tester {
     }
 }
 
-/// What tells two units apart.
+/// First property in which a unit that answers now differs from the one that answered first.
 fn difference(first: &Identity, now: &Identity) -> Option<LinkTrouble> {
     let name = |field: &[u8; 16]| {
         let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);

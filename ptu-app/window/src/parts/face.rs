@@ -18,6 +18,8 @@ const GAP: f32 = 8.0;
 const OUTSIDE: f32 = 2.0;
 /// Strokes of a dashed edge, points.
 const DASH: f32 = 4.0;
+/// Between two dashes.
+const DASH_GAP: f32 = 4.0;
 
 /// What a face looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -231,16 +233,8 @@ impl<'a> Face<'a> {
             painter.rect_filled(filled, 6.0, palette.armed);
         }
         if self.look == Look::Dashed {
-            let edge = rect.shrink(0.5);
-            let corners = [
-                edge.left_top(),
-                edge.right_top(),
-                edge.right_bottom(),
-                edge.left_bottom(),
-                edge.left_top(),
-            ];
             let dashed = Stroke::new(1.0, palette.edge);
-            painter.extend(Shape::dashed_line(&corners, dashed, DASH, DASH));
+            painter.extend(dashed_outline(rect.shrink(0.5), dashed, DASH));
         }
         focus_ring(ui, rect, response);
     }
@@ -288,6 +282,18 @@ impl<'a> Face<'a> {
             size: vec2(wide.ceil(), high),
         }
     }
+}
+
+/// Outline of a rectangle in dashes that are `dash` points long.
+pub fn dashed_outline(edge: Rect, stroke: Stroke, dash: f32) -> Vec<Shape> {
+    let corners = [
+        edge.left_top(),
+        edge.right_top(),
+        edge.right_bottom(),
+        edge.left_bottom(),
+        edge.left_top(),
+    ];
+    Shape::dashed_line(&corners, stroke, dash, DASH_GAP)
 }
 
 /// Marks what has the keyboard.

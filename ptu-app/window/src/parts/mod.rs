@@ -36,7 +36,7 @@ pub use chip::{chip, verdict_chip};
 pub use deliberate::{ActionPlace, key_pressed};
 pub use dialog::{dialog, dialog_is_open, last_row, over_page};
 pub use edit::{field, go_on, name_edit, note_edit, typed};
-pub use face::{Face, Look, focus_ring};
+pub use face::{Face, Look, dashed_outline, focus_ring};
 pub use file::usual_folder;
 pub use job::{Done, Job, Told};
 pub use limit_bar::{limit_bar, limit_scale, value_text};

@@ -257,7 +257,7 @@ impl Scene {
         }
     }
 
-    /// What puts the train in motion.
+    /// Stimulus by which the train of the scene begins to move.
     pub fn begins(self) -> Option<Stimulus> {
         let lever = |notch| Stimulus::Controller {
             lever: Lever::Power(notch),

@@ -28,12 +28,12 @@ const DWELL: Duration = Duration::from_ms(14_000);
 const DEPARTS: Duration = Duration::from_ms(3_000);
 const STARTS: Duration = Duration::from_ms(4_500);
 
-/// What was found in a plan.
+/// First breach of an invariant in a plan.
 #[derive(Debug)]
 pub struct Find {
     pub breach: Breach,
     pub at: Instant,
-    /// What the monitor saw then.
+    /// Signals and true motion at the breach.
     pub state: String,
     /// Faults that were injected, and those of tachometers that the bench made.
     pub faults: Vec<String>,

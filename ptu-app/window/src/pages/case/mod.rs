@@ -335,7 +335,7 @@ fn name_field(ui: &mut Ui, context: &mut PageContext<'_>) {
         .labelled_by(label.id);
 }
 
-/// What the step is about.
+/// Draws the title of a step of the case.
 fn title(ui: &mut Ui, text: &str) {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     ui.label(RichText::new(text).size(sizes.title).color(palette.ink));

@@ -28,7 +28,7 @@ pub struct Repair {
     /// Parts to choose from, the likeliest first.
     parts: Vec<String>,
     pub part: String,
-    /// What people call it.
+    /// Name of the part in the window's language.
     part_name: String,
     serial_old: String,
     serial_new: String,

@@ -165,7 +165,7 @@ impl CasePage {
         Some(why.unwrap_or_default())
     }
 
-    /// What the case is about.
+    /// Draws unit, run, operator and open faults of the case at the right of its page.
     pub(super) fn strip(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let none = "–";

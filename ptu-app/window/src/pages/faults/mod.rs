@@ -29,7 +29,7 @@ const LIST: FirstHalf = FirstHalf {
     share: 0.5,
 };
 
-/// What the list shows.
+/// Faults of the history that the filter lets through, and names of their parts.
 struct History {
     faults: Vec<FaultSummary>,
     parts: PartNames,

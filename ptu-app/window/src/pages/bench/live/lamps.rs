@@ -1,12 +1,13 @@
 //! Lamps: dark when off, lit when on, dashed while the value is unknown.
 
-use eframe::egui::{Align2, Color32, Rect, RichText, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Align2, Color32, Rect, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
 use eframe::egui::{pos2, vec2};
 use protocol::signal::Signal;
 
 use super::card::{named, put, write};
 use crate::Palette;
 use crate::pages::bench::live_copy::BenchSnapshot;
+use crate::parts::dashed_outline;
 use ptu_report::words::Bench;
 
 /// Lamps beside each other.
@@ -152,15 +153,7 @@ fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
         }
         LampState::Unknown => {
             let line = Stroke::new(1.0, palette.quiet);
-            let edge = rect.shrink(1.0);
-            let corners = [
-                edge.left_top(),
-                edge.right_top(),
-                edge.right_bottom(),
-                edge.left_bottom(),
-                edge.left_top(),
-            ];
-            painter.extend(Shape::dashed_line(&corners, line, 5.0, 4.0));
+            painter.extend(dashed_outline(rect.shrink(1.0), line, 5.0));
             put(
                 painter,
                 bulb,
