@@ -7,6 +7,7 @@
 //! the tester or of the I/O rack. And the unit counts frames that fail their checks on arrival, which only
 //! the line can have damaged: a modem loses frames after those checks.
 
+use protocol::Duration;
 use protocol::event::Event;
 use protocol::message::{AtoFailure, SelfTest};
 
@@ -31,6 +32,8 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
+    /// By how much the last frames came later than others: what they show was so before.
+    pub late: Duration,
 }
 
 /// After which stamps of the unit that which is new in a scan happened, ms of its clock.

@@ -137,7 +137,7 @@ impl StepRun {
         self.give_up(problem);
     }
 
-    /// Takes note of how far the bench is behind the unit's clock.
+    /// Takes note of how far the bench, or what the link brings, is behind the unit's clock.
     pub(super) fn note_behind(&mut self, by: Duration) {
         self.behind = self.behind.max(by);
     }
@@ -145,6 +145,7 @@ impl StepRun {
     /// Takes note of how far what is heard in this scan can be trusted.
     pub(super) fn note_evidence(&mut self, evidence: &Evidence) {
         self.log = evidence.log;
+        self.note_behind(evidence.line.late);
         let lost_or_damaged = evidence.line.lost_or_damaged;
         let (before, _) = self
             .lost_or_damaged

@@ -306,6 +306,8 @@ impl Rig {
         while let Some(received) = self.link.poll(now) {
             let stamp_ms = received.header.stamp_ms;
             self.unit_stamp = Some((now, stamp_ms));
+            self.line_watch
+                .on_frame(now, received.header.channel, stamp_ms);
             self.harness.note_frame(now, received.header.channel);
             self.watch
                 .note_frame(received.header.channel, self.link.counters());

@@ -182,13 +182,15 @@ impl Display for Finding {
             Self::StoodStill { by, attempt } => {
                 write!(
                     f,
-                    "not tested in attempt {attempt} of {ATTEMPTS}: the tester's computer stood still for \
+                    "not tested in attempt {attempt} of {ATTEMPTS}: the tester's computer or the link stood still for \
                      {:.2} s, which says nothing about the unit; ",
                     by.as_secs()
                 )?;
                 match *attempt < ATTEMPTS {
                     true => write!(f, "the step is repeated ({} of {ATTEMPTS})", attempt + 1),
-                    false => f.write_str("end other programs and run this again"),
+                    false => {
+                        f.write_str("end other programs, look after the link and run this again")
+                    }
                 }
             }
             Self::BeforeStandstill(what) => {

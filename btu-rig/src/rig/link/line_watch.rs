@@ -17,6 +17,7 @@ use crate::procedure::LineState;
 use crate::procedure::link_trouble::LinkTrouble;
 
 use super::clock_rate::ClockRate;
+use super::lateness::Lateness;
 
 /// Span over which a line is bad or good, as the unit's own.
 const SPAN: Duration = Duration::from_ms(10_000);
@@ -84,6 +85,9 @@ pub struct LineWatch {
     clock_is_right: bool,
     /// Its rate.
     rate: ClockRate,
+    lateness: Lateness,
+    /// When a frame came last, and how late it was.
+    late: (Instant, Duration),
     /// Until when the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
     /// Counts of the last seconds, oldest first.
@@ -106,6 +110,8 @@ impl LineWatch {
             clock: None,
             clock_is_right: true,
             rate: ClockRate::default(),
+            lateness: Lateness::default(),
+            late: (Instant::ZERO, Duration::ZERO),
             on_purpose_until: Instant::ZERO,
             past: VecDeque::new(),
         }
@@ -138,6 +144,19 @@ impl LineWatch {
         self.clock = None;
         self.rate = ClockRate::default();
         self.past.push_back((now, self.counts));
+    }
+
+    /// Takes the stamp of a frame that has come, ms. What a modem of the unit may hold back counts for nothing.
+    pub fn on_frame(&mut self, at: Instant, channel: Channel, stamp_ms: u32) {
+        if WHOLE.contains(&channel) {
+            let late = self.lateness.take(at, stamp_ms);
+            let before = if self.late.0 == at {
+                self.late.1
+            } else {
+                Duration::ZERO
+            };
+            self.late = (at, late.max(before));
+        }
     }
 
     /// Takes when a frame of the unit came, and the unit's clock when it was made, ms.
@@ -240,6 +259,7 @@ impl LineWatch {
             lost_or_damaged: self.counts.lost_or_damaged(),
             lost_or_damaged_lately: self.counts.of_any_cause().saturating_sub(before),
             silent: self.silent,
+            late: self.late.1,
         }
     }
 

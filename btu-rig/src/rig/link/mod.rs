@@ -3,6 +3,7 @@
 
 mod clock_rate;
 mod harness;
+mod lateness;
 mod line_watch;
 mod link_watch;
 mod sample;

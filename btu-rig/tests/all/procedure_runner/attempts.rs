@@ -62,7 +62,7 @@ fn the_step_is_repeated_from_the_set_up_and_those_before_are_not() {
     assert_eq!(outcome.finished(), (PASSED, ""));
     assert_eq!(
         outcome.steps()[1].findings.to_string(),
-        "not tested in attempt 1 of 3: the tester's computer stood still for 0.30 s, which says nothing about the \
+        "not tested in attempt 1 of 3: the tester's computer or the link stood still for 0.30 s, which says nothing about the \
          unit; the step is repeated (2 of 3)"
     );
     assert_eq!(outcome.fake.applied, [ON, OFF, ON, OFF]);

@@ -154,10 +154,10 @@ pub fn korean(finding: &Finding) -> String {
             let by = by.as_secs();
             let then = match *attempt < ATTEMPTS {
                 true => format!("단계를 다시 시험합니다 ({}/{ATTEMPTS})", attempt + 1),
-                false => "다른 프로그램을 종료하고 다시 시험하십시오".to_owned(),
+                false => "다른 프로그램을 종료하고 연결을 점검한 뒤 다시 시험하십시오".to_owned(),
             };
             format!(
-                "{ATTEMPTS}회 중 {attempt}회째 시도에서 시험하지 못함: 시험기 PC가 {by:.2} s 동안 멈춤 (장치의 결함이 아님); {then}"
+                "{ATTEMPTS}회 중 {attempt}회째 시도에서 시험하지 못함: 시험기 PC 또는 연결이 {by:.2} s 동안 멈춤 (장치의 결함이 아님); {then}"
             )
         }
         Finding::BeforeStandstill(what) => format!("시험기 PC가 멈추기 전: {}", korean(what)),
