@@ -58,14 +58,17 @@ fn a_stalled_tester_reports_an_error_and_no_fault() {
     assert_eq!(outcome.fake.applied, [ON, OFF], "clean-up is run");
 }
 
-/// Goal: no verdict on time from a bench that was late. Method: the same failures, in time and behind.
+/// Goal: no verdict on time from a bench, or by frames, that were late. Method: the same failures, in time, by a bench that is
+/// behind, and by a link that holds frames back for one scan.
 #[test]
 fn a_failure_while_the_bench_is_behind_is_not_tested_unless_the_unit_logged_it() {
     let script =
         format!("{HEAD}step('a', do = wait(s(1)), expect = becomes(eb, 'applied', within = s(1)))");
-    let verdict_of = |behind_ms: u64, says: bool| {
+    let verdict_of = |behind_ms: u64, link_ms: u64, says: bool| {
         let outcome = run(&script, |world| {
+            world.fake.evidence.line.late = Duration::ZERO;
             if world.ms() == 500 {
+                world.fake.evidence.line.late = Duration::from_ms(link_ms);
                 world.runner.behind(Duration::from_ms(behind_ms));
                 if says {
                     world.log(Event::TwcLost);
@@ -74,10 +77,11 @@ fn a_failure_while_the_bench_is_behind_is_not_tested_unless_the_unit_logged_it()
         });
         outcome.steps()[0].verdict
     };
-    assert_eq!(verdict_of(40, false), Verdict::Failed);
-    assert_eq!(verdict_of(60, false), Verdict::Skipped);
+    assert_eq!(verdict_of(40, 40, false), Verdict::Failed);
+    assert_eq!(verdict_of(60, 0, false), Verdict::Skipped);
+    assert_eq!(verdict_of(0, 60, false), Verdict::Skipped);
     assert_eq!(
-        verdict_of(60, true),
+        verdict_of(60, 60, true),
         Verdict::Failed,
         "an event is an event"
     );
