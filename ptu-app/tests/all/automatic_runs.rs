@@ -82,19 +82,3 @@ fn long_procedures_run_only_when_named() {
     let said = place.ptu("run --list").exits(0);
     said.explains(&["run only when named: ato/driverless_section, ato/line_run"]);
 }
-
-#[test]
-fn a_setting_that_is_none_is_refused() {
-    let place = Place::new();
-    for (setting, words) in [
-        ("ato.controler=pi", "no key \"ato.controler\""),
-        ("ato.controller=pid", "pid"),
-        ("ato.gently_mps2=99", "ato.gently_mps2 = 99"),
-        ("ato.controller", "KEY=VALUE"),
-    ] {
-        place
-            .ptu(&["run", "tcms/link", "--set", setting])
-            .exits(2)
-            .explains(&[words]);
-    }
-}

@@ -4,36 +4,9 @@ use serde_json::Value;
 
 use crate::common::{Place, list, text};
 
-/// Part pointed at, cause and state of each fault, in order.
-fn faults(place: &Place, more: &[&str]) -> Vec<[String; 3]> {
-    let all = place.json(&[&["faults", "list", "--json"], more].concat());
-    let told = |fault: &Value| ["part", "cause", "state"].map(|key| text(&fault[key]).to_owned());
-    let mut told: Vec<_> = list(&all).iter().map(told).collect();
-    told.sort();
-    told
-}
-
 fn id_of(place: &Place, lru: &str) -> String {
     let all = place.json(&["faults", "list", "--part", lru, "--json"]);
     text(&list(&all).first().expect("a fault")["id"]).to_owned()
-}
-
-/// A unit whose antenna was found dead, and whose EB relay is slow since.
-fn two_cases() -> Place {
-    let place = Place::new();
-    for (procedure, mode) in [
-        ("twc/exchange", "twc_antenna.dead"),
-        ("atp/overspeed", "eb_relay.slow"),
-    ] {
-        let run = ["run", procedure, "--serial-no", "BAD-1", "--inject", mode];
-        place.ptu(&run).exits(1);
-    }
-    place
-}
-
-fn states_of<'a>(faults: &'a [[String; 3]], cause: &str) -> Vec<&'a str> {
-    let of_cause = faults.iter().filter(|[_, of, _]| of == cause);
-    of_cause.map(|[.., state]| state.as_str()).collect()
 }
 
 /// Goal: what a repair has proved once is known the next time, in another unit.
@@ -70,32 +43,4 @@ fn a_case_that_was_confirmed_is_known_in_the_next_unit() {
     let share = |of: &Value| of["parts"][0]["probability"].as_f64().expect("a share");
     assert!(share(&known) > share(&first), "{}", known["conclusion"]);
     assert_eq!(known["finding"], "one_of", "{}", known["conclusion"]);
-}
-
-/// Goal: two laptops that saw the same unit have the same cases, whichever imports the other first.
-#[test]
-fn cases_of_two_laptops_are_one_after_an_import_in_either_order() {
-    let (one, two) = (two_cases(), two_cases());
-    let cpu = id_of(&one, "atp_cpu");
-    one.ptu(&["faults", "repair", &cpu, "--part", "eb_relay"])
-        .exits(0);
-    let other = two.text_path("history.db");
-    let one_file = one.text_path("history.db");
-    let both = Place::new();
-    both.ptu(&["db", "import", &other]).exits(0);
-    both.ptu(&["db", "import", &one_file]).exits(0);
-    one.ptu(&["db", "import", &other]).exits(0);
-    let merged = faults(&one, &[]);
-    assert_eq!(faults(&both, &[]), merged);
-    assert_eq!(
-        merged.len(),
-        faults(&two, &[]).len(),
-        "each fault stands once"
-    );
-    // What the second laptop saw after the repair opened all of it again, or was before it for all.
-    let relay = states_of(&merged, "eb_relay");
-    assert!(relay.iter().all(|state| *state == relay[0]), "{merged:?}");
-    for place in [&one, &both] {
-        place.ptu("db check").exits(0);
-    }
 }

@@ -1,9 +1,8 @@
-//! From a run to the part: the dictionary that comes with the scripts, campaigns, and what is said when the evidence or the dictionary is not good enough.
+//! From a run to the part: what a run names, and campaigns. `stale_dictionaries` among the sessions has what is not good enough.
 
-use std::path::Path;
 use std::process::{Output, Stdio};
 
-use crate::common::{Place, copy_folder, list, number, scripts, text};
+use crate::common::{Place, list, number, text};
 use serde_json::Value;
 
 /// Parts whose fault modes look different enough that a whole run at the default seed must tell them.
@@ -23,28 +22,6 @@ fn diagnosis(place: &Place) -> Value {
     said
 }
 
-/// The scripts directory with one script changed, in a place of its own.
-fn changed_scripts(place: &Place) -> String {
-    let to = place.path("scripts");
-    copy_folder(&scripts(), &to);
-    let script = to.join("door/interlocks.star");
-    let text = std::fs::read_to_string(&script).expect("a script") + "\n# another remark\n";
-    std::fs::write(&script, text).expect("changed");
-    to.display().to_string()
-}
-
-#[test]
-fn the_shipped_dictionary_is_of_these_scripts() {
-    let place = Place::new();
-    place.recorded_run();
-    let said = diagnosis(&place);
-    assert_eq!(
-        list(&said["warnings"]),
-        [] as [Value; 0],
-        "make it again: `ptu campaign --out scripts/dictionary.zst`"
-    );
-}
-
 #[test]
 fn a_whole_run_names_the_part_with_reasons() {
     for (fault, lru) in TOLD {
@@ -58,57 +35,6 @@ fn a_whole_run_names_the_part_with_reasons() {
         assert!(text(&said["conclusion"]).contains(lru), "{fault}");
         assert!(said["next_check"].is_null(), "{fault}: nothing is open");
     }
-}
-
-#[test]
-fn a_stale_dictionary_says_so_and_leads_no_adaptive_run() {
-    let place = Place::new();
-    let changed = changed_scripts(&place);
-    place
-        .ptu(&["run", "tcms/link", "--scripts", &changed])
-        .exits(0);
-    place
-        .ptu(&["diagnose", "latest", "--scripts", &changed])
-        .exits(0)
-        .explains(&["stale", "door/interlocks", "ptu campaign"]);
-    place
-        .ptu(&["run", "--adaptive", "--scripts", &changed])
-        .exits(2)
-        .explains(&["stale", "ptu campaign"]);
-}
-
-/// A run of scripts that are others than the dictionary's: what it says of them does not count.
-#[test]
-fn steps_of_other_scripts_are_left_out() {
-    let place = Place::new();
-    let changed = changed_scripts(&place);
-    place
-        .ptu(&format!(
-            "run door --scripts {changed} --inject io_board.door_enable_dead"
-        ))
-        .exits(1);
-    let said = diagnosis(&place);
-    let warnings = said["warnings"].to_string();
-    assert!(warnings.contains("door/interlocks"), "{warnings}");
-    assert_ne!(said["finding"], "found", "{said:#}");
-}
-
-#[test]
-fn what_cannot_be_diagnosed_is_refused_with_the_next_move() {
-    let place = Place::new();
-    place.ptu("diagnose latest").exits(3);
-    place.recorded_run();
-    let bare = changed_scripts(&place);
-    std::fs::remove_file(Path::new(&bare).join("dictionary.zst")).expect("removed");
-    place
-        .ptu(&["diagnose", "latest", "--scripts", &bare])
-        .exits(2)
-        .explains(&["no fault dictionary", "ptu campaign"]);
-    std::fs::write(Path::new(&bare).join("dictionary.zst"), b"nonsense").expect("written");
-    place
-        .ptu(&["diagnose", "latest", "--scripts", &bare])
-        .exits(2)
-        .explains(&["dictionary.zst"]);
 }
 
 /// Goal: a campaign that is killed loses no run that was over, makes none twice, and comes to the same dictionary. Method:

@@ -1,7 +1,7 @@
 //! Station-to-station runs from the command line: shapes that others rely on, runs that repeat,
 //! commands that are refused, reports that stand alone.
 
-use crate::common::{Place, has, has_shape, list, number, text};
+use crate::common::{Place, has_shape, list, number, text};
 
 /// Keys of a run that others rely on, and the kinds of their values.
 const RUN: [(&str, &str); 11] = [
@@ -140,103 +140,4 @@ fn the_ideal_train_has_the_mass_it_is_given() {
     };
     let (light, heavy) = (energy("200000"), energy("400000"));
     assert!((heavy / light - 2.0).abs() < 0.05, "{light} {heavy}");
-}
-
-#[test]
-fn help_tells_exit_codes_and_examples() {
-    let place = Place::new();
-    for verb in ["drive", "run"] {
-        let said = place.ptu(&[verb, "--help"]).exits(0);
-        assert!(said.out.contains("Examples:\n  ptu"), "{}", said.out);
-    }
-    let said = place.ptu("drive --help");
-    has(&said.out, &["Exit codes: 0 the train stopped"]);
-}
-
-/// Gradients, adhesion and delays do not act on the ideal train, so no report says they differed.
-#[test]
-fn many_runs_of_the_ideal_train_differ_in_what_acts_on_it() {
-    let place = Place::new();
-    let ideal = [
-        "--train",
-        "ideal",
-        "--monte-carlo",
-        "2",
-        "--report",
-        "many.html",
-    ];
-    let all = driven(&place, &[&PSS[..], &ideal].concat());
-    let of = |key: &str| -> Vec<_> {
-        let worst = list(&all["worst"]).iter();
-        worst.map(|run| number(&run["conditions"][key])).collect()
-    };
-    assert_eq!(of("adhesion"), [0.33; 2]);
-    assert_eq!(of("delay_factor"), [1.0; 2]);
-    assert_eq!(of("gradient_offset_permille"), [0.0; 2]);
-    let brakes = of("brake_factor");
-    assert_ne!(brakes[0], brakes[1]);
-    let page = place.read("many.html");
-    assert!(page.contains("Stop error by brakes") && !page.contains("Stop error by adhesion"));
-}
-
-/// On rails of 0.08 wheels slide in full service: cycles say so, and the speed plot shows where.
-#[test]
-fn a_slide_is_seen_in_rows_and_in_the_speed_plot() {
-    let place = Place::new();
-    let slippery = [
-        "--adhesion",
-        "0.08",
-        "--report",
-        "run.html",
-        "--report",
-        "run.csv",
-    ];
-    driven(&place, &[&PSS[..], &slippery].concat());
-    let rows = place.read("run.csv");
-    assert!(
-        rows.lines()
-            .next()
-            .is_some_and(|head| head.ends_with(",sliding")),
-        "{rows}"
-    );
-    assert!(rows.lines().any(|row| row.ends_with(",1.000000")));
-    let page = place.read("run.html");
-    assert!(page.contains("rect class=\"shaded\"") && page.contains("a car slips or slides"));
-}
-
-#[test]
-fn reports_stand_alone_and_their_rows_end_where_the_train_does() {
-    let place = Place::new();
-    let reports = [
-        "--report", "run.html", "--report", "run.csv", "--report", "run.json",
-    ];
-    let run = driven(&place, &[&PSS[..], &reports].concat());
-    assert_eq!(place.read_json("run.json"), run);
-    let page = place.read("run.html");
-    assert!(
-        page.matches("<svg").count() >= 10 && page.contains("Speed over distance"),
-        "{page}"
-    );
-    for outside in [
-        "http:", "https:", "src=", "<script", "<link", "@import", "url(",
-    ] {
-        assert!(!page.contains(outside), "{outside} in the page");
-    }
-    assert!(!page.contains("NaN"), "a curve through what is not known");
-    let rows = place.read("run.csv");
-    let mut lines = rows.lines();
-    let head: Vec<_> = lines.next().unwrap_or_default().split(',').collect();
-    let column = head
-        .iter()
-        .position(|name| *name == "x_m")
-        .expect("a column x_m");
-    let last = lines
-        .last()
-        .and_then(|row| row.split(',').nth(column))
-        .expect("a last row");
-    let off = last.parse::<f64>().expect("a number") - 850.03;
-    assert!(
-        (off - number(&run["stop_error_m"])).abs() < 1e-4,
-        "{off} {run}"
-    );
 }

@@ -1,7 +1,6 @@
 //! The stream of a run for other programs: what `docs/events.schema.json` promises.
 
 use std::collections::BTreeSet;
-use std::process::Stdio;
 
 use ptu_report::event_lines::{COMMON, EVENTS, Kind, VERSION, schema};
 use serde_json::Value;
@@ -98,24 +97,6 @@ fn the_stream_of_a_run_says_what_the_database_says() {
     assert_eq!(without_id(&again), without_id(&all));
 }
 
-#[test]
-fn a_stream_that_cannot_be_written_is_told() {
-    let place = Place::new();
-    place
-        .ptu("run tcms/link --events no/folder/x")
-        .exits(2)
-        .explains(&["--events", "no/folder/x"]);
-    place
-        .ptu("run tcms/link --events /dev/full")
-        .exits(3)
-        .explains(&["has not all events", "ptu runs show latest"]);
-    // A reader that has read enough is none that missed something.
-    let mut run = place.command("run tcms/link --json");
-    let mut run = run.stdout(Stdio::piped()).spawn().expect("started");
-    drop(run.stdout.take());
-    assert_eq!(run.wait().expect("over").code(), Some(0));
-}
-
 /// Goal: a change of the stream is seen: the file in `docs/` is what the program writes. `PTU_WRITE_SCHEMA=1` writes it again.
 #[test]
 fn the_schema_in_docs_is_that_of_the_program() {
@@ -163,12 +144,4 @@ fn a_recorded_run_has_every_row_and_every_event() {
         "{}",
         read["fastest_kmh"]
     );
-}
-
-/// Goal: a recording that cannot be written is told before anything is driven.
-#[test]
-fn a_recording_that_has_no_place_is_refused_first() {
-    let place = Place::new();
-    let told = place.ptu("run tcms/link --mcap nowhere/run.mcap");
-    told.exits(2).explains(&["cannot write nowhere/run.mcap"]);
 }

@@ -1,5 +1,5 @@
-//! Output files: none is ever the history, none replaces what this program did not write as that kind, and one that cannot
-//! be written keeps no other from being written. A history that is lost under a run costs no run.
+//! Output files: none is ever the history, and none replaces what this program did not write as that kind. A history that is
+//! lost under a run costs no run. `outputs` and `bad_databases` among the sessions have the rest.
 
 use std::path::Path;
 use std::process::{Child, Stdio};
@@ -84,23 +84,6 @@ fn no_output_is_ever_the_history() {
     }
 }
 
-/// Goal: a history that is made by the same command is no output either.
-#[test]
-fn a_history_that_is_being_made_is_no_output() {
-    for option in ["--events", "--mcap", "--report"] {
-        let place = Place::new();
-        let said = on(
-            &place,
-            "new.json",
-            &format!("run tcms/link {option} new.json"),
-        );
-        said.exits(2)
-            .explains(&["it is a history or another database"]);
-        let head = std::fs::read(place.path("new.json")).expect("a history");
-        assert!(head.starts_with(b"SQLite format 3"), "{option}");
-    }
-}
-
 /// Goal: an existing file is replaced only by one of its kind. Method: notes under each name that is written to; then the
 /// command twice.
 #[test]
@@ -148,38 +131,6 @@ fn an_existing_file_of_another_kind_is_refused() {
             );
         }
         std::fs::remove_file(place.path(name)).expect("written");
-    }
-}
-
-/// Goal: a recording that does not begin leaves the one before.
-#[test]
-fn a_recording_is_kept_where_the_device_does_not_exist() {
-    let place = Place::new();
-    place
-        .ptu(&words("signal make code 55 --seconds 1 a.wav"))
-        .exits(0);
-    let before = std::fs::read(place.path("a.wav")).expect("made");
-    let record = "signal record --device none --out a.wav";
-    let said = place.ptu(&words(record)).exits(3);
-    let after = std::fs::read(place.path("a.wav")).expect("there");
-    assert!(before == after, "the recording is gone: {}", said.all());
-}
-
-/// Goal: one output that cannot be written keeps no other from being written, and a run's verdict stays. Method: the MCAP
-/// file takes the name of a report.
-#[test]
-fn an_output_that_fails_keeps_no_other_back() {
-    let outputs = "--mcap a.json --report a.json --report b.json --events c.jsonl --report d.csv";
-    for (run, code) in [
-        ("run tcms/link", 3),
-        ("run atp/overspeed --inject eb_relay.slow", 1),
-    ] {
-        let place = Place::new();
-        let said = place.ptu(&words(&format!("{run} {outputs}")));
-        let said = said.exits(code).explains(&["a.json"]);
-        for file in ["b.json", "c.jsonl", "d.csv"] {
-            assert!(place.path(file).is_file(), "no {file}: {}", said.all());
-        }
     }
 }
 
@@ -259,34 +210,5 @@ fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
         let steps = steps.filter(|step| step["kind"] == "step").count();
         assert_eq!(steps, told, "{}", said.all());
         on(&place, &history, "db check").exits(0);
-    }
-}
-
-/// Goal: two names of one history are no two histories.
-#[test]
-fn a_history_with_two_names_takes_no_run() {
-    let place = named("h.db");
-    std::fs::hard_link(place.path("h.db"), place.path("g.db")).expect("linked");
-    on(&place, "g.db", "run tcms/link")
-        .exits(3)
-        .explains(&["g.db"]);
-    let note = "runs note latest seen --who Lee";
-    on(&place, "g.db", note).exits(3).explains(&["second name"]);
-    std::fs::remove_file(place.path("g.db")).expect("unlinked");
-    on(&place, "h.db", "run tcms/link").exits(0);
-}
-
-/// Goal: the name of a history is a path, whatever SQLite makes of it.
-#[test]
-#[cfg(unix)]
-fn the_name_of_a_history_is_a_path() {
-    for name in [":memory:", "file:x?mode=memory", "file:y.db", "a?b#c%20.db"] {
-        let place = Place::new();
-        on(&place, name, "run tcms/link").exits(0);
-        assert!(place.path(name).is_file(), "{name}");
-        on(&place, name, "runs show latest").exits(0);
-        let copy = format!("{name}.copy");
-        place.ptu(&["db", "backup", &copy, "--db", name]).exits(0);
-        on(&place, &copy, "runs show latest").exits(0);
     }
 }

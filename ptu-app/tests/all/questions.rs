@@ -46,47 +46,6 @@ fn faults_of_today_are_found() {
     });
 }
 
-/// A terminal shows the beginning of a long text; JSON and CSV have all of it.
-#[test]
-fn a_cell_of_any_length_is_answered() {
-    let place = Place::new();
-    place.recorded_run();
-    let sql = "SELECT hex(zeroblob(40000)) AS zeros, 1 AS one, hex(zeroblob(40000)) AS more";
-    let table = place.ptu(&["db", "query", sql]).exits(0).out;
-    let row = table.lines().nth(1).expect("a row");
-    assert!(
-        row.contains("000…    1  000") && row.ends_with("0…"),
-        "{row}"
-    );
-    assert!(row.len() < 10_000, "{}", row.len());
-    let all = "0".repeat(80_000);
-    let json = place.json(&["db", "query", sql, "--json"]);
-    assert_eq!(json["rows"][0][0], all.as_str());
-    let csv = place.ptu(&["db", "query", sql, "--csv"]).exits(0).out;
-    assert_eq!(csv.lines().nth(1), Some(format!("{all},1,{all}").as_str()));
-}
-
-/// Goal: Excel reads Korean in a file, and a program reads an answer without a mark. Method: one answer to a pipe, to a new file,
-/// and appended to that.
-#[test]
-fn csv_in_a_file_begins_with_the_mark_of_utf_8_and_in_a_pipe_it_does_not() {
-    let place = Place::with_database();
-    let question = ["db", "query", "SELECT '제동' AS name", "--csv"];
-    let answer = "name\n제동\n";
-    assert_eq!(place.ptu(&question).exits(0).out, answer);
-    for expected in [
-        format!("\u{feff}{answer}"),
-        format!("\u{feff}{answer}{answer}"),
-    ] {
-        let mut file = std::fs::File::options();
-        let file = file.create(true).append(true).open(place.path("a.csv"));
-        let mut command = place.command(&question);
-        let ended = command.stdout(file.expect("a file")).status();
-        assert!(ended.is_ok_and(|ended| ended.success()));
-        assert_eq!(place.read("a.csv"), expected);
-    }
-}
-
 #[test]
 fn the_views_answer_and_the_page_tells_of_them() {
     let place = mended();
@@ -172,15 +131,4 @@ fn help_is_broken_where_the_terminal_ends() {
         assert!(two[0].len() + 1 + word.len() > COLUMNS, "{two:?} in {help}");
     }
     has(&help, &["\n  ptu faults stats --by part --when 2026\n"]);
-}
-
-#[test]
-fn a_database_named_by_a_variable_is_no_option_that_has_to_be_given() {
-    let place = Place::new();
-    let wrong = place.ptu("db prune").exits(2);
-    assert!(!wrong.err.contains("--db"), "{}", wrong.all());
-    let output = place.command("runs list").env("PTU_DB", "").output();
-    Said::from(output.expect("ptu starts"))
-        .exits(2)
-        .explains(&["PTU_DB is empty"]);
 }

@@ -7,86 +7,6 @@ use fault_db::Store;
 use ptu_report::run::{Sheet, html};
 use ptu_report::words::Language;
 
-/// A failed run in all formats at once, and the same from the store: sheets say what failed, and are
-/// the same files again.
-#[test]
-fn a_failed_run_is_the_same_on_a_sheet_now_and_from_the_store() {
-    let place = Place::new();
-    let first = ["a.html", "a.pdf", "a.csv"].map(|name| place.text_path(name));
-    let [html, pdf, csv] = first.each_ref().map(String::as_str);
-    let run = [
-        "run",
-        "atp/overspeed",
-        "--inject",
-        "eb_relay.slow",
-        "--who",
-        "A. Tester",
-    ];
-    let reports = ["--report", html, "--report", pdf, "--report", csv];
-    place.ptu(&[&run[..], &reports].concat()).exits(1);
-    let page = place.read("a.html");
-    for word in [
-        "Failed",
-        "SIM-0001",
-        "A. Tester",
-        "code 25: alarm, FSB, EB",
-        "EB reaction",
-        "472",
-        "eb_relay.slow",
-        "replace the EB relay (eb_relay, ",
-        "Approver",
-    ] {
-        assert!(page.contains(word), "{word}");
-    }
-    assert!(page.matches("<figure").count() >= 2, "no trace is drawn");
-    let again = ["b.html", "b.pdf", "b.csv"].map(|name| place.text_path(name));
-    let [html, pdf, csv] = again.each_ref().map(String::as_str);
-    let show = format!("runs show latest --report {html} --report {pdf} --report {csv}");
-    place.ptu(&show).exits(0);
-    for ending in ["html", "pdf", "csv"] {
-        let bytes =
-            |name: &str| std::fs::read(place.path(&format!("{name}.{ending}"))).expect("a report");
-        assert_eq!(bytes("a"), bytes("b"), "{ending}");
-    }
-    assert!(std::fs::read(place.path("a.pdf")).is_ok_and(|pdf| pdf.starts_with(b"%PDF-")));
-}
-
-#[test]
-fn a_passing_run_has_a_korean_sheet() {
-    let place = Place::new();
-    let (html, pdf) = (place.text_path("sheet.html"), place.text_path("sheet.pdf"));
-    let run = format!("run tcms/link --lang ko --report {html} --report {pdf}");
-    place.ptu(&run).exits(0);
-    let page = place.read("sheet.html");
-    for word in [
-        "시험 성적서",
-        "합격",
-        "노선",
-        "승인자",
-        "발생한 고장이 없습니다",
-    ] {
-        assert!(page.contains(word), "{word}");
-    }
-    assert!(!page.contains("미합격 항목"), "nothing failed");
-}
-
-/// What the font of paper lacks is told by the command and stands on the HTML page; a run without it is told nothing.
-#[test]
-fn letters_that_a_pdf_has_as_codes_are_told() {
-    let place = Place::new();
-    let names = "procedure(title = \"門\", suspect = \"tcms\")\nstep(\"扉 가\", measure = value(\"v\", speed))\n";
-    place.write("names.star", names);
-    let run = "run names.star --report a.pdf --report a.html";
-    place
-        .ptu(run)
-        .exits(0)
-        .explains(&["a.pdf", "\"扉\"", "[U+4E2D]"]);
-    assert!(place.read("a.html").contains("扉 가"));
-    place.ptu("run tcms/link").exits(0);
-    let said = place.ptu("report latest --out b.pdf").exits(0);
-    assert!(!said.err.contains("U+"), "{}", said.all());
-}
-
 /// Goal: a sheet in Korean is Korean: steps, messages, sources, fault modes and reasons. Method: runs that fail in
 /// different ways; no text of their sheets has three plain English words in a row.
 #[test]
@@ -193,25 +113,6 @@ fn every_step_measurement_symptom_and_reason_of_a_limit_has_korean() {
     assert!(
         missing.is_empty(),
         "not in scripts/korean.toml: {missing:?}"
-    );
-}
-
-#[test]
-fn a_table_has_a_line_for_each_measurement_and_each_step_without() {
-    let place = Place::new();
-    let csv = place.text_path("run.csv");
-    let (_, report) = place.run(&["atp/overspeed", "--report", &csv]);
-    let table = place.read("run.csv");
-    let mut lines = table.lines();
-    let head = "\u{feff}run,unit_serial,started_at,procedure,step_index,step,kind,step_verdict,bench_time_s,message,\
-                measurement,value,unit,low,high,measurement_verdict,limit_source,turn,turns";
-    assert_eq!(lines.next(), Some(head));
-    let steps = report["steps"].as_array().expect("steps");
-    let of = |step: &serde_json::Value| step["measurements"].as_array().map_or(0, Vec::len).max(1);
-    assert_eq!(lines.count(), steps.iter().map(of).sum::<usize>());
-    assert!(
-        table.contains(",\"code 25: alarm, FSB, EB\",step,passed,"),
-        "{table}"
     );
 }
 

@@ -57,16 +57,3 @@ fn faults_are_found_on_units_that_differ() {
         }
     }
 }
-
-#[test]
-fn a_wrong_file_is_told_by_name_and_key() {
-    let place = Place::new();
-    let scatter = std::fs::read_to_string(crate::common::scripts().join("bench_scatter.toml"));
-    let wrong = scatter.expect("the file").replace("tooth_pitch", "teeth");
-    let file = place.write("wrong.toml", &wrong);
-    let option = format!("--scattered={file}");
-    place
-        .ptu(&["run", &option])
-        .exits(2)
-        .explains(&["wrong.toml", "teeth"]);
-}

@@ -66,31 +66,3 @@ fn a_campaign_in_shards_is_one_campaign() {
 fn drives_in_shards_are_one_series() {
     shards_are_one_process(&Place::new(), DRIVE);
 }
-
-#[test]
-fn what_cannot_be_a_shard_is_said_with_what_to_do() {
-    let place = Place::new();
-    said(&place, CAMPAIGN, "--shard 3/2 --runs a.zst")
-        .exits(2)
-        .explains(&["no shard 3/2"]);
-    said(&place, CAMPAIGN, "--shard auto --runs a.zst")
-        .exits(2)
-        .explains(&["SLURM_ARRAY_TASK_ID", "write --shard 3/64"]);
-    said(&place, CAMPAIGN, "--shard 1/2")
-        .exits(2)
-        .explains(&["--runs"]);
-    place
-        .ptu("drive --runs a.zst")
-        .exits(2)
-        .explains(&["goes with --monte-carlo"]);
-    // A file of drives does not belong to a campaign.
-    said(&place, DRIVE, "--shard 1/12 --runs drives.zst").exits(0);
-    said(&place, CAMPAIGN, "--shard 1/12 --runs drives.zst")
-        .exits(2)
-        .explains(&["drives.zst", "by another program or with other scripts"]);
-    said(&place, CAMPAIGN, "--shard 1/12 --runs suite.zst").exits(0);
-    place
-        .ptu("campaign merge suite.zst drives.zst --out m.zst")
-        .exits(2)
-        .explains(&["drives.zst: ", "unlike those of suite.zst", "leave one"]);
-}

@@ -12,7 +12,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
 use crate::common::{Place, Said};
-use crate::trace_files::{kept, limited, trace};
+use crate::trace_files::{kept, trace};
 
 /// What a file of at most 10 MB may take, KiB.
 const MOST_KIB: u32 = 512 * 1024;
@@ -24,7 +24,7 @@ fn beside(place: &Place, file: &str, bytes: &[u8]) -> Said {
     assert!(bytes.len() <= 10 << 20, "{file} has {} bytes", bytes.len());
     std::fs::write(place.path(file), bytes).expect("written");
     let limits = format!("ulimit -d {MOST_KIB}; ulimit -t {MOST_S};");
-    limited(place, &limits, &["trace", "diff", "latest", file])
+    place.shell(&format!("{limits} exec ptu trace diff latest {file}"))
 }
 
 /// Seconds and a text each row, in pages of about so many bytes.

@@ -75,14 +75,6 @@ fn a_unit_of_another_type_passes_every_step_by_its_configuration() {
     }
 }
 
-#[test]
-fn what_the_rules_of_another_unit_add_is_said_in_korean_and_names_its_limits() {
-    let check = ["run", "--check", "--unit-config", "seoul34"];
-    let said = Place::new().ptu(&check).exits(0);
-    let sound = "each limit names its source; each text has its Korean";
-    assert!(said.out.contains(sound), "{}", said.all());
-}
-
 /// The time to the nearest five minutes.
 #[test]
 fn the_readme_tells_how_many_procedures_there_are_and_how_long_they_take() {
@@ -215,40 +207,5 @@ fn a_good_unit_passes_everything_repeated_and_in_any_order() {
         assert_ne!(order, usual);
         order.sort();
         assert_eq!(order, usual, "each once");
-    }
-}
-
-/// Another train is another file: as many cars as it has, under any names, or none at all.
-#[test]
-fn procedures_are_read_for_the_train_there_is() {
-    let place = Place::new();
-    let line6 = std::fs::read_to_string(crate::common::scripts().join("trains/line6.toml"));
-    let line6 = line6.expect("the train's file");
-    let mut cars = line6.split("[[cars]]");
-    let head = cars.next().unwrap_or_default().to_owned();
-    let kept = cars.filter(|car| !car.contains("pair = 4"));
-    let three_pairs: String = std::iter::once(head)
-        .chain(kept.map(|car| format!("[[cars]]{car}")))
-        .collect();
-    let renamed = line6
-        .replace("name = \"T", "name = \"A")
-        .replace("name = \"M", "name = \"B");
-    for train in [
-        place.write("three.toml", &three_pairs),
-        place.write("renamed.toml", &renamed),
-    ] {
-        let said = place.ptu(&["run", "--check", "--train", &train]).exits(0);
-        assert!(!said.all().contains("no cars"), "{}", said.all());
-    }
-    let said = place.ptu("run --check --train ideal").exits(0);
-    assert!(said.err.contains("has no cars") && said.err.contains("tcms/brake_cut"));
-    place
-        .ptu("run --train ideal tcms/brake_cut")
-        .exits(2)
-        .explains(&["ideal", "has no cars"]);
-    // What the unit does, and what TCMS does without cars, is tested with a point mass, too.
-    let said = place.ptu("run --train ideal atp door twc tcms").exits(0);
-    for procedure in ["door/interlocks", "tcms/holding_brake"] {
-        assert!(said.all().contains(procedure), "{}", said.all());
     }
 }

@@ -241,43 +241,6 @@ fn a_part_has_its_signals_and_its_span() {
     assert!(shown.exits(0).out.contains("1.1 s, without the trigger"));
 }
 
-#[test]
-fn a_file_that_is_there_stays_unless_force_is_said() {
-    let place = Place::new();
-    kept(&place, &trace(300));
-    for (file, also) in [
-        ("t.csv", None),
-        ("t.parquet", None),
-        ("t.mcap", None),
-        ("u.csv", Some("u.csv-metadata.json")),
-    ] {
-        let there = also.unwrap_or(file);
-        place.write(there, "mine");
-        let export = ["trace", "export", "latest", "--out", file];
-        place
-            .ptu(&export)
-            .exits(2)
-            .explains(&[there, "is there already", "--force"]);
-        assert_eq!(place.read(there), "mine");
-        place.ptu(&[&export[..], &["--force"]].concat()).exits(0);
-        assert_ne!(std::fs::read(place.path(there)).expect("read"), b"mine");
-    }
-    let none = "trace export latest --out x.mcap --window 7..9";
-    place.ptu(none).exits(2).explains(&["no row in that span"]);
-    let left: Vec<_> = std::fs::read_dir(place.path(""))
-        .expect("listed")
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .into_string()
-                .expect("UTF-8")
-        })
-        .filter(|name| name.ends_with(".part") || name.starts_with("x."))
-        .collect();
-    assert_eq!(left, Vec::<String>::new(), "nothing half-written is left");
-}
-
 /// Goal: a table of another program, sampled by a clock of its own, is compared at the trace's rows. Method:
 /// one each 20 ms of the trace's own speed, but 5 km/h more from 2 s after the trigger.
 #[test]
@@ -426,26 +389,8 @@ fn a_file_of_very_many_signals_is_refused_at_once() {
 /// `ptu` where no file may grow longer than so much, with the shell's words before it.
 fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
     // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
-    limited(place, &format!("{before} ulimit -f 80;"), arguments)
-}
-
-/// `ptu` with the shell's words before it.
-pub fn limited(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
-    let ptu = place.command(arguments);
-    let mut command = Command::new("sh");
-    let script = format!("{before} exec \"$0\" \"$@\"");
-    command
-        .arg("-c")
-        .arg(script)
-        .arg(ptu.get_program())
-        .args(ptu.get_args());
-    for (name, value) in ptu.get_envs() {
-        command.env(name, value.unwrap_or_default());
-    }
-    let output = command
-        .current_dir(ptu.get_current_dir().expect("its place"))
-        .output();
-    output.expect("sh starts").into()
+    let arguments = arguments.join(" ");
+    place.shell(&format!("{before} ulimit -f 80; exec ptu {arguments}"))
 }
 
 /// Goal: what a file held before is there, whole, until the new one is; a program that is killed halfway leaves

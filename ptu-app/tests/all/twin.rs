@@ -1,10 +1,9 @@
 //! What was expected beside what came: good twins, first deviations, differences, replays.
 
-use crate::common::{Place, copy_folder, has, has_shape, list, number, text};
+use crate::common::{Place, has_shape, list, number, text};
 use fault_db::Store;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::replay::{Original, explain, good_twin};
-use rusqlite::Connection;
 use serde_json::Value;
 
 /// A good unit that cannot pass: a train is driven by hand, and the limit is one no train can keep.
@@ -138,94 +137,6 @@ fn first_trace(place: &Place) -> String {
     let run = store.resolve_run("latest").expect("a run");
     let traces = store.traces(run).expect("traces");
     traces.first().expect("a trace").id.to_string()
-}
-
-#[test]
-fn a_dead_sensor_leads_through_the_speed_to_the_brake() {
-    let place = Place::new();
-    place
-        .ptu(&["run", "atp/speed_input", "--inject", "speed_sensor_1.dead"])
-        .exits(1);
-    let shown = place.json(&["trace", "show", &first_trace(&place), "--twin", "--json"]);
-    let names: Vec<_> = list(&shown["chain"])
-        .iter()
-        .map(|link| text(link.get("signal").unwrap_or(&link["name"])))
-        .collect();
-    assert_eq!(names.first(), Some(&"speed1"), "{names:?}");
-    for wanted in ["speed", "eb_cause", "eb", "check_failed"] {
-        assert!(names.contains(&wanted), "no {wanted} in {names:?}");
-    }
-    let said = place
-        .ptu(&["trace", "show", &first_trace(&place), "--twin"])
-        .exits(0);
-    for words in [
-        "first deviation from the good twin: speed1",
-        "chain",
-        "expected",
-    ] {
-        assert!(said.out.contains(words), "{words}\n{}", said.all());
-    }
-}
-
-#[test]
-fn what_cannot_be_had_again_says_why() {
-    let place = Place::new();
-    place
-        .ptu("run atp/overspeed --inject eb_relay.slow")
-        .exits(1);
-    let trace = first_trace(&place);
-    // A scripts directory in which the configuration was changed since.
-    let changed = place.path("changed");
-    copy_folder(&crate::common::scripts(), &changed);
-    let config = changed.join("units/sg100.toml");
-    let old = std::fs::read_to_string(&config).expect("read");
-    std::fs::write(&config, format!("{old}\n# another\n")).expect("written");
-    let scripts = changed.display().to_string();
-    for verb in [&["show", "--twin"][..], &["replay"]] {
-        let all = [
-            &["trace", verb[0], trace.as_str(), "--scripts", &scripts],
-            &verb[1..],
-        ]
-        .concat();
-        place.ptu(&all).exits(2).explains(&[
-            "\"sg100\"",
-            "changed since the recording",
-            "--scripts",
-        ]);
-    }
-    std::fs::remove_file(&config).expect("gone");
-    place
-        .ptu(&["trace", "diff", &trace, "twin", "--scripts", &scripts])
-        .exits(2)
-        .explains(&["cannot be had any more", "sg100"]);
-    let said = place
-        .ptu(&["trace", "show", &trace, "--scripts", &scripts])
-        .exits(0);
-    has(&said.out, &["what was expected is not known"]);
-    place
-        .ptu(&["trace", "replay", &trace, "--inject", "eb_relay.slwo"])
-        .exits(2)
-        .explains(&["eb_relay.slow"]);
-    place
-        .ptu(&["trace", "replay", &trace, "--unit", "tcp:127.0.0.1:1"])
-        .exits(3)
-        .explains(&["127.0.0.1:1"]);
-    let runs = place.run_ids().len();
-    // A trace without its recording.
-    let conn = Connection::open(place.path("history.db")).expect("opens");
-    conn.execute("DELETE FROM recording", []).expect("deleted");
-    drop(conn);
-    for verb in [&["show", "--twin"][..], &["replay"]] {
-        let all = [&["trace", verb[0], trace.as_str()], &verb[1..]].concat();
-        place.ptu(&all).exits(2).explains(&["no recording"]);
-    }
-    let said = place.ptu(&["trace", "show", &trace]).exits(0);
-    assert!(said.out.contains("no recording"), "{}", said.all());
-    assert_eq!(
-        place.run_ids().len(),
-        runs,
-        "what cannot begin leaves no run"
-    );
 }
 
 /// Diagnosis asks for explanations by the dozen.

@@ -86,10 +86,21 @@ impl Place {
     /// One with a database in which nothing is recorded.
     pub fn with_database() -> Self {
         let place = Self::new();
-        let made =
-            fault_db::Store::open(&place.path("history.db"), ptu_runs::clock::open_options());
-        made.and_then(fault_db::Store::close).expect("a database");
+        place.make_history();
         place
+    }
+
+    /// Makes a history in which nothing is recorded.
+    pub fn make_history(&self) {
+        let made = fault_db::Store::open(&self.path("history.db"), ptu_runs::clock::open_options());
+        made.and_then(fault_db::Store::close).expect("a database");
+    }
+
+    /// Changes a history behind the program's back.
+    #[track_caller]
+    pub fn change(&self, file: &str, sql: &str) {
+        let opened = rusqlite::Connection::open(self.path(file)).expect("a database");
+        opened.execute_batch(sql).expect("a change");
     }
 
     /// A file or folder of this name in the place.
@@ -141,6 +152,23 @@ impl Place {
     pub fn ptu(&self, arguments: &(impl Typed + ?Sized)) -> Said {
         let output = self.command(arguments).output().expect("ptu starts");
         Said::from(output)
+    }
+
+    /// What the shell of the place says to this line, in which `ptu` is the program.
+    pub fn shell(&self, line: &str) -> Said {
+        let ptu = self.command("");
+        let envs = ptu.get_envs();
+        let mut paths = vec![program("ptu").parent().expect("its folder").to_owned()];
+        let path = std::env::var_os("PATH").expect("a path");
+        paths.extend(std::env::split_paths(&path));
+        let mut shell = Command::new("sh");
+        let said = shell
+            .args(["-c", line])
+            .current_dir(self.folder.path())
+            .envs(envs.filter_map(|(name, value)| Some((name, value?))))
+            .env("PATH", std::env::join_paths(paths).expect("folders"))
+            .output();
+        said.expect("sh starts").into()
     }
 
     /// The one JSON document a question is answered with.

@@ -2,9 +2,11 @@
 //!
 //! `SNAPSHOTS=overwrite` writes down what is answered now; read the difference before it is committed. A line is
 //!
-//! - `# …`: why; `@ bad unit`: the place has the history of [`record_bad_unit`];
+//! - `# …`: why; `@ bad unit`: the place has the history of [`record_bad_unit`]; `@ empty`: one without a run;
+//! - `@ FILE SQL`: the history in this file is changed behind the program's back;
 //! - `> FILE`, then `| …`: a file of the place;
 //! - `$ ptu …`: a command; `{NAME}` stands for what an earlier answer was asked for;
+//! - `% …`: a line for the shell, in which `ptu` is the program and its environment that of the place;
 //! - `$ ptu … --json | /a/0/b NAME=/c/*/d`: of the answer what stands there, `*` for each of a list;
 //! - `: …`: answered on stdout, `! …`: on stderr, `? 1`: an exit code other than 0;
 //! - `...`: any lines, `[..]`: any text within one.
@@ -48,11 +50,16 @@ macro_rules! sessions {
 }
 
 sessions! {
+    bad_databases,
+    bad_steps,
+    bounded_questions,
     campaigns,
     catalogues,
     chosen_procedures,
     diagnoses,
+    drive_reports,
     drives,
+    first_steps,
     history,
     instruments,
     keys,
@@ -61,15 +68,23 @@ sessions! {
     matrices,
     merged,
     no_history,
+    outputs,
     questions,
     repaired_and_back,
     replays,
+    shared_histories,
+    sheets,
     signals,
+    signed_runs,
+    stale_dictionaries,
     symptoms,
     train_faults,
     two_cases,
     undone,
+    waveforms,
+    wrong_campaigns,
     wrong_commands,
+    wrong_data,
     wrong_drives,
     wrong_files,
     wrong_questions,
@@ -104,7 +119,12 @@ fn play(name: &str) {
         match line.split_at_checked(2).unwrap_or((line, "")) {
             (": " | ":" | "! " | "!" | "? ", _) => continue,
             _ if line == "..." => continue,
-            ("@ ", _) => record_bad_unit(&place),
+            ("@ ", "bad unit") => record_bad_unit(&place),
+            ("@ ", "empty") => place.make_history(),
+            ("@ ", change) => {
+                let (file, sql) = change.split_once(' ').expect("a file and SQL");
+                place.change(file, sql);
+            }
             ("> ", name) => {
                 place.write(name, "");
                 file = Some(name);
@@ -117,8 +137,8 @@ fn play(name: &str) {
             _ => {}
         }
         told += &format!("{line}\n");
-        if let Some(typed) = line.strip_prefix("$ ptu ") {
-            told += &answer(&place, typed, &mut names);
+        if line.starts_with("$ ptu ") || line.starts_with("% ") {
+            told += &answer(&place, line, &mut names);
         }
     }
     let judge = Assert::new().action_env("SNAPSHOTS").normalize_paths(false);
@@ -126,15 +146,21 @@ fn play(name: &str) {
 }
 
 /// Types one command, and gives the lines of its answer.
-fn answer(place: &Place, typed: &str, names: &mut BTreeMap<String, String>) -> String {
-    let (command, asked) = typed.split_once(" | ").unwrap_or((typed, ""));
+fn answer(place: &Place, line: &str, names: &mut BTreeMap<String, String>) -> String {
+    let typed = line.strip_prefix("$ ptu ");
+    let (command, asked) = match typed {
+        Some(typed) => typed.split_once(" | ").unwrap_or((typed, "")),
+        None => (&line[2..], ""),
+    };
     let known =
         |text: &str, (name, value): (&String, &String)| text.replace(&format!("{{{name}}}"), value);
     let command = names
         .iter()
         .fold(command.to_owned(), |text, one| known(&text, one));
-    let words = shlex::split(&command).expect("words");
-    let said = place.ptu(&words.iter().map(String::as_str).collect::<Vec<_>>());
+    let said = match typed {
+        Some(_) => place.ptu(&command),
+        None => place.shell(&command),
+    };
     assert!(!said.err.contains("panicked"), "{}", said.all());
     let mut out = said.out;
     if !asked.is_empty() {
