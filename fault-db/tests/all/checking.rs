@@ -3,7 +3,9 @@
 
 use std::path::Path;
 
-use crate::common::{T0_US, by_hand, end, fault, measurement, open, rows, run_record, step};
+use crate::common::{
+    Deeds, T0_US, Traces, change, end, fault, measurement, open, rows, run_record, step,
+};
 use fault_db::{Id, Problem, PruneRule, RepairRecord, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -26,9 +28,7 @@ pub fn three_runs(store: &Store) -> Vec<Id> {
                 note: "replaced".to_owned(),
             };
             let at_us = T0_US + 60;
-            store
-                .record_repair(stored.fault, &repair, "kim", at_us)
-                .expect("repaired");
+            store.put_repair(stored.fault, &repair, "kim", at_us);
         }
         runs.push(writer.id());
     }
@@ -50,7 +50,7 @@ fn every_change_to_a_run_is_detected() {
         let runs = three_runs(&store);
         assert_eq!(problems(&store), []);
         assert_eq!(store.check().expect("checked").runs, 3);
-        by_hand(&path, sql);
+        change(&path, sql);
         let found: Vec<_> = problems(&store)
             .into_iter()
             .filter(|problem| problem.kind.as_str() == "seal")
@@ -79,7 +79,7 @@ fn derived_rows_are_checked_and_can_be_rebuilt() {
         let path = dir.path().join("a.db");
         let store = open(&path);
         three_runs(&store);
-        by_hand(&path, sql);
+        change(&path, sql);
         let reader = Store::open_read_only(&path).expect("opens");
         let found = problems(&reader);
         let [problem] = &found[..] else {
@@ -116,7 +116,7 @@ fn at_most_a_hundred_findings_of_a_kind_are_listed() {
             Ok(())
         })
         .expect("recorded");
-    by_hand(&path, "UPDATE run SET operator = 'lee'");
+    change(&path, "UPDATE run SET operator = 'lee'");
     let found = problems(&store);
     assert_eq!(found.len(), 101);
     assert_eq!(found[100].detail.to_string(), "and 20 more of this kind");
@@ -128,13 +128,11 @@ fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
     let store = open(&path);
     let mut runs = three_runs(&store);
     let at_us = T0_US + 70;
-    (store.add_run_note(runs[1], "kim", "door 3 rattles", at_us)).expect("noted");
+    store.put_run_note(runs[1], "kim", "door 3 rattles", at_us);
     let mut writer = RunWriter::begin(&store, &run_record("ATC-8")).expect("begun");
     let stored = writer.fault(&fault(9, T0_US)).expect("stored");
     let samples = crate::common::realistic_trace(40, 3);
-    let trace = writer
-        .trace(&[stored.occurrence], &samples)
-        .expect("stored");
+    let trace = writer.put_trace(&[stored.occurrence], &samples);
     let recording = fault_db::RecordingRecord {
         ordinal: 1,
         procedure: "atp.overspeed".to_owned(),
@@ -158,7 +156,7 @@ fn every_row_that_says_something_is_covered() {
     for [sql, expected] in rows(include_str!("checking/covered_rows.txt")) {
         let dir = tempdir().expect("a directory");
         let (path, store, _) = a_little_of_everything(dir.path());
-        by_hand(&path, sql);
+        change(&path, sql);
         let all = problems(&store);
         let named = |all: &[Problem]| {
             all.iter()
@@ -244,7 +242,7 @@ fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
             .any(|found| found.detail.to_string() == changed),
         "{found:#?}"
     );
-    by_hand(&path, "DROP TRIGGER IF EXISTS none");
+    change(&path, "DROP TRIGGER IF EXISTS none");
     let conn = Connection::open(&path).expect("opens");
     conn.execute_batch("DROP TRIGGER better; DROP TRIGGER best")
         .expect("gone");
@@ -259,7 +257,7 @@ fn no_command_makes_seals_that_were_taken_out() {
     let dir = tempdir().expect("a directory");
     let (path, store, runs) = a_little_of_everything(dir.path());
     store.close().expect("closed");
-    by_hand(
+    change(
         &path,
         "DELETE FROM seal; UPDATE run SET verdict = 'passed' WHERE seq = 1",
     );
@@ -283,7 +281,7 @@ fn no_command_makes_seals_that_were_taken_out() {
         named("the beginning of this file's own chain") == 1,
         "{found:#?}"
     );
-    by_hand(&path, "DELETE FROM about");
+    change(&path, "DELETE FROM about");
     drop(store);
     let options = fault_db::OpenOptions::new(crate::common::ids(2));
     let refused = Store::open(&path, options).expect_err("without a name");
@@ -330,7 +328,7 @@ fn a_pruned_trace_leaves_a_seal_of_its_deletion() {
         assert!(said.contains(&runs[3].to_string()), "{said}");
         assert!(said.contains(&(T0_US + 100).to_string()), "{said}");
     }
-    by_hand(&path, "DELETE FROM seal WHERE what = 'pruned'");
+    change(&path, "DELETE FROM seal WHERE what = 'pruned'");
     assert!(problems(&store).len() >= 2, "gaps, and two that are gone");
 }
 
@@ -340,7 +338,7 @@ fn a_pruned_trace_leaves_a_seal_of_its_deletion() {
 fn differences_found_by_a_rebuild_are_sealed() {
     let dir = tempdir().expect("a directory");
     let (path, store, _) = a_little_of_everything(dir.path());
-    by_hand(&path, "UPDATE measured_day SET most = 7");
+    change(&path, "UPDATE measured_day SET most = 7");
     let differed = store.rebuild(T0_US).expect("counted again");
     assert_eq!(differed.len(), 1, "{differed:?}");
     let report = store.check().expect("checked");

@@ -1,76 +1,23 @@
-//! Stored counts, compared with counting row by row.
+//! Counts and lists that `counting_filters` does not hold against the rows.
 
-use crate::common::{Random, T0_US, end, fault, measurement, open, run_record, step};
+use crate::common::{Deeds, Random, T0_US, end, fault, open, run_record};
+use crate::counting_filters::{DAY_US, history};
 use fault_db::{
-    FaultFilter, FaultState, RepairRecord, RunFilter, RunRecord, RunWriter, StatKey, StatQuery,
-    Store, TrendQuery, Verdict,
+    FaultFilter, RepairRecord, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery,
+    Verdict,
 };
 use tempfile::tempdir;
 
-const DAY_US: i64 = 86_400_000_000;
-const DAYS: i64 = 120;
-
-/// Four months of four units on two lines: faults, repairs that hold or do not, faults closed with and
-/// without one.
-fn history(store: &Store, random: &mut Random) {
-    for day in 0..DAYS {
-        let unit = format!("ATC-{}", random.next() % 4);
-        let at_us = T0_US + day * DAY_US + (random.next() % DAY_US as u64) as i64;
-        let record = RunRecord {
-            started_at_us: at_us,
-            line: format!("line-{}", random.next() % 2),
-            ..run_record(&unit)
-        };
-        let mut writer = RunWriter::begin(store, &record).expect("begun");
-        let mut measured = step(0);
-        measured.measurements = vec![measurement("eb_reaction", 0.42 + random.noise() / 10.0)];
-        writer.step(measured).expect("kept");
-        let mut seen = Vec::new();
-        for n in 0..random.next() % 4 {
-            let code = 1 + (random.next() % 3) as i64;
-            let mut record = fault(code, at_us + 1_000_000 * n as i64);
-            record.lru = ["eb_relay", "tra"][(code % 2) as usize].to_owned();
-            seen.push(writer.fault(&record).expect("stored").fault);
-        }
-        writer.finish(&end(Verdict::Failed)).expect("finished");
-        for id in seen {
-            let later_us = at_us + (random.next() % (9 * DAY_US as u64)) as i64;
-            let state = store.fault(id).expect("known").fault.state;
-            let done = match (random.next() % 4, state) {
-                (0 | 1, FaultState::Open) => {
-                    let repair = RepairRecord {
-                        part: "EB_Relay ".into(),
-                        serial_new: Some(format!("SN-{day}")),
-                        ..RepairRecord::default()
-                    };
-                    store.record_repair(id, &repair, "kim", later_us)
-                }
-                (2, FaultState::Open) => {
-                    store.set_state(id, FaultState::Closed, "kim", "", later_us)
-                }
-                (2, FaultState::Repaired) => {
-                    store.set_state(id, FaultState::Verified, "kim", "", later_us)
-                }
-                (_, FaultState::Verified) => {
-                    store.set_state(id, FaultState::Closed, "kim", "", later_us)
-                }
-                _ => Ok(state),
-            };
-            done.expect("people may");
-        }
-    }
-}
-
-/// Goal: whatever span is asked for, what triggers counted is what there is. Method: every fault of the
-/// history is major, so that asking for those counts row by row what otherwise is added up.
+/// Goal: days of a measurement add up, whatever span is asked for: `counting_filters` counts faults. Method: all lines are those
+/// of each line.
 #[test]
-fn kept_counts_are_those_of_the_rows() {
+fn days_of_a_measurement_on_all_lines_are_those_of_each() {
     let dir = tempdir().expect("a directory");
     for seed in 1..4 {
         let mut random = Random::new(seed);
         let store = open(&dir.path().join(format!("{seed}.db")));
         history(&store, &mut random);
-        let mut within = || T0_US + (random.next() % ((DAYS + 10) as u64 * DAY_US as u64)) as i64;
+        let mut within = || T0_US + (random.next() % (110 * DAY_US as u64)) as i64;
         let mut spans = vec![
             (None, None),
             (Some(T0_US), None),
@@ -80,49 +27,7 @@ fn kept_counts_are_those_of_the_rows() {
             let (a, b) = (within(), within());
             spans.push((Some(a.min(b)), Some(a.max(b) + 1)));
         }
-        let hour = 3_600_000_000;
-        spans.push((Some(T0_US + 5 * hour), Some(T0_US + 7 * hour)));
-        spans.push((
-            Some(T0_US + 31 * DAY_US - hour),
-            Some(T0_US + 61 * DAY_US + hour),
-        ));
         for (since_us, until_us) in spans {
-            for by in [
-                StatKey::Code,
-                StatKey::Lru,
-                StatKey::Unit,
-                StatKey::Line,
-                StatKey::All,
-            ] {
-                for back_within_days in [30, 5] {
-                    let query = StatQuery {
-                        by,
-                        filter: FaultFilter {
-                            since_us,
-                            until_us,
-                            ..FaultFilter::default()
-                        },
-                        now_us: T0_US + DAYS * DAY_US,
-                        back_within_days,
-                    };
-                    let mut by_row = query.clone();
-                    by_row.filter.severity = Some("major".into());
-                    let kept = store.stats(&query).expect("counted");
-                    assert_eq!(
-                        kept,
-                        store.stats(&by_row).expect("counted"),
-                        "seed {seed} {by:?} {since_us:?} {until_us:?}"
-                    );
-                    if let (StatKey::Unit, Some(first)) = (by, kept.first()) {
-                        let mut alone = query.clone();
-                        alone.filter.unit = Some(first.key.clone());
-                        assert_eq!(
-                            store.stats(&alone).expect("counted"),
-                            std::slice::from_ref(first)
-                        );
-                    }
-                }
-            }
             let days = |line: Option<&str>| {
                 let query = TrendQuery {
                     measurement: "eb_reaction".into(),
@@ -157,9 +62,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
         part: "eb_relay".into(),
         ..RepairRecord::default()
     };
-    store
-        .record_repair(id, &repair, "kim", T0_US - 30 * DAY_US)
-        .expect("repaired");
+    store.put_repair(id, &repair, "kim", T0_US - 30 * DAY_US);
     let query = StatQuery {
         by: StatKey::All,
         filter: FaultFilter::default(),
@@ -215,7 +118,7 @@ fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
     let say = |n: usize, text: &str| {
         let fault = &faults[n * n % faults.len()];
         let at_us = fault.last_at_us + n as i64;
-        store.add_note(fault.id, "lee", text, at_us).expect("noted");
+        store.put_note(fault.id, "lee", text, at_us);
     };
     for n in 0..3_100 {
         say(n, "EB 릴레이 부품교체함, relays replaced");
@@ -238,19 +141,9 @@ fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
         ..FaultFilter::default()
     };
     let held_against_each_other = || {
-        for search in [
-            "EB",
-            "eb rel",
-            "relays-repl",
-            "relays-eb",
-            "교체",
-            "함교",
-            "EB 교체",
-            "repl 릴레이",
-            "lay",
-            "geprüft",
-            "brush",
-        ] {
+        let searches =
+            "EB|eb rel|relays-repl|relays-eb|교체|함교|EB 교체|repl 릴레이|lay|geprüft|brush";
+        for search in searches.split('|') {
             for filter in [&everything, &of_unit] {
                 let (all, few) = lists(search, filter);
                 assert_eq!(few, all[..all.len().min(20)], "{search} {filter:?}");
@@ -263,9 +156,7 @@ fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
     assert!(lists("lay", &everything).0.is_empty());
     for n in 0..3_100 {
         let run = runs[n * n % runs.len()].id;
-        store
-            .add_run_note(run, "lee", "brushes worn", T0_US + n as i64)
-            .expect("noted");
+        store.put_run_note(run, "lee", "brushes worn", T0_US + n as i64);
     }
     held_against_each_other();
     assert!(lists("brush", &everything).1.len() > 10);

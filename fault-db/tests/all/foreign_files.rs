@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use crate::common::{
-    T0_US, change, end, fault, ids, measurement, realistic_trace, rows, run_record, step,
+    Deeds, T0_US, Traces, change, end, fault, ids, measurement, realistic_trace, rows, run_record,
+    step,
 };
 use fault_db::{
     Id, MergeCounts, OpenOptions, RecordingRecord, RepairRecord, RunWriter, Store, Synchronous,
@@ -24,9 +25,7 @@ fn whole_run(store: &Store, serial: &str) -> Id {
     measured.measurements = vec![measurement("eb_reaction", 0.42)];
     writer.step(measured).expect("kept");
     let stored = writer.fault(&fault(101, T0_US)).expect("stored");
-    let trace = writer
-        .trace(&[stored.occurrence], &realistic_trace(60, 1))
-        .expect("a trace");
+    let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(60, 1));
     let recording = RecordingRecord {
         ordinal: 0,
         procedure: "atp.overspeed".to_owned(),
@@ -40,13 +39,9 @@ fn whole_run(store: &Store, serial: &str) -> Id {
         part: "relay".to_owned(),
         ..RepairRecord::default()
     };
-    store
-        .record_repair(stored.fault, &repair, "kim", T0_US + 1)
-        .expect("repaired");
+    store.put_repair(stored.fault, &repair, "kim", T0_US + 1);
     let run = store.resolve_run("latest").expect("the run");
-    store
-        .add_run_note(run, "kim", "noted", T0_US + 2)
-        .expect("a note");
+    store.put_run_note(run, "kim", "noted", T0_US + 2);
     run
 }
 

@@ -10,7 +10,7 @@ use rusqlite::Connection;
 use sha2::{Digest as _, Sha256};
 use tempfile::tempdir;
 
-use crate::common::{T0_US, by_hand, end, fault, ids, open, realistic_trace, run_record};
+use crate::common::{T0_US, change, end, fault, ids, open, realistic_trace, run_record};
 
 fn signer() -> Arc<Signer> {
     Arc::new(Signer::new("Kim", "technician", &[3; 32]).expect("a key"))
@@ -55,7 +55,7 @@ fn append(path: &Path, what: &str, id: Id, says: &str) {
             .map(|byte| format!("{byte:02x}"))
             .collect::<String>()
     };
-    by_hand(
+    change(
         path,
         &format!(
             "INSERT INTO seal(origin, ordinal, what, id, says, digest, hash) VALUES
@@ -154,7 +154,7 @@ fn what_was_changed_is_not_shown_as_signed() {
     let kim = || Some("Kim".to_owned());
     assert_eq!(by_of(&store), (kim(), kim()));
     store.close().expect("closed");
-    for (change, left, signed) in [
+    for (sql, left, signed) in [
         ("UPDATE run SET verdict = 'passed'", "note", (None, kim())),
         (
             "UPDATE run_note SET text = 'all good'",
@@ -171,7 +171,7 @@ fn what_was_changed_is_not_shown_as_signed() {
     ] {
         let copy = dir.path().join("b.db");
         std::fs::copy(&path, &copy).expect("copied");
-        by_hand(&copy, change);
+        change(&copy, sql);
         let store = Store::open_read_only(&copy).expect("opens");
         // What else is signed is left, and goes into the certificate of the run.
         let texts = store.signatures(id).expect("read");
@@ -179,7 +179,7 @@ fn what_was_changed_is_not_shown_as_signed() {
             texts.len() == 1 && texts[0].contains(&format!("\"what\":\"{left}\"")),
             "{texts:?}"
         );
-        assert_eq!(by_of(&store), signed, "{change}");
+        assert_eq!(by_of(&store), signed, "{sql}");
     }
     let store = open(&path);
     for state in [
@@ -263,7 +263,7 @@ fn a_recount_does_not_take_a_finding_away() {
     let store = open(&path);
     run(&store, "ATC-7");
     store.close().expect("closed");
-    by_hand(&path, "UPDATE fault SET state = 'closed'");
+    change(&path, "UPDATE fault SET state = 'closed'");
     let store = open(&path);
     assert!(!store.check().expect("checked").problems.is_empty());
     store.rebuild(T0_US + 7).expect("rebuilt");

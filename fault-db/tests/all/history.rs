@@ -1,6 +1,6 @@
 //! A unit's own history: what counts for a part, and what does not.
 
-use crate::common::{self, T0_US, end, fault, open};
+use crate::common::{self, Deeds, T0_US, end, fault, open};
 use std::collections::BTreeMap;
 
 use fault_db::{
@@ -57,9 +57,7 @@ impl History {
             ..RepairRecord::default()
         };
         let at_us = T0_US + day * DAY_US + DAY_US / 2;
-        self.store
-            .record_repair(fault, &repair, "kim", at_us)
-            .expect("a repair");
+        self.store.put_repair(fault, &repair, "kim", at_us);
     }
 
     /// A run of that day passes, and proves the repairs of these faults.
@@ -306,10 +304,10 @@ fn claims_are_not_learnt_from() {
 
     let (history, opened) = repaired(run_record("U-1"), &[RELAY]);
     let at_us = T0_US + 2 * DAY_US;
-    let by_hand = history
+    let change = history
         .store
         .set_state(opened[0], FaultState::Verified, "kim", "", at_us);
-    assert_eq!(by_hand.expect("a person may"), FaultState::Verified);
+    assert_eq!(change.expect("a person may"), FaultState::Verified);
     assert_eq!(history.relays(3).repairs, 0, "by hand");
 
     let (history, opened) = repaired(run_record("U-1"), &[SENSOR, RELAY]);
@@ -331,10 +329,7 @@ fn parts_found_by_a_diagnosis_are_compared_with_those_repaired() {
             note: String::new(),
         };
         let at_us = T0_US + DAY_US + 1;
-        history
-            .store
-            .attribute_diagnosed(&opened, &cause, at_us)
-            .expect("attributed");
+        history.store.put_diagnosed(&opened, &cause, at_us);
         history.repair(opened[0], repaired, 1);
         history.confirm(unit, &opened, 2);
     }

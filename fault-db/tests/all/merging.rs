@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{
-    Random, STAT_KEYS, T0_US, by_hand, end, fault, ids, measurement, run_record, step,
+    Deeds, Random, STAT_KEYS, T0_US, change, end, fault, ids, measurement, rows, run_record, step,
 };
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter,
@@ -232,10 +232,8 @@ fn state(store: &Store, fault: Id) -> FaultState {
 fn conflicting_events_are_kept_and_listed_until_resolved() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
-    a.acknowledge(fault, "kim", "mine", T0_US + 10)
-        .expect("his clock is slow");
-    b.set_state(fault, FaultState::Closed, "lee", "not a fault", T0_US + 900)
-        .expect("her clock is fast");
+    a.put_acknowledged(fault, "kim", "mine", T0_US + 10);
+    b.put_state(fault, FaultState::Closed, "lee", "not a fault", T0_US + 900);
     assert_eq!(a.conflicts().expect("looked"), [], "nobody knows yet");
     a.merge_from(&b).expect("merged");
     b.merge_from(&a).expect("merged");
@@ -281,9 +279,8 @@ fn the_number_of_events_does_not_decide_a_conflict() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     act(&b, fault, 1, T0_US + 10).expect("repaired");
-    a.acknowledge(fault, "kim", "", T0_US + 20).expect("taken");
-    a.set_state(fault, FaultState::Closed, "kim", "not found", T0_US + 30)
-        .expect("closed");
+    a.put_acknowledged(fault, "kim", "", T0_US + 20);
+    a.put_state(fault, FaultState::Closed, "kim", "not found", T0_US + 30);
     a.merge_from(&b).expect("merged");
     b.merge_from(&a).expect("merged");
     for store in [&a, &b] {
@@ -308,8 +305,7 @@ fn an_occurrence_conflicts_only_with_a_resolution() {
     for store in [&a, &b] {
         assert_eq!(one_fault(store, T0_US + HOUR_US), fault, "it is open again");
     }
-    a.acknowledge(fault, "kim", "mine", T0_US + 2 * HOUR_US)
-        .expect("taken");
+    a.put_acknowledged(fault, "kim", "mine", T0_US + 2 * HOUR_US);
     a.merge_from(&b).expect("merged");
     assert_eq!(a.conflicts().expect("looked"), []);
     assert_eq!(state(&a, fault), FaultState::Acknowledged);
@@ -400,9 +396,7 @@ fn two_concurrent_events_with_the_same_state_are_no_conflict() {
     let dir = tempdir().expect("a directory");
     let (a, b, fault) = shared_fault(&dir);
     for store in [&a, &b] {
-        store
-            .acknowledge(fault, "kim", "", T0_US + 10)
-            .expect("taken");
+        store.put_acknowledged(fault, "kim", "", T0_US + 10);
     }
     a.merge_from(&b).expect("merged");
     assert_eq!(a.conflicts().expect("looked"), []);
@@ -424,11 +418,9 @@ fn a_merged_fault_is_found_by_either_id() {
     ] {
         assert_eq!(a.resolve_fault(&asked).ok(), Some(ours), "{asked}");
     }
-    a.add_note(theirs, "kim", "by its other name", T0_US + 20)
-        .expect("found");
+    a.put_note(theirs, "kim", "by its other name", T0_US + 20);
     // That file does not know of the merge, and the fault is closed there.
-    b.set_state(theirs, FaultState::Closed, "lee", "", T0_US + 30)
-        .expect("closed");
+    b.put_state(theirs, FaultState::Closed, "lee", "", T0_US + 30);
     a.merge_from(&b).expect("merged");
     assert_eq!(faults(&a), [ours]);
     assert_eq!(state(&a, ours), FaultState::Closed);
@@ -440,8 +432,7 @@ fn a_merged_fault_is_found_by_either_id() {
 fn an_older_copy_does_not_absorb_the_next_fault() {
     let dir = tempdir().expect("a directory");
     let (a, b, first) = shared_fault(&dir);
-    b.set_state(first, FaultState::Closed, "lee", "", T0_US + 10)
-        .expect("closed");
+    b.put_state(first, FaultState::Closed, "lee", "", T0_US + 10);
     let next = one_fault(&b, T0_US + HOUR_US);
     assert_ne!(first, next);
     a.merge_from(&b).expect("merged");
@@ -476,56 +467,18 @@ fn a_forked_copy_is_merged_with_all_its_runs() {
     assert_eq!(a.merge_from(&b).expect("merged"), again);
 }
 
-/// Ways in which a copy of a file was changed by hand.
-const TAMPERED: [(&str, &str); 8] = [
-    ("a verdict", "UPDATE run SET verdict = 'passed'"),
-    ("a verdict taken away", "UPDATE run SET verdict = NULL"),
-    (
-        "a step",
-        "INSERT INTO step SELECT run, 7, procedure, kind, 7, name, turn, turns, verdict, 0, 0, '', NULL, NULL, NULL FROM step",
-    ),
-    (
-        "a measurement",
-        "INSERT INTO measurement SELECT run, 0, 9, name, 0.1, unit, low, high, verdict, NULL FROM measurement",
-    ),
-    (
-        "a script",
-        "INSERT INTO run_script SELECT run, 'scripts/other.star', sha256 FROM run_script",
-    ),
-    (
-        "an occurrence",
-        "INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line,
-            code_name, severity)
-         SELECT randomblob(16), fault, run, at_us, bench_us, '', '[]', unit, code, lru, line, code_name, severity FROM fault_occurrence",
-    ),
-    (
-        "a fault",
-        "INSERT INTO fault(seq, id, unit, code, lru, code_name, severity, state, first_at_us, last_at_us, occurrences)
-         SELECT 99, randomblob(16), unit, 77, lru, 'made_up', severity, 'open', 5, 5, 1 FROM fault;
-         INSERT INTO fault_event(id, fault, kind, at_us, who, body, state, turn, follows, seen)
-         VALUES (randomblob(16), 99, 'opened', 5, '', '', 'open', 1, x'', 0);
-         INSERT INTO fault_occurrence(id, fault, run, at_us, bench_us, message, freeze_json, unit, code, lru, line,
-            code_name, severity)
-         SELECT randomblob(16), 99, run, 5, 5, '', '[]', unit, 77, lru, line, code_name, severity FROM fault_occurrence",
-    ),
-    (
-        "all of it, sealed again",
-        "UPDATE run SET verdict = 'passed'; UPDATE seal SET digest = zeroblob(32)",
-    ),
-];
-
 /// Goal: a run that is over here stays as it was sealed, whatever another file says of it; it is named, and the
 /// rest comes.
 /// Method: a copy is changed by hand in each of several ways, and goes on with a run of its own.
 #[test]
 fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
-    for (what, sql) in TAMPERED {
+    for [what, sql] in rows(include_str!("merging/changed_copies.txt")) {
         let dir = tempdir().expect("a directory");
         let a = laptop(&dir, "a.db", 1);
         let altered = measured_run(&a);
         let copy = dir.path().join("copy.db");
         a.backup(&copy).expect("copied");
-        by_hand(&copy, sql);
+        change(&copy, sql);
         let b = opened(&copy, 2);
         one_fault(&b, T0_US + 1);
         let before = a.run(altered).expect("there");
@@ -558,7 +511,7 @@ fn a_changed_file_without_seals_and_id_gets_no_new_chain() {
     let altered = measured_run(&a);
     let copy = dir.path().join("copy.db");
     a.backup(&copy).expect("copied");
-    by_hand(
+    change(
         &copy,
         "UPDATE run SET verdict = 'passed'; DELETE FROM seal; DELETE FROM about WHERE key = 'file_id'",
     );

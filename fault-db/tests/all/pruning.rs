@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{Random, T0_US, end, fault, open, realistic_trace, run_record};
+use crate::common::{Deeds, Random, T0_US, Traces, end, fault, open, realistic_trace, run_record};
 use fault_db::{FaultState, Id, PruneCounts, PruneRule, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -137,9 +137,7 @@ fn traces_not_sent_yet_are_not_pruned() {
     let waiting = trace(&store, 1, Verdict::Passed);
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     let seen = writer.fault(&fault(1, T0_US)).expect("stored");
-    let needed = writer
-        .trace(&[seen.occurrence], &realistic_trace(20, 1))
-        .expect("stored");
+    let needed = writer.put_trace(&[seen.occurrence], &realistic_trace(20, 1));
     writer.finish(&end(Verdict::Failed)).expect("finished");
     let conn = Connection::open(&path).expect("opens");
     conn.execute_batch(
@@ -166,8 +164,6 @@ fn traces_not_sent_yet_are_not_pruned() {
     let alone = open(&dir.path().join("b.db"));
     trace(&alone, 0, Verdict::Passed);
     assert_eq!(prune(&alone, PruneRule::default()).traces, 1);
-    store
-        .set_state(seen.fault, FaultState::Closed, "kim", "", T0_US + 5)
-        .expect("closed");
+    store.put_state(seen.fault, FaultState::Closed, "kim", "", T0_US + 5);
     assert_eq!(prune(&store, anyway).traces, 1);
 }

@@ -2,7 +2,9 @@
 //! writes at the same time.
 
 use crate::checking::three_runs;
-use crate::common::{T0_US, end, fault, ids, measurement, open, realistic_trace, run_record, step};
+use crate::common::{
+    Deeds, T0_US, Traces, end, fault, ids, measurement, open, realistic_trace, run_record, step,
+};
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 use fault_db::{
     FaultFilter, FaultState, OpenOptions, RepairRecord, RunFilter, RunRecord, RunState, RunWriter,
@@ -290,9 +292,7 @@ fn occurrences_join_reopen_or_begin_a_fault() {
     assert_eq!(kinds, ["opened", "acknowledged", "repair", "recurred"]);
     assert_eq!(detail.events[2].repair, Some(repair));
 
-    store
-        .set_state(id, FaultState::Closed, "kim", "no fault found", T0_US + 14)
-        .expect("closed");
+    store.put_state(id, FaultState::Closed, "kim", "no fault found", T0_US + 14);
     let error = store
         .acknowledge(id, "kim", "", T0_US + 15)
         .expect_err("it is over");
@@ -310,9 +310,7 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
     let b = writer.fault(&fault(2, T0_US)).expect("stored");
     let mut data = realistic_trace(600, 5);
     data.columns[0][3] = f64::NAN;
-    let id = writer
-        .trace(&[a.occurrence, b.occurrence], &data)
-        .expect("stored");
+    let id = writer.put_trace(&[a.occurrence, b.occurrence], &data);
     for fault in [a.fault, b.fault] {
         assert_eq!(store.fault(fault).expect("known").fault.trace_id, Some(id));
     }

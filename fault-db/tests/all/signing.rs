@@ -13,7 +13,7 @@ use rusqlite::types::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::common::{
-    T0_US, change, end, fault, ids, measurement, open, realistic_trace, run_record, step,
+    T0_US, change, end, fault, ids, measurement, open, realistic_trace, rows, run_record, step,
 };
 
 fn signer(seed: u8) -> Arc<Signer> {
@@ -128,24 +128,12 @@ const OF_THE_FILE: [(&str, &str); 4] = [
 #[test]
 fn every_changed_field_of_a_signed_run_is_found_and_located() {
     let (dir, path, id) = signed_file();
-    let tables = [
-        "run",
-        "run_script",
-        "step",
-        "measurement",
-        "fault_occurrence",
-        "fault_event",
-        "run_note",
-        "trace",
-        "channel_set",
-        "recording",
-        "seal",
-        "fault",
-    ];
+    let tables = "run run_script step measurement fault_occurrence fault_event \
+        run_note trace channel_set recording seal fault";
     let (mut changed, mut by_check, mut missed, mut vague) = (0, 0, Vec::new(), Vec::new());
     let copy = dir.path().join("b.db");
     let mut changes = Vec::new();
-    for table in tables {
+    for table in tables.split(' ') {
         for (column, row, value) in cells(&path, table) {
             if !OF_THE_FILE.contains(&(table, &column[..])) {
                 let others = others(&value).into_iter().enumerate();
@@ -394,38 +382,7 @@ fn with_bit_changed(value: &Value, place: usize, bit: u64) -> Option<Value> {
 #[test]
 fn rows_taken_out_or_put_in_are_found() {
     let (dir, path, id) = signed_file();
-    for (sql, says) in [
-        (
-            "DELETE FROM measurement WHERE step_index = 2 AND ordinal = 1",
-            "1 of its measurements taken out, from number 6",
-        ),
-        (
-            "DELETE FROM step WHERE step_index = 3; DELETE FROM measurement WHERE step_index = 3",
-            "1 of its steps taken out, from number 4",
-        ),
-        (
-            "INSERT INTO run_script(run, path, sha256) VALUES (1, 'zz', 'ab')",
-            "1 put into its scripts, from number 2",
-        ),
-        ("DELETE FROM run_note", "note "),
-        (
-            "DELETE FROM fault_event WHERE kind = 'repair'",
-            "was taken out",
-        ),
-        ("DELETE FROM trace", "was taken out"),
-        ("DELETE FROM recording", "was taken out"),
-        ("DELETE FROM seal WHERE what = 'run'", "the seal of run"),
-        ("DELETE FROM seal WHERE what = 'note'", "has no seal"),
-        (
-            "UPDATE step SET verdict = 'failed' WHERE step_index = 1",
-            "step 1 (atp.overspeed: step 1)",
-        ),
-        ("UPDATE run SET operator = 'lee'", "its operator"),
-        (
-            "UPDATE measurement SET high = 9 WHERE step_index = 0 AND ordinal = 0",
-            "measurement 1 of step 0 (eb_reaction)",
-        ),
-    ] {
+    for [sql, says] in rows(include_str!("signing/rows.txt")) {
         let copy = dir.path().join("b.db");
         std::fs::copy(&path, &copy).expect("copied");
         change(&copy, sql);

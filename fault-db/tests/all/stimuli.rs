@@ -1,6 +1,6 @@
 //! Recordings of stimuli: kept beside their traces, merged, pruned and checked with them.
 
-use crate::common::{T0_US, end, fault, ids, open, realistic_trace, run_record};
+use crate::common::{Deeds, T0_US, Traces, end, fault, ids, open, realistic_trace, run_record};
 use fault_db::{
     FaultState, Id, OpenOptions, PruneRule, RecordingRecord, RunWriter, Store, StoreError, Verdict,
 };
@@ -24,9 +24,7 @@ fn two_procedures(store: &Store) -> (Id, [Id; 2]) {
     let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
     let stored = writer.fault(&fault(1, T0_US)).expect("stored");
     let mut cut = |ordinal: u32| {
-        let trace = writer
-            .trace(&[stored.occurrence], &realistic_trace(600, 3))
-            .expect("stored");
+        let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(600, 3));
         writer.recording(&record(ordinal), &[trace]).expect("kept");
         trace
     };
@@ -84,9 +82,7 @@ fn a_recording_is_deleted_with_its_last_trace() {
         ..PruneRule::default()
     };
     assert_eq!(store.prune(&rule(false)).expect("pruned").recordings, 0);
-    store
-        .set_state(closed, FaultState::Closed, "kim", "", T0_US + 50)
-        .expect("closed");
+    store.put_state(closed, FaultState::Closed, "kim", "", T0_US + 50);
     for dry_run in [true, false] {
         let counts = store.prune(&rule(dry_run)).expect("pruned");
         assert_eq!((counts.traces, counts.recordings), (2, 2), "{dry_run}");

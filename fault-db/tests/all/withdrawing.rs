@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::common::{Random, T0_US, by_hand, end, fault, ids, open, run_record, step};
+use crate::common::{Deeds, Random, T0_US, change, end, fault, ids, open, run_record, step};
 use fault_db::{
     CauseRecord, FaultFilter, FaultRecord, FaultState, Id, OpenOptions, RepairRecord, RepairsOf,
     RunWriter, StatKey, StatQuery, Store, ToWithdraw, Verdict, Withdrawn,
@@ -174,9 +174,7 @@ fn all_that_can_be_asked_is_after_an_undo_what_it_was_before_the_step() {
             probability: Some(0.97),
             ..CauseRecord::default()
         };
-        store
-            .attribute_diagnosed(&faults[..2], &cause, now_us + 1)
-            .expect("attributed");
+        store.put_diagnosed(&faults[..2], &cause, now_us + 1);
         let mut undone = BTreeSet::new();
         for _ in 0..40 {
             now_us += HOUR_US * (1 + (random.next() % 50) as i64);
@@ -245,12 +243,8 @@ fn the_correction_is_told_with_what_it_withdraws() {
     let folder = tempdir().expect("a folder");
     let store = open(&folder.path().join("a.db"));
     let faults = run(&store, T0_US, &[(1, "eb_relay")]);
-    store
-        .acknowledge(faults[0], "kim", "", T0_US + 1)
-        .expect("acknowledged");
-    store
-        .record_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 2)
-        .expect("repaired");
+    store.put_acknowledged(faults[0], "kim", "", T0_US + 1);
+    store.put_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 2);
     let withdrawn = undo(&store, faults[0], T0_US + 3);
     assert_eq!((&*withdrawn.kind, withdrawn.faults.len()), ("repair", 1));
     assert_eq!(withdrawn.faults[0].state, FaultState::Acknowledged);
@@ -286,9 +280,7 @@ fn what_a_run_or_a_new_fault_rests_on_is_not_withdrawn() {
         let said = refused.expect_err("refused").to_string();
         assert!(said.contains(says), "{said}");
     };
-    store
-        .record_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 9)
-        .expect("repaired");
+    store.put_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 9);
     run(&store, T0_US + 10, &[]);
     refused(faults[0], "it was passed after it was repair");
     run(&store, T0_US + 20, &[]);
@@ -297,15 +289,13 @@ fn what_a_run_or_a_new_fault_rests_on_is_not_withdrawn() {
         FaultState::Verified
     );
     refused(faults[0], "it was passed after it was repair");
-    store
-        .set_state(
-            faults[1],
-            FaultState::Closed,
-            "kim",
-            "not found",
-            T0_US + 30,
-        )
-        .expect("closed");
+    store.put_state(
+        faults[1],
+        FaultState::Closed,
+        "kim",
+        "not found",
+        T0_US + 30,
+    );
     let other = ToWithdraw {
         written_at_us: Some(T0_US + 29),
         ..ToWithdraw::default()
@@ -332,31 +322,23 @@ fn a_withdrawal_is_imported_with_what_it_withdraws() {
     let other = laptop(&there, 2);
     other.import(&here).expect("imported");
     let before = said(&other);
-    store
-        .record_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 2)
-        .expect("repaired");
+    store.put_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 2);
     undo(&store, faults[0], T0_US + 3);
     other.import(&here).expect("imported");
     assert_eq!(said(&other), before);
     assert_eq!(other.fault(faults[0]).expect("read").withdrawn.len(), 1);
     sound(&other);
     // The other laptop wrote something in knowledge of the step: with what was decided before, that is a conflict.
-    store
-        .acknowledge(faults[0], "kim", "", T0_US + 4)
-        .expect("acknowledged");
-    store
-        .record_repair(faults[0], &repair("eb_relay", "SN-2"), "kim", T0_US + 5)
-        .expect("repaired");
+    store.put_acknowledged(faults[0], "kim", "", T0_US + 4);
+    store.put_repair(faults[0], &repair("eb_relay", "SN-2"), "kim", T0_US + 5);
     other.import(&here).expect("imported");
-    other
-        .set_state(
-            faults[0],
-            FaultState::Verified,
-            "lee",
-            "seen by eye",
-            T0_US + 7,
-        )
-        .expect("verified");
+    other.put_state(
+        faults[0],
+        FaultState::Verified,
+        "lee",
+        "seen by eye",
+        T0_US + 7,
+    );
     undo(&store, faults[0], T0_US + 8);
     other.import(&here).expect("imported");
     store.import(&there).expect("imported");
@@ -373,19 +355,17 @@ fn a_withdrawal_is_imported_with_what_it_withdraws() {
 /// A row from outside that withdraws nothing in particular, or says a state, is refused.
 #[test]
 fn a_withdrawal_of_no_event_is_refused() {
-    for change in ["follows = x''", "state = 'closed'"] {
+    for set in ["follows = x''", "state = 'closed'"] {
         let folder = tempdir().expect("a folder");
         let (here, there) = (folder.path().join("a.db"), folder.path().join("b.db"));
         let store = laptop(&here, 1);
         let faults = run(&store, T0_US, &[(1, "eb_relay")]);
-        store
-            .acknowledge(faults[0], "kim", "", T0_US + 1)
-            .expect("acknowledged");
+        store.put_acknowledged(faults[0], "kim", "", T0_US + 1);
         undo(&store, faults[0], T0_US + 2);
         drop(store);
-        by_hand(
+        change(
             &here,
-            &format!("UPDATE fault_event SET {change} WHERE kind = 'withdrawn'"),
+            &format!("UPDATE fault_event SET {set} WHERE kind = 'withdrawn'"),
         );
         let other = laptop(&there, 2);
         let counts = other.import(&here).expect("imported");

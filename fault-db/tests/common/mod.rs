@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use fault_db::{
-    Channel, ChannelKind, FaultRecord, FreezeSample, IdSource, MeasurementRecord, OpenOptions,
-    RunEnd, RunRecord, ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
+    CauseRecord, ChangedFault, Channel, ChannelKind, FaultRecord, FaultState, FreezeSample, Id,
+    IdSource, MeasurementRecord, OpenOptions, RepairRecord, RunEnd, RunRecord, RunWriter,
+    ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
 
 /// 2026-03-01 00:00:00 UTC.
@@ -64,28 +65,82 @@ pub fn open(path: &Path) -> Store {
     Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
 }
 
-/// Changes a file behind the program's back. Its triggers need functions of the program, so they are away
-/// meanwhile.
-pub fn by_hand(path: &Path, sql: &str) {
-    let conn = rusqlite::Connection::open(path).expect("opens");
-    let triggers: Vec<(String, String)> = {
-        let mut select = conn
-            .prepare("SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'")
-            .expect("a question");
-        let rows = select.query_map([], |row| Ok((row.get(0)?, row.get(1)?)));
-        rows.expect("asked")
-            .collect::<Result<_, _>>()
-            .expect("read")
-    };
-    let drop: String = (triggers.iter())
-        .map(|(name, _)| format!("DROP TRIGGER {name};"))
-        .collect();
-    conn.execute_batch(&format!("PRAGMA foreign_keys = OFF; {drop}"))
-        .expect("dropped");
-    conn.execute_batch(sql)
-        .unwrap_or_else(|error| panic!("{sql}: {error}"));
-    for (_, sql) in triggers {
-        conn.execute_batch(&sql).expect("made again");
+/// What people do in a test, which they may.
+pub trait Deeds {
+    fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64);
+    fn put_acknowledged(&self, fault: Id, who: &str, note: &str, at_us: i64);
+    fn put_repair(&self, fault: Id, repair: &RepairRecord, who: &str, at_us: i64);
+    /// Of all faults of the case: the one that was named, and the rest.
+    fn put_case_repair(
+        &self,
+        fault: Id,
+        repair: &RepairRecord,
+        who: &str,
+        at_us: i64,
+    ) -> (ChangedFault, Vec<ChangedFault>);
+    fn put_diagnosed(&self, faults: &[Id], cause: &CauseRecord, at_us: i64) -> Vec<Id>;
+    fn put_note(&self, fault: Id, who: &str, note: &str, at_us: i64);
+    fn put_run_note(&self, run: Id, who: &str, text: &str, at_us: i64);
+}
+
+impl Deeds for Store {
+    #[track_caller]
+    fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64) {
+        let done = self.set_state(fault, to, who, note, at_us);
+        done.expect("a state");
+    }
+
+    #[track_caller]
+    fn put_acknowledged(&self, fault: Id, who: &str, note: &str, at_us: i64) {
+        self.put_state(fault, FaultState::Acknowledged, who, note, at_us);
+    }
+
+    #[track_caller]
+    fn put_repair(&self, fault: Id, repair: &RepairRecord, who: &str, at_us: i64) {
+        let done = self.record_repair(fault, repair, who, at_us);
+        done.expect("a repair");
+    }
+
+    #[track_caller]
+    fn put_case_repair(
+        &self,
+        fault: Id,
+        repair: &RepairRecord,
+        who: &str,
+        at_us: i64,
+    ) -> (ChangedFault, Vec<ChangedFault>) {
+        let done = self.repair_case(fault, repair, who, at_us);
+        done.expect("a repair")
+    }
+
+    #[track_caller]
+    fn put_diagnosed(&self, faults: &[Id], cause: &CauseRecord, at_us: i64) -> Vec<Id> {
+        let done = self.attribute_diagnosed(faults, cause, at_us);
+        done.expect("attributed")
+    }
+
+    #[track_caller]
+    fn put_note(&self, fault: Id, who: &str, note: &str, at_us: i64) {
+        let done = self.add_note(fault, who, note, at_us);
+        done.expect("a note");
+    }
+
+    #[track_caller]
+    fn put_run_note(&self, run: Id, who: &str, text: &str, at_us: i64) {
+        let done = self.add_run_note(run, who, text, at_us);
+        done.expect("a note");
+    }
+}
+
+/// A run that stores a trace.
+pub trait Traces {
+    fn put_trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Id;
+}
+
+impl Traces for RunWriter<'_> {
+    #[track_caller]
+    fn put_trace(&mut self, occurrences: &[Id], trace: &TraceData) -> Id {
+        self.trace(occurrences, trace).expect("a trace")
     }
 }
 

@@ -7,6 +7,7 @@
     reason = "figures, for whoever asks with --nocapture"
 )]
 
+use crate::common::Deeds;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -38,15 +39,11 @@ fn history() -> Laptop {
         // Events are entries of their own, so that runs and notes alternate.
         let fault = store.resolve_fault("latest").expect("a fault");
         for note in 0..190 {
-            store
-                .add_note(fault, "kim", &format!("note {note}"), day(n) + note)
-                .expect("a note");
+            store.put_note(fault, "kim", &format!("note {note}"), day(n) + note);
         }
     }
     let run = store.resolve_run("latest").expect("a run");
-    store
-        .add_run_note(run, "kim", "a note", day(9))
-        .expect("a note");
+    store.put_run_note(run, "kim", "a note", day(9));
     store.close().expect("its file closes");
     laptop
 }

@@ -1,7 +1,7 @@
 //! Rows that hold what no history holds, in a laptop's file or on a server: they stay where they are, are
 //! reported, and block nothing.
 
-use crate::common::change;
+use crate::common::{Deeds, change};
 use crate::laptop::{Laptop, connect, day};
 use crate::private::{name_of, shared};
 
@@ -65,13 +65,9 @@ fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
         laptop.run("U-1", day(0), &[101], true);
         let run = laptop.run("U-2", day(1), &[102], true);
         let store = laptop.open();
-        store
-            .add_run_note(run, "kim", "noted", day(2))
-            .expect("a note");
+        store.put_run_note(run, "kim", "noted", day(2));
         let fault = store.resolve_fault("latest").expect("a fault");
-        store
-            .add_note(fault, "kim", "seen", day(2))
-            .expect("a note");
+        store.put_note(fault, "kim", "seen", day(2));
         drop(store);
         change(&laptop.path(), sql);
         let outcome = laptop.sync(&address);
@@ -141,8 +137,7 @@ fn invalid_rows_on_the_server_do_not_block_a_sync() {
     // Later events of that fault reach both laptops, and a repair that did not hold is found.
     let desk = connect(&address).expect("a server");
     let fault = desk.resolve_fault("latest").expect("a fault");
-    desk.acknowledge(fault, "lee", "on it", day(2))
-        .expect("acknowledged");
+    desk.put_acknowledged(fault, "lee", "on it", day(2));
     one.run("U-1", day(4), &[101], true);
     for laptop in [&one, &two] {
         assert!(laptop.sync(&address).events_received > 0, "{}", laptop.name);

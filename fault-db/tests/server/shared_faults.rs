@@ -1,5 +1,6 @@
 //! Faults that several laptops saw: what each of them and the server make of all that was done about them.
 
+use crate::common::Deeds;
 use fault_db::{CauseRecord, FaultFilter, FaultState, RepairRecord, Store, ToWithdraw};
 
 use crate::laptop::{Laptop, connect, day, only_fault, open_faults, read_only};
@@ -27,9 +28,7 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
     };
     let store = two.open();
     let local = only_fault(&store).fault.id;
-    store
-        .record_repair(local, &repair, "lee", day(2))
-        .expect("a repair");
+    store.put_repair(local, &repair, "lee", day(2));
     drop(store);
     assert_eq!(two.sync(&address).events, 1);
     let came = one.sync(&address);
@@ -140,9 +139,7 @@ fn a_case_is_one_on_laptops_and_server() {
     };
     let store = one.open();
     let seen = open_faults(&store);
-    store
-        .attribute_diagnosed(&seen, &from("eb_relay"), day(0))
-        .expect("attributed");
+    store.put_diagnosed(&seen, &from("eb_relay"), day(0));
     drop(store);
     two.sync(&address);
     one.sync(&address);
@@ -195,9 +192,7 @@ fn a_laptop_receives_events_from_before_it_knew_the_fault() {
     one.run("U-1", day(0), &[101], false);
     let store = one.open();
     let fault = only_fault(&store).fault.id;
-    store
-        .acknowledge(fault, "kim", "on it", day(0))
-        .expect("a note");
+    store.put_acknowledged(fault, "kim", "on it", day(0));
     drop(store);
     one.sync(&address);
     two.run("U-9", day(0), &[], false);
@@ -223,9 +218,7 @@ fn two_concurrent_decisions_are_kept_and_the_state_with_more_work_stands() {
     for (laptop, state) in [(&one, FaultState::Closed), (&two, FaultState::Acknowledged)] {
         let store = laptop.open();
         let fault = only_fault(&store).fault.id;
-        store
-            .set_state(fault, state, "", "", day(1))
-            .expect("a state");
+        store.put_state(fault, state, "", "", day(1));
     }
     one.sync(&address);
     let second = two.sync(&address);
@@ -245,9 +238,7 @@ fn two_concurrent_decisions_are_kept_and_the_state_with_more_work_stands() {
     // One of them looks again, knowing of the other.
     let store = one.open();
     let fault = only_fault(&store).fault.id;
-    store
-        .set_state(fault, FaultState::Closed, "", "talked", day(2))
-        .expect("a state");
+    store.put_state(fault, FaultState::Closed, "", "talked", day(2));
     drop(store);
     assert!(one.sync(&address).conflicts.is_empty());
     assert!(two.sync(&address).conflicts.is_empty());
@@ -269,9 +260,7 @@ fn wrong_clocks_do_not_decide_a_conflict() {
     let say = |laptop: &Laptop, state, at_us| {
         let store = laptop.open();
         let fault = only_fault(&store).fault.id;
-        store
-            .set_state(fault, state, "", "", at_us)
-            .expect("a state");
+        store.put_state(fault, state, "", "", at_us);
         drop(store);
         laptop.sync(&address)
     };
@@ -466,12 +455,8 @@ fn a_fault_merged_during_a_pull_brings_all_events_of_the_older_one() {
     three.sync(&address);
     let store = two.open();
     let fault = only_fault(&store).fault.id;
-    store
-        .add_note(fault, "kim", "contacts burnt", day(0))
-        .expect("a note");
-    store
-        .set_state(fault, FaultState::Closed, "kim", "", day(1))
-        .expect("a state");
+    store.put_note(fault, "kim", "contacts burnt", day(0));
+    store.put_state(fault, FaultState::Closed, "kim", "", day(1));
     drop(store);
     two.sync(&address);
     three.run("U-1", day(3), &[101], false);
@@ -482,8 +467,7 @@ fn a_fault_merged_during_a_pull_brings_all_events_of_the_older_one() {
     let desk = connect(&address).expect("a server");
     let other = desk.faults(&FaultFilter::default()).expect("faults");
     let other = other.iter().find(|fault| fault.code == 102);
-    desk.add_note(other.expect("there").id, "park", "look here", day(4))
-        .expect("a note");
+    desk.put_note(other.expect("there").id, "park", "look here", day(4));
     one.run("U-1", day(4), &[103], false);
     let mut listening = 0;
     one.try_sync(&address, &mut |progress| {
@@ -522,9 +506,7 @@ fn faults_found_to_be_the_same_are_merged_in_every_file() {
     }
     let store = one.open();
     let fault = only_fault(&store).fault.id;
-    store
-        .set_state(fault, FaultState::Closed, "kim", "", day(1))
-        .expect("a state");
+    store.put_state(fault, FaultState::Closed, "kim", "", day(1));
     drop(store);
     one.sync(&address);
     three.run("U-1", day(2), &[101], false);
@@ -553,9 +535,7 @@ fn faults_found_to_be_the_same_are_merged_in_every_file() {
     );
     let store = three.open();
     let fault = only_fault(&store).fault.id;
-    store
-        .set_state(fault, FaultState::Acknowledged, "lee", "", day(4))
-        .expect("a state");
+    store.put_state(fault, FaultState::Acknowledged, "lee", "", day(4));
     drop(store);
     for laptop in [three, two, one] {
         laptop.sync(&address);
@@ -580,9 +560,7 @@ fn a_fault_after_a_closed_one_is_a_new_fault_on_the_server_too() {
     laptop.sync(&address);
     let store = laptop.open();
     let first = only_fault(&store).fault.id;
-    store
-        .set_state(first, FaultState::Closed, "kim", "nothing found", day(1))
-        .expect("a state");
+    store.put_state(first, FaultState::Closed, "kim", "nothing found", day(1));
     drop(store);
     laptop.run("U-1", day(2), &[101], false);
     laptop.sync(&address);
