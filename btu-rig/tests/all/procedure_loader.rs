@@ -70,19 +70,7 @@ fn good_scripts_give_the_plan_on_file() {
 #[test]
 fn a_plan_is_the_same_after_it_was_written_down() {
     let mut texts = folder("good");
-    let shipped = root().join("../scripts");
-    let mut folders = vec![shipped.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "star") {
-                let name = path.strip_prefix(&shipped).unwrap().to_str().unwrap();
-                texts.insert(name.to_owned(), std::fs::read_to_string(&path).unwrap());
-            }
-        }
-    }
+    collect(&root().join("../scripts"), "", &mut texts);
     let loaded = load_all(&texts);
     assert_eq!(loaded.errors, []);
     assert!(loaded.procedures.len() > 20);
@@ -286,54 +274,14 @@ fn deep_nesting_is_refused() {
 }
 
 /// Words that bring random text past the parser now and then.
-const WORDS: [&str; 40] = [
-    "step(",
-    "procedure(",
-    "title = ",
-    "'a'",
-    "\"b\"",
-    ")",
-    "(",
-    ",",
-    "[",
-    "]",
-    "\n",
-    "\n    ",
-    "if ",
-    "False",
-    ":",
-    "for i in ",
-    "range(3)",
-    "def f(x):",
-    "return ",
-    "lambda x: ",
-    "kmh(",
-    "ms(",
-    "3",
-    "-1.5",
-    "+",
-    "*",
-    "/",
-    "==",
-    "eb",
-    "speed",
-    "tacho.",
-    "ramp(",
-    "to = ",
-    "do = ",
-    "codes",
-    "unit.",
-    "measured('a')",
-    "load(\"//a.star\", \"b\")",
-    "not ",
-    "x = ",
-];
+const WORDS: &str = "step(¦procedure(¦title = ¦'a'¦\"b\"¦)¦(¦,¦[¦]¦\n¦\n    ¦if ¦False¦:¦for i in ¦range(3)¦def f(x):¦return ¦lambda x: ¦\
+    kmh(¦ms(¦3¦-1.5¦+¦*¦/¦==¦eb¦speed¦tacho.¦ramp(¦to = ¦do = ¦codes¦unit.¦measured('a')¦load(\"//a.star\", \"b\")¦not ¦x = ";
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn no_text_makes_the_loader_panic(words in prop::collection::vec(prop::sample::select(&WORDS[..]), 0..40)) {
+    fn no_text_makes_the_loader_panic(words in prop::collection::vec(prop::sample::select(WORDS.split('¦').collect::<Vec<_>>()), 0..40)) {
         let text = format!("procedure(title = 'x')\nstep('s', measure = value('v', speed))\n{}", words.concat());
         load_all(&Scripts::from([("a.star".into(), text)]));
     }

@@ -68,26 +68,3 @@ fn an_own_file_counts_before_the_systems_and_that_before_the_embedded_one() {
     assert!(all.contains_key("atp/mine.star") && all.contains_key("atp/overspeed.star"));
     assert!(files.names("lines", "toml").contains("depot"));
 }
-
-#[test]
-fn a_folder_that_is_given_is_taken_alone() {
-    let given = folder(&[("atp/only.star", "only")]);
-    let files = ScriptFiles::find(Some(given.path())).expect("a folder");
-    assert_eq!(files.all().expect("listed").len(), 1);
-    assert!(files.file("units/sg100.toml").is_none());
-    let file = given.path().join("atp/only.star");
-    let refused = ScriptFiles::find(Some(&file)).expect_err("no folder");
-    assert!(refused.to_string().ends_with("is not a directory"));
-}
-
-#[test]
-fn a_link_that_leads_back_ends_in_words() {
-    let given = folder(&[("atp/only.star", "only")]);
-    #[cfg(unix)]
-    {
-        std::os::unix::fs::symlink(given.path(), given.path().join("atp/back")).expect("linked");
-        let files = ScriptFiles::find(Some(given.path())).expect("a folder");
-        let refused = files.all().expect_err("endless").to_string();
-        assert!(refused.contains("does a link lead back?"), "{refused}");
-    }
-}
