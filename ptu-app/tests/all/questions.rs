@@ -46,32 +46,6 @@ fn faults_of_today_are_found() {
     });
 }
 
-#[test]
-fn the_views_answer_and_the_page_tells_of_them() {
-    let place = mended();
-    let page = place.ptu("db schema").exits(0).out;
-    for view in page
-        .lines()
-        .filter_map(|line| line.strip_prefix("## ")?.split_once(':'))
-    {
-        let sql = format!("SELECT * FROM {} LIMIT 3", view.0);
-        let answer = place.json(&["db", "query", &sql, "--json"]);
-        assert!(list(&answer["columns"]).len() > 4, "{}: {answer}", view.0);
-    }
-    let relay = relay_fault(&place);
-    let sql = format!(
-        "SELECT last_at, name FROM faults WHERE id = '{}'",
-        text(&relay["id"])
-    );
-    let answer = place.json(&["db", "query", &sql, "--json"]);
-    assert_eq!(answer["rows"][0][0], relay["last_at"]);
-    let csv = place
-        .ptu(&["db", "query", "SELECT 1 AS a, 'x,y' AS b", "--csv"])
-        .exits(0)
-        .out;
-    assert_eq!(csv, "a,b\n1,\"x,y\"\n");
-}
-
 /// Goal: no limit is told of a value that it does not hold for, and a step is asked for by its name. Method: a
 /// measurement that several procedures and steps make.
 #[test]

@@ -305,28 +305,6 @@ fn messages_of_another_program_are_laid_at_their_time_of_day() {
     far.exits(2).explains(&["no time in common", "--shift"]);
 }
 
-#[test]
-fn files_that_are_wrong_are_told_with_the_place() {
-    let place = Place::new();
-    kept(&place, &trace(600));
-    place
-        .ptu(&["trace", "export", "latest", "--out", "t.mcap"])
-        .exits(0);
-    let whole = std::fs::read(place.path("t.mcap")).expect("read");
-    let diff = |file: &str| place.ptu(&["trace", "diff", "latest", file]);
-    for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
-        std::fs::write(place.path("x.mcap"), &whole[..length]).expect("written");
-        diff("x.mcap").exits(2).explains(&["x.mcap", "before byte"]);
-    }
-    // One byte of the compressed messages.
-    for at in [whole.len() / 3, whole.len() / 2] {
-        let mut damaged = whole.clone();
-        damaged[at] ^= 0x55;
-        std::fs::write(place.path("x.mcap"), damaged).expect("written");
-        diff("x.mcap").exits(2).explains(&["x.mcap"]);
-    }
-}
-
 /// An MCAP file: each message on a topic of its own with this many fields, all of other names.
 fn wide_mcap(messages: usize, fields: usize, name: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());

@@ -33,6 +33,10 @@ const ONE_IN: usize = 20;
 
 /// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
+/// What is not as it is with the others, the fault mode (or glob), and why: the part that diagnosis names, the part that a
+/// stored fault names (of those that come and go none need be named), the side that a step suspects, a procedure of the
+/// unit that a fault of the train fails.
+const EXCUSED: &str = include_str!("excused.txt");
 const PROTECTION: &str = include_str!("../../../../docs/protection.md");
 /// The mode of which the whole suite is run through the program itself, command line, printed reports and exit codes
 /// included.
@@ -47,81 +51,8 @@ const THROUGH_THE_PROGRAM: [&str; 5] = [
     "power_supply.dips",
 ];
 
-/// Modes that diagnosis takes for another part's at the default seed, and why.
-const NOT_DIAGNOSED: &[(&str, &str)] = &[
-    (
-        "atp_cpu.enables_dropped",
-        "doors that are not enabled again and doors that are not opened again fail the same steps",
-    ),
-    (
-        "twc_cpu.hangs",
-        "a processor that hangs for moments and an antenna that is loose lose the same frames",
-    ),
-    (
-        "twc_antenna.weak",
-        "a loop that is lost for a moment: what ATO does without it shows first",
-    ),
-];
-
 /// Parts of the train around the unit.
-const TRAIN_PARTS: [&str; 8] = [
-    "inverter",
-    "brake_unit",
-    "brake_cylinder",
-    "master_controller",
-    "door_contact",
-    "head_control_relay",
-    "tcms",
-    "air_supply",
-];
-
-/// Modes that no stored fault names the part of, and why. Of those that come and go none need be named: a
-/// part that is sound whenever it is looked at is found by what its spells do to others.
-const PART_NOT_NAMED: &[(&str, &str)] = &[
-    (
-        "atp_cpu.arms_moving",
-        "what is stored is what comes of it: test mode ends at once, because the train moves",
-    ),
-    (
-        "ato_cpu.jog_direction_lost",
-        "what is stored is the emergency brake of a train that goes the wrong way, whoever sends it there",
-    ),
-    (
-        "ato_cpu.loops_unknown",
-        "what is stored is the loss of the wayside, which the step looks for in TWC's processor",
-    ),
-    (
-        "test_board.marker_dead",
-        "what a test signal that does not come leaves undone is looked for in what it tests",
-    ),
-];
-
-/// Modes of the unit that make a step fail which suspects the train, and why.
-const TRAIN_SUSPECTED: &[(&str, &str)] = &[
-    (
-        "rs485_link.*_errors",
-        "a link that is lost already is not lost when TCMS falls silent",
-    ),
-    (
-        "fsb_output.slow",
-        "a full service brake that is released late is still there when TCMS should release its own",
-    ),
-    (
-        "atp_cpu.clock_fast",
-        "a unit that no longer hears its inputs brakes a train that is tested",
-    ),
-    (
-        "atp_cpu.clock_slow",
-        "TCMS refuses frames that come ever later, and brakes a train that is tested",
-    ),
-];
-
-/// Modes of the train that fail a procedure of the unit, that procedure, and why.
-const UNIT_FAILED: &[(&str, &str, &str)] = &[(
-    "tcms.keeps_cab",
-    "ato/turn_back",
-    "a change of cabs is asked for by the unit and made by TCMS; the event names TCMS",
-)];
+const TRAIN_PARTS: &str = "inverter brake_unit brake_cylinder master_controller door_contact head_control_relay tcms air_supply";
 
 #[test]
 fn each_fault_fails_the_step_that_the_table_names() {
@@ -203,12 +134,8 @@ fn procedures_of(mode: &FaultMode) -> BTreeSet<&'static str> {
 fn the_tables_name_no_fault_that_is_gone() {
     let catalogue = Place::new().json("catalog faults --json");
     let modes = list(&catalogue);
-    let excused = PART_NOT_NAMED
-        .iter()
-        .chain(TRAIN_SUSPECTED)
-        .chain(NOT_DIAGNOSED);
-    let named = found_by().map(|(glob, ..)| glob);
-    for glob in named.chain(excused.map(|(glob, _)| *glob)) {
+    let excused = columns(EXCUSED).map(|(_, glob, _)| glob);
+    for glob in found_by().map(|(glob, ..)| glob).chain(excused) {
         assert!(
             modes.iter().any(|mode| fits(glob, text(&mode["id"]))),
             "no fault mode {glob}"
@@ -291,11 +218,24 @@ fn fits(glob: &str, id: &str) -> bool {
 
 /// The table's rows: glob, procedure, words of the step.
 fn found_by() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    FOUND_BY.lines().map(|line| {
-        let (glob, rest) = line.split_once("  ").expect("a row of the table");
-        let (procedure, words) = rest.trim_start().split_once("  ").expect("three columns");
-        (glob, procedure, words.trim_start())
+    columns(FOUND_BY)
+}
+
+/// Rows of three columns.
+fn columns(
+    table: &'static str,
+) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    table.lines().map(|line| {
+        let (first, rest) = line.split_once("  ").expect("a row of the table");
+        let (second, third) = rest.trim_start().split_once("  ").expect("three columns");
+        (first, second, third.trim_start())
     })
+}
+
+/// Why this is not as with the others in this fault mode, if it may be so.
+fn excused(what: &str, mode: &FaultMode) -> Option<&'static str> {
+    let mut rows = columns(EXCUSED).filter(|(of, glob, _)| *of == what && fits(glob, &mode.id));
+    rows.next().map(|(.., why)| why)
 }
 
 /// What is wrong with a run of the procedures that the table names for this fault. What other procedures add, the
@@ -332,12 +272,10 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
 
 /// Diagnosis puts the broken part first, whatever the stored faults name.
 fn check_diagnosis(mode: &FaultMode, run: &FaultRun) -> Option<String> {
-    let excused = NOT_DIAGNOSED.iter().find(|(id, _)| *id == mode.id);
+    let excused = excused("not diagnosed", mode);
     match (run.first_candidate == mode.lru.as_str(), excused) {
         (false, None) => Some(format!("diagnosed as {}", run.first_candidate)),
-        (true, Some((_, reason))) => {
-            Some(format!("diagnosed now; strike out of the table: {reason}"))
-        }
+        (true, Some(reason)) => Some(format!("diagnosed now; strike out of the table: {reason}")),
         _ => None,
     }
 }
@@ -368,12 +306,11 @@ fn check_parts(mode: &FaultMode, run: &FaultRun) -> Option<String> {
     let named = faults
         .iter()
         .any(|fault| fault["part"] == mode.lru.as_str());
-    let excused = PART_NOT_NAMED.iter().find(|(id, _)| *id == mode.id);
-    match (named, excused) {
+    match (named, excused("part not named", mode)) {
         _ if faults.is_empty() => Some("no fault stored".into()),
         _ if comes_and_goes(mode) => None,
         (false, None) => Some(format!("no stored fault names {}", mode.lru)),
-        (true, Some((_, reason))) => Some(format!(
+        (true, Some(reason)) => Some(format!(
             "names its part now; strike out of the table: {reason}"
         )),
         _ => None,
@@ -384,11 +321,10 @@ fn check_parts(mode: &FaultMode, run: &FaultRun) -> Option<String> {
 /// train fails nothing but the procedures that test the train. What is sound while it is proved and
 /// lets go later may be taken for anything by one step.
 fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
-    let excused = TRAIN_SUSPECTED.iter().any(|(glob, _)| fits(glob, &mode.id));
-    if comes_and_goes(mode) || excused {
+    if comes_and_goes(mode) || excused("train suspected", mode).is_some() {
         return Vec::new();
     }
-    let of_train = |part: &str| TRAIN_PARTS.contains(&part);
+    let of_train = |part: &str| TRAIN_PARTS.split(' ').any(|one| one == part);
     let train_is_broken = of_train(mode.lru.as_str());
     let blamed = list(&run.report["faults"])
         .iter()
@@ -401,9 +337,8 @@ fn check_side(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
         .filter(|step| train_is_broken && step["verdict"] == "failed" && step["kind"] == "step")
         .filter(|step| {
             let procedure = text(&step["procedure"]);
-            let mut excused = UNIT_FAILED.iter();
-            let excused = excused.any(|(id, of, _)| *id == mode.id && *of == procedure);
-            !procedure.starts_with("tcms/") && !excused
+            let excused = excused(&format!("fails {procedure}"), mode);
+            !procedure.starts_with("tcms/") && excused.is_none()
         })
         .map(|step| format!("fails a test of the unit: {step}"));
     blamed.chain(failed).collect()
