@@ -10,7 +10,8 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::Procedure;
 
 use ptu_report::event_lines::EventLines;
-use ptu_runs::failure::Failure;
+use ptu_report::words::asked;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::new_file::{NewFile, kind};
 use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 use ptu_runs::stdio;
@@ -73,7 +74,7 @@ impl<L: Listener> EventStream<L> {
 impl Stream {
     fn begin(place: Place) -> Result<Self, Failure> {
         let cannot = |error: &dyn fmt::Display| {
-            Failure::usage(format!("{place} cannot be written: {error}"))
+            Failure::usage(FileTrouble::Unwritten(place.to_string(), Why::of(error)))
         };
         let mut event_lines = EventLines::default();
         let first = event_lines.started();
@@ -88,7 +89,7 @@ impl Stream {
             // In its place from the first line on: other programs read while it grows.
             Place::File(file) => {
                 let begun = NewFile::begin(file, kind::EVENTS);
-                let mut file = begun.map_err(|why| Failure::usage(format!("--events: {why}")))?;
+                let mut file = begun.map_err(|why| Failure::usage(why.message))?;
                 writeln!(file, "{first}").map_err(|error| cannot(&error))?;
                 file.appear()?;
                 is_begun = true;
@@ -134,12 +135,7 @@ impl Stream {
         }
         drop(self.to.take());
         let written = self.thread.join();
-        let failed = |why: &str| {
-            Failure::bench(format!(
-                "{} has not all events: {why}; `ptu runs show latest` has the run",
-                self.place
-            ))
-        };
+        let failed = |why: &str| Failure::bench(asked::not_all_events(&self.place, why));
         match written {
             Ok(Ok(())) if self.is_cut => Err(failed("whoever reads it takes too few")),
             Ok(Ok(())) => Ok(()),

@@ -6,6 +6,7 @@ mod embedded;
 use std::process::ExitCode;
 
 use ptu_app::cli::Cli;
+use ptu_report::words::tell;
 use ptu_runs::platform::{ready_output, survive_file_limit};
 
 fn main() -> ExitCode {
@@ -15,7 +16,7 @@ fn main() -> ExitCode {
     match Cli::asked().and_then(Cli::run) {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
-            failure.tell();
+            tell(&failure);
             ExitCode::from(failure.exit.code())
         }
     }

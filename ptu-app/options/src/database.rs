@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
+use ptu_report::words::asked;
 use ptu_runs::clock;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 use ptu_runs::{owner_only, stdio};
 
 /// Names a history for all commands that are given none.
@@ -52,14 +53,12 @@ impl Database {
         let Some(path) = self.named() else {
             let file = directories::ProjectDirs::from("", "", "ptu")
                 .map(|directories| directories.data_dir().join("history.db"));
-            return file.map(DatabasePlace::File).ok_or_else(|| {
-                Failure::usage("no user data directory; name a database with --db")
-            });
+            return file
+                .map(DatabasePlace::File)
+                .ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--db")));
         };
         if path.as_os_str().is_empty() {
-            return Err(Failure::usage(format!(
-                "{VARIABLE} is empty; let it name a database, or unset it"
-            )));
+            return Err(Failure::usage(asked::variable_empty(VARIABLE)));
         }
         Ok(match as_address(&path) {
             Some(address) => DatabasePlace::Server(address?),

@@ -11,6 +11,7 @@ use protocol::display_text;
 use crate::certificate::attach;
 use crate::json::{json_text, run_json};
 use crate::run::{self, CaseSheet, Printed, RunComparison, Sheet};
+use crate::words::asked;
 use crate::words::{Language, Words};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
@@ -167,10 +168,7 @@ pub fn write(
 fn refuse_changed(store: &Store, run: Id) -> Result<(), Failure> {
     match store.verify_run(run)?.changes.first() {
         None => Ok(()),
-        Some(change) => Err(Failure::bench(format!(
-            "the run was changed, and no sheet of it is signed: {change}; `ptu verify {}` tells all",
-            run.short()
-        ))),
+        Some(change) => Err(Failure::bench(asked::changed(run.short(), change))),
     }
 }
 

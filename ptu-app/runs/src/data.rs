@@ -15,7 +15,7 @@ use script_files::{Found, Place, ScriptFiles};
 use sha2::{Digest, Sha256};
 
 use crate::drive::train::train;
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
 
@@ -113,9 +113,9 @@ impl ScriptsDirectory {
             let text = text(&found)?;
             bytes += text.len();
             if bytes > LONGEST_SCRIPTS {
-                return Err(Failure::usage(format!(
-                    "the scripts in {} are longer than {LONGEST_SCRIPTS} bytes together",
-                    self.0.places()[0]
+                return Err(Failure::usage(FileTrouble::ScriptsTooLong(
+                    self.0.places()[0].to_string(),
+                    LONGEST_SCRIPTS,
                 )));
             }
             texts.insert(name, text);
@@ -232,10 +232,7 @@ impl ScriptsDirectory {
         let find = |name: &String| {
             catalogue.fault(name).cloned().ok_or_else(|| {
                 let known = catalogue.faults.iter().map(|fault| fault.id.as_str());
-                Failure::usage(format!(
-                    "no fault \"{name}\"{}; `ptu catalog faults` lists them",
-                    did_you_mean(name, known)
-                ))
+                Failure::usage(Unknown::Fault(name.clone(), did_you_mean(name, known)))
             })
         };
         names.iter().map(find).collect()
@@ -272,16 +269,17 @@ impl ScriptsDirectory {
         &self,
         folder: &str,
         name: &str,
-        what: &str,
+        what: &'static str,
         parse: impl FnOnce(&str) -> Result<T, E>,
     ) -> Result<DataFile<T>, Failure> {
         let file = format!("{folder}/{name}.toml");
         if !self.has(&file) {
             let known = self.names(folder);
-            return Err(Failure::usage(format!(
-                "no {what} \"{name}\"{}; known: {}",
+            return Err(Failure::usage(Unknown::DataFile(
+                what,
+                name.to_owned(),
                 did_you_mean(name, known.iter().map(String::as_str)),
-                known.join(", ")
+                known.join(", "),
             )));
         }
         let text = self.text(&file)?;
@@ -318,8 +316,8 @@ pub fn read(file: &Path) -> Result<String, Failure> {
 /// # Errors
 /// As [`read`].
 pub fn read_within(file: &Path, most: u64) -> Result<String, Failure> {
-    let bytes = read_regular_file(file, most).map_err(|error| cannot_read(file, &error))?;
-    String::from_utf8(bytes).map_err(|_| cannot_read(file, &"it is not UTF-8"))
+    let bytes = read_regular_file(file, most).map_err(|error| cannot_read(file, Why::of(error)))?;
+    String::from_utf8(bytes).map_err(|_| cannot_read(file, Why::NoText))
 }
 
 fn text(found: &Found) -> Result<String, Failure> {
@@ -332,14 +330,14 @@ fn text(found: &Found) -> Result<String, Failure> {
 fn content(found: &Found, most: u64) -> Result<Vec<u8>, Failure> {
     match found {
         Found::File(file) => {
-            read_regular_file(file, most).map_err(|error| cannot_read(file, &error))
+            read_regular_file(file, most).map_err(|error| cannot_read(file, Why::of(error)))
         }
         Found::Embedded(_, bytes) => Ok(bytes.to_vec()),
     }
 }
 
-fn cannot_read(file: &Path, why: &dyn Display) -> Failure {
-    Failure::usage(format!("cannot read {}: {why}", file.display()))
+fn cannot_read(file: &Path, why: Why) -> Failure {
+    Failure::usage(FileTrouble::Unread(file.display().to_string(), why))
 }
 
 /// Finds out whether a file of a kind can be written, leaving what is there as it is.

@@ -9,7 +9,15 @@ use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
 use crate::link::NoUnit;
-use crate::stdio;
+
+mod near;
+mod refused;
+
+pub use near::{Near, did_you_mean, did_you_mean_number};
+pub use refused::{
+    BrokenOff, DiagnosisTrouble, FieldTrouble, FileTrouble, KeyTrouble, RecordTrouble, RunTrouble,
+    Sought, Unknown, Why,
+};
 
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +83,25 @@ pub enum Trouble {
         /// The day it was due; none: it was never calibrated.
         due: Option<String>,
     },
-    /// In words.
+    /// A name that is none.
+    Unknown(Unknown),
+    /// A file or a folder.
+    File(FileTrouble),
+    /// Keys that sign.
+    Key(KeyTrouble),
+    /// A bench, or a run on it.
+    Run(RunTrouble),
+    /// The log or the memory of a unit.
+    Field(FieldTrouble),
+    /// A trace, or the recording that belongs to it.
+    Recorded(RecordTrouble),
+    /// A diagnosis.
+    Diagnosis(DiagnosisTrouble),
+    /// Several at once.
+    All(Vec<Self>),
+    /// What the catalogue of words says, in English and in Korean.
+    Said([String; 2]),
+    /// In words of others.
     Told(String),
 }
 
@@ -133,7 +159,20 @@ impl fmt::Display for Trouble {
             }
             Self::NoUnit(why) => why.fmt(f),
             Self::Link(why) => why.fmt(f),
-            Self::Told(words) => f.write_str(words),
+            Self::Unknown(why) => why.fmt(f),
+            Self::File(why) => why.fmt(f),
+            Self::Key(why) => why.fmt(f),
+            Self::Run(why) => why.fmt(f),
+            Self::Field(why) => why.fmt(f),
+            Self::Recorded(why) => why.fmt(f),
+            Self::Diagnosis(why) => why.fmt(f),
+            Self::All(all) => f.write_str(
+                &all.iter()
+                    .map(Self::to_string)
+                    .collect::<Vec<_>>()
+                    .join("\n"),
+            ),
+            Self::Said([words, _]) | Self::Told(words) => f.write_str(words),
         }
     }
 }
@@ -171,17 +210,15 @@ impl Failure {
     /// # Errors
     /// At least one failed.
     pub fn of_all(done: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
-        let failed = done.into_iter().filter_map(Result::err);
-        let all = failed.reduce(|first, next| Self {
-            exit: first.exit,
-            message: format!("{first}\n{next}").into(),
-        });
-        all.map_or(Ok(()), Err)
-    }
-
-    /// Prints the failure on stderr.
-    pub fn tell(&self) {
-        stdio::note(&format!("ptu: {self}"));
+        let mut failed = done.into_iter().filter_map(Result::err);
+        let Some(mut first) = failed.next() else {
+            return Ok(());
+        };
+        let others: Vec<_> = failed.map(|next| next.message).collect();
+        if !others.is_empty() {
+            first.message = Trouble::All([vec![first.message], others].concat());
+        }
+        Err(first)
     }
 }
 
@@ -252,78 +289,5 @@ pub fn in_place_of(error: &StoreError) -> Option<&Path> {
         | StoreError::CannotOpen { path, .. }
         | StoreError::NotAFile { path } => Some(path),
         _ => None,
-    }
-}
-
-/// ` (did you mean "x"?)` for the known name nearest to `asked`, in capitals or not; or nothing.
-pub fn did_you_mean<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let asked = asked.to_lowercase();
-    let near = known
-        .into_iter()
-        .map(|name| (strsim::jaro_winkler(&asked, &name.to_lowercase()), name))
-        .filter(|(score, _)| *score > 0.75)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    meant(near.map(|(_, name)| name))
-}
-
-/// The same for serial numbers: those of a fleet are all alike, and one with another digit is another
-/// unit's. What is near differs in capitals or signs, or is a slip of one key.
-pub fn did_you_mean_number<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let plain = |text: &str| -> String {
-        let letters = text.chars().filter(|letter| letter.is_alphanumeric());
-        letters.flat_map(char::to_lowercase).collect()
-    };
-    let asked = plain(asked);
-    let near = known
-        .into_iter()
-        .map(|name| (slips(&asked, &plain(name)), name))
-        .filter(|(slips, _)| *slips < 2)
-        .min_by_key(|(slips, _)| *slips);
-    meant(near.map(|(_, name)| name))
-}
-
-/// Keys pressed wrong, where another digit is none.
-fn slips(asked: &str, name: &str) -> usize {
-    let both = || asked.chars().zip(name.chars());
-    let other_digits = both().filter(|(a, b)| a != b && a.is_ascii_digit() && b.is_ascii_digit());
-    let same_length = asked.chars().count() == name.chars().count();
-    match other_digits.count() {
-        1 if same_length => usize::MAX,
-        _ => strsim::osa_distance(asked, name),
-    }
-}
-
-fn meant(name: Option<&str>) -> String {
-    name.map(|name| format!(" (did you mean \"{name}\"?)"))
-        .unwrap_or_default()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_serial_number_is_suggested_only_if_it_is_similar() {
-        let known = ["ATC-1001", "ATC-1002", "SG-0142"];
-        for (asked, near) in [
-            ("atc-1001", " (did you mean \"ATC-1001\"?)"),
-            ("ATC 1002", " (did you mean \"ATC-1002\"?)"),
-            ("SG-142", " (did you mean \"SG-0142\"?)"),
-            ("SG-0412", " (did you mean \"SG-0142\"?)"),
-            ("ATV-1001", " (did you mean \"ATC-1001\"?)"),
-            ("ATC-1003", ""),
-            ("BTC-1004", ""),
-            ("99", ""),
-            ("", ""),
-        ] {
-            assert_eq!(did_you_mean_number(asked, known), near, "{asked}");
-        }
-    }
-
-    #[test]
-    fn a_name_is_suggested_whatever_its_case() {
-        let hint = did_you_mean("EB_RELY", ["tacho_a", "eb_relay"]);
-        assert_eq!(hint, " (did you mean \"eb_relay\"?)");
-        assert_eq!(did_you_mean("xyz", ["eb_relay"]), "");
     }
 }

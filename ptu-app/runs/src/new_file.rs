@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use fault_db::{AtomicFile, is_of_database, open_regular_file};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, Why};
 use crate::platform;
 
 /// Names tried beside one that is taken.
@@ -103,21 +103,18 @@ impl NewFile {
     /// # Errors
     /// What stands there cannot be replaced, or no file can be made in that folder.
     pub fn begin(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
-        let cannot =
-            |why: String| Failure::usage(format!("cannot write {}: {why}", place.display()));
-        place
-            .file_name()
-            .ok_or_else(|| cannot("it has no file name".into()))?;
+        let cannot = |why| Failure::usage(FileTrouble::Unwritten(place.display().to_string(), why));
+        place.file_name().ok_or_else(|| cannot(Why::NoFileName))?;
         let folder = place
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            return Err(cannot(format!("there is no folder {}", folder.display())));
+            return Err(cannot(Why::NoFolder(folder.display().to_string())));
         }
         let about = std::fs::metadata(place).ok();
         match &about {
-            Some(about) if about.is_dir() => return Err(cannot("it is a folder".into())),
-            Some(about) if !about.is_file() => return Err(cannot("it is no regular file".into())),
+            Some(about) if about.is_dir() => return Err(cannot(Why::Folder)),
+            Some(about) if !about.is_file() => return Err(cannot(Why::NoFile)),
             _ => {}
         }
         // What a link leads to is replaced, not the link.
@@ -127,14 +124,14 @@ impl NewFile {
         if about.is_some() {
             // A file without write permission is not replaced either.
             let opened = OpenOptions::new().append(true).open(&place);
-            opened.map_err(|error| cannot(error.to_string()))?;
+            opened.map_err(|error| cannot(Why::of(error)))?;
         }
-        let part = AtomicFile::begin(&place).map_err(|error| cannot(error.to_string()))?;
+        let part = AtomicFile::begin(&place).map_err(|error| cannot(Why::of(error)))?;
         let file = part.file().try_clone();
-        let file = file.map_err(|error| cannot(error.to_string()))?;
+        let file = file.map_err(|error| cannot(Why::of(error)))?;
         if let Some(about) = about {
             file.set_permissions(about.permissions())
-                .map_err(|error| cannot(error.to_string()))?;
+                .map_err(|error| cannot(Why::of(error)))?;
         }
         Ok(Self {
             file: BufWriter::new(file),
@@ -150,9 +147,8 @@ impl NewFile {
     /// As [`NewFile::begin`]; or something does.
     pub fn begin_new(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         if place.exists() {
-            return Err(Failure::usage(format!(
-                "{} is there already; name another file, or say --force to replace it",
-                place.display()
+            return Err(Failure::usage(FileTrouble::Exists(
+                place.display().to_string(),
             )));
         }
         Self::begin(place, kind)
@@ -224,7 +220,7 @@ impl NewFile {
                 Err(error) => return Err(cannot_write(&name, &error)),
             }
         }
-        Err(cannot_write(&self.place, &"it is there already"))
+        Err(not_written(&self.place, Why::Taken))
     }
 }
 
@@ -245,22 +241,19 @@ impl Seek for NewFile {
 }
 
 /// Finds out whether what stands there, if anything, may be replaced by a file that begins so.
-fn may_replace(place: &Path, heads: &[String]) -> Result<(), String> {
+fn may_replace(place: &Path, heads: &[String]) -> Result<(), Why> {
     if is_of_database(place) {
-        return Err("it is a history or another database, or belongs to one".to_owned());
+        return Err(Why::History);
     }
     let mut found = Vec::new();
     if let Ok(file) = open_regular_file(place) {
         let read = file.take(HEAD).read_to_end(&mut found);
-        read.map_err(|error| error.to_string())?;
+        read.map_err(Why::of)?;
     }
     let begins = head(&found);
     match found.is_empty() || heads.iter().any(|head| begins.starts_with(head)) {
         true => Ok(()),
-        false => Err(
-            "what is there was not written as this kind by this program; name another file"
-                .to_owned(),
-        ),
+        false => Err(Why::OtherKind),
     }
 }
 
@@ -274,7 +267,11 @@ pub fn free_beside(place: &Path) -> PathBuf {
 
 /// The failure of a file that broke off.
 pub fn cannot_write(place: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::bench(format!("cannot write {}: {error}", place.display()))
+    not_written(place, Why::of(error))
+}
+
+fn not_written(place: &Path, why: Why) -> Failure {
+    Failure::bench(FileTrouble::Unwritten(place.display().to_string(), why))
 }
 
 /// The name with a number before its ending.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, Why};
 use crate::platform;
 
 /// Makes a folder and those above it, as far as they are missing, for their owner alone.
@@ -21,7 +21,12 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
     let Some(path) = file.parent().filter(|f| !f.as_os_str().is_empty()) else {
         return Ok(());
     };
-    folder(path).map_err(|error| Failure::bench(format!("cannot make {}: {error}", path.display())))
+    folder(path).map_err(|error| {
+        Failure::bench(FileTrouble::Unmade(
+            path.display().to_string(),
+            Why::of(error),
+        ))
+    })
 }
 
 /// What to say of a file that others can read or write, if they can. Its rights stay as they are: somebody may
@@ -39,9 +44,9 @@ pub fn told_if_shared(file: &Path) -> Option<String> {
 /// # Errors
 /// They can.
 pub fn refuse_shared(secret: &Path) -> Result<(), Failure> {
-    told_if_shared(secret).map_or(Ok(()), |told| {
-        Err(Failure::usage(format!(
-            "a secret that is shared protects nothing: {told}"
-        )))
-    })
+    let Some((rights, command)) = platform::readable_by_others(secret) else {
+        return Ok(());
+    };
+    let shown = secret.display().to_string();
+    Err(Failure::usage(FileTrouble::Shared(shown, rights, command)))
 }

@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use protocol::display_text;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble};
 use crate::platform;
 use crate::table::cut;
 
@@ -29,9 +29,9 @@ pub fn answer(text: &str) -> Result<(), Failure> {
 pub fn document(text: &str) -> Result<(), Failure> {
     let mut out = stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::bench(format!(
-            "cannot write the answer: {error}; make room on standard output or send it elsewhere"
-        ))),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::bench(FileTrouble::Unanswered(error.to_string())))
+        }
         _ => Ok(()),
     }
 }

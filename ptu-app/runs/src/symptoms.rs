@@ -5,7 +5,7 @@ use protocol::injection::Lru;
 use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, Unknown, did_you_mean};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "symptoms.toml";
@@ -64,10 +64,7 @@ pub fn find(directory: &ScriptsDirectory, parts: &[Lru], id: &str) -> Result<Sym
     let found = symptoms.iter().position(|symptom| symptom.id == id);
     let found = found.ok_or_else(|| {
         let known = symptoms.iter().map(|symptom| symptom.id.as_str());
-        Failure::usage(format!(
-            "no symptom \"{id}\"{}; `ptu catalog symptoms` lists them",
-            did_you_mean(id, known)
-        ))
+        Failure::usage(Unknown::Symptom(id.to_owned(), did_you_mean(id, known)))
     })?;
     Ok(symptoms.swap_remove(found))
 }

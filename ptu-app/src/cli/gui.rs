@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, RunTrouble};
 use ptu_runs::platform::become_program;
 
 /// Turns this process into the window's, with the arguments after `gui`. Returns only if the window is not installed or
@@ -19,7 +19,10 @@ pub fn start(arguments: impl Iterator<Item = OsString>) -> Failure {
         ));
     }
     let error = become_program(Command::new(&window).args(arguments));
-    Failure::bench(format!("cannot start {}: {error}", window.display()))
+    Failure::bench(RunTrouble::NotStarted(
+        Some(window.display().to_string()),
+        error.to_string(),
+    ))
 }
 
 /// Where the program of the window is, if it is installed: beside this one.

@@ -8,8 +8,9 @@ use serde_json::json;
 
 use super::signing::SigningOption;
 use super::{Database, Json, print_out};
+use ptu_report::words::asked;
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::failure::{Exit, Failure, Unknown, did_you_mean_number};
 use ptu_runs::keys::day_argument;
 use ptu_runs::table::Table;
 
@@ -115,18 +116,14 @@ impl InstrumentArguments {
             } => {
                 let (serial_no, kind) = (serial_no.trim().to_owned(), kind.trim().to_owned());
                 if serial_no.is_empty() || kind.is_empty() {
-                    return Err(Failure::usage(
-                        "an instrument has a serial number and a kind",
-                    ));
+                    return Err(Failure::usage(asked::instrument_unnamed()));
                 }
                 if store
                     .instruments()?
                     .iter()
                     .any(|known| known.serial_no == serial_no)
                 {
-                    return Err(Failure::usage(format!(
-                        "{serial_no} is registered already; `ptu instrument list` shows it"
-                    )));
+                    return Err(Failure::usage(asked::instrument_known(serial_no)));
                 }
                 store.register_instrument(&Instrument {
                     kind: kind.clone(),
@@ -150,9 +147,7 @@ impl InstrumentArguments {
                 let known = find(&store, &serial_no)?;
                 let on = on.unwrap_or_else(|| clock::local_day(at_us));
                 if due <= on {
-                    return Err(Failure::usage(format!(
-                        "it is due on {due}, before it was calibrated on {on}"
-                    )));
+                    return Err(Failure::usage(asked::due_before(due, on)));
                 }
                 let uncertainty: BTreeMap<_, _> = uncertainty.into_iter().collect();
                 store.register_instrument(&Instrument {
@@ -191,11 +186,11 @@ fn find(store: &Store, serial_no: &str) -> Result<Instrument, Failure> {
         .find(|known| known.serial_no == serial_no)
         .cloned();
     found.ok_or_else(|| {
-        let hint = did_you_mean_number(serial_no, known.iter().map(|known| known.serial_no.as_str()));
-        Failure::usage(format!(
-            "no instrument \"{serial_no}\" is registered{hint}; `ptu instrument list` shows them, `ptu instrument add` \
-             registers one"
-        ))
+        let hint = did_you_mean_number(
+            serial_no,
+            known.iter().map(|known| known.serial_no.as_str()),
+        );
+        Failure::usage(Unknown::Instrument(serial_no.to_owned(), hint))
     })
 }
 

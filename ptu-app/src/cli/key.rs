@@ -8,7 +8,8 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_report::words::asked as words;
+use ptu_runs::failure::{Exit, Failure, KeyTrouble, Unknown, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
     name_argument, own_folder, public_name, sought,
@@ -111,10 +112,7 @@ impl KeysOption {
         let place = self.place()?;
         match (place.exists(), self.keys.is_some()) {
             (false, false) => Ok(KeyList::default()),
-            (false, true) => Err(Failure::usage(format!(
-                "there is no list of keys {}; `ptu key trust FILE.pub --keys FILE` begins one",
-                sought(&place)
-            ))),
+            (false, true) => Err(Failure::usage(KeyTrouble::NoList(sought(&place)))),
             (true, _) => KeyList::read(&place),
         }
     }
@@ -170,10 +168,7 @@ fn new(
     owner_only::folder_of(&path)?;
     for there in [path.clone(), public_name(&path)] {
         if there.exists() {
-            return Err(Failure::usage(format!(
-                "{} is there already and stays; name another file with --out",
-                there.display()
-            )));
+            return Err(Failure::usage(words::key_stays(there.display())));
         }
     }
     let now = clock::now_us();
@@ -287,14 +282,11 @@ fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
 fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
     let found = located(file);
     if !found.exists() {
-        return Err(Failure::usage(format!(
-            "there is no file {}; it is the `.pub` file that `ptu key new` made",
-            sought(file)
-        )));
+        return Err(Failure::usage(KeyTrouble::NoPublicFile(sought(file))));
     }
     let new = KeyList::read(&found)?;
     if new.keys.is_empty() {
-        return Err(Failure::usage(format!("{} names no key", file.display())));
+        return Err(Failure::usage(words::no_key_in(file.display())));
     }
     let mut said = Vec::new();
     for entry in new.keys {
@@ -317,15 +309,10 @@ fn revoke(asked: &str, note: &str, keys: &KeysOption) -> Result<Exit, Failure> {
         [entry] => entry.clone(),
         [] => {
             let hint = did_you_mean(asked, list.keys.iter().map(|entry| entry.who.as_str()));
-            return Err(Failure::usage(format!(
-                "no key \"{asked}\" in the list{hint}; `ptu key list` shows them"
-            )));
+            return Err(Failure::usage(Unknown::Key(asked.to_owned(), hint)));
         }
         _ => {
-            return Err(Failure::usage(format!(
-                "{} keys are of \"{asked}\"; give the beginning of the key, as `ptu key list` shows it",
-                found.len()
-            )));
+            return Err(Failure::usage(words::keys_alike(found.len(), asked)));
         }
     };
     let (who, key) = (entry.who.clone(), entry.short().to_owned());

@@ -41,8 +41,9 @@ use serde::Serialize;
 
 use ptu_options::{Database, ScriptsOption, WindowOptions, refuse_password};
 use ptu_report::json_text;
+use ptu_report::words::tell;
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, Unknown, did_you_mean_number};
 use ptu_runs::platform::running_program;
 use ptu_runs::run::loading;
 use ptu_runs::stdio;
@@ -170,7 +171,7 @@ fn told(error: &clap::Error) -> Exit {
     }
     match error.print() {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Failure::bench(format!("cannot write the help: {error}")).tell();
+            tell(&Failure::bench(FileTrouble::Unanswered(error.to_string())));
             Exit::Bench
         }
         _ => Exit::Passed,
@@ -184,9 +185,7 @@ fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
         return Ok(());
     }
     let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
-    Err(Failure::usage(format!(
-        "no unit \"{serial}\" was ever tested{hint}; `ptu runs list` shows the units"
-    )))
+    Err(Failure::usage(Unknown::Unit(serial.to_owned(), hint)))
 }
 
 /// Prints one JSON document.
@@ -224,7 +223,7 @@ fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
         Ok(_) => Ok(exit),
         Err(failure) if exit == Exit::Passed => Err(failure),
         Err(failure) => {
-            failure.tell();
+            tell(&failure);
             Ok(exit)
         }
     }

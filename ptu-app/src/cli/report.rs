@@ -7,6 +7,7 @@ use super::signing::SigningOption;
 use super::{Database, ScriptsOption, print_out};
 use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
+use ptu_report::words::asked;
 use ptu_report::{Target, write_case};
 use ptu_runs::failure::{Exit, Failure};
 
@@ -65,14 +66,10 @@ impl ReportArguments {
         let directory = self.scripts.find()?;
         match told {
             Told::Run(_) if self.annex => {
-                return Err(Failure::usage(
-                    "--annex is of a case; the sheet of a run has all of it already",
-                ));
+                return Err(Failure::usage(asked::annex_of_run()));
             }
             Told::Case(_) if self.signing.is_named() && self.out.iter().any(Target::is_html) => {
-                return Err(Failure::usage(
-                    "the page of a case carries no signature: leave --key and PTU_KEY out, and sign the sheet of each run",
-                ));
+                return Err(Failure::usage(asked::case_unsigned()));
             }
             Told::Run(id) => {
                 self.signing.sign(&store)?;
@@ -105,13 +102,9 @@ impl ReportArguments {
         match (run, store.resolve_fault(id)) {
             (Ok(run), Err(StoreError::NotFound { .. })) => Ok(Told::Run(run)),
             (Err(StoreError::NotFound { .. }), Ok(fault)) => Ok(Told::Case(fault)),
-            (Ok(_), _) | (_, Ok(_)) => Err(Failure::usage(format!(
-                "{id:?} fits a run and a fault; give more digits, or --case for the fault"
-            ))),
+            (Ok(_), _) | (_, Ok(_)) => Err(Failure::usage(asked::fits_run_and_fault(id))),
             (Err(StoreError::NotFound { .. }), Err(StoreError::NotFound { .. })) => {
-                Err(Failure::usage(format!(
-                    "no run and no fault {id:?}; `ptu runs list` and `ptu faults list` show what there is"
-                )))
+                Err(Failure::usage(asked::fits_nothing(id)))
             }
             (Err(StoreError::NotFound { .. }), Err(error)) | (Err(error), _) => Err(error.into()),
         }

@@ -20,6 +20,8 @@ use crate::console::Console;
 use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
+use ptu_report::words::asked;
+use ptu_report::words::tell;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::drive::{Setting, train::brakes_less};
 use ptu_runs::failure::{Exit, Failure};
@@ -181,18 +183,13 @@ impl RunArguments {
         printed.iter().for_each(|line| stdio::note(line));
         if !errors.is_empty() {
             errors.iter().for_each(|error| stdio::note(error));
-            let what = if errors.len() == 1 { "error" } else { "errors" };
-            return Err(Failure::usage(format!(
-                "{} {what} in the scripts; nothing was driven",
-                errors.len()
-            )));
+            return Err(Failure::usage(match errors.len() {
+                1 => asked::error_in_scripts(),
+                n => asked::errors_in_scripts(n),
+            }));
         }
         if !need_cars.is_empty() {
-            let why = format!(
-                "the train \"{}\" has no cars, which these test: {}",
-                self.train,
-                need_cars.join(", ")
-            );
+            let why = asked::needs_cars(&self.train, need_cars.join(", "));
             if procedures.is_empty() {
                 return Err(Failure::usage(why));
             }
@@ -237,14 +234,10 @@ impl RunArguments {
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         let unit = self.unit.clone().unwrap_or(Endpoint::Sim);
         if unit != Endpoint::Sim && self.jobs > 1 {
-            return Err(Failure::usage(
-                "--jobs works on simulated units only; one port is one unit",
-            ));
+            return Err(Failure::usage(asked::jobs_on_port()));
         }
         if self.slower > 1 && unit == Endpoint::Sim && !self.realtime {
-            return Err(Failure::usage(
-                "--slower is for what goes by the clock: a unit on a port, or --realtime",
-            ));
+            return Err(Failure::usage(asked::slower_without_clock()));
         }
         if let Some(serial) = &self.serial_no {
             check_serial(serial)?;
@@ -294,9 +287,7 @@ impl RunArguments {
         // After the history is made: no report replaces that.
         self.reports.check()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
-            return Err(Failure::usage(
-                "--adaptive does one step after the other, each once; leave --repeat and --jobs out",
-            ));
+            return Err(Failure::usage(asked::adaptive_once()));
         }
         let stop = Stop::default();
         stop.listen();
@@ -327,7 +318,7 @@ impl RunArguments {
         console.finish();
         let (store, outcome) = result?;
         if let Some(lost) = &outcome.lost {
-            Failure::bench(lost.clone()).tell();
+            tell(&Failure::bench(lost.clone()));
         }
         let answer = self.diagnosis(&store, directory, &outcome);
         let proofs = match outcome.exit {
@@ -338,7 +329,7 @@ impl RunArguments {
         if let Some(Ok(answer)) = &answer
             && let Err(failure) = answer.attribute(&store)
         {
-            failure.tell();
+            tell(&failure);
         }
         let detail = store.run(outcome.id)?;
         // Database and reports have the result: a terminal that takes no output changes no verdict.
@@ -349,7 +340,7 @@ impl RunArguments {
                 .and_then(|()| conclusion::say_proofs(&proofs?)),
         };
         if let Err(failure) = said {
-            failure.tell();
+            tell(&failure);
         }
         let reported = self.reports.write(&store, directory, &detail);
         let outputs = Failure::of_all([streamed, recorded, reported]);

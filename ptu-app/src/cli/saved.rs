@@ -9,7 +9,7 @@ use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
 use ptu_runs::data::{self, LONGEST_FILE};
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, did_you_mean};
 use ptu_runs::table::Table;
 
 /// Ask a saved question again, or list them all
@@ -205,8 +205,7 @@ fn usual_file() -> Result<PathBuf, Failure> {
 fn load(file: &Path) -> Result<Questions, Failure> {
     let text = match read_regular_file(file, LONGEST_FILE) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Questions::new()),
-        other => other
-            .map_err(|error| Failure::bench(format!("cannot read {}: {error}", file.display())))?,
+        other => other.map_err(|error| Failure::bench(FileTrouble::unread(file, error)))?,
     };
     serde_json::from_slice(&text).map_err(|error| {
         Failure::bench(format!(

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
-use ptu_runs::failure::Failure;
+use ptu_report::words::asked;
+use ptu_runs::failure::{Failure, FileTrouble, KeyTrouble};
 use ptu_runs::{keys, owner_only};
 
 /// Longest file with a PIN, bytes.
@@ -77,12 +78,8 @@ impl PinOption {
     /// There is none of them, or the file cannot be read.
     pub fn ask(&self, prompt: &str) -> Result<String, Failure> {
         if let Some(path) = &self.pin_file {
-            let bytes = fault_db::read_regular_file(path, LONGEST_PIN).map_err(|error| {
-                Failure::usage(format!(
-                    "cannot read the PIN in {}: {error}",
-                    path.display()
-                ))
-            })?;
+            let bytes = fault_db::read_regular_file(path, LONGEST_PIN)
+                .map_err(|error| Failure::usage(FileTrouble::unread(path, error)))?;
             owner_only::refuse_shared(path)?;
             let text = String::from_utf8_lossy(&bytes);
             return Ok(text.trim_end_matches(['\n', '\r']).to_owned());
@@ -91,14 +88,10 @@ impl PinOption {
             return Ok(pin);
         }
         if !std::io::stdin().is_terminal() {
-            return Err(Failure::usage(
-                "the key is protected by a PIN, and there is no terminal to ask for it; put it into a file that only you \
-                 can read and name that with --pin-file, or set PTU_PIN",
-            ));
+            return Err(Failure::usage(KeyTrouble::NoPin));
         }
         let terminal = console::Term::stderr();
-        let cannot =
-            |error: std::io::Error| Failure::usage(format!("no PIN could be read: {error}"));
+        let cannot = |error: std::io::Error| Failure::usage(asked::pin_unread(error));
         terminal.write_str(prompt).map_err(cannot)?;
         terminal.read_secure_line().map_err(cannot)
     }
@@ -111,7 +104,7 @@ impl PinOption {
         let first = self.ask("PIN for the new key: ")?;
         let typed = self.pin_file.is_none() && std::env::var_os(PIN).is_none();
         if typed && self.ask("the same again: ")? != first {
-            return Err(Failure::usage("the two PINs differ; no key was made"));
+            return Err(Failure::usage(KeyTrouble::PinsDiffer));
         }
         Ok(first)
     }

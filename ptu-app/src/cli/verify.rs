@@ -11,8 +11,9 @@ use serde_json::{Value, json};
 use super::key::KeysOption;
 use super::{Database, Json, answered};
 use ptu_report::has_certificate;
+use ptu_report::words::asked;
 use ptu_runs::clock::{self, rfc3339};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, FileTrouble};
 use ptu_runs::keys::KeyList;
 
 /// Longest sheet or certificate that is read, bytes.
@@ -83,14 +84,14 @@ impl VerifyArguments {
 
     fn of_run(&self, keys: &KeyList) -> Result<Findings, Failure> {
         if looks_like_a_file(&self.what) {
-            return Err(Failure::usage(format!("there is no file {}", self.what)));
+            return Err(Failure::usage(FileTrouble::Missing(self.what.clone())));
         }
         // Of a code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
         let code = self.what.strip_prefix("ptu:");
         let (asked, digest) = match code.map(|code| code.split_once('/')) {
             None => (self.what.as_str(), None),
             Some(Some((run, digest))) => (run, Some(digest)),
-            Some(None) => return Err(Failure::usage("a code of a sheet reads ptu:RUN/SHA-256")),
+            Some(None) => return Err(Failure::usage(asked::no_code_of_sheet())),
         };
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(asked)?;
@@ -116,9 +117,7 @@ impl VerifyArguments {
     }
 
     fn file(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
-        let cannot = |error: std::io::Error| {
-            Failure::bench(format!("cannot read {}: {error}", path.display()))
-        };
+        let cannot = |error: std::io::Error| Failure::bench(FileTrouble::unread(path, error));
         let mut head = [0; DATABASE.len()];
         let read = std::io::Read::read(&mut std::fs::File::open(path).map_err(cannot)?, &mut head);
         if read.map_err(cannot)? == head.len() && head == *DATABASE {

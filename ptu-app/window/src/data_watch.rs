@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime};
 
 use super::data_paths::{DataPaths, beside};
 use ptu_runs::bench_worker::Wake;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, RunTrouble};
 use ptu_runs::platform::identity;
 
 /// Time between two looks.
@@ -60,7 +60,7 @@ impl DataWatch {
                     }
                 }
             })
-            .map_err(|error| Failure::bench(format!("cannot start a thread: {error}")))?;
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
         Ok(Self {
             seen,
             _ends_when_dropped: sender,

@@ -8,6 +8,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use fault_db::Store;
 use ptu_options::{WindowOptions, refuse_password};
+use ptu_report::words::asked;
+use ptu_report::words::tell;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
 use ptu_runs::run::loading;
@@ -28,7 +30,7 @@ fn main() -> ExitCode {
     match run() {
         Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
-            failure.tell();
+            tell(&failure);
             ExitCode::from(failure.exit.code())
         }
     }
@@ -67,9 +69,7 @@ fn options(asked: WindowOptions) -> Result<Options, Failure> {
     let scripts = asked.scripts.find()?;
     let paths = match asked.database.server()? {
         Some(_) if asked.unit.is_some() => {
-            return Err(Failure::usage(
-                "a server's history is only read: without --unit, or with --db FILE",
-            ));
+            return Err(Failure::usage(asked::server_is_read()));
         }
         Some(server) => {
             // Before there is a window to say it in.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use partition::Partition;
 use ptu_runs::data;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::new_file::kind;
 use views::{VIEWS, View};
 
@@ -56,8 +56,12 @@ struct Known(BTreeMap<String, BTreeMap<String, String>>);
 /// # Errors
 /// The history cannot be read, or the folder not be written.
 pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
-    let cannot =
-        |error: std::io::Error| Failure::usage(format!("cannot write {}: {error}", to.display()));
+    let cannot = |error: std::io::Error| {
+        Failure::usage(FileTrouble::Unwritten(
+            to.display().to_string(),
+            Why::of(error),
+        ))
+    };
     std::fs::create_dir_all(to).map_err(cannot)?;
     let mut known: Known = (std::fs::read(to.join(KNOWN)).ok())
         .and_then(|text| serde_json::from_slice(&text).ok())

@@ -6,6 +6,7 @@ use std::ops::Range;
 use fault_db::TraceData;
 
 use super::series::Import;
+use crate::words::asked as words;
 use ptu_runs::failure::Failure;
 
 /// How much sooner than a row a sample's time may be rounded, microseconds.
@@ -81,8 +82,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
             let is_first = names.insert(channel.name.clone());
             if known.contains(channel.name.as_str()) {
                 if !is_first {
-                    let what = format!("signal \"{}\" comes twice in the file", channel.name);
-                    return Err(Failure::usage(what));
+                    return Err(Failure::usage(words::comes_twice(&channel.name)));
                 }
                 imported.channels.push(channel);
                 imported.columns.push(held.column(&column));
@@ -174,14 +174,13 @@ fn span_us(import: &Import) -> (i64, i64) {
 }
 
 fn no_time_in_common(file_us: (i64, i64), later_us: i64, trace_us: (i64, i64)) -> Failure {
-    let at_s = |time_us: i64| time_us.saturating_add(later_us) as f64 / 1e6;
-    Failure::usage(format!(
-        "the file has no time in common with the trace: from its trigger the file goes from {:.3} to {:.3} s, \
-         the trace from {:.3} to {:.3} s; lay it elsewhere with --shift SECONDS",
+    let s = |time_us: i64| format!("{:.3}", time_us as f64 / 1e6);
+    let at_s = |time_us: i64| s(time_us.saturating_add(later_us));
+    Failure::usage(words::file_outside_trace(
         at_s(file_us.0),
         at_s(file_us.1),
-        trace_us.0 as f64 / 1e6,
-        trace_us.1 as f64 / 1e6
+        s(trace_us.0),
+        s(trace_us.1),
     ))
 }
 

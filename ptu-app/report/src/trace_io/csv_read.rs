@@ -17,7 +17,7 @@ use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use super::times::{Columns, TimeUnit};
 use super::utf16::Text;
 use ptu_runs::data::LONGEST_FILE;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 
 /// Longest line of a table, bytes. A line may be longer by what the CSV library reads at once.
 const MAX_LINE: u64 = 1 << 20;
@@ -30,8 +30,7 @@ const LOOKED_AT: usize = 50;
 pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let about = about(file)?;
     let opened = open_regular_file(file);
-    let opened = opened
-        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
+    let opened = opened.map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
     let (table, is_utc) = read_table(file, opened, &KnownSignals::of(&[own, known]), asked)?;
     Ok(Import {
@@ -48,8 +47,7 @@ fn about(file: &Path) -> Result<Option<TraceInfo>, Failure> {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => {
-            let what = format!("cannot read {}: {error}", beside.display());
-            return Err(Failure::usage(what));
+            return Err(Failure::usage(FileTrouble::unread(&beside, error)));
         }
     };
     let document: Value =

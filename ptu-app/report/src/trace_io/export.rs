@@ -6,6 +6,7 @@ use std::path::Path;
 use super::csv::{self, beside};
 use super::part::TracePart;
 use super::{mcap_write, parquet};
+use crate::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{NewFile, cannot_write, kind};
 
@@ -30,9 +31,7 @@ impl Format {
             Some("csv") => Ok(Self::Csv),
             Some("parquet") => Ok(Self::Parquet),
             Some("mcap") => Ok(Self::Mcap),
-            _ => Err(Failure::usage(
-                "the file to export to must end in .csv, .parquet or .mcap",
-            )),
+            _ => Err(Failure::usage(asked::no_trace_format())),
         }
     }
 }

@@ -15,7 +15,7 @@ use super::about::{NAME, TraceInfo};
 use super::known::{Known, KnownSignals};
 use super::run_mcap::{EVENTS, SIGNALS};
 use super::series::{Import, Table, check_size, in_order, plain, wrong};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 
 /// A longer record, or piece of compressed messages, is refused instead of being held in memory.
 const MAX_RECORD: usize = 32 << 20;
@@ -56,8 +56,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
 /// Reads a file. Each number, bit or null in a message is a sample of the signal its field names; what is
 /// not JSON is passed over.
 pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
-    let cannot =
-        |error: std::io::Error| Failure::usage(format!("cannot read {}: {error}", file.display()));
+    let cannot = |error: std::io::Error| Failure::usage(FileTrouble::unread(file, error));
     let mut input = open_regular_file(file).map_err(cannot)?;
     let options = LinearReaderOptions::default()
         .with_record_length_limit(MAX_RECORD)

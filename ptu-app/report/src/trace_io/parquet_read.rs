@@ -18,7 +18,7 @@ use super::parquet_pages::{check_footer, check_pages};
 use super::parquet_values::Values;
 use super::series::{Import, Table, check_size, in_order, wrong};
 use super::times::{Columns, TimeUnit};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 
 /// All pages that are read, unpacked.
 const MAX_UNPACKED: u64 = 512 << 20;
@@ -43,7 +43,7 @@ struct Times {
 /// Reads a file: one row after the other, each column but those of times a signal.
 pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let opened = open_regular_file(file)
-        .map_err(|error| Failure::usage(format!("cannot read {}: {error}", file.display())))?;
+        .map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
     // The library panics on some pages that say another length than they have, where it could answer.
     let read = catch_unwind(AssertUnwindSafe(|| read_table(file, opened, known, asked)));
     read.unwrap_or_else(|_| Err(wrong(file, "damaged: a page is not as it says")))

@@ -8,6 +8,7 @@ use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
 use crate::words::Language;
+use crate::words::asked;
 use ptu_runs::failure::Failure;
 
 /// Rows that are in memory at once, of all signals.
@@ -64,11 +65,10 @@ impl Seconds {
         let rows = first.max(0.0) as usize..(end.max(0.0) as usize).min(head.rows);
         let is_all = self.from.is_none() && self.to.is_none();
         if rows.is_empty() && !is_all {
-            let at_s = |row: i64| (row - trigger) as f64 * period_s;
-            return Err(Failure::usage(format!(
-                "the trace has no row in that span; it goes from {:.3} to {:.3} s of its trigger",
+            let at_s = |row: i64| format!("{:.3}", (row - trigger) as f64 * period_s);
+            return Err(Failure::usage(asked::outside_trace(
                 at_s(0),
-                at_s(head.rows as i64 - 1)
+                at_s(head.rows as i64 - 1),
             )));
         }
         Ok(rows)

@@ -5,6 +5,7 @@ use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 use super::TraceView;
 use crate::naming::PartNames;
 use crate::words::Language;
+use crate::words::asked;
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 
@@ -187,10 +188,9 @@ pub fn open(
 ) -> Result<OpenTrace, Failure> {
     let data = store.trace(id)?;
     if !PERIODS_US.contains(&data.period_us) {
-        return Err(Failure::bench(format!(
-            "trace {} has rows of {} µs: it is damaged",
+        return Err(Failure::bench(asked::trace_damaged(
             id.short(),
-            data.period_us
+            data.period_us,
         )));
     }
     let run = match run {

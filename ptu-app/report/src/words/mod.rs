@@ -3,6 +3,7 @@
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
 
+pub mod asked;
 mod bench;
 mod care;
 mod case;
@@ -36,6 +37,7 @@ pub use life::Life;
 pub use memory::Memory;
 pub use procedures::Procedures;
 pub use report::Report;
+pub use say::tell;
 pub use signals::Signals;
 pub use statistics::Statistics;
 pub use traces::Traces;
@@ -94,6 +96,16 @@ impl Language {
             Self::English => "en",
             Self::Korean => "ko",
         }
+    }
+
+    /// That of `--lang` on the command line of this process, or English.
+    pub fn asked() -> Self {
+        let all: Vec<_> = std::env::args_os().collect();
+        let korean = all.iter().any(|word| word == "--lang=ko")
+            || all
+                .windows(2)
+                .any(|pair| pair[0] == "--lang" && pair[1] == "ko");
+        if korean { Self::Korean } else { Self::English }
     }
 
     /// Its wordings.
@@ -266,9 +278,14 @@ mod tests {
         .concat()
     }
 
+    /// With what the command line refuses.
+    fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
+        [all(), asked::ALL.to_vec()].concat()
+    }
+
     #[test]
     fn no_wording_is_missing_in_either_language() {
-        for (key, english, korean) in all() {
+        for (key, english, korean) in all_told() {
             assert!(!english.trim().is_empty(), "{key} has no English");
             assert!(!korean.trim().is_empty(), "{key} has no Korean");
         }
@@ -289,7 +306,7 @@ mod tests {
 
     #[test]
     fn both_languages_have_the_same_placeholders() {
-        for (key, english, korean) in all() {
+        for (key, english, korean) in all_told() {
             assert_eq!(places(english), places(korean), "{key}");
         }
     }
@@ -307,7 +324,7 @@ mod tests {
                     && word.chars().any(|c| c.is_ascii_uppercase())
             })
         };
-        for (key, english, korean) in all() {
+        for (key, english, korean) in all_told() {
             for word in technical(english) {
                 assert!(
                     korean.contains(word),
@@ -320,7 +337,7 @@ mod tests {
     #[test]
     fn the_shipped_font_has_every_letter() {
         let font = ttf_parser::Face::parse(crate::fonts::PRETENDARD, 0).expect("a font");
-        for (key, english, korean) in all() {
+        for (key, english, korean) in all_told() {
             for letter in english.chars().chain(korean.chars()) {
                 assert!(font.glyph_index(letter).is_some(), "{key}: no \"{letter}\"");
             }
@@ -329,7 +346,7 @@ mod tests {
 
     #[test]
     fn korean_texts_are_not_english() {
-        let left: Vec<_> = all()
+        let left: Vec<_> = all_told()
             .into_iter()
             .filter(|(_, english, korean)| english == korean)
             .filter(|(_, english, _)| english.split(' ').count() > 2)
@@ -342,7 +359,10 @@ mod tests {
         let mut places: Vec<_> = text
             .split('{')
             .skip(1)
-            .filter_map(|rest| rest.split_once('}').map(|(name, _)| name))
+            .filter_map(|rest| {
+                rest.split_once('}')
+                    .map(|(name, _)| name.trim_end_matches(":#"))
+            })
             .collect();
         places.sort_unstable();
         places

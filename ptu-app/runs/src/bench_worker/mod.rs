@@ -29,7 +29,7 @@ pub use permit::{Refused, permit};
 pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting, outside_place};
 pub use waking::Watched;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::run::{BenchSetup, RunPlan};
 use crate::stop::Stop;
 use bench_thread::BenchThread;
@@ -80,7 +80,7 @@ impl BenchWorker {
         let thread = std::thread::Builder::new()
             .name("bench".into())
             .spawn(move || bench_thread.run_until_closed(&receiver))
-            .map_err(|error| Failure::bench(format!("cannot start a bench thread: {error}")))?;
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
         Ok(Self {
             orders: Some(orders),
             live_state,

@@ -7,6 +7,7 @@ use protocol::{Duration, Instant, SCAN};
 
 use super::date::{ClockPair, StoredClocks, dates};
 use crate::clock::NOT_KNOWN_MS;
+use crate::failure::BrokenOff;
 use crate::link::Pace;
 use crate::stop::Stop;
 
@@ -75,7 +76,7 @@ pub struct LogRead {
     /// Its operating mode at the end.
     pub mode: Option<Mode>,
     /// Why reading ended before the log did.
-    pub broken_off: Option<String>,
+    pub broken_off: Option<BrokenOff>,
     /// What it has stored over power-ups; none of an older unit, whose log is of the present one.
     pub stored: Option<StoredRead>,
 }
@@ -93,7 +94,7 @@ pub fn read_log<L: UnitLink>(
     pace: &mut Pace,
     stop: &Stop,
     (clock, uncertainty_ms): (&dyn Fn() -> i64, u16),
-) -> Result<LogRead, String> {
+) -> Result<LogRead, BrokenOff> {
     let mut session = LogSession::new(rows);
     session.tell_time(TimeOfDay {
         at: from,
@@ -128,27 +129,27 @@ pub fn read_log<L: UnitLink>(
         }
         since_power_up.extend(session.take_events());
         if let Err(broken) = exchanged {
-            break Some(session.turned_away().unwrap_or(broken).to_string());
+            break Some(session.turned_away().unwrap_or(broken).into());
         }
         if session.is_complete() {
             break None;
         }
         if let Some(error) = session.link_error(now) {
-            break Some(error.to_string());
+            break Some(error.into());
         }
         if stop.presses() > 0 {
-            break Some("stopped by the operator".to_owned());
+            break Some(BrokenOff::Stopped);
         }
         let longer = Duration::from_us(u64::from(session.left()) * PER_STORED_US);
         within = within.max(now.since(from) + longer);
         // By the clock: a unit that sends more than can be read in a scan holds the scans up.
         if now.since(from) + pace.behind() > within {
-            break Some(format!("the log does not end within {within}"));
+            break Some(BrokenOff::TooLong(within));
         }
     };
     entries.extend(dated(&mut since_power_up, pair, uncertainty_ms));
     let Some(identity) = session.identity().copied() else {
-        return Err(broken_off.unwrap_or_default());
+        return Err(broken_off.unwrap_or(BrokenOff::Stopped));
     };
     let stored = session.stored().map(|(events, rows)| {
         // Of a unit that started again meanwhile it is not known which power-up our clock stands beside: the time

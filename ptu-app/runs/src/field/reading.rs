@@ -8,7 +8,7 @@ use super::{
 };
 use crate::clock::{ClockState, now_us};
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, FieldTrouble};
 use crate::link::{Endpoint, WireLink};
 use crate::run::unit_text;
 use crate::stop::Stop;
@@ -81,7 +81,8 @@ impl AskedUnit {
             stop,
             (&now_us, clock.uncertainty_ms()),
         );
-        let read = read.map_err(|why| Failure::bench(format!("{}: {why}", self.endpoint)))?;
+        let read =
+            read.map_err(|why| Failure::bench(FieldTrouble::NotRead(self.endpoint.clone(), why)))?;
         let identity = &read.identity;
         unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
         let mut warnings = Vec::new();
@@ -132,17 +133,10 @@ impl AskedUnit {
     }
 
     fn check(&self) -> Result<(), Failure> {
-        let undatable = match &self.endpoint {
-            Endpoint::Sim => Some("the simulated unit keeps no log from run to run"),
-            Endpoint::LockStep(_) => {
-                Some("the clock of a unit in lock step stands between scans, which dates no entry")
-            }
-            Endpoint::Serial { .. } | Endpoint::Tcp(_) => None,
-        };
-        if let Some(why) = undatable {
-            return Err(Failure::usage(format!(
-                "{why}; name a unit on a port with --unit serial:PATH or tcp:HOST:PORT"
-            )));
+        match &self.endpoint {
+            Endpoint::Sim => return Err(Failure::usage(FieldTrouble::Simulated)),
+            Endpoint::LockStep(_) => return Err(Failure::usage(FieldTrouble::LockStep)),
+            Endpoint::Serial { .. } | Endpoint::Tcp(_) => {}
         }
         limits::name("the operator's name", &self.operator)?;
         limits::name("the train's name", &self.train)?;
@@ -184,9 +178,7 @@ impl UnitReading {
     pub fn complete(&self) -> Result<(), Failure> {
         match &self.read.broken_off {
             None => Ok(()),
-            Some(why) => Err(Failure::bench(format!(
-                "{why}; the log was not read to its end, what was read is kept; read it again"
-            ))),
+            Some(why) => Err(Failure::bench(FieldTrouble::NotWhole(why.clone()))),
         }
     }
 }

@@ -11,7 +11,7 @@ use serde::de::IgnoredAny;
 use super::file::MOST_BYTES;
 use super::record::{Found, in_order};
 use super::{Head, Shard};
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble};
 
 /// The runs of several files as one file.
 pub struct Merged {
@@ -61,7 +61,7 @@ struct Read {
 impl Read {
     fn of(path: &Path) -> Result<Self, Failure> {
         let bytes = read_regular_file(path, MOST_BYTES)
-            .map_err(|error| Failure::usage(format!("cannot read {}: {error}", path.display())))?;
+            .map_err(|error| Failure::usage(FileTrouble::unread(path, error)))?;
         let found = Found::read(&bytes).map_err(|why| {
             refused(
                 path,

@@ -11,7 +11,7 @@ use pkcs8::{EncryptedPrivateKeyInfoRef, LineEnding, PrivateKeyInfoRef};
 
 use super::list::{KeyEntry, KeyList};
 use super::{located, sought};
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, KeyTrouble, Why};
 use crate::new_file::{NewFile, cannot_write, kind};
 
 /// Fewest letters and digits of a PIN.
@@ -56,17 +56,14 @@ impl NewKey<'_> {
     /// The PIN is too short, a file is there already, or the disk does not take it.
     pub fn write(self, path: &Path, pin: &str) -> Result<KeyEntry, Failure> {
         if pin.chars().filter(|c| c.is_alphanumeric()).count() < SHORTEST_PIN {
-            return Err(Failure::usage(format!(
-                "a PIN has at least {SHORTEST_PIN} letters or digits"
-            )));
+            return Err(Failure::usage(KeyTrouble::ShortPin(SHORTEST_PIN)));
         }
-        let no_random = |_| Failure::bench("the system gives no random numbers; no key was made");
-        let (mut seed, mut salt, mut iv) = ([0; 32], [0; 16], [0; 16]);
-        getrandom::fill(&mut seed).map_err(no_random)?;
-        getrandom::fill(&mut salt).map_err(no_random)?;
-        getrandom::fill(&mut iv).map_err(no_random)?;
         let failed =
-            |error: &dyn std::fmt::Display| Failure::bench(format!("no key was made: {error}"));
+            |error: &dyn std::fmt::Display| Failure::bench(KeyTrouble::NotMade(error.to_string()));
+        let (mut seed, mut salt, mut iv) = ([0; 32], [0; 16], [0; 16]);
+        getrandom::fill(&mut seed).map_err(|error| failed(&error))?;
+        getrandom::fill(&mut salt).map_err(|error| failed(&error))?;
+        getrandom::fill(&mut iv).map_err(|error| failed(&error))?;
         let signer = Signer::new(self.who, self.kind, &seed).map_err(|error| failed(&error))?;
         let entry = KeyEntry {
             who: self.who.to_owned(),
@@ -112,25 +109,18 @@ impl KeyFile {
     /// There is none, or it is no key file.
     pub fn read(named: &Path) -> Result<Self, Failure> {
         let path = &located(named);
-        let shown = path.display();
+        let shown = path.display().to_string();
         if !path.exists() {
-            return Err(Failure::usage(format!(
-                "there is no key file {}; `ptu key new` makes one, `ptu key list` shows yours",
-                sought(named)
-            )));
+            return Err(Failure::usage(KeyTrouble::Missing(sought(named))));
         }
-        let bytes = read_regular_file(path, LONGEST).map_err(|error| {
-            Failure::usage(format!("cannot read the key file {shown}: {error}"))
-        })?;
+        let bytes = read_regular_file(path, LONGEST)
+            .map_err(|error| Failure::usage(FileTrouble::Unread(shown.clone(), Why::of(error))))?;
         let text = String::from_utf8_lossy(&bytes);
-        let no_key =
-            |why: &str| Failure::usage(format!("{shown} is no key file of `ptu key new`: {why}"));
-        let place = text
-            .find(BEGIN)
-            .ok_or_else(|| no_key("it holds no private key"))?;
+        let no_key = |why| Failure::usage(KeyTrouble::NoKeyFile(shown.clone(), why));
+        let place = text.find(BEGIN).ok_or_else(|| no_key(Why::NoPrivateKey))?;
         let entry: KeyEntry =
-            toml::from_str(&text[..place]).map_err(|error| no_key(error.message()))?;
-        entry.check().map_err(|why| no_key(&why))?;
+            toml::from_str(&text[..place]).map_err(|error| no_key(Why::of(error.message())))?;
+        entry.check().map_err(|why| no_key(Why::Said(why)))?;
         Ok(Self {
             path: path.to_path_buf(),
             entry,
@@ -148,21 +138,18 @@ impl KeyFile {
     /// # Errors
     /// The PIN is wrong, or the file was changed.
     pub fn open(&self, pin: &str) -> Result<Signer, Failure> {
-        let shown = self.path.display();
-        let damaged = |why: &dyn std::fmt::Display| {
-            Failure::usage(format!(
-                "the key file {shown} is damaged: {why}; take your copy of it"
-            ))
-        };
-        let (_, document) = Document::from_pem(&self.pem).map_err(|error| damaged(&error))?;
+        let shown = self.path.display().to_string();
+        let damaged = |why| Failure::usage(KeyTrouble::Damaged(shown.clone(), why));
+        let (_, document) =
+            Document::from_pem(&self.pem).map_err(|error| damaged(Why::of(error)))?;
         let encrypted = EncryptedPrivateKeyInfoRef::try_from(document.as_bytes())
-            .map_err(|error| damaged(&error))?;
-        let wrong = || Failure::usage(format!("the PIN of {shown} is wrong; nothing was signed"));
+            .map_err(|error| damaged(Why::of(error)))?;
+        let wrong = || Failure::usage(KeyTrouble::WrongPin(shown.clone()));
         let plain = encrypted.decrypt(pin).map_err(|_| wrong())?;
         let seed = plain.as_bytes().strip_prefix(&HEAD[..]).ok_or_else(wrong)?;
         let signer = Signer::new(&self.entry.who, &self.entry.kind, seed).map_err(|_| wrong())?;
         if signer.public_key() != self.entry.key {
-            return Err(damaged(&"its public key is not that of its private key"));
+            return Err(damaged(Why::OtherPublicKey));
         }
         Ok(signer)
     }

@@ -8,7 +8,7 @@ use protocol::display_text;
 use serde::{Deserialize, Serialize};
 use unicode_normalization::UnicodeNormalization as _;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, KeyTrouble, Why};
 
 /// Longest list that is read, bytes.
 const LONGEST: u64 = 4 << 20;
@@ -95,7 +95,12 @@ impl KeyList {
         for file in Self::files(path)? {
             for entry in Self::of_file(&file)?.keys {
                 let added = list.add(entry);
-                added.map_err(|why| Failure::bench(format!("{}: {why}", path.display())))?;
+                added.map_err(|why| {
+                    Failure::bench(KeyTrouble::NoKeyList(
+                        path.display().to_string(),
+                        Why::Said(why),
+                    ))
+                })?;
             }
         }
         Ok(list)
@@ -109,7 +114,12 @@ impl KeyList {
         if !path.is_dir() {
             return Ok(vec![path.to_path_buf()]);
         }
-        let cannot = |error| Failure::bench(format!("cannot read {}: {error}", path.display()));
+        let cannot = |error| {
+            Failure::bench(FileTrouble::Unread(
+                path.display().to_string(),
+                Why::of(error),
+            ))
+        };
         let mut files: Vec<PathBuf> = Vec::new();
         for entry in std::fs::read_dir(path).map_err(cannot)? {
             let file = entry.map_err(cannot)?.path();
@@ -123,13 +133,12 @@ impl KeyList {
     }
 
     fn of_file(path: &Path) -> Result<Self, Failure> {
-        let shown = path.display();
+        let shown = path.display().to_string();
+        let no_list = |why| Failure::bench(KeyTrouble::NoKeyList(shown.clone(), why));
         let bytes = read_regular_file(path, LONGEST)
-            .map_err(|error| Failure::bench(format!("cannot read {shown}: {error}")))?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Failure::bench(format!("{shown} is no list of keys: it is no text")))?;
-        Self::of_text(&text)
-            .map_err(|why| Failure::bench(format!("{shown} is no list of keys: {why}")))
+            .map_err(|error| Failure::bench(FileTrouble::Unread(shown.clone(), Why::of(error))))?;
+        let text = String::from_utf8(bytes).map_err(|_| no_list(Why::NoText))?;
+        Self::of_text(&text).map_err(|why| no_list(Why::Said(why)))
     }
 
     fn of_text(text: &str) -> Result<Self, String> {

@@ -11,7 +11,7 @@ use fault_db::Signer;
 pub use file::{KeyFile, NewKey, public_name};
 pub use list::{KeyEntry, KeyList, Standing, day_argument, day_of, day_text, name_argument};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, KeyTrouble, Sought};
 use crate::{clock, owner_only};
 
 /// The folder of one's own keys and of the list of those that are trusted.
@@ -21,7 +21,7 @@ use crate::{clock, owner_only};
 pub fn own_folder() -> Result<PathBuf, Failure> {
     script_files::own_folder()
         .and_then(|scripts| scripts.parent().map(|data| data.join("keys")))
-        .ok_or_else(|| Failure::usage("no user data directory; name a file or folder with --keys"))
+        .ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--keys")))
 }
 
 /// Where a file of keys is that a person names: a name without a folder is that of one in the current folder or, if there is
@@ -31,15 +31,13 @@ pub fn located(named: &Path) -> PathBuf {
     kept.unwrap_or_else(|| named.to_path_buf())
 }
 
-/// Where [`located`] looks, in words: "kim.key, neither in the current folder nor in …".
-pub fn sought(named: &Path) -> String {
-    let shown = named.display();
-    match own_of(named).as_deref().and_then(Path::parent) {
-        Some(folder) => format!(
-            "{shown}, neither in the current folder nor in {}",
-            folder.display()
-        ),
-        None => shown.to_string(),
+/// Where [`located`] looks.
+pub fn sought(named: &Path) -> Sought {
+    let own = own_of(named);
+    let folder = own.as_deref().and_then(Path::parent);
+    Sought {
+        file: named.display().to_string(),
+        folder: folder.map(|folder| folder.display().to_string()),
     }
 }
 
@@ -100,10 +98,9 @@ fn check(path: &Path, file: &KeyFile) -> Result<(), Failure> {
         .standing(&entry.key, &entry.who, &entry.kind, now);
     for standing in [entry.standing(now), listed] {
         if !matches!(standing, Standing::Held | Standing::Unknown) {
-            return Err(Failure::usage(format!(
-                "the key in {} {}: nothing is signed with it; `ptu key new` makes another",
-                path.display(),
-                standing.text()
+            return Err(Failure::usage(KeyTrouble::NotHeld(
+                path.display().to_string(),
+                standing,
             )));
         }
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 pub use crate::platform::{closed_to_user, is_probed_by_others};
 
 /// A serial port.
@@ -26,7 +26,7 @@ pub fn found() -> Result<Vec<PortFound>, Failure> {
         return Ok(Vec::new());
     }
     let ports = serialport::available_ports()
-        .map_err(|error| Failure::bench(format!("cannot list serial ports: {error}")))?;
+        .map_err(|error| Failure::bench(RunTrouble::PortsNotListed(error.to_string())))?;
     let kind = |port: &serialport::SerialPortInfo| match port.port_type {
         serialport::SerialPortType::UsbPort(_) => "usb",
         serialport::SerialPortType::BluetoothPort => "bluetooth",

@@ -12,7 +12,7 @@ use serialport::SerialPort;
 
 use super::NoUnit;
 use super::{Pace, open_port};
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 
 /// Baud rate when none is given.
 const BAUD: u32 = 115_200;
@@ -39,6 +39,23 @@ pub enum Endpoint {
     LockStep(String),
 }
 
+/// Why a text is no place of a unit.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EndpointError {
+    /// It begins as none.
+    #[error("a unit is `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`")]
+    Unknown,
+    /// What stands after `tcp:`.
+    #[error("\"{0}\" is not HOST:PORT")]
+    Address(String),
+    /// What stands after the sign.
+    #[error("\"{0}\" is not a baud rate")]
+    Baud(String),
+    /// Nothing stands after `serial:`.
+    #[error("serial: needs a port; `ptu ports` lists them")]
+    NoPort,
+}
+
 impl Endpoint {
     /// How a bench with this unit keeps its time, so many times slower than the clock where it goes by it.
     pub fn pace(&self, slower: u32) -> Pace {
@@ -50,9 +67,9 @@ impl Endpoint {
 }
 
 impl std::str::FromStr for Endpoint {
-    type Err = String;
+    type Err = EndpointError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, EndpointError> {
         if text == "sim" {
             return Ok(Self::Sim);
         }
@@ -61,7 +78,7 @@ impl std::str::FromStr for Endpoint {
                 Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => {
                     Ok(Self::Tcp(address.to_owned()))
                 }
-                _ => Err(format!("\"{address}\" is not HOST:PORT")),
+                _ => Err(EndpointError::Address(address.to_owned())),
             };
         }
         if let Some(path) = text
@@ -71,20 +88,18 @@ impl std::str::FromStr for Endpoint {
             return Ok(Self::LockStep(path.to_owned()));
         }
         let Some(port) = text.strip_prefix("serial:") else {
-            return Err(
-                "a unit is `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`".into(),
-            );
+            return Err(EndpointError::Unknown);
         };
         let (path, baud) = match port.rsplit_once('@') {
             Some((path, baud)) => (
                 path,
                 baud.parse()
-                    .map_err(|_| format!("\"{baud}\" is not a baud rate"))?,
+                    .map_err(|_| EndpointError::Baud(baud.to_owned()))?,
             ),
             None => (port, BAUD),
         };
         if path.is_empty() {
-            return Err("serial: needs a port; `ptu ports` lists them".into());
+            return Err(EndpointError::NoPort);
         }
         Ok(Self::Serial {
             path: path.to_owned(),
@@ -131,7 +146,7 @@ impl WireLink {
     /// The port is missing or in use; the message says what to do next.
     pub fn open(endpoint: &Endpoint) -> Result<Self, Failure> {
         let port = match endpoint {
-            Endpoint::Sim => return Err(Failure::bench("the embedded unit has no port")),
+            Endpoint::Sim => return Err(Failure::bench(RunTrouble::NoPort)),
             Endpoint::Serial { path, baud } => {
                 Port::Serial(SerialEnd(open_serial(path, *baud, PORT_WAITS)?))
             }

@@ -13,7 +13,7 @@ use protocol::line::Section;
 use protocol::signal::Signal;
 
 use crate::drive::{Case, drive};
-use crate::failure::Failure;
+use crate::failure::{Failure, RecordTrouble};
 
 /// A speed may be beside the one expected by so much, km/h, for so many rows [default: 1 s].
 const SPEED_KMH: f64 = 3.0;
@@ -200,18 +200,15 @@ impl Curve {
     fn of_trace(trace: &TraceData) -> Result<Self, Failure> {
         let column = |signal: Signal| {
             let name = signal.definition().name;
-            trace.column(name).ok_or_else(|| {
-                Failure::usage(format!(
-                    "the trace has no signal {name}: it is no run record of a unit"
-                ))
-            })
+            trace
+                .column(name)
+                .ok_or_else(|| Failure::usage(RecordTrouble::NoRunRecord(name.to_owned())))
         };
         let (speed, target) = (column(Signal::Speed)?, column(Signal::Target)?);
         let (position, effort) = (column(Signal::Position)?, column(Signal::Effort)?);
         let (marker, count) = (column(Signal::Marker)?, column(Signal::MarkerCount)?);
         let departs = speed.iter().position(|kmh| *kmh > 0.0);
-        let departs =
-            departs.ok_or_else(|| Failure::usage("the train never moves in this trace"))?;
+        let departs = departs.ok_or_else(|| Failure::usage(RecordTrouble::NeverMoves))?;
         let period_s = trace.period_us as f64 / 1e6;
         let point = |row: usize| Point {
             t_s: (row as f64 - departs as f64) * period_s,

@@ -6,7 +6,7 @@ use fault_db::{Id, Store};
 use super::{RecordComparison, compare, find_section};
 use crate::data::ScriptsDirectory;
 use crate::drive::{Fixed, Request, SectionChoice};
-use crate::failure::Failure;
+use crate::failure::{Failure, Unknown};
 
 /// The train of the sound unit.
 const TRAIN: &str = "line6";
@@ -76,7 +76,7 @@ impl CompareRequest {
         let cases = request.cases(directory)?;
         let case = cases
             .first()
-            .ok_or_else(|| Failure::usage(format!("line {line_name} has no section {number}")))?;
+            .ok_or_else(|| Failure::usage(Unknown::Section(line_name.clone(), number)))?;
         let comparison = compare(&data, &case.plan.section, case)?;
         Ok(Compared {
             trace,

@@ -5,7 +5,7 @@ use protocol::line::{Line, Section};
 use protocol::signal::Signal;
 
 use super::compare::RESTS_KMH;
-use crate::failure::Failure;
+use crate::failure::{Failure, RecordTrouble};
 
 /// Greatest difference of a marker's place, or of the stop, that is still of this section, m.
 const NEAR_M: f64 = 30.0;
@@ -26,9 +26,7 @@ pub struct SectionMatch {
 pub fn find_section(line: &Line, trace: &TraceData) -> Result<SectionMatch, Failure> {
     let seen = places(trace);
     if seen.is_empty() {
-        return Err(Failure::usage(
-            "the trace passes no marker and does not stop: name its section with --section",
-        ));
+        return Err(Failure::usage(RecordTrouble::NoMarkers));
     }
     let mut matches: Vec<_> = line
         .sections
@@ -37,17 +35,14 @@ pub fn find_section(line: &Line, trace: &TraceData) -> Result<SectionMatch, Fail
         .collect();
     matches.sort_by(|a, b| a.off_m.total_cmp(&b.off_m));
     match &matches[..] {
-        [] => Err(Failure::usage(format!(
-            "no section of line {} has its markers and its stop where this run found them: name the line with --line, \
-             or the section with --section",
-            line.name
+        [] => Err(Failure::usage(RecordTrouble::NoSectionFits(
+            line.name.clone(),
         ))),
         [best, other, ..] if other.off_m < 2.0 * best.off_m + 1.0 => {
             let near = matches.iter().filter(|m| m.off_m < 2.0 * best.off_m + 1.0);
             let near: Vec<_> = near.map(|m| m.section.to_string()).collect();
-            Err(Failure::usage(format!(
-                "sections {} fit this run alike: name one with --section",
-                near.join(", ")
+            Err(Failure::usage(RecordTrouble::SectionsAlike(
+                near.join(", "),
             )))
         }
         [best, ..] => Ok(best.clone()),

@@ -5,7 +5,7 @@ use protocol::message::Mode;
 use protocol::signal::Signal;
 
 use super::{RecordedRun, Rest, recorded_runs};
-use crate::failure::Failure;
+use crate::failure::{Failure, FieldTrouble};
 use crate::field::{Source, UnitReading, run_record};
 
 /// What became of the runs of a record.
@@ -64,9 +64,7 @@ pub fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pu
 /// The unit has no stored memory, or the database fails.
 pub fn pull_reading(store: &Store, reading: &UnitReading) -> Result<Pulled, Failure> {
     let Some(stored) = &reading.read.stored else {
-        return Err(Failure::bench(
-            "this unit has no stored memory: its run record is lost at power off, and cannot be pulled",
-        ));
+        return Err(Failure::bench(FieldTrouble::NoMemory));
     };
     let rest = match (reading.source.broken_off, reading.read.mode) {
         (true, _) => Rest::Unread,

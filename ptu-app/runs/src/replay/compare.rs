@@ -6,7 +6,7 @@ use std::ops::Range;
 use fault_db::{Channel, ChannelKind, TraceData};
 
 use super::path;
-use crate::failure::Failure;
+use crate::failure::{Failure, RecordTrouble, Unknown};
 
 /// Signals without a unit that are quantities; all others are numbers of things, bits or codes, of which
 /// any other value is another thing.
@@ -176,10 +176,9 @@ pub fn compare(
     signals: &[String],
 ) -> Result<Comparison, Failure> {
     if came.period_us != expected.period_us {
-        return Err(Failure::usage(format!(
-            "the traces have rows of {} ms and {} ms: they cannot be laid side by side",
+        return Err(Failure::usage(RecordTrouble::Periods(
             came.period_us / 1000,
-            expected.period_us / 1000
+            expected.period_us / 1000,
         )));
     }
     let rows = Rows::of(came, expected, rule)?;
@@ -198,9 +197,7 @@ pub fn compare(
     for signal in signals {
         let in_came = came.column(signal).is_some();
         if !in_came && !theirs.contains_key(signal.as_str()) {
-            return Err(Failure::usage(format!(
-                "no signal \"{signal}\" in the traces; `ptu catalog signals` lists them"
-            )));
+            return Err(Failure::usage(Unknown::Signal(signal.clone())));
         }
     }
     let mut deviations = Vec::new();
@@ -262,10 +259,7 @@ impl Rows {
         let from = begin.max(rule.from_row.saturating_add(trigger(came)));
         let end = (came.rows() as i64 - 1).min(expected.rows() as i64 - 1 - shift);
         if end - (rule.slack_rows as i64) < from {
-            return Err(Failure::usage(
-                "the traces have no time in common around their triggers, or the recording begins after \
-                 the end of the trace",
-            ));
+            return Err(Failure::usage(RecordTrouble::NoCommonTime));
         }
         Ok(Self {
             first: begin as usize,

@@ -4,7 +4,7 @@ use fault_db::{Id, Store, TraceData};
 use protocol::Instant;
 
 use super::Rule;
-use crate::failure::Failure;
+use crate::failure::{Failure, RecordTrouble};
 use crate::run::{BenchContents, Stimuli, Window};
 
 /// How two stored traces compare: to the last bit where both come from benches in virtual time.
@@ -76,23 +76,15 @@ impl Original {
     /// There is no such trace, or none that can be had again.
     pub fn read(store: &Store, id: Id) -> Result<Self, Failure> {
         let trace = store.trace(id)?;
-        let recording = store.recording(id)?.ok_or_else(|| {
-            Failure::usage(format!(
-                "trace {} has no recording of what was done to the bench: it is of an earlier version, or \
-                 its run broke off",
-                id.short()
-            ))
-        })?;
+        let recording = store
+            .recording(id)?
+            .ok_or_else(|| Failure::usage(RecordTrouble::NoRecording(id)))?;
         let (made, stimuli) = BenchContents::read(&recording)?;
         if trace.rows() == 0 {
-            return Err(Failure::usage(format!("trace {} has no rows", id.short())));
+            return Err(Failure::usage(RecordTrouble::NoRows(id)));
         }
-        check_times(&trace, recording.t0_bench_us).ok_or_else(|| {
-            Failure::usage(format!(
-                "trace {} names times at which no procedure was under way",
-                id.short()
-            ))
-        })?;
+        check_times(&trace, recording.t0_bench_us)
+            .ok_or_else(|| Failure::usage(RecordTrouble::NoTimes(id)))?;
         Ok(Self {
             id,
             run_id: recording.run_id,

@@ -7,7 +7,7 @@ use protocol::{CYCLE, Instant};
 
 use super::{Original, Rule};
 use crate::data::ScriptsDirectory;
-use crate::failure::{Failure, Trouble};
+use crate::failure::{Failure, RecordTrouble, Trouble};
 use crate::run::bench_setup::SWITCHED_OFF;
 use crate::run::{BenchSetup, RecordedStimuli, Session};
 use crate::run::{READY_WITHIN, settled};
@@ -50,7 +50,7 @@ pub(super) fn on_embedded(
     // The unit on the port had been running for who knows how long.
     let (ready, _) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     if !ready {
-        return Err(Failure::bench("the embedded unit does not become ready"));
+        return Err(Failure::bench(RecordTrouble::NotReady));
     }
     from_here(original, &mut session)
 }
@@ -87,10 +87,11 @@ fn play<L: UnitLink>(
     let window = original.window(shift_us);
     let trace = session.play(StimulusPlayer::new(record, shift_us), window, &mut refused);
     let trace = trace.ok_or_else(|| {
-        Failure::bench(session.link_error().map_or_else(
-            || "stopped before anything was recorded".into(),
-            Trouble::Link,
-        ))
+        Failure::bench(
+            session
+                .link_error()
+                .map_or_else(|| RecordTrouble::Stopped.into(), Trouble::Link),
+        )
     })?;
     let mut record = record.clone();
     for entry in &mut record.entries {

@@ -18,7 +18,7 @@ use super::event::RecordedStimuli;
 use crate::data::{ScriptsDirectory, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
-use crate::failure::Failure;
+use crate::failure::{Failure, RecordTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
 
@@ -124,17 +124,17 @@ impl BenchContents {
     /// It was written by another version, or more was done than could be kept.
     pub fn read(recording: &Recording) -> Result<(Self, Stimuli), Failure> {
         let other = |error: serde_json::Error| {
-            Failure::bench(format!(
-                "the recording of {} cannot be read by this version: {error}",
-                recording.procedure
+            Failure::bench(RecordTrouble::OtherVersion(
+                recording.procedure.clone(),
+                error.to_string(),
             ))
         };
         let made = serde_json::from_str(&recording.bench_json).map_err(other)?;
         let stimuli: Stimuli = serde_json::from_str(&recording.stimuli_json).map_err(other)?;
         if stimuli.record.lost > 0 {
-            return Err(Failure::bench(format!(
-                "the recording of {} is not whole: {} stimuli found no room in it",
-                recording.procedure, stimuli.record.lost
+            return Err(Failure::bench(RecordTrouble::NotWhole(
+                recording.procedure.clone(),
+                stimuli.record.lost,
             )));
         }
         Ok((made, stimuli))
@@ -206,25 +206,25 @@ impl BenchContents {
     }
 }
 
-fn gone<T>(what: &str, made: &BenchFile, found: Result<T, Failure>) -> Result<T, Failure> {
+fn gone<T>(what: &'static str, made: &BenchFile, found: Result<T, Failure>) -> Result<T, Failure> {
     found.map_err(|failure| {
-        Failure::usage(format!(
-            "the recording was made with {what} \"{}\", which cannot be had any more: {failure}",
-            made.name
+        Failure::usage(RecordTrouble::Gone(
+            what,
+            made.name.clone(),
+            Box::new(failure.message),
         ))
     })
 }
 
-fn same(what: &str, made: &BenchFile, found: &str) -> Result<(), Failure> {
+fn same(what: &'static str, made: &BenchFile, found: &str) -> Result<(), Failure> {
     if made.sha256 == found {
         return Ok(());
     }
-    Err(Failure::usage(format!(
-        "the {what} \"{}\" was changed since the recording (sha256 {}, now {}): what was expected then \
-         cannot be told; give the scripts directory of that time with --scripts",
-        made.name,
-        beginning(&made.sha256),
-        beginning(found)
+    Err(Failure::usage(RecordTrouble::Changed(
+        what,
+        made.name.clone(),
+        beginning(&made.sha256).to_owned(),
+        beginning(found).to_owned(),
     )))
 }
 

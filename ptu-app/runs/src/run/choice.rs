@@ -17,7 +17,7 @@ use super::signals::Signals;
 use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
 
@@ -123,21 +123,18 @@ impl BenchChoice {
     /// # Errors
     /// A name is wrong, a file is missing or wrong, or the files do not fit together.
     pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
-        let endpoint = Endpoint::from_str(&self.endpoint).map_err(Failure::usage)?;
+        let endpoint = Endpoint::from_str(&self.endpoint)
+            .map_err(|why| Failure::usage(RunTrouble::Endpoint(why)))?;
         let faults = directory.chosen_faults(&self.faults)?;
         if endpoint != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
-            return Err(Failure::usage(
-                "--inject puts faults of a unit into the embedded one only; inject into a served one with `ato-under-test --inject`",
-            ));
+            return Err(Failure::usage(RunTrouble::InjectElsewhere));
         }
         let serial = Some(self.serial.clone()).filter(|serial| !serial.is_empty());
         if let Some(serial) = &serial {
             check_serial(serial)?;
         }
         if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
-            return Err(Failure::usage(
-                "--signals sampled needs 6 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH",
-            ));
+            return Err(Failure::usage(RunTrouble::SampledOnSerial));
         }
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
@@ -203,9 +200,7 @@ pub fn software_version(text: &str) -> Result<[u8; 3], String> {
 pub fn check_serial(serial: &str) -> Result<(), Failure> {
     let longest = size_of_val(&Identity::default().serial);
     if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {
-        return Err(Failure::usage(format!(
-            "a serial number is 1 to {longest} ASCII characters"
-        )));
+        return Err(Failure::usage(RunTrouble::SerialNumber(longest)));
     }
     Ok(())
 }

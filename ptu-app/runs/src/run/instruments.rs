@@ -8,7 +8,7 @@ use fault_db::{Instrument, Store};
 use super::bench_setup::BenchSetup;
 use super::plan::Task;
 use crate::clock;
-use crate::failure::{Failure, Trouble};
+use crate::failure::{Failure, RunTrouble, Trouble};
 use crate::link::Endpoint;
 
 /// The instruments of this bench that a run on a port uses: all that are registered and not retired. A simulated unit is
@@ -39,10 +39,7 @@ pub(super) fn of_run(
 pub(super) fn guard_band(tasks: &mut [Task], store: &Store) -> Result<(), Failure> {
     let used = store.instruments()?;
     if used.iter().all(|used| used.uncertainty.is_empty()) {
-        return Err(Failure::usage(
-            "no instrument is registered with an uncertainty, by which limits could be narrowed; `ptu instrument calibrate` \
-             states one",
-        ));
+        return Err(Failure::usage(RunTrouble::NoUncertainty));
     }
     for task in tasks {
         let procedure = Arc::make_mut(&mut task.procedure);

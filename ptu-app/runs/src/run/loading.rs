@@ -19,7 +19,7 @@ use protocol::config::UnitConfig;
 use protocol::line::Line;
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::platform;
 
 /// The word that makes the program load scripts and nothing else.
@@ -96,9 +96,7 @@ pub fn load(
         train: Cow::Borrowed(train),
     };
     let cannot = |error: &dyn std::fmt::Display| {
-        Failure::bench(format!(
-            "cannot load scripts in a process of their own: {error}"
-        ))
+        Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))
     };
     let mut command = Command::new(program);
     let mut child = platform::without_window(&mut command)

@@ -12,7 +12,7 @@ use script_files::Place;
 use protocol::Random;
 
 use crate::data::{self, ScriptsDirectory};
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, RunTrouble, Unknown, did_you_mean};
 
 /// Sets the order apart from what else the same seed gives.
 const ORDER_SEQUENCE: u64 = 0x0D1C_E0F5_7E95_A3C1;
@@ -78,7 +78,7 @@ fn matching(
 ) -> Result<BTreeMap<String, String>, Failure> {
     let wanted = under(directory, name);
     let pattern = Pattern::new(&wanted)
-        .map_err(|error| Failure::usage(format!("\"{name}\" is not a glob: {error}")))?;
+        .map_err(|error| Failure::usage(RunTrouble::Glob(name.to_owned(), error.to_string())))?;
     let matches = |path: &String| {
         let id = path.strip_suffix(".star").unwrap_or(path);
         !is_library(path)
@@ -118,9 +118,9 @@ fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String
         .filter(|p| !is_library(p))
         .map(|p| p.trim_end_matches(".star"))
         .collect();
-    Err(Failure::usage(format!(
-        "no procedure or file \"{name}\"{}; `ptu run --list` shows all",
-        did_you_mean(name, known)
+    Err(Failure::usage(Unknown::Procedure(
+        name.to_owned(),
+        did_you_mean(name, known),
     )))
 }
 
@@ -129,7 +129,10 @@ fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String
 /// # Errors
 /// It is not a glob.
 pub fn step_pattern(glob: Option<&str>) -> Result<Option<Pattern>, Failure> {
-    glob.map(Pattern::new)
-        .transpose()
-        .map_err(|error| Failure::usage(format!("--step is not a glob: {error}")))
+    glob.map(Pattern::new).transpose().map_err(|error| {
+        Failure::usage(RunTrouble::Glob(
+            glob.unwrap_or_default().to_owned(),
+            error.to_string(),
+        ))
+    })
 }

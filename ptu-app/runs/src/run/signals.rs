@@ -7,7 +7,7 @@ use std::str::FromStr;
 use btu_rig::waveform::ChannelConfig;
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, Why};
 
 /// What bench and unit exchange. Its text form is `values`, `sampled` or `sampled:FILE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,8 +32,9 @@ impl Signals {
             Self::Sampled(Some(path)) => path,
         };
         let name = path.display();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::usage(format!("{name} cannot be read: {error}")))?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Failure::usage(FileTrouble::Unread(name.to_string(), Why::of(error)))
+        })?;
         let channel = ChannelConfig::from_toml(&text);
         channel
             .map(Some)

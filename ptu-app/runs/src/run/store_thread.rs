@@ -16,7 +16,7 @@ use fault_db::{
 };
 
 use self::beside::{keep_beside, keep_rest};
-use crate::failure::{Failure, Trouble, store_message};
+use crate::failure::{Failure, RunTrouble, Trouble, store_message};
 use crate::stop::Stop;
 
 /// Entries that may wait for the disk; beyond that the bench waits for the writer.
@@ -120,7 +120,7 @@ impl RunStore {
                 let beside = write(&store, &record, &receiver, kept, &begun, waits)?;
                 Ok(beside.map_or((store, None), |(store, lost)| (store, Some(lost))))
             })
-            .map_err(|error| Failure::bench(format!("cannot start the writer: {error}")))?;
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
         match beginning.recv() {
             Ok(id) => Ok(Self {
                 entries,
@@ -129,7 +129,7 @@ impl RunStore {
             }),
             Err(_) => Err(match thread.join() {
                 Ok(Err(error)) => error,
-                _ => Failure::bench("the writer ended before it began"),
+                _ => Failure::bench(RunTrouble::WriterEnded),
             }),
         }
     }
@@ -173,7 +173,7 @@ impl RunStore {
         self.send(Entry::Finish(end));
         drop(self.entries);
         let ended = self.thread.join();
-        ended.unwrap_or_else(|_| Err(Failure::bench("the writer ended unexpectedly")))
+        ended.unwrap_or_else(|_| Err(Failure::bench(RunTrouble::WriterEnded)))
     }
 }
 

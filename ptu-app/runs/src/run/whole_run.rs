@@ -19,7 +19,7 @@ use super::repaired::trace_repaired;
 use super::store_thread::RunStore;
 use super::workers;
 use crate::clock;
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, RunTrouble};
 use crate::platform;
 use crate::stop::Stop;
 use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
@@ -163,10 +163,7 @@ pub fn run_on(
     if worked.is_err() {
         // What was recorded stays, and the run is no pass.
         run_store.finish(began.end(Verdict::Error, outcome.bench_time.as_us() as i64))?;
-        return Err(Failure::bench(format!(
-            "the program failed in run {}, which is recorded as an error; please report what stands before this",
-            id.short()
-        )));
+        return Err(Failure::bench(RunTrouble::ProgramFailed(id)));
     }
     let (store, lost) = run_store.finish(end)?;
     if lost.is_some() {

@@ -18,7 +18,7 @@ use super::warning::Warning;
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{DiagnosisTrouble, Failure, Unknown, did_you_mean};
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
 use crate::structure::Structure;
@@ -192,16 +192,15 @@ fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation
     let other = store.run(other)?;
     let (this, that) = (&run.run, &other.run);
     if this.id == that.id {
-        return Err(Failure::usage(format!("run {} is named twice", that.id)));
+        return Err(Failure::usage(DiagnosisTrouble::RunTwice(that.id)));
     }
     if this.unit_serial != that.unit_serial || this.unit_config_sha256 != that.unit_config_sha256 {
-        return Err(Failure::usage(format!(
-            "run {} is of unit {}, {}, and not of {}, {}; runs of one unit alone are diagnosed together",
+        return Err(Failure::usage(DiagnosisTrouble::OtherUnit(
             that.id,
-            that.unit_serial,
-            that.unit_config_name,
-            this.unit_serial,
-            this.unit_config_name
+            that.unit_serial.clone(),
+            that.unit_config_name.clone(),
+            this.unit_serial.clone(),
+            this.unit_config_name.clone(),
         )));
     }
     Ok(of_run(&other, &store.run_occurrences(that.id)?))
@@ -209,9 +208,9 @@ fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
     let known = model.parts().iter().map(|part| part.as_str());
-    Failure::usage(format!(
-        "no part \"{part}\"{}; `ptu catalog faults` lists them",
-        did_you_mean(part.as_str(), known)
+    Failure::usage(Unknown::Part(
+        part.to_string(),
+        did_you_mean(part.as_str(), known),
     ))
 }
 
@@ -261,8 +260,7 @@ pub fn adaptive(
     let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
-        let why: Vec<_> = chosen.warnings.iter().map(Warning::to_string).collect();
-        return Err(Failure::usage(why.join("; ")));
+        return Err(Failure::usage(DiagnosisTrouble::Stale(chosen.warnings)));
     }
     let basis = &chosen.dictionary.basis;
     let made_on = Bench {
@@ -272,10 +270,10 @@ pub fn adaptive(
         ..*bench
     };
     if *bench != made_on {
-        return Err(Failure::usage(format!(
-            "the fault dictionary was made with unit configuration {UNIT_CONFIG}, {} and train {}; an \
-             adaptive run needs the same",
-            basis.line, basis.train
+        return Err(Failure::usage(DiagnosisTrouble::OtherBench(
+            UNIT_CONFIG,
+            basis.line.clone(),
+            basis.train.clone(),
         )));
     }
     for warning in &chosen.warnings {

@@ -8,7 +8,7 @@ use fault_db::Store;
 use super::basis::Contents;
 use super::warning::Warning;
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{DiagnosisTrouble, Failure};
 
 /// The dictionary that comes with the scripts, in their directory: of units on a bench, and of units reached by their
 /// maintenance port alone.
@@ -57,8 +57,8 @@ pub fn choose(
             .map(|data| Dictionary::from_bytes(&data))
             .transpose()
             .map_err(|what| {
-                let file = store.path().display();
-                Failure::bench(format!("{file}: a fault dictionary is damaged: {what}"))
+                let file = store.path().display().to_string();
+                Failure::bench(DiagnosisTrouble::Damaged(file, what.to_string()))
             })?,
         None => None,
     };
@@ -86,9 +86,7 @@ pub fn choose(
         .flatten()
         .max_by_key(|(dictionary, _)| modes(dictionary));
     let Some((dictionary, from)) = best else {
-        return Err(Failure::usage(
-            "there is no fault dictionary; `ptu campaign` makes one in a few minutes",
-        ));
+        return Err(Failure::usage(DiagnosisTrouble::NoDictionary));
     };
     let mut warnings = Vec::new();
     let current = is_current(&dictionary.basis);

@@ -7,7 +7,7 @@ use std::path::Path;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::wav_head::{self, Head};
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, Why};
 use crate::new_file::{NewFile, kind};
 
 /// Highest sample rate that is read, Hz.
@@ -41,7 +41,7 @@ impl Wav {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         let file = fault_db::open_regular_file(path)
-            .map_err(|error| Failure::bench(format!("cannot read {shown}: {error}")))?;
+            .map_err(|error| Failure::bench(FileTrouble::unread(path, error)))?;
         let mut file = BufReader::new(file);
         let head = wav_head::read(&mut file).map_err(|why| {
             Failure::usage(format!(
@@ -126,8 +126,12 @@ pub fn write(
     full_scale_mv: f64,
     samples: impl Iterator<Item = f64>,
 ) -> Result<u64, Failure> {
-    let failed =
-        |error: hound::Error| Failure::bench(format!("cannot write {}: {error}", path.display()));
+    let failed = |error: hound::Error| {
+        Failure::bench(FileTrouble::Unwritten(
+            path.display().to_string(),
+            Why::of(error),
+        ))
+    };
     let spec = WavSpec {
         channels: 1,
         sample_rate: sample_hz,

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::platform::shorten_pipe;
 use crate::stop::Stop;
 
@@ -42,7 +42,12 @@ impl Carried {
             .stdout(pipe(!plays))
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|error| Failure::bench(format!("cannot start {name}: {error}")))?;
+            .map_err(|error| {
+                Failure::bench(RunTrouble::NotStarted(
+                    Some(name.to_string()),
+                    error.to_string(),
+                ))
+            })?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
         if let Some(input) = &input {
             shorten_pipe(input);

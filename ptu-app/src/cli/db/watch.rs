@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use ptu_report::words::tell;
 use ptu_runs::failure::{Exit, Failure};
 
 /// From one look at the temporary files to the next.
@@ -43,7 +44,7 @@ impl Watch {
             let left = (until + GRACE).saturating_duration_since(Instant::now());
             if waits.recv_timeout(left) == Err(mpsc::RecvTimeoutError::Timeout) {
                 let failure = Failure::usage(too_long(most_time.as_secs()));
-                failure.tell();
+                tell(&failure);
                 std::process::exit(Exit::Usage.code().into());
             }
         });

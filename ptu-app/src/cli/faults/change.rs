@@ -5,6 +5,7 @@ use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
 use super::part;
 use crate::cli::{ScriptsOption, print_out};
+use ptu_report::words::asked;
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::{Exit, Failure};
 
@@ -107,14 +108,14 @@ impl StateArguments {
 
 impl RepairArguments {
     pub fn record(&self, store: &Store) -> Result<Exit, Failure> {
-        let asked = self.part.as_deref().unwrap_or_default();
-        if asked.trim().is_empty() && self.other_part.is_none() {
-            return Err(Failure::usage("a repair is of a part; name it with --part"));
+        let part = self.part.as_deref().unwrap_or_default();
+        if part.trim().is_empty() && self.other_part.is_none() {
+            return Err(Failure::usage(asked::repair_without_part()));
         }
         let id = store.resolve_fault(&self.id)?;
         let part = match &self.other_part {
             Some(other) => part::other(store, &self.scripts, other)?,
-            None => part::named(store, &self.scripts, asked)?,
+            None => part::named(store, &self.scripts, part)?,
         };
         let repair = RepairRecord {
             part,
@@ -156,7 +157,7 @@ impl NoteArguments {
     pub fn note(&self, store: &Store) -> Result<Exit, Failure> {
         let text = self.text.trim();
         if text.is_empty() {
-            return Err(Failure::usage("a note says something"));
+            return Err(Failure::usage(asked::empty_note()));
         }
         let id = store.resolve_fault(&self.id)?;
         store.add_note(id, self.who.trim(), text, now_us())?;

@@ -3,6 +3,7 @@
 use fault_db::Store;
 
 use crate::cli::ScriptsOption;
+use ptu_report::words::asked as words;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, did_you_mean};
 use ptu_runs::stdio;
@@ -15,9 +16,7 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     let known = known(store, scripts)?;
     spelling(&known, asked).ok_or_else(|| {
         let hint = did_you_mean(asked, known.iter().map(String::as_str));
-        Failure::usage(format!(
-            "no part \"{asked}\"{hint}; `ptu catalog parts` lists them, and --other-part names one that the catalogue lacks"
-        ))
+        Failure::usage(words::no_part_here(asked, hint))
     })
 }
 
@@ -28,14 +27,14 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
 /// It has no letter, or the database fails.
 pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
     if asked.trim().is_empty() {
-        return Err(Failure::usage("--other-part names a part"));
+        return Err(Failure::usage(words::other_part_unnamed()));
     }
     let known = known(store, scripts)?;
     if let Some(part) = spelling(&known, asked) {
         return Ok(part);
     }
     let hint = did_you_mean(asked, known.iter().map(String::as_str));
-    if !hint.is_empty() {
+    if hint.0.is_some() {
         stdio::note(&format!(
             "no part \"{asked}\" is known{hint}; recorded as it is"
         ));

@@ -11,9 +11,10 @@ use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
+use ptu_report::words::asked;
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::failure::{Exit, Failure, Near, did_you_mean};
 use ptu_runs::new_file::kind;
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
@@ -89,9 +90,9 @@ impl TrendArguments {
         let names = store.measurement_names()?;
         if !names.contains(&self.measurement) {
             let hint = did_you_mean(&self.measurement, names.iter().map(String::as_str));
-            return Err(Failure::usage(format!(
-                "no measurement \"{}\" recorded{hint}; `ptu run --list` shows what is measured",
-                self.measurement
+            return Err(Failure::usage(asked::measurement_never(
+                &self.measurement,
+                hint,
             )));
         }
         if let Some(unit) = &self.serial_no {
@@ -278,10 +279,8 @@ fn never_repaired(
     let known = store.known_parts()?;
     let is_known = known.iter().any(|known| known.eq_ignore_ascii_case(part));
     let hint = match is_known || is_part(scripts, part) {
-        true => String::new(),
+        true => Near::default(),
         false => did_you_mean(part, known.iter().map(String::as_str)),
     };
-    Ok(Failure::usage(format!(
-        "no repair of {part} on unit {unit} recorded{hint}"
-    )))
+    Ok(Failure::usage(asked::repair_never(part, unit, hint)))
 }

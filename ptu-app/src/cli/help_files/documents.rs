@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use ptu_runs::data::write_text;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
 /// Where a reader begins, in the folder of the sources.
@@ -24,8 +24,7 @@ pub(super) fn write(sources: &Path, folder: &Path) -> Result<(), Failure> {
             continue;
         }
         let (from, to) = (sources.join(&name), folder.join(page_name(&name)));
-        let cannot_read =
-            |error| Failure::usage(format!("cannot read {}: {error}", from.display()));
+        let cannot_read = |error| Failure::usage(FileTrouble::unread(&from, error));
         if !is_document(&name) {
             write_text(&to, fs::read(&from).map_err(cannot_read)?)?;
             continue;

@@ -7,7 +7,7 @@ use script_files::{Place, own_folder};
 
 use super::{ScriptsOption, print_out};
 use ptu_runs::data::{ScriptsDirectory, write_text};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, Unknown};
 
 /// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///
@@ -67,9 +67,7 @@ impl NewArguments {
             _ => own_folder(),
         };
         let Some(folder) = self.into.clone().or(read_alone) else {
-            return Err(Failure::usage(
-                "no user data directory; name a folder with --in",
-            ));
+            return Err(Failure::usage(FileTrouble::NoUserFolder("--in")));
         };
         match self.what {
             What::Stubs => return stubs(&folder),
@@ -139,9 +137,9 @@ impl NewArguments {
                 let parts = scripts.faults()?.lrus;
                 if !parts.iter().any(|lru| lru.id.as_str() == part) {
                     let parts = parts.iter().map(|lru| lru.id.as_str());
-                    return Err(Failure::usage(format!(
-                        "no part \"{part}\"{}; `ptu catalog parts` lists them",
-                        ptu_runs::failure::did_you_mean(part, parts)
+                    return Err(Failure::usage(Unknown::Part(
+                        part.to_owned(),
+                        ptu_runs::failure::did_you_mean(part, parts),
                     )));
                 }
                 let text = include_str!("fault.toml")

@@ -6,7 +6,8 @@ use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use glob::Pattern;
 
 use super::RunArguments;
-use ptu_runs::failure::{Failure, did_you_mean};
+use ptu_report::words::asked;
+use ptu_runs::failure::{Failure, RunTrouble, Unknown, did_you_mean};
 use ptu_runs::run::{Task, select};
 use ptu_runs::stdio;
 
@@ -61,9 +62,7 @@ impl RunArguments {
         if let Some(glob) = &self.step {
             tasks.retain(|task| task.options.chosen.as_ref().is_none_or(|c| !c.is_empty()));
             if tasks.is_empty() {
-                return Err(Failure::usage(format!(
-                    "no step matches \"{glob}\"; `ptu run --list` shows all steps"
-                )));
+                return Err(Failure::usage(Unknown::Step(glob.clone())));
             }
         }
         if self.shuffle {
@@ -81,7 +80,7 @@ fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failu
     let wanted = name.strip_suffix(".star").unwrap_or(name);
     let wanted = wanted.trim_start_matches("scripts/").trim_end_matches('/');
     let pattern = Pattern::new(wanted)
-        .map_err(|error| Failure::usage(format!("--exclude: \"{name}\" is not a glob: {error}")))?;
+        .map_err(|error| Failure::usage(RunTrouble::Glob(name.to_owned(), error.to_string())))?;
     let is_excluded = |id: &str| {
         pattern.matches(id)
             || id
@@ -93,14 +92,10 @@ fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failu
         .partition(|procedure| is_excluded(&procedure.id));
     if left_out.is_empty() {
         let hint = did_you_mean(wanted, left.iter().map(|procedure| procedure.id.as_str()));
-        return Err(Failure::usage(format!(
-            "--exclude: no procedure \"{name}\" would be run{hint}; `ptu run --list` shows all"
-        )));
+        return Err(Failure::usage(asked::excludes_none(name, hint)));
     }
     if left.is_empty() {
-        return Err(Failure::usage(format!(
-            "--exclude {name} leaves nothing to run"
-        )));
+        return Err(Failure::usage(asked::excludes_all(name)));
     }
     *procedures = left;
     Ok(())

@@ -7,6 +7,7 @@ use clap::Args;
 use fault_db::{RunDetail, RunState};
 
 use super::RunArguments;
+use ptu_report::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
@@ -40,24 +41,14 @@ impl RunArguments {
         let earlier = store.run(store.resolve_run(name)?)?;
         let (run, id) = (&earlier.run, earlier.run.id.short());
         if run.state == RunState::Running {
-            return Err(Failure::usage(format!(
-                "run {id} is still under way; wait for its end, or stop it first"
-            )));
+            return Err(Failure::usage(asked::still_running(&id)));
         }
         let open = unfinished(&earlier, which);
         if open.is_empty() {
             return Err(Failure::usage(match (earlier.scripts.len(), which) {
-                (0, _) => format!(
-                    "run {id} ({}) ran no procedures; name a run of `ptu run`, see `ptu runs list`",
-                    run.source
-                ),
-                (_, Unfinished::WithoutVerdict) => format!(
-                    "each procedure of run {id} has a verdict; `ptu runs show {id}` lists them, and \
-                     --retry-errors runs those again that could not be tested"
-                ),
-                (_, Unfinished::Errors) => format!(
-                    "no procedure of run {id} ended as an error; `ptu runs show {id}` lists their verdicts"
-                ),
+                (0, _) => asked::ran_nothing(&id, &run.source),
+                (_, Unfinished::WithoutVerdict) => asked::all_judged(&id),
+                (_, Unfinished::Errors) => asked::none_in_error(&id),
             }));
         }
         self.take_unit(&earlier)?;
@@ -89,18 +80,16 @@ impl RunArguments {
         let place = match run.source.parse::<Endpoint>() {
             Ok(place) => place,
             Err(error) => {
-                return Err(Failure::usage(format!(
-                    "run {id} was on \"{}\", which is no unit to connect to: {error}",
-                    run.source
+                return Err(Failure::usage(asked::was_on_no_unit(
+                    &id,
+                    &run.source,
+                    error,
                 )));
             }
         };
         let unit = self.unit.get_or_insert_with(|| place.clone());
         if (*unit == Endpoint::Sim) != (place == Endpoint::Sim) {
-            return Err(Failure::usage(format!(
-                "run {id} was on {place}, and --unit says {unit}: another unit does not continue a run; \
-                 leave --unit out, or begin a new run"
-            )));
+            return Err(Failure::usage(asked::was_on_other_unit(&id, &place, unit)));
         }
         if run.unit_serial == UNKNOWN_SERIAL {
             return Ok(());
@@ -109,10 +98,10 @@ impl RunArguments {
             .serial_no
             .get_or_insert_with(|| run.unit_serial.clone());
         if *serial != run.unit_serial {
-            return Err(Failure::usage(format!(
-                "run {id} tested unit {}, and --serial-no says {serial}: another unit does not continue a run; \
-                 leave --serial-no out, or begin a new run",
-                run.unit_serial
+            return Err(Failure::usage(asked::was_of_other_serial(
+                &id,
+                &run.unit_serial,
+                serial,
             )));
         }
         Ok(())

@@ -11,6 +11,7 @@ use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption, answered};
 use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
+use ptu_report::words::asked;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_runs::stdio;
@@ -72,18 +73,11 @@ impl DiffArguments {
         let sides = if is_importable(file) {
             self.with_file(store, a, came, file)?
         } else if file.extension().is_some() {
-            return Err(Failure::usage(format!(
-                "cannot compare with {}: a file to compare with must end in .csv, .parquet or .mcap",
-                file.display()
-            )));
+            return Err(Failure::usage(asked::no_comparable(file.display())));
         } else if self.shift != 0.0 {
-            return Err(Failure::usage(
-                "--shift lays a file elsewhere; traces are laid at their triggers",
-            ));
+            return Err(Failure::usage(asked::shift_of_file()));
         } else if !self.names.is_empty() || self.time.is_some() || self.time_unit.is_some() {
-            return Err(Failure::usage(
-                "--map, --time and --time-unit say what the columns of a file are; B is none",
-            ));
+            return Err(Failure::usage(asked::columns_of_file()));
         } else if self.expected == "twin" {
             let original = Original::read(store, a)?;
             let (twin, rule) = good_twin(&original, &self.scripts.find()?)?;

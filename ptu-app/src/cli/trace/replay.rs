@@ -10,7 +10,7 @@ use serde_json::json;
 use super::explained::{deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
 use crate::cli::{Database, Json, ScriptsOption, answered};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, RunTrouble};
 use ptu_runs::link::Endpoint;
 use ptu_runs::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
 use ptu_runs::stop::Stop;
@@ -52,10 +52,7 @@ impl ReplayArguments {
         let directory = self.scripts.find()?;
         let faults = directory.chosen_faults(&self.inject)?;
         if self.unit != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
-            return Err(Failure::usage(
-                "--inject puts faults of a unit into the simulated one only; inject into a served one with \
-                 `ato-under-test --inject`",
-            ));
+            return Err(Failure::usage(RunTrouble::InjectElsewhere));
         }
         self.reports.check()?;
         limits::name("the operator's name", &self.who)?;

@@ -11,7 +11,7 @@ use crate::cli::{Json, ScriptsOption, print_json, print_out};
 use ptu_report::trace_notes::TraceNote;
 use ptu_report::words::Language;
 use ptu_runs::clock::rfc3339;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, RecordTrouble};
 use ptu_runs::replay::{Explanation, explain};
 use ptu_runs::table::Table;
 
@@ -71,10 +71,7 @@ impl ShowArguments {
     fn explained(&self, store: &Store, id: Id) -> Result<Explanation, Failure> {
         // Why there is no recording comes before why there are no scripts.
         if store.recording(id)?.is_none() {
-            return Err(Failure::usage(
-                "the trace has no recording of what was done to the bench: it is of an earlier version, or \
-                 its run broke off",
-            ));
+            return Err(Failure::usage(RecordTrouble::NoRecording(id)));
         }
         explain(store, &self.scripts.find()?, id)
     }

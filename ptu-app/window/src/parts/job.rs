@@ -9,7 +9,7 @@ use crate::request::Request;
 use crate::{DataPaths, PageContext, Palette};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Wake;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::stop::Stop;
 
 /// What work came to, in words.
@@ -17,7 +17,7 @@ pub struct Done {
     pub text: String,
     pub notes: Vec<String>,
     /// It was not done to its end: why.
-    pub broken_off: Option<String>,
+    pub broken_off: Option<Trouble>,
 }
 
 /// The work, while it goes on and after it.

@@ -141,9 +141,10 @@ fn read(
         }
     };
     store.close()?;
+    let broken_off = reading.complete().err().map(|why| why.message);
     Ok(Done {
         text,
         notes: reading.warnings,
-        broken_off: reading.read.broken_off,
+        broken_off,
     })
 }

@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use ptu_report::words::asked;
 use ptu_runs::failure::Failure;
 
 /// What opens files here, and what stands before the file's name.
@@ -37,10 +38,9 @@ fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Fail
             std::thread::spawn(move || child.wait());
             Ok(())
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::bench(format!(
-            "{program} is not there: open {} by hand",
-            path.display()
-        ))),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::bench(
+            asked::opens_by_hand(program, path.display()),
+        )),
         Err(error) => Err(Failure::bench(format!("{program}: {error}"))),
     }
 }

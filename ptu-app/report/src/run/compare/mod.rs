@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, rank};
 
 use super::steps::passed;
+use crate::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::stored::outside_of;
 
@@ -129,10 +130,7 @@ impl RunComparison {
     /// The same run twice, no such run, or the database cannot be read.
     pub fn gather(store: &Store, a: Id, b: Id, all: bool) -> Result<Self, Failure> {
         if a == b {
-            return Err(Failure::usage(format!(
-                "both are run {}: a run is compared with another one",
-                a.short()
-            )));
+            return Err(Failure::usage(asked::run_beside_itself(a.short())));
         }
         let read = |run| store.run(run);
         Ok(Self {

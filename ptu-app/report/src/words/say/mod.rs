@@ -8,7 +8,10 @@ mod drive;
 mod finding;
 mod link;
 mod reasons;
+mod refused;
 mod trouble;
+
+pub use trouble::tell;
 
 use std::borrow::Cow;
 

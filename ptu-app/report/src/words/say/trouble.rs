@@ -1,26 +1,22 @@
 //! What went wrong, in the words of a window: without commands, and in Korean. The first text is the English one.
 
-use std::borrow::Cow;
-
 use fault_db::{
     FaultAction, Misplaced, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
     WithdrawalError,
 };
-use ptu_runs::failure::Trouble;
+use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::link::NoUnit;
+use ptu_runs::stdio;
 
-use super::super::{KOREAN, Words, content};
+use super::super::{KOREAN, Language, Words, content};
 use super::diagnosis::Both;
-use super::{damage, link};
+use super::{damage, link, refused};
 use crate::distances::{COLUMNS, DistancesError, ReadingError, WrongCell};
 
 impl Words {
     /// Why something could not be done, and the next move.
-    pub fn trouble<'a>(&self, trouble: &'a Trouble) -> Cow<'a, str> {
-        if let Trouble::Told(text) = trouble {
-            return self.content(text);
-        }
-        self.choose(both(trouble)).into()
+    pub fn trouble(&self, trouble: &Trouble) -> String {
+        self.choose(both(trouble))
     }
 
     /// Why a file of odometer readings is not read.
@@ -29,10 +25,31 @@ impl Words {
     }
 }
 
+/// Prints a failure on stderr, in the language that the command line asks for: in English with the commands that help.
+pub fn tell(failure: &Failure) {
+    let said = match Language::asked() {
+        Language::English => failure.to_string(),
+        Language::Korean => KOREAN.trouble(&failure.message),
+    };
+    stdio::note(&format!("ptu: {said}"));
+}
+
 #[rustfmt::skip]
-fn both(trouble: &Trouble) -> Both {
+pub(super) fn both(trouble: &Trouble) -> Both {
     match trouble {
-        Trouble::Told(text) => [text.clone(), text.clone()],
+        Trouble::Told(text) => [text.clone(), content::korean(text).into_owned()],
+        Trouble::Said(both) => both.clone(),
+        Trouble::All(all) => {
+            let each = |n: usize| all.iter().map(|one| both(one)[n].clone()).collect::<Vec<_>>().join("\n");
+            [each(0), each(1)]
+        }
+        Trouble::Unknown(what) => refused::unknown(what),
+        Trouble::File(what) => refused::file(what),
+        Trouble::Key(what) => refused::key(what),
+        Trouble::Run(what) => refused::run(what),
+        Trouble::Field(what) => refused::field(what),
+        Trouble::Recorded(what) => refused::recorded(what),
+        Trouble::Diagnosis(what) => refused::diagnosis(what),
         Trouble::Store(error) => store(error),
         Trouble::NotStored { run, error, left_out, kept } => {
             let (run, [why, why_ko]) = (run.short(), store(error));
@@ -297,6 +314,9 @@ pub(super) fn noun(english: &str) -> &str {
         "view" => "뷰",
         "trigger" => "트리거",
         "recording" => "기록",
+        "unit configuration" => "장치 구성",
+        "line" => "노선",
+        "train" => "열차",
         "the name of who says it" => "작성자 이름",
         other => other,
     }

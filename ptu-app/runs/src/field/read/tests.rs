@@ -19,7 +19,7 @@ pub fn bench(faults: &[&str]) -> Session<Delayed<SimUnit>> {
     session
 }
 
-fn read<L: UnitLink>(link: &mut L, from: Instant) -> Result<LogRead, String> {
+fn read<L: UnitLink>(link: &mut L, from: Instant) -> Result<LogRead, BrokenOff> {
     let mut pace = Pace::Virtual;
     read_log(
         link,
@@ -209,7 +209,7 @@ fn entries_read_before_the_cable_was_unplugged_are_kept() {
     let mut unit = ScriptedUnit::new((0..90).map(|index| (index, 221, index * 1000)));
     unit.happens = Some((3_300, ScriptedEvent::CableOff));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
-    let why = log.broken_off.expect("broken off");
+    let why = log.broken_off.expect("broken off").to_string();
     assert!(why.contains("closed at the other end"), "{why}");
     let read_so_far = log.entries.len();
     assert!((10..60).contains(&read_so_far), "{read_so_far}");
@@ -253,7 +253,7 @@ fn another_unit_in_the_middle_of_a_log_ends_its_reading() {
     let mut unit = ScriptedUnit::new((0..190).map(|index| (index, 221, 1)));
     unit.happens = Some((3_300, ScriptedEvent::OtherUnit));
     let log = read(&mut unit, Instant::ZERO).expect("a log");
-    let why = log.broken_off.expect("broken off");
+    let why = log.broken_off.expect("broken off").to_string();
     assert!(why.contains("was \"U-1\" and is \"U-2\""), "{why}");
 }
 
@@ -265,7 +265,9 @@ fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
             Ok(())
         }
     }
-    let why = read(&mut SilentUnit, Instant::ZERO).expect_err("no log");
+    let why = read(&mut SilentUnit, Instant::ZERO)
+        .expect_err("no log")
+        .to_string();
     assert!(why.contains("unit silent"), "{why}");
 }
 

@@ -6,6 +6,7 @@ use btu_rig::procedure::plan::Connection;
 
 use super::selection::Selection;
 use crate::DataPaths;
+use ptu_report::words::asked;
 use ptu_runs::bench_worker::RunOrder;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::{BenchChoice, RunPlan, Suite};
@@ -81,7 +82,7 @@ pub fn order(
     }
     let tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
     if tasks.is_empty() {
-        return Err(Failure::usage("no step is chosen"));
+        return Err(Failure::usage(asked::no_step_chosen()));
     }
     let store = paths.open()?;
     let adaptive = match how.adaptive {
