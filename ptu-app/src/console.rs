@@ -17,7 +17,7 @@ use ptu_report::limits::short;
 use ptu_report::words::Language;
 use ptu_report::{count_short, coverage_text};
 use ptu_runs::coverage::{Coverage, counts_of};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, RunTrouble};
 use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_runs::stdio;
 use ptu_runs::stored::{by_procedure, of_procedure, standing};
@@ -71,8 +71,8 @@ impl Console {
         let thread = std::thread::Builder::new()
             .name("console".into())
             .spawn(move || show(&all, bar(steps, detail).as_ref()));
-        let thread =
-            thread.map_err(|error| Failure::bench(format!("cannot start the console: {error}")))?;
+        let thread = thread
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
         Ok(Self {
             detail,
             steps: (0, 0),
@@ -304,9 +304,9 @@ pub fn verdict_table(run: &RunDetail) -> String {
     text
 }
 
-/// What did not pass, and the verdict.
+/// What did not pass, what was made again, and the verdict.
 pub fn failures(run: &RunDetail) -> String {
-    format!("{}\n\n{}", not_passed(run), summary(run))
+    format!("{}{}\n\n{}", not_passed(run), repeated(run), summary(run))
         .trim_start()
         .to_owned()
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use btu_rig::procedure::Outside;
 use chrono::{DateTime, FixedOffset};
-use fault_db::{RunDetail, StepRecord, Verdict, rank};
+use fault_db::{RunDetail, StepKind, StepRecord, Verdict, rank};
 use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
@@ -103,6 +103,11 @@ fn case(results: &[&StepRecord], began_us: i64) -> TestCase {
     case.add_property(("kind", kind));
     case.add_property(("verdict", step.verdict.as_str()));
     case.add_property(("step_index", &*step.index.to_string()));
+    let attempts = results.iter().filter(|of| of.kind == StepKind::Attempt);
+    for attempt in attempts {
+        let said = Language::English.words().record(attempt);
+        case.add_property(("attempt", &*display_text::line(&said)));
+    }
     if let Some(line) = step.script_line {
         case.add_property(("script_line", &*line.to_string()));
     }

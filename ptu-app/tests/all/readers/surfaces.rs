@@ -98,12 +98,12 @@ pub fn console(table: &str) -> Told {
     told.extend(passed.map(|passed| fact("passed", passed)));
     told.extend(passed.map(|_| fact("with a result", recorded)));
     told.push(fact("link en", lost));
-    // The quiet one names no fault and no attempt.
+    // The quiet one names no fault.
     if passed.is_some() {
         told.push(sorted("parts", parts));
-        told.push(sorted("attempts in vain", in_vain));
     }
     told.extend([
+        sorted("attempts in vain", in_vain),
         sorted("steps that did not pass", bad),
         sorted("turns that did not pass", turns),
         fact("outside", outside),
@@ -233,9 +233,13 @@ pub fn junit(xml: &str) -> Told {
     let (run, said) = said.split_once(": ").expect("a count");
     let mut told = count(said, Language::English).unwrap_or_else(|| panic!("no count: {said}"));
     let (mut outside, mut counts, mut bad, mut values) = (0, [0; 3], Vec::new(), Vec::new());
-    let mut lost = "";
+    let (mut lost, mut in_vain) = ("", Vec::new());
     let suites = report.test_suites.iter();
     for case in suites.flat_map(|suite| &suite.test_cases) {
+        let tried = case.properties.iter();
+        for tried in tried.filter(|property| property.name.as_str() == "attempt") {
+            in_vain.extend(turned(&marks(&tried.value, 's'), &turn_in(&tried.value)));
+        }
         let mut properties = case.properties.iter();
         let kind = properties.find(|property| property.name.as_str() == "kind");
         let is_step = kind.is_some_and(|kind| is_step(kind.value.as_str()));
@@ -279,6 +283,7 @@ pub fn junit(xml: &str) -> Told {
         id(run),
         fact("outside", outside),
         fact("link en", lost),
+        sorted("attempts in vain", in_vain),
         sorted("steps that did not pass", bad),
     ]);
     told
