@@ -9,7 +9,7 @@ use fault_db::{Address, Misplaced, Store, StoreError};
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
-use ptu_runs::owner_only;
+use ptu_runs::{keys, owner_only};
 
 /// The files that pages read and runs are recorded in.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct DataPaths {
     server: Option<Address>,
     /// Procedures, lines, units.
     pub scripts: ScriptsDirectory,
+    /// The folder of the keys of this computer's user.
+    pub keys: PathBuf,
     /// The database was there; the same for all copies.
     was_there: Arc<AtomicBool>,
 }
@@ -31,6 +33,7 @@ impl DataPaths {
             database,
             server: None,
             scripts,
+            keys: keys::own_folder().unwrap_or_default(),
             was_there: Arc::default(),
         }
     }

@@ -55,6 +55,13 @@ pub struct Message {
     shown_at_s: Option<f64>,
 }
 
+impl Message {
+    /// It says how a run ended.
+    pub fn is_of_run(&self) -> bool {
+        matches!(self.about, Some(About::Run(_)))
+    }
+}
+
 /// What was written can be undone so long, s.
 pub const UNDO_S: f64 = 10.0;
 /// Any other message is shown so long, s.
@@ -172,6 +179,13 @@ impl Messages {
     /// Marks the latest trouble as acknowledged.
     pub fn acknowledge(&mut self) {
         self.unread = None;
+    }
+
+    /// The latest is shown no longer; it stays listed.
+    pub fn note_seen(&mut self) {
+        if let Some(last) = self.all.last_mut() {
+            last.over = true;
+        }
     }
 
     pub fn clear(&mut self) {

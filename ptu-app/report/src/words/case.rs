@@ -53,6 +53,7 @@ wordings! {
         stopped_at: "Stopped at step {n} of {all}", "{all}단계 중 {n}단계에서 중단";
         no_fault: "No fault found", "고장이 발견되지 않음";
         of_run: "Run {id}, ended {time}", "시험 {id}, 종료 {time}";
+        count: "{n} of {run} steps not passed", "{run}개 단계 중 미합격 {n}";
         run_next: "Run the next check, {time}", "다음 점검 시험, {time}";
         show_failed: "Show what failed", "불합격 항목 보기";
         run_whole: "Run the whole suite", "전체 시험";
@@ -91,6 +92,7 @@ wordings! {
         pin_first: "Write the PIN", "PIN을 적으십시오";
         signed: "Checked", "확인함";
         signed_by: "Checked by {who}", "확인: {who}";
+        signed_with_key: "Signed by {who}", "서명: {who}";
         not_signed: "Not signed", "서명하지 못했습니다";
     }
 }

@@ -12,7 +12,7 @@ wordings! {
         not_connected: "not connected", "연결 안 됨";
         connected: "connected", "연결됨";
         simulated: "simulated unit", "모의 장치";
-        armed: "ARMED", "ARMED";
+        armed: "ARMED", "시험 허가 중";
         armed_hint: "test signals act", "시험 신호 작동";
         stop_all: "Stop all", "전체 정지";
         language: "language", "언어";
@@ -45,7 +45,8 @@ wordings! {
         cannot_list: "Ports, lines or units cannot be listed", "포트, 노선, 장치 목록을 읽을 수 없습니다";
         close_anyway: "Close", "닫기";
         dismiss: "Noted", "확인";
-        armed_unit: "ARMED: {unit}", "ARMED: {unit}";
+        seen: "Close the message", "알림 닫기";
+        armed_unit: "ARMED: {unit}", "시험 허가 중: {unit}";
         running: "{n} of {all}", "{n}/{all}";
         asks: "a script asks", "확인 요청 있음";
         is_paused: "run paused", "시험 일시 정지";

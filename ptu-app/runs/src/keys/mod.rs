@@ -69,9 +69,9 @@ pub fn signer(path: &Path, pin: &str) -> Result<Signer, Failure> {
     usable(path)?.open(pin)
 }
 
-/// The key files of this computer's user, and in whose name each signs: empty of one that cannot be read.
-pub fn own() -> Vec<(PathBuf, String)> {
-    let files = own_folder().ok().and_then(|folder| folder.read_dir().ok());
+/// The key files in this folder, and in whose name each signs: empty of one that cannot be read.
+pub fn all_in(folder: &Path) -> Vec<(PathBuf, String)> {
+    let files = folder.read_dir().ok();
     let paths = files
         .into_iter()
         .flatten()

@@ -39,9 +39,13 @@ pub struct Find {
     /// The row that Enter takes.
     at: usize,
     faults: Request<(Vec<FaultSummary>, PartNames)>,
+    /// Faults and steps that fit what is typed, and for what they were looked through.
+    found: Vec<Row>,
+    found_for: Option<(String, bool, Language)>,
 }
 
 /// Something found, and what it does.
+#[derive(Clone)]
 struct Row {
     kind: &'static str,
     icon: MaterialIcon,
@@ -95,7 +99,8 @@ impl Find {
             return;
         }
         frame.find.faults.poll();
-        let rows = frame.find.rows(procedures, context);
+        frame.find.look_through(procedures, context);
+        let rows = frame.find.rows(context);
         let find = &mut frame.find;
         let key = |key| {
             ui.ctx()
@@ -148,26 +153,34 @@ impl Find {
         }
     }
 
-    fn rows(&self, procedures: &[Arc<Procedure>], context: &PageContext<'_>) -> Vec<Row> {
-        let typed = self.typed.to_lowercase();
-        let parts: Vec<&str> = typed.split_whitespace().collect();
-        let fits = |row: &Row| {
-            let said = format!("{} {}", row.name, row.more).to_lowercase();
-            parts.iter().all(|part| said.contains(part))
-        };
-        let mut all = Vec::new();
-        let mut add = |rows: &mut dyn Iterator<Item = Row>, most: usize| {
-            all.extend(rows.filter(fits).take(most));
-        };
-        // Of hundreds nobody looks for one without a letter of it.
-        if !parts.is_empty() {
-            add(&mut self.faults(context), MOST);
-            add(&mut steps(procedures, context), MOST);
+    /// Finds faults and steps when what is typed is other than before: there are thousands of them.
+    fn look_through(&mut self, procedures: &[Arc<Procedure>], context: &PageContext<'_>) {
+        let is_read = self.faults.value().is_some();
+        let wanted = (
+            self.typed.to_lowercase(),
+            is_read,
+            context.settings.language,
+        );
+        if self.found_for.as_ref() == Some(&wanted) {
+            return;
         }
-        add(&mut units(context), MOST);
-        add(&mut pages(context), Page::ALL.len());
-        add(&mut actions(context), usize::MAX);
-        all
+        let (faults, steps) = (self.faults(context), steps(procedures, context));
+        // Of hundreds nobody looks for one without a letter of it.
+        let most = if wanted.0.trim().is_empty() { 0 } else { MOST };
+        let faults = faults.filter(|row| row.fits(&wanted.0)).take(most);
+        let steps = steps.filter(|row| row.fits(&wanted.0)).take(most);
+        self.found = faults.chain(steps).collect();
+        self.found_for = Some(wanted);
+    }
+
+    fn rows(&self, context: &PageContext<'_>) -> Vec<Row> {
+        let typed = self.typed.to_lowercase();
+        let others = units(context)
+            .take(MOST)
+            .chain(pages(context))
+            .chain(actions(context));
+        let found = self.found.iter().cloned();
+        found.chain(others.filter(|row| row.fits(&typed))).collect()
     }
 
     fn faults<'a>(&'a self, context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
@@ -292,6 +305,12 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
 }
 
 impl Row {
+    /// Every part of what is typed, in small letters, is in it.
+    fn fits(&self, typed: &str) -> bool {
+        let said = format!("{} {}", self.name, self.more).to_lowercase();
+        typed.split_whitespace().all(|part| said.contains(part))
+    }
+
     fn show(&self, ui: &mut Ui, chosen: bool, moved: bool) -> bool {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let size = vec2(ui.available_width(), sizes.target);

@@ -27,7 +27,8 @@ pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
             // Nothing else can be done then.
             Some(why) => drop(ui.label(why)),
             None => {
-                let go_on = Face::new(Look::Primary, frame.go_on).hint(frame.go_on_hint);
+                // The page below it has the button that is pressed first.
+                let go_on = Face::new(Look::Secondary, frame.go_on).hint(frame.go_on_hint);
                 if place.clicked(&go_on.icon(ICON_LINK).show(ui)) {
                     unit.connect(context.queries);
                     context.go_to.push(Destination::GoOn);

@@ -6,13 +6,13 @@ use std::time::Duration;
 use eframe::egui::{
     Align2, Area, Frame, Id, Key, Modifiers, Popup, Response, RichText, ScrollArea, Ui, Vec2,
 };
-use egui_material_icons::icons::ICON_UNDO;
+use egui_material_icons::icons::{ICON_CLOSE, ICON_UNDO};
 use fault_db::ToWithdraw;
 
 use crate::messages::{Message, Written};
 use crate::parts::{ActionPlace, Face, Look};
 use crate::request::Request;
-use crate::{PageContext, Palette};
+use crate::{Page, PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 
@@ -72,10 +72,12 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let undoable = undoable.filter(|_| named && !context.settings.locked);
     let place = undoable.map(|(place, ..)| place);
     let words = context.words;
-    let (mut noted, mut taken_back) = (false, None);
+    let (mut noted, mut seen, mut taken_back) = (false, false, None);
     let all = context.messages.all();
     let trouble = context.messages.unread_trouble();
     let last = context.messages.latest_note(place, now_s);
+    // The case shows itself what its run came to.
+    let last = last.filter(|last| context.settings.page != Page::Case || !last.is_of_run());
     let told =
         undoable.and_then(|(place, written, left_s)| Some((all.get(place)?, written, left_s)));
     if trouble.is_none() && last.is_none() && told.is_none() {
@@ -98,7 +100,12 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
                 });
             }
             if let Some(last) = last {
-                ui.horizontal_wrapped(|ui| said(ui, last, words));
+                ui.horizontal_wrapped(|ui| {
+                    // It may stand over what is read.
+                    let close = Face::new(Look::Quiet, "").icon(ICON_CLOSE);
+                    seen = close.named(words.frame.seen).show(ui).clicked();
+                    said(ui, last, words);
+                });
             }
             if let Some((told, written, left_s)) = told {
                 ui.horizontal_wrapped(|ui| {
@@ -123,6 +130,9 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     }
     if noted {
         context.messages.acknowledge();
+    }
+    if seen {
+        context.messages.note_seen();
     }
 }
 

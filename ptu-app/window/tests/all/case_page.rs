@@ -1,8 +1,8 @@
 //! The way of one case: from the symptom to the signed sheet in ten clicks, in both languages.
 
 use crate::common::Place;
-use crate::common::window::{Window, latest, settings};
-use crate::common::{list, record_bad_unit, scripts, text};
+use crate::common::window::{Window, latest, on_bad_unit, settings};
+use crate::common::{list, scripts, text};
 use crate::layout::{complaints, complaints_of};
 use eframe::egui::{Event, Key, Modifiers};
 use ptu_options::Page;
@@ -372,13 +372,7 @@ fn a_run_of_another_page_is_none_of_the_case() {
 fn a_unit_seen_before_is_chosen_by_one_click() {
     for language in Language::ALL {
         let case = &language.words().case;
-        let place = Place::new();
-        record_bad_unit(&place);
-        let settings = Settings {
-            language,
-            ..settings(Page::Case)
-        };
-        let mut window = Window::with(place, scripts(), settings);
+        let mut window = on_bad_unit(language);
         window.harness().set_size([900.0, 600.0].into());
         window.wait_for(case.seen_last);
         window.click_part("BAD-1 · ");
@@ -392,15 +386,47 @@ fn a_unit_seen_before_is_chosen_by_one_click() {
 /// Goal: a unit that comes for the first time waits for nothing. Method: the history knows another unit; this one is connected.
 #[test]
 fn a_unit_never_seen_has_no_history_and_says_so() {
-    let case = &Language::Korean.words().case;
-    let place = Place::new();
-    record_bad_unit(&place);
-    let settings = Settings {
-        language: Language::Korean,
-        ..settings(Page::Case)
-    };
-    let mut window = Window::with(place, scripts(), settings);
-    window.click_last(Language::Korean.words().frame.connect);
+    let words = Language::Korean.words();
+    let mut window = on_bad_unit(Language::Korean);
+    window.click_last(words.frame.connect);
     window.wait_for("SIM-0001");
-    window.wait_for(case.nothing_known);
+    window.wait_for(words.case.nothing_known);
+}
+
+/// Goal: a key signs with its PIN alone, and a wrong one costs no more than typing it again. Method: a key of this place; a wrong PIN,
+/// after which nothing is stored and the dialog stands as it was chosen; the right one.
+#[test]
+fn a_wrong_pin_signs_nothing_and_keeps_what_was_chosen() {
+    let case = &Language::English.words().case;
+    let size = [1280.0, 800.0];
+    let mut counted = window(Language::English, size, Density::Operator, "eb_relay.slow");
+    let window = &mut counted.window;
+    let keys = window.place.path("ptu/keys");
+    std::fs::create_dir_all(&keys).expect("a folder");
+    window.place.write("pin.txt", "246810\n");
+    let new = "key new --who Kim-Signer --out ptu/keys/mine.key --pin-file pin.txt";
+    window.place.ptu(new).exits(0);
+    counted.click("Connect");
+    counted.window.wait_for("SIM-0001");
+    counted.click(case.unknown);
+    counted.click(case.find_part);
+    counted.window.wait_for(case.record_repair);
+    counted.click(&format!("7 {}", case.stage_sheet));
+    counted.click(case.sign);
+    let window = &mut counted.window;
+    window.click_last(case.key);
+    window.click("mine");
+    let sign = fill(case.sign_as, &[("who", &"Kim-Signer")]);
+    window.write(case.pin, "135791");
+    window.click(&sign);
+    window.wait_for_part(case.not_signed);
+    assert!(!window.shown().iter().any(|said| said.contains("135791")));
+    assert!(list(&latest(window)["notes"]).is_empty());
+    window.wait_for(case.pin_first);
+    window.write(case.pin, "246810");
+    window.click(&sign);
+    window.wait_for(&fill(case.signed_with_key, &[("who", &"Kim-Signer")]));
+    assert!(!window.shows(case.sign_hint));
+    let notes = latest(window)["notes"].clone();
+    assert_eq!(list(&notes)[0]["who"], "Kim-Signer", "{notes}");
 }

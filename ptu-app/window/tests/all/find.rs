@@ -1,14 +1,13 @@
 //! Anything is found by a few of its letters, and nothing is armed or run by it.
 
-use crate::common::window::{Window, settings};
-use crate::common::{Place, record_bad_unit, scripts};
+use crate::common::window::{Window, on_bad_unit};
 use crate::layout::complaints;
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
 use ptu_runs::bench_worker::Phase;
-use ptu_window::{Density, Settings};
+use ptu_window::Density;
 
 /// A step of the procedures.
 const STEP: &str = "emergency brake released again with a cab";
@@ -63,20 +62,6 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
     assert_eq!(held, Phase::Idle);
 }
 
-/// A window on the history of a bad unit, in this language, with its simulated unit connected.
-fn window(language: Language) -> Window {
-    let place = Place::new();
-    record_bad_unit(&place);
-    let settings = Settings {
-        language,
-        ..settings(Page::Case)
-    };
-    let mut window = Window::with(place, scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window
-}
-
 fn look_for(window: &mut Window, typed: &str) {
     window
         .harness()
@@ -95,7 +80,9 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         (Language::Korean, "계전기 bad-1", "파형"),
     ] {
         let words = language.words();
-        let mut window = window(language);
+        let mut window = on_bad_unit(language);
+        window.connect();
+        window.wait_for("SIM-0001");
         look_for(&mut window, fault);
         window.wait_for(words.frame.faults);
         assert!(complaints(&mut window).is_empty());
@@ -132,5 +119,19 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         let unit = window.app().units().chosen();
         assert_eq!(unit.phase(), Phase::Idle);
         assert!(unit.run.is_none() && !unit.is_armed());
+
+        look_for(&mut window, words.frame.lock);
+        window.key(Key::Enter);
+        window.wait_for(words.frame.locked);
+        look_for(&mut window, "");
+        assert!(
+            !window.shows(words.frame.find_what),
+            "nothing of a locked one"
+        );
+        window.write(words.case.your_name, "Kim");
+        window.click(words.frame.unlock);
+        look_for(&mut window, words.frame.disconnect);
+        window.key(Key::Enter);
+        window.wait_for(words.frame.not_connected);
     }
 }

@@ -260,6 +260,11 @@ impl Picture {
         colours.len()
     }
 
+    /// Share of the pixels that are not the same.
+    pub fn differs(&self, other: &Self) -> f64 {
+        self.other_pixels(other, 0) as f64 / f64::from(self.width * self.height)
+    }
+
     pub fn keep(&self, name: &str) {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("window");
         std::fs::create_dir_all(&folder).expect("folder");

@@ -138,20 +138,14 @@ fn triangle(
 }
 
 impl Picture {
-    /// Share of the pixels that are not the same.
-    pub fn differs(&self, other: &Self) -> f64 {
-        // Most lines are the same, and are found so at once.
-        let line = 3 * self.width as usize;
-        let lines = self
-            .rgb
-            .chunks_exact(line)
-            .zip(other.rgb.chunks_exact(line));
-        let different = lines
-            .filter(|(one, other)| one != other)
-            .flat_map(|(one, other)| one.chunks_exact(3).zip(other.chunks_exact(3)))
-            .filter(|(a, b)| a != b)
-            .count();
-        different as f64 / f64::from(self.width * self.height)
+    /// How many pixels have a channel that differs by more than this; all of them if the sizes do.
+    pub fn other_pixels(&self, other: &Self, by: u8) -> usize {
+        if (self.width, self.height) != (other.width, other.height) {
+            return usize::MAX;
+        }
+        let pixels = self.rgb.chunks_exact(3).zip(other.rgb.chunks_exact(3));
+        let differs = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > by);
+        pixels.filter(differs).count()
     }
 
     pub fn write(&self, file: &Path) {

@@ -7,13 +7,14 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_options::Page;
+use ptu_report::words::Language;
 use ptu_runs::bench_worker::Phase;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
 use super::picture::{Picture, Textures};
-use super::{Place, scripts};
+use super::{Place, record_bad_unit, scripts};
 
 /// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -67,7 +68,9 @@ impl Window {
         Self::on([1280.0, 800.0], place, paths, settings)
     }
 
-    fn on(size: [f32; 2], place: Place, paths: DataPaths, settings: Settings) -> Self {
+    fn on(size: [f32; 2], place: Place, mut paths: DataPaths, settings: Settings) -> Self {
+        // Where `ptu` has them in this place.
+        paths.keys = place.path("ptu/keys");
         let settings_file = Some(place.path("config/window.json"));
         let mut options = Some(Options {
             paths,
@@ -359,6 +362,17 @@ fn button(pos: Pos2, pressed: bool) -> Event {
         pressed,
         modifiers: Modifiers::default(),
     }
+}
+
+/// A window on the history of a bad unit, in this language.
+pub fn on_bad_unit(language: Language) -> Window {
+    let place = Place::new();
+    record_bad_unit(&place);
+    let settings = Settings {
+        language,
+        ..settings(Page::Case)
+    };
+    Window::with(place, scripts(), settings)
 }
 
 pub fn settings(page: Page) -> Settings {

@@ -2,7 +2,7 @@
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
-    Align2, Checkbox, Color32, Painter, PopupCloseBehavior, Rect, Role, ScrollArea, Sense,
+    Align2, Checkbox, Color32, FontId, Painter, PopupCloseBehavior, Rect, Role, ScrollArea, Sense,
     TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 use protocol::signal::Signal;
@@ -13,6 +13,7 @@ use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
 use crate::Palette;
 use crate::parts::lane;
+use ptu_report::naming;
 use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Span, Window, columns, spans};
 use ptu_report::words::{Words, fill};
@@ -76,7 +77,8 @@ impl Plot {
             let (area, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| {
                 let value = |signal: &Signal| text::value(&words.bench, *signal, seen);
-                let now = signals.iter().map(|s| format!("{} {}", s.name(), value(s)));
+                let name = |signal: &Signal| naming::signal(signal.name(), words);
+                let now = signals.iter().map(|s| format!("{} {}", name(s), value(s)));
                 let now: Vec<_> = now.collect();
                 let name = format!("{}: {}", words.bench.plot, now.join(", "));
                 WidgetInfo::labeled(Role::Image, true, name)
@@ -130,13 +132,13 @@ impl Plot {
         let scroll = ScrollArea::vertical().max_height(360.0);
         scroll.show(ui, |ui| {
             for signal in Signal::ALL {
-                let name = signal.name();
-                if !name.contains(&find) {
+                let (name, said) = (signal.name(), naming::signal(signal.name(), words));
+                if !name.contains(&find) && !said.to_lowercase().contains(&find) {
                     continue;
                 }
                 let place = plotted.iter().position(|one| one == name);
                 let mut on = place.is_some();
-                let check = ui.add_enabled(on || !full, Checkbox::new(&mut on, name));
+                let check = ui.add_enabled(on || !full, Checkbox::new(&mut on, said));
                 let check = check.on_hover_text(&*words.content(signal.definition().doc));
                 if !check.changed() {
                     continue;
@@ -253,25 +255,16 @@ impl Sheet<'_> {
             let y = first + row as f32 * height;
             let signal = self.signals[*place];
             let colour = self.colour(*place);
-            let left = pos2(self.area.left(), y);
-            put(
-                &self.painter,
-                left,
-                Align2::LEFT_CENTER,
-                size,
-                colour,
-                signal.name(),
-            );
             let value = text::value(&self.words.bench, signal, self.seen);
-            let right = pos2(self.area.left() + NAMES, y);
-            put(
-                &self.painter,
-                right,
-                Align2::RIGHT_CENTER,
-                size,
-                colour,
-                &value,
-            );
+            let (left, right) = (self.area.left(), self.area.left() + NAMES);
+            let of_value = (pos2(right, y), Align2::RIGHT_CENTER);
+            let font = FontId::proportional(size);
+            let painter = &self.painter;
+            let value = painter.text(of_value.0, of_value.1, value, font.clone(), colour);
+            let of_name = left..=(value.left() - NAME).max(left);
+            let of_name = Rect::from_x_y_ranges(of_name, y - height / 2.0..=y + height / 2.0);
+            let name = naming::signal(signal.name(), self.words);
+            lane::cut_text(painter, of_name, name, font, colour);
         }
     }
 }

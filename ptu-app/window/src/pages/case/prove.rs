@@ -35,8 +35,8 @@ pub struct Proof {
     verdict: Option<Verdict>,
     /// The same in a word or two.
     word: Option<&'static str>,
-    /// Answers with the run that was signed, and by whom.
-    signing: Request<(Id, String)>,
+    /// Answers with the run that was signed, by whom, and whether with a key.
+    signing: Request<(Id, String, bool)>,
     sign: Option<Sign>,
 }
 
@@ -55,11 +55,17 @@ impl Proof {
             self.reconnects = false;
             unit.connect(context.queries);
         }
-        if self.signing.poll()
-            && let Request::Failed(why) = &self.signing
-        {
-            let said = context.words.case.not_signed;
-            context.messages.trouble(said, why.clone());
+        if !self.signing.poll() {
+            return;
+        }
+        match (&self.signing, &mut self.sign) {
+            // What was chosen stays; the PIN is typed again.
+            (Request::Failed(_), Some(sign)) => sign.pin.clear(),
+            (Request::Failed(why), None) => {
+                let said = context.words.case.not_signed;
+                context.messages.trouble(said, why.clone());
+            }
+            _ => self.sign = None,
         }
     }
 
@@ -98,8 +104,12 @@ impl Proof {
     /// Who checked the sheet, or the button that asks who does.
     pub fn sign_foot(&mut self, ui: &mut Ui, run: Option<Id>, context: &mut PageContext<'_>) {
         let words = &context.words.case;
-        if let Some((_, who)) = self.signing.value().filter(|(of, _)| Some(*of) == run) {
-            let said = fill(words.signed_by, &[("who", who)]);
+        if let Some((_, who, with_key)) = self.signing.value().filter(|(of, ..)| Some(*of) == run) {
+            let said = match with_key {
+                true => words.signed_with_key,
+                false => words.signed_by,
+            };
+            let said = fill(said, &[("who", who)]);
             let good = Palette::of(ui).good;
             ui.label(RichText::new(said).size(Sizes::of(ui).lead).color(good));
             return;
@@ -112,7 +122,7 @@ impl Proof {
             None => words.after_test,
         };
         if place.clicked(&sign.because((!may).then_some(why_not)).show(ui)) {
-            self.sign = Some(Sign::default());
+            (self.sign, self.signing) = (Some(Sign::default()), Request::Idle);
         }
     }
 
@@ -136,8 +146,9 @@ impl Proof {
             (words.case.run, run.short()),
         ];
         let mut chosen = None;
+        let signing = &self.signing;
         let open = dialog(ui, "sign", words.case.sign_title, |ui| {
-            chosen = sign.show(ui, &facts, context);
+            chosen = sign.show(ui, &facts, signing, context);
         });
         match chosen {
             Some(true) => {
@@ -147,14 +158,14 @@ impl Proof {
                     let store = paths.open()?;
                     let signer = key.map(|(key, pin)| keys::signer(&key, &pin)).transpose()?;
                     // A key signs in its own name.
-                    let who = signer
-                        .as_ref()
-                        .map_or(who, |signer| signer.who().to_owned());
+                    let (who, with_key) = match &signer {
+                        Some(signer) => (signer.who().to_owned(), true),
+                        None => (who, false),
+                    };
                     store.sign_with(signer.map(Arc::new));
                     store.add_run_note(run, &who, text, now_us())?;
-                    Ok((run, who))
+                    Ok((run, who, with_key))
                 }));
-                self.sign = None;
             }
             Some(false) => self.sign = None,
             None if !open => self.sign = None,
@@ -184,6 +195,7 @@ impl Sign {
         &mut self,
         ui: &mut Ui,
         facts: &[(&str, String)],
+        signing: &Request<(Id, String, bool)>,
         context: &mut PageContext<'_>,
     ) -> Option<bool> {
         let words = context.words;
@@ -195,7 +207,8 @@ impl Sign {
                 ui.end_row();
             }
             ui.label(words.case.key);
-            let keys = self.keys.get_or_insert_with(keys::own);
+            let folder = &context.queries.paths().keys;
+            let keys = self.keys.get_or_insert_with(|| keys::all_in(folder));
             let stem = |(key, _): &(PathBuf, String)| key.file_stem().map(OsStr::to_os_string);
             let name = |key: &Option<(PathBuf, String)>| match key.as_ref().and_then(stem) {
                 Some(name) => name.to_string_lossy().into_owned(),
@@ -226,6 +239,10 @@ impl Sign {
             field(ui, named, edit);
         });
         ui.label(RichText::new(words.case.sign_hint).color(quiet));
+        if let Request::Failed(why) = signing {
+            let said = [words.case.not_signed, &*words.trouble(why)].join(DOT);
+            ui.label(RichText::new(said).color(Palette::of(ui).bad));
+        }
         let operator = context.settings.operator.trim();
         let (who, missing) = match &self.chosen {
             Some((_, who)) => (
@@ -241,6 +258,10 @@ impl Sign {
         let mut chosen = None;
         last_row(ui, |ui| {
             let sign = fill(words.case.sign_as, &[("who", &who)]);
+            let missing = match signing {
+                Request::Pending(_) => Some(words.common.loading),
+                _ => missing,
+            };
             let sign = Face::new(Look::Primary, sign).icon(ICON_DRAW).off(missing);
             if place.clicked(&sign.show(ui)) {
                 chosen = Some(true);

@@ -10,11 +10,10 @@ use fault_db::{Id, StepCounts};
 
 use super::evidence::Evidence;
 use super::verdict::{Next, Told, named};
-use super::{CasePage, Stage, title};
+use super::{CasePage, STRIP, Stage, title};
 use crate::pages::procedures::{Concluded, why_not};
 use crate::parts::{ActionPlace, Card, Face, Look, limit_scale, segments};
 use crate::{Density, Destination, PageContext, Palette, Sizes};
-use ptu_report::count_text;
 use ptu_report::diagnosis::MOST_REASONS;
 use ptu_report::naming::{self, DOT};
 use ptu_report::words::{Words, fill};
@@ -187,13 +186,19 @@ impl CasePage {
             ("id", &found.run.short()),
             ("time", &clock::local(found.ended_us)),
         ];
-        let count = count_text(&found.counts, words);
-        let of_run = fill(words.case.of_run, &said);
+        let counts = &found.counts;
+        let count: [(&str, &dyn std::fmt::Display); 2] =
+            [("n", &counts.not_passed()), ("run", &counts.run())];
+        let mut count = fill(words.case.count, &count);
+        // The strip says it otherwise.
+        if ui.ctx().content_rect().width() < STRIP[0] {
+            count = [count, fill(words.case.of_run, &said)].join(DOT);
+        }
         let card = Card {
             icon: found.told.icon(),
             word: found.told.word(&words.case),
             colour: found.told.colour(&Palette::of(ui)),
-            count: &[&*count, &of_run].join(DOT),
+            count: &count,
             headline: &found.headline,
         };
         card.show(ui, |ui| {
@@ -239,7 +244,7 @@ impl CasePage {
         let check = found.answer.as_ref();
         let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
         let first = (found.told).next(found.counts.run() == found.counts.planned);
-        let failed = matches!(found.told, Told::Part | Told::Unsure | Told::NoPart);
+        let failed = found.told.is_failed();
         let unit = context.units.chosen();
         let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
         let is_first = |way| way == first;

@@ -98,7 +98,7 @@ impl CasePage {
         let failed = self
             .found
             .as_ref()
-            .is_some_and(|found| matches!(found.told, Told::Part | Told::Unsure | Told::NoPart));
+            .is_some_and(|found| found.told.is_failed());
         // A run that goes on is looked at where it goes on.
         // So is one that is over until it is taken, which only these two steps do.
         let takes = matches!(self.stage, Stage::Find | Stage::Prove);
@@ -139,10 +139,12 @@ impl CasePage {
                     .as_ref()
                     .map_or_else(String::new, |found| count_text(&found.counts, words)),
             },
-            Stage::Result => {
-                let found = self.found.as_ref();
-                found.map_or_else(String::new, |found| found.told.word(&words.case).to_owned())
-            }
+            Stage::Result => self.found.as_ref().map_or_else(String::new, |found| {
+                let part = found.parts.first().filter(|_| found.told == Told::Part);
+                let word = || found.told.word(&words.case);
+                part.map_or_else(word, |part| self.known.part_name(part, words))
+                    .to_owned()
+            }),
             Stage::Repair if self.repair.is_written() => self.repair.serial_new().to_owned(),
             Stage::Repair | Stage::Prove | Stage::Sheet => String::new(),
         }

@@ -55,6 +55,11 @@ impl Told {
         }
     }
 
+    /// A check failed.
+    pub fn is_failed(self) -> bool {
+        matches!(self, Self::Part | Self::Unsure | Self::NoPart)
+    }
+
     /// `all` = every step was run.
     pub fn next(self, all: bool) -> Next {
         match self {
@@ -138,7 +143,7 @@ fn parts(said: &Conclusion) -> Vec<LruId> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use diagnosis::PartProbability;
+    use diagnosis::{Group, Measure, PartProbability, Shared};
     use ptu_report::words::Language;
 
     /// Goal: a diagnosis makes no failed run a sound unit, and no other run a part. Method: every pair of a run's verdict and what
@@ -153,6 +158,15 @@ mod tests {
             vec![PartProbability { lru, probability }; n]
         };
         let parts = [part.clone(), part.clone()];
+        let cause = || Shared {
+            part: part.clone(),
+            reaches: parts.to_vec(),
+            measure: Measure::default(),
+        };
+        let group = Group {
+            parts: parts.to_vec(),
+            measure: Measure::default(),
+        };
         let found = Conclusion::Found {
             part: part.clone(),
             probability,
@@ -160,6 +174,24 @@ mod tests {
         let said = [
             (None, 2),
             (Some(found), 0),
+            (Some(Conclusion::OneOf { group, probability }), 1),
+            (
+                Some(Conclusion::Common {
+                    cause: cause(),
+                    parts: parts.clone(),
+                    probability,
+                }),
+                1,
+            ),
+            (
+                Some(Conclusion::OneOrCommon {
+                    cause: cause(),
+                    part: part.clone(),
+                    probability,
+                    other: part.clone(),
+                }),
+                1,
+            ),
             (Some(Conclusion::TwoFound { parts, probability }), 0),
             (Some(Conclusion::CannotTell { likely: likely(3) }), 1),
             (
