@@ -568,7 +568,7 @@ impl<'a> Making<'a> {
         ]);
         let only = |is_so: bool, text: String| if is_so { text } else { String::new() };
         let lost = format!("link lost at step {run} of {planned}; {left} not run");
-        let lost_ko = format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행");
+        let lost_ko = format!("{planned}개 단계 중 {run}번째에서 연결 끊김; {left}개 미실행");
         let more = [
             ("verdict", verdict.into()),
             ("id", id.short()),

@@ -196,7 +196,7 @@ fn behind<'a>(text: &'a str, word: &str) -> Option<&'a str> {
 /// What stands behind the numbers of a sentence that counts a run, in each language.
 const SAID: [&str; 2] = [
     " steps run| did not pass| not run| attempts| need the bench harness",
-    "개 수행|개 미합격|개 미수행|회|개는 시험대 하네스 필요",
+    "개 수행|개 미합격|개 미실행|회|개는 시험대 하네스 필요",
 ];
 
 /// The count of a run in a sentence; none if it is no such sentence.
@@ -233,13 +233,14 @@ pub fn count(text: &str, language: Language) -> Option<Told> {
 
 /// A verdict or a state in words.
 pub fn verdict(text: &str, language: Language) -> Option<&'static str> {
+    const LABELS: &str = "passed|failed|error|skipped|inconclusive|aborted|interrupted";
     const ALL: [&str; 2] = [
-        "passed|failed|error|skipped|inconclusive|aborted|interrupted",
-        "합격|불합격|판정 불가|생략|판정 보류|중단|미완료",
+        "passed|failed|could not be tested|not run|inconclusive|aborted|interrupted",
+        "합격|불합격|판정 불가|미실행|판정 보류|중단|미완료",
     ];
     let said = text.to_lowercase();
     let mut words = ALL[language as usize].split('|');
-    ALL[0].split('|').nth(words.position(|word| said == word)?)
+    LABELS.split('|').nth(words.position(|word| said == word)?)
 }
 
 /// The part whose identifier a text is, or has in parentheses at its end.

@@ -102,7 +102,7 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (of(Verdict::Passed), counts.passed),
         (of(Verdict::Failed), counts.failed),
         (of(Verdict::Error), counts.error),
-        ((words.report.not_run, Tone::Soft), counts.not_run()),
+        ((common.skipped, Tone::Soft), counts.not_run()),
     ];
     let all: Vec<_> = (all.into_iter())
         .chain((counts.outside > 0).then_some(outside))

@@ -11,8 +11,8 @@ wordings! {
     Common {
         passed: "passed", "합격";
         failed: "failed", "불합격";
-        error: "error", "판정 불가";
-        skipped: "skipped", "생략";
+        error: "could not be tested", "판정 불가";
+        skipped: "not run", "미실행";
         inconclusive: "inconclusive", "판정 보류";
         no_part: "unknown", "알 수 없음";
         aborted: "aborted", "중단";

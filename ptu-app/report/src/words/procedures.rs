@@ -14,7 +14,6 @@ wordings! {
         none: "None", "해제";
         chosen: "{steps} steps chosen, at most {time}", "{steps}개 단계 선택, 최대 {time}";
         on_request: "on request", "요청 시만";
-        skipped: "skipped", "생략";
         needs_harness: "Needs the bench harness; only the maintenance port is connected", "시험대 하네스가 필요합니다. 정비 포트만 연결되어 있습니다";
         run: "Run", "시험 시작";
         run_all: "Run on all units", "모든 장치에서 시작";

@@ -13,10 +13,9 @@ wordings! {
         of_unit: "Unit {serial}, run {run}", "장치 {serial}, 시험 {run}";
         not_passed: "{n} of {of} steps did not pass", "{of}개 단계 중 {n}개 미합격";
         none_run: "0 of {of} steps run", "{of}개 단계 중 0개 수행";
-        part_passed: "{run} of {of} steps run, all passed; {left} not run", "{of}개 단계 중 {run}개 수행, 모두 합격; {left}개 미수행";
-        part_not_passed: "{run} of {of} steps run, {n} did not pass; {left} not run", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {left}개 미수행";
+        part_passed: "{run} of {of} steps run, all passed; {left} not run", "{of}개 단계 중 {run}개 수행, 모두 합격; {left}개 미실행";
+        part_not_passed: "{run} of {of} steps run, {n} did not pass; {left} not run", "{of}개 단계 중 {run}개 수행, {n}개 미합격; {left}개 미실행";
         attempts: "; {n} attempts", "; 시도 {n}회";
-        not_run: "not run", "미수행";
         needs_bench: "; {n} need the bench harness: {what}", "; {n}개는 시험대 하네스 필요: {what}";
         and_others: " and {n} more", " 외 {n}건";
         repair_proven: "Fault {fault}: the repair is verified. With the fault still there, the runs since it would all have passed in {hidden} of 100 cases", "고장 {fault}: 조치가 검증되었습니다. 고장이 남아 있다면 이후 시험이 모두 합격할 확률은 100회 중 {hidden}회입니다";

@@ -185,7 +185,7 @@ pub fn korean(finding: &Finding) -> String {
         Finding::NoStepRun => "수행한 단계 없음".to_owned(),
         Finding::ProgramFailed => "시험 중 프로그램 오류가 발생함".to_owned(),
         Finding::LinkLostAt { run, of, left } => {
-            format!("{of}개 단계 중 {run}번째에서 연결 끊김; {left}개 미수행")
+            format!("{of}개 단계 중 {run}번째에서 연결 끊김; {left}개 미실행")
         }
         Finding::NotAcceptance { run, of } => {
             format!("인수 판정이 아님: {of}개 단계 중 {run}개 수행, 모두 합격")

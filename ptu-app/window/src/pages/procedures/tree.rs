@@ -109,7 +109,7 @@ fn show_folder(
 
 /// A procedure that this connection cannot do: why it would be skipped.
 fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
-    let said = format!("{}: {}", title(procedure, words), words.procedures.skipped);
+    let said = format!("{}: {}", title(procedure, words), words.common.skipped);
     let text = RichText::new(said);
     let label = ui.add_enabled(false, Label::new(text));
     label.on_disabled_hover_text(format!(
