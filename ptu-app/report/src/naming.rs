@@ -37,22 +37,22 @@ impl PartNames {
     }
 
     /// A fault that points at this part, in one line: the part, and what was seen as it is stored.
-    pub fn fault(
-        &self,
-        part: &str,
-        (data, message): (&Option<String>, &str),
-        words: &Words,
-    ) -> String {
+    pub fn fault(&self, part: &str, stored: (&Option<String>, &str), words: &Words) -> String {
         let part = self.name(part, words.language);
-        let seen = findings(data);
-        let what = match seen.is_empty() {
-            true => words.content(message).into_owned(),
-            false => what_failed(&seen, words),
-        };
+        let what = seen_in_short(stored, words);
         match what.is_empty() {
             true => part.to_owned(),
             false => format!("{part}{DOT}{what}"),
         }
+    }
+}
+
+/// What was seen of a fault, in few words.
+pub fn seen_in_short((data, message): (&Option<String>, &str), words: &Words) -> String {
+    let seen = findings(data);
+    match seen.is_empty() {
+        true => words.content(message).into_owned(),
+        false => what_failed(&seen, words),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use eframe::egui::{self, CentralPanel, Context, Panel, Ui, ViewportCommand};
+use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui, ViewportCommand};
 
 use super::Page;
 use super::data_paths::DataPaths;
@@ -215,8 +215,12 @@ impl App {
     }
 
     fn apply_settings(&mut self, context: &Context) {
-        let theme = egui::Theme::from_dark_mode(self.settings.dark);
-        if context.theme() != theme {
+        let theme = match self.settings.dark {
+            Some(true) => ThemePreference::Dark,
+            Some(false) => ThemePreference::Light,
+            None => ThemePreference::System,
+        };
+        if context.options(|options| options.theme_preference) != theme {
             context.set_theme(theme);
         }
         context.set_zoom_factor(self.settings.zoom);

@@ -27,7 +27,7 @@ pub struct Settings {
     /// Language.
     pub language: Language,
     /// Dark window, as in a dark cab.
-    pub dark: bool,
+    pub dark: Option<bool>,
     /// Who the window is laid out for.
     pub density: Density,
     /// Size of everything, 1 = as the desktop has it.
@@ -96,7 +96,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             language: Language::default(),
-            dark: true,
+            dark: None,
             density: Density::default(),
             zoom: 1.0,
             window_size: None,

@@ -228,6 +228,9 @@ wordings! {
         unit_frames: "frames", "전문";
         release_all: "Take test signals away", "시험 신호 제거";
         clear_log: "Clear event log", "이벤트 기록 삭제";
+        acting: "acting now", "작동 중인 신호";
+        take_all: "Remove all", "모두 제거";
+        find: "find a stimulus", "입력 찾기";
         read_back: "Read back", "회신값";
 
         // Switches of the train.

@@ -19,11 +19,10 @@ wordings! {
         case_of: "{cause}, {n} more faults follow", "{cause}, 함께 처리되는 고장 {n}건";
         first_seen_in: "first seen in {month}", "{month} 최초 발생";
         show_all: "Show all again", "모두 다시 표시";
-        choose: "Choose a fault in the list", "목록에서 고장을 고르십시오";
         not_read: "The fault history cannot be read", "고장 이력을 읽을 수 없습니다";
         times_seen: "seen {n} times, {first} … {last}", "{n}회, {first} … {last}";
         acknowledge: "Acknowledge", "확인";
-        repair: "Repaired", "수리 완료";
+        repair: "Repaired …", "수리 …";
         verify: "Verified", "검증";
         close: "Close …", "종결 …";
         close_unrepaired: "Close without a repair? Faults: {n}", "수리 없이 종결하시겠습니까? 고장 {n}건";
@@ -42,6 +41,9 @@ wordings! {
         serial_old: "serial number taken out", "제거한 부품 일련번호";
         serial_new: "serial number put in", "장착한 부품 일련번호";
         verify_reason: "Runs verify a repair. Write in the note why it is verified without one", "수리는 시험으로 검증됩니다. 시험 없이 검증하는 이유를 메모에 적으십시오";
+        repair_asked: "Record a repair? Faults: {n}", "수리를 기록하시겠습니까? 고장 {n}건";
+        repair_together: "They have one cause, {part}, and its repair is recorded for each.", "원인 부품이 같아 수리가 함께 기록됩니다: {part}";
+        note_first: "Write the note first", "먼저 메모를 적으십시오";
         repair_reason: "Write a serial number, or in the note what was done", "일련번호를 적거나, 조치 내용을 메모에 적으십시오";
         recorded: "Recorded: {what}", "기록 완료: {what}";
         not_changed: "The fault was not changed", "고장 상태를 바꾸지 못했습니다";
@@ -71,7 +73,6 @@ wordings! {
         kind_note: "note", "메모";
         kind_cause: "cause", "원인 지정";
         kind_diagnosed: "diagnosed", "진단";
-        freeze_trace: "Trace around this moment", "이 순간의 신호 기록";
         not_known: "not known", "알 수 없음";
         to_trace: "Trace", "신호 기록";
         to_run: "Run", "시험";

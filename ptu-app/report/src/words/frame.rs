@@ -28,6 +28,7 @@ wordings! {
         theme: "theme", "밝기";
         dark: "dark", "어둡게";
         light: "light", "밝게";
+        as_desktop: "as desktop", "시스템 설정";
         scale: "size", "크기";
         cannot_connect: "Not connected", "연결하지 못했습니다";
         database_gone: "The database is gone: put it back, or open the window again to begin a new one", "데이터베이스 파일이 없어졌습니다. 제자리에 돌려놓거나, 창을 다시 열어 새로 시작하십시오";

@@ -47,7 +47,10 @@ wordings! {
         all_passed: "No step failed; passed: {n}", "불합격 단계 없음, 합격 {n}";
         no_measurements: "This step measures nothing", "이 단계에는 측정이 없습니다";
         results: "results", "결과";
-        only_bad: "only those not passed", "미합격만";
+        bad_n: "Not passed {n}", "미합격 {n}";
+        all_n: "All {n}", "전체 {n}";
+        measured: "measured", "측정값";
+        limit: "limit", "허용";
         faults_found: "faults found", "발견된 고장";
         suspect: "suspect: {part}", "의심 부품: {part}";
         to_diagnosis: "Diagnosis", "진단";

@@ -192,18 +192,19 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
     let setup = unit.setup.value().filter(|_| all);
     if let Some(setup) = setup.filter(|setup| !setup.faults.is_empty()) {
         let said = fill(words.practice_faults, &[("n", &setup.faults.len())]);
-        let shown = if without < Without::Practice {
-            said.clone()
-        } else {
-            String::new()
-        };
-        let face = Face::new(Look::Dashed, shown).icon(ICON_SCIENCE);
+        let face = shown_if(without < Without::Practice, &said);
+        let face = Face::new(Look::Dashed, face).icon(ICON_SCIENCE);
         let names = setup.injected().unwrap_or_default();
         items.push((What::State, face.named(said).hint(names)));
     }
     run(unit, words, without, &mut items);
     states(context, all, &mut items);
     items
+}
+
+/// Words, where there is room for them.
+fn shown_if(has_room: bool, said: &str) -> String {
+    String::from(if has_room { said } else { "" })
 }
 
 fn unit_face(unit: &Unit, words: &words::Frame, without: Without) -> Face<'static> {
@@ -218,10 +219,7 @@ fn unit_face(unit: &Unit, words: &words::Frame, without: Without) -> Face<'stati
         small.clear();
     }
     small.push(unit.choice.line.clone());
-    let shown = match without < Without::States {
-        true => cut(&name, NAME).into_owned(),
-        false => String::new(),
-    };
+    let shown = shown_if(without < Without::States, &cut(&name, NAME));
     let face = Face::new(Look::Secondary, shown).icon(ICON_MEMORY);
     let face = face.named(name).end(ICON_EXPAND_MORE);
     match without < Without::Subtitle {
@@ -251,11 +249,7 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
             (look, ICON_LINK, fill(words.link_good, &[("share", &said)]))
         }
     };
-    let shown = if without < Without::LinkWord {
-        said.clone()
-    } else {
-        String::new()
-    };
+    let shown = shown_if(without < Without::LinkWord, &said);
     if look == Look::Warned || without < Without::States {
         items.push((What::State, Face::new(look, shown).icon(icon).named(said)));
     }

@@ -259,8 +259,8 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
         false => frame.disconnect,
     };
     let theme = match context.settings.dark {
-        true => frame.light,
-        false => frame.dark,
+        Some(false) => frame.dark,
+        _ => frame.light,
     };
     let view = match context.settings.density {
         Density::Engineer => frame.operator,
@@ -282,7 +282,7 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
             },
         ),
         (theme, frame.theme, |_, context| {
-            context.settings.dark = !context.settings.dark;
+            context.settings.dark = Some(context.settings.dark == Some(false));
         }),
         (view, frame.view, |_, context| {
             context.settings.density = match context.settings.density {

@@ -23,7 +23,11 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         segments(ui, &mut settings.language, names);
         ui.end_row();
         ui.label(words.theme);
-        let themes = [(true, words.dark), (false, words.light)];
+        let themes = [
+            (Some(true), words.dark),
+            (Some(false), words.light),
+            (None, words.as_desktop),
+        ];
         segments(ui, &mut settings.dark, themes);
         ui.end_row();
         ui.label(words.view);

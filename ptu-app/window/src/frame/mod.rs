@@ -18,7 +18,7 @@ use std::sync::Arc;
 use btu_rig::procedure::Procedure;
 use eframe::egui::{
     Align2, Area, Context, Frame as Ground, Id, Key, Margin, Modifiers, Order, Panel, RichText,
-    Role, Spinner, Ui, WidgetInfo, vec2,
+    Spinner, Ui, vec2,
 };
 
 use super::{Page, PageContext, Palette, Sizes};
@@ -138,11 +138,6 @@ impl Frame {
         });
         noted
     }
-}
-
-/// A button whose name is not all that is written in it.
-fn button_named(name: &str, enabled: bool) -> WidgetInfo {
-    WidgetInfo::labeled(Role::Button, enabled, name)
 }
 
 fn over_everything(context: &Context, content: impl FnOnce(&mut Ui)) {

@@ -130,7 +130,7 @@ fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
         );
         let at = pos2(middle.x, top + high * 0.74);
         draw(at, Align2::CENTER_CENTER, place.name, caption, ink);
-    } else if high >= 12.0 + sizes.icon {
+    } else {
         let y = top + high * if place.key.is_empty() { 0.5 } else { 0.34 };
         draw(
             pos2(middle.x, y),
@@ -143,16 +143,6 @@ fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
         draw(
             at,
             Align2::CENTER_CENTER,
-            place.key,
-            FontId::proportional(11.0),
-            palette.quiet,
-        );
-    } else {
-        let at = pos2(left + 8.0, middle.y);
-        let x = draw(at, Align2::LEFT_CENTER, sign, of_icon, icon) + 4.0;
-        draw(
-            pos2(x, middle.y),
-            Align2::LEFT_CENTER,
             place.key,
             FontId::proportional(11.0),
             palette.quiet,

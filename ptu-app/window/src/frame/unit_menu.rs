@@ -5,7 +5,7 @@ use protocol::message::Identity;
 
 use super::keys::CONNECT;
 use super::setup::Setup;
-use crate::parts::ActionPlace;
+use crate::parts::{ActionPlace, Face, Look};
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
@@ -30,19 +30,13 @@ pub fn unit_menu(ui: &mut Ui, setup: &mut Setup, context: &mut PageContext<'_>) 
     let place = ActionPlace::new(ui, "unit menu", (unit.id, phase == Phase::Offline));
     let key = CONNECT.name();
     if phase == Phase::Offline {
-        let connect = Button::new(frame.connect).shortcut_text(key);
-        let button = ui.add_enabled(only_reads.is_none(), connect);
-        button.widget_info(|| super::button_named(frame.connect, only_reads.is_none()));
-        if let Some(why) = only_reads {
-            ui.label(RichText::new(why).small());
-        }
-        if place.clicked(&button) {
+        let connect = Face::new(Look::Secondary, frame.connect).small(key);
+        if place.clicked(&connect.off(only_reads).show(ui)) {
             unit.connect(context.queries);
         }
     } else {
-        let button = ui.add(Button::new(frame.disconnect).shortcut_text(key));
-        button.widget_info(|| super::button_named(frame.disconnect, true));
-        if place.clicked(&button) {
+        let disconnect = Face::new(Look::Secondary, frame.disconnect).small(key);
+        if place.clicked(&disconnect.show(ui)) {
             unit.disconnect();
         }
     }

@@ -17,14 +17,18 @@ pub fn chip(ui: &mut Ui, (icon, text): (MaterialIcon, &str), colour: Color32) ->
 }
 
 pub fn verdict_chip(ui: &mut Ui, verdict: Verdict, words: &Words) -> Response {
-    let palette = Palette::of(ui);
-    let (icon, colour) = match verdict {
+    let (icon, colour) = verdict_look(verdict, &Palette::of(ui));
+    chip(ui, (icon, words.common.verdict(verdict)), colour)
+}
+
+/// The icon of a verdict, and its colour.
+pub fn verdict_look(verdict: Verdict, palette: &Palette) -> (MaterialIcon, Color32) {
+    match verdict {
         Verdict::Passed => (ICON_CHECK, palette.second),
         Verdict::Failed => (ICON_CANCEL, palette.bad),
         Verdict::Error => (ICON_WARNING, palette.warn),
         Verdict::Inconclusive => (ICON_HELP, palette.warn),
         Verdict::Aborted => (ICON_DO_NOT_DISTURB_ON, palette.warn),
         Verdict::Skipped => (ICON_SKIP_NEXT, palette.quiet),
-    };
-    chip(ui, (icon, words.common.verdict(verdict)), colour)
+    }
 }

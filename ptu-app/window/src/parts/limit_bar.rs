@@ -2,7 +2,7 @@
 
 use btu_rig::procedure::{Measurement, Verdict};
 use eframe::egui::{
-    Align2, Color32, FontId, Pos2, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Align2, FontId, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
 use crate::{Palette, Sizes};
@@ -11,7 +11,7 @@ use ptu_report::ticks::Ticks;
 use ptu_report::words::{Words, fill};
 
 /// Size of the bar, points.
-const SIZE: [f32; 2] = [150.0, 14.0];
+const SIZE: [f32; 2] = [100.0, 14.0];
 
 /// Value, unit and limits in words: `0.42 s (0.19 to 0.34)`.
 pub fn value_text(measurement: &Measurement, words: &Words) -> String {
@@ -24,7 +24,7 @@ pub fn value_text(measurement: &Measurement, words: &Words) -> String {
 }
 
 /// Limits in words: `at most 472`.
-fn limits_text(words: &Words, low: Option<f64>, high: Option<f64>) -> String {
+pub fn limits_text(words: &Words, low: Option<f64>, high: Option<f64>) -> String {
     let (low, high) = (low.map(short), high.map(short));
     match (&low, &high) {
         (Some(low), Some(high)) => fill(words.common.from_to, &[("low", low), ("high", high)]),
@@ -40,13 +40,19 @@ pub fn limit_bar(
     words: &Words,
     (name, measurement): (&str, &Measurement),
 ) -> Response {
-    let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(SIZE[0], SIZE[1]), Sense::hover());
     let label = format!("{name} {}", value_text(measurement, words));
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &label));
+    limits_within(ui, rect, measurement);
+    response
+}
+
+/// Paints the bar in this place.
+pub fn limits_within(ui: &Ui, rect: Rect, measurement: &Measurement) {
+    let palette = Palette::of(ui);
     let Some((value, low, high)) = places(measurement.value, measurement.low, measurement.high)
     else {
-        return response;
+        return;
     };
     let x = |place: f64| rect.left() + rect.width() * place as f32;
     let painter = ui.painter();
@@ -58,8 +64,7 @@ pub fn limit_bar(
         Verdict::Passed => ui.visuals().strong_text_color(),
         _ => palette.bad,
     };
-    mark(ui, rect, x(value), colour);
-    response
+    painter.vline(x(value), rect.y_range(), Stroke::new(3.0, colour));
 }
 
 /// The same over the whole width, with ticks, the limit in words and the value above it.
@@ -98,8 +103,7 @@ pub fn limit_scale(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Meas
     let beyond = value < ends.0 || value > ends.1;
     let ink = if beyond { palette.bad } else { palette.ink };
     let said = format!("{} {}", short(value), words.unit(measurement.unit));
-    let text =
-        |at: Pos2, align: Align2, text: String, font, ink| painter.text(at, align, text, font, ink);
+    let text = |at, align, text, font, ink| painter.text(at, align, text, font, ink);
     let lead = FontId::proportional(sizes.lead);
     let half = painter
         .layout_no_wrap(said.clone(), lead.clone(), ink)
@@ -165,9 +169,4 @@ fn span(value: f64, (low, high): (Option<f64>, Option<f64>)) -> (f64, f64) {
     let to = to.max(from + f64::MIN_POSITIVE);
     let step = 10_f64.powf((to - from).log10().floor()) / 2.0;
     ((from / step).floor() * step, (to / step).ceil() * step)
-}
-
-fn mark(ui: &Ui, rect: Rect, x: f32, colour: Color32) {
-    ui.painter()
-        .vline(x, rect.y_range(), Stroke::new(3.0, colour));
 }

@@ -95,9 +95,6 @@ impl RunList {
             let label = ui.label(words.procedures.find);
             ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
                 .labelled_by(label.id);
-            if ui.button(words.common.refresh).clicked() {
-                self.version = None;
-            }
         });
         let runs = match self.runs.get() {
             Request::Ready(runs) => runs,

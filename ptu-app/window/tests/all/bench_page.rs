@@ -164,9 +164,19 @@ fn the_page_speaks_korean() {
     window.wait_for("출입문: 닫힘");
     window.click("속도 코드: 55");
     window.wait_for("제한: 55.0 km/h");
+    fold(&mut window, &["ATP 신호", "속도"]);
     window.click("출입문: 열림");
     window.wait_for_part("역행 차단 원인: 출입문");
-    fold(&mut window, &["ATP 신호", "속도", "인통선"]);
+    // What is given is told with a button that takes it away.
+    window.click("제거 출입문");
+    window.wait_for("출입문: 닫힘");
+    window.click("제거 속도 코드");
+    window.wait_for("속도 코드: 무코드");
+    fold(&mut window, &["인통선"]);
+    window.write("입력 찾기", "시험 코드");
+    window.wait_for("시험 코드: 55");
+    assert!(!window.shows("속도 코드: 55"));
+    window.write_over("입력 찾기", " ");
     window.click("TEST 보드");
     window.wait_for("시험 코드: 55");
 }

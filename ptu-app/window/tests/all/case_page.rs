@@ -219,6 +219,8 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     counted.click(&fill(case.sign_as, &[("who", &"Kim")]));
     let signed = fill(case.signed_by, &[("who", &"Kim")]);
     counted.window.wait_for(&signed);
+    // The dialog is out of the way in the picture after.
+    counted.window.step();
     let file = counted.window.place.text_path("sheet.pdf");
     counted.window.write_over(words.report.file, &file);
     counted.click(words.report.write_pdf);

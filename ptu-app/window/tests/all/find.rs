@@ -5,6 +5,7 @@ use crate::layout::complaints;
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use ptu_options::Page;
+use ptu_report::naming::DOT;
 use ptu_report::words::{Language, fill};
 use ptu_runs::bench_worker::Phase;
 use ptu_window::Density;
@@ -91,7 +92,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         assert!(field.top() > bar, "the bar is never covered: {field}");
         window.keep_picture(&format!("find {language:?}"));
         window.key(Key::Enter);
-        window.wait_for(words.faults.serial_new);
+        window.wait_for(words.faults.what_was_done);
         assert_eq!(window.app().page(), Page::Faults);
 
         let step = words.content(STEP);
@@ -109,7 +110,9 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         look_for(&mut window, words.frame.light);
         window.key(Key::ArrowDown);
         window.key(Key::Enter);
-        window.until("a light window", |window| !window.app().settings().dark);
+        window.until("a light window", |window| {
+            window.app().settings().dark == Some(false)
+        });
 
         look_for(&mut window, "bad-1 no such thing");
         window.wait_for(words.common.nothing);
@@ -120,10 +123,13 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         assert_eq!(unit.phase(), Phase::Idle);
         assert!(unit.run.is_none() && !unit.is_armed());
 
-        look_for(&mut window, words.frame.lock);
-        window.key(Key::Enter);
+        window.click(words.frame.menu);
+        window.click(words.frame.lock);
         window.wait_for(words.frame.locked);
-        look_for(&mut window, "");
+        window
+            .harness()
+            .key_press_modifiers(Modifiers::COMMAND, Key::K);
+        window.step();
         assert!(
             !window.shows(words.frame.find_what),
             "nothing of a locked one"
@@ -131,6 +137,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         window.write(words.case.your_name, "Kim");
         window.click(words.frame.unlock);
         look_for(&mut window, words.frame.disconnect);
+        window.wait_for(&[words.frame.disconnect, "F9"].join(DOT));
         window.key(Key::Enter);
         window.wait_for(words.frame.not_connected);
     }

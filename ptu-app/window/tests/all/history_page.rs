@@ -46,11 +46,16 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     window.click("Acknowledge");
     window.wait_for("acknowledged");
     window.wait_for("relay ordered");
+    window.click("Repaired …");
+    assert!(
+        !window.enabled("Record repair"),
+        "nothing says what was done"
+    );
     window.write("serial number put in", "SN-77");
-    window.click("Repaired");
+    window.click("Record repair");
     window.wait_for("repaired");
     window.wait_for_part("SN-77");
-    window.wait_for("Recorded: Repaired");
+    window.wait_for("Recorded: repaired");
     let id = fault["id"].as_str().expect("an id").to_owned();
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
     assert_eq!(stored["state"], "repaired");
@@ -224,14 +229,17 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     window.wait_for("what was done");
     assert!(!window.enabled("Add note"), "there is nothing to add");
     window.write("note", "relay ordered");
-    window.write("serial number put in", "SN-77");
     assert!(window.enabled("Add note"));
+    window.click("Repaired …");
+    window.write("serial number put in", "SN-77");
+    window.click("cancel");
     window.click_part("ATP CPU · ");
     window.until("an empty form", |window| !window.enabled("Add note"));
     window.click("Acknowledge");
     window.wait_for("acknowledged");
-    window.write("note", "cleaned");
-    window.click("Repaired");
+    window.click("Repaired …");
+    window.write("Note", "cleaned");
+    window.click("Record repair");
     window.wait_for("repaired");
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
     assert_eq!(stored["state"], "repaired");
@@ -384,9 +392,11 @@ fn a_double_click_changes_a_fault_once() {
     window.wait_for("acknowledged");
     assert_eq!(states(&window), ["acknowledged"]);
     // Neither serial number nor word: nobody could tell later what was repaired.
-    assert!(!window.enabled("Repaired"));
+    window.double_click("Repaired …");
+    window.wait_for("serial number put in");
+    assert!(!window.enabled("Record repair"));
     window.write("serial number put in", "SN-77");
-    window.double_click("Repaired");
+    window.double_click("Record repair");
     window.wait_for("repaired");
     window.wait_for("Verified");
     assert_eq!(states(&window), ["acknowledged", "repaired"]);

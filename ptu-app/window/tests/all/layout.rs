@@ -61,8 +61,12 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.wait_for_part(relay);
     look(&mut window, "faults");
     window.click_part(relay);
+    window.wait_for(words.faults.what_was_done);
+    look(&mut window, "fault");
+    window.click(words.faults.repair);
     window.wait_for(words.faults.serial_new);
     look(&mut window, "repair");
+    window.key(Key::Escape);
     for (page, said) in [
         (Page::Traces, words.traces.events),
         (Page::Diagnosis, words.diagnosis.reasons),

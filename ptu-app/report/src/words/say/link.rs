@@ -112,6 +112,10 @@ mod tests {
             let (english, korean) = (trouble.to_string(), korean(&trouble));
             assert!(!numbers(&english).is_empty(), "{english}");
             assert_eq!(numbers(&english), numbers(&korean), "{english}\n{korean}");
+            // What is typed as it stands, and short names, are the only English in it.
+            let typed = korean.replace("--lock-step", "");
+            let mut words = typed.split(|c: char| !c.is_ascii_alphabetic());
+            assert!(words.all(|word| word.len() < 4), "{korean}");
         }
     }
 }

@@ -28,8 +28,8 @@ pub use rolling::chosen;
 use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 
 /// Width of the stimuli, and the least that is left of it in a small window.
-const STIMULI: f32 = 454.0;
-const STIMULI_LEAST: f32 = 330.0;
+const STIMULI: f32 = 400.0;
+const STIMULI_LEAST: f32 = 324.0;
 /// Most of a small window that stimuli take.
 const STIMULI_SHARE: f32 = 0.4;
 /// Least height of log and plot, and what stands around them.

@@ -32,6 +32,7 @@ use seen::SeenUnits;
 use stage::Stage;
 pub use steps::wide as case_steps;
 use symptom::SymptomTiles;
+pub use verdict::{Told, named};
 
 /// Width of a window that has the strip beside the step, and that of the strip, points.
 const STRIP: [f32; 2] = [1200.0, 232.0];

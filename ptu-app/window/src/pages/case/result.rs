@@ -248,29 +248,22 @@ impl CasePage {
         let unit = context.units.chosen();
         let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
         let is_first = |way| way == first;
+        let case = &words.case;
+        // Some are offered only where they are the first.
         let mut ways = [
-            (Next::Repair, words.case.record_repair, failed),
-            (Next::Check, words.case.run_next, check.is_some()),
-            (
-                Next::ShowFailed,
-                words.case.show_failed,
-                is_first(Next::ShowFailed),
-            ),
-            (
-                Next::WholeSuite,
-                words.case.run_whole,
-                is_first(Next::WholeSuite),
-            ),
-            (
-                Next::RunAgain,
-                words.case.run_again,
-                is_first(Next::RunAgain),
-            ),
-            (Next::Sheet, words.case.to_sheet, !failed),
+            (Next::Repair, case.record_repair, failed),
+            (Next::Check, case.run_next, check.is_some()),
+            (Next::ShowFailed, case.show_failed, false),
+            (Next::WholeSuite, case.run_whole, false),
+            (Next::RunAgain, case.run_again, false),
+            (Next::Sheet, case.to_sheet, !failed),
         ];
         ways.sort_by_key(|(way, ..)| *way != first);
         let mut asked = None;
-        for (way, text, _) in ways.iter().filter(|(.., offered)| *offered) {
+        for (way, text, _) in ways
+            .iter()
+            .filter(|(way, _, offered)| *offered || is_first(*way))
+        {
             let text = fill(text, &[("time", &time.as_deref().unwrap_or_default())]);
             let runs = matches!(way, Next::Check | Next::WholeSuite | Next::RunAgain);
             let look = if is_first(*way) {

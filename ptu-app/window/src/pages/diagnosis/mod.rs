@@ -2,23 +2,24 @@
 
 mod candidates;
 
-use btu_rig::procedure::Findings;
+use btu_rig::procedure::{Findings, Verdict};
 use diagnosis::Reason;
 use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use egui_material_icons::icons::ICON_DESCRIPTION;
 use fault_db::{Id, RunOccurrence};
 
-use crate::parts::{FirstHalf, RunList};
+use super::case::{Told, named};
+use crate::parts::{Card, Face, FirstHalf, Look, RunList};
 use crate::request::Request;
 use crate::{DataPaths, Destination, PageContext, Palette};
 use ptu_report::naming::{PartNames, failed_turn};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
+use ptu_runs::coverage::counts_of;
 use ptu_runs::failure::Failure;
 use ptu_runs::run_diagnosis::{Answer, diagnose_run};
-use ptu_runs::stored::findings;
+use ptu_runs::stored::{findings, from_stored};
 
-/// Size of the conclusion, points: it is read first, and may fill two lines.
-const HEADLINE: f32 = 20.0;
 const RUNS: FirstHalf = FirstHalf {
     name: "diagnosed runs",
     width: 270.0,
@@ -139,7 +140,7 @@ impl DiagnosisPage {
                 RichText::new(format!("⚠ {}", context.words.warning(warning))).color(palette.warn),
             );
         }
-        ui.separator();
+        ui.add_space(8.0);
         candidates::ranked(ui, context, named);
         let from = context.words.report.origin(answer.dictionary_from);
         let from = fill(words.dictionary, &[("from", &from)]);
@@ -154,14 +155,33 @@ impl DiagnosisPage {
             words.diagnosis.of_run,
             &[("unit", &run.unit_serial), ("time", &time)],
         );
-        let of_run = ui.label(RichText::new(of_run).color(Palette::of(ui).quiet));
-        of_run.on_hover_text(run.id.to_string());
-        let conclusion = words.concluded(answer);
-        ui.label(RichText::new(conclusion).strong().size(HEADLINE));
-        next_check(ui, context, answer);
-        if ui.button(words.diagnosis.report).clicked() {
-            context.go_to.push(Destination::Report(run.id));
-        }
+        let verdict = run.verdict.map_or(Verdict::Error, from_stored);
+        let told = Told::of(verdict, Some(&answer.diagnosis.conclusion));
+        let (conclusion, counts) = (words.concluded(answer), counts_of(run));
+        let said: [(&str, &dyn std::fmt::Display); 4] = [
+            (
+                "part",
+                &words.parts(&named(&answer.diagnosis), &answer.names),
+            ),
+            ("why", &words.case.is_not_tested),
+            ("n", &counts.run()),
+            ("all", &counts.planned),
+        ];
+        let card = Card {
+            icon: told.icon(),
+            word: told.word(&words.case),
+            colour: told.colour(&Palette::of(ui)),
+            count: &of_run,
+            headline: &fill(told.headline(&words.case), &said),
+        };
+        card.show(ui, |ui| {
+            ui.label(conclusion);
+            next_check(ui, context, answer);
+            let report = Face::new(Look::Secondary, words.diagnosis.report);
+            if report.icon(ICON_DESCRIPTION).show(ui).clicked() {
+                context.go_to.push(Destination::Report(run.id));
+            }
+        });
     }
 }
 

@@ -1,12 +1,11 @@
 //! Changes to a fault: state, repairs and notes.
 
-use eframe::egui::{Button, Grid, RichText, Ui};
+use eframe::egui::{RichText, Ui};
 use fault_db::{FaultAction, FaultDetail, FaultState, FaultSummary, Id, RepairRecord, ToWithdraw};
 
-use super::closing::{Chosen, Closing};
-
+use super::asked::{Asked, Chosen};
 use crate::messages::Written;
-use crate::parts::{ActionPlace, field, name_edit, note_edit, typed};
+use crate::parts::{ActionPlace, Face, Look, note_edit, typed};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::naming::PartNames;
@@ -16,63 +15,26 @@ use ptu_runs::clock::now_us;
 /// States a person can bring a fault to.
 const TOWARDS: [FaultState; 5] = [
     FaultState::Acknowledged,
-    FaultState::Repaired,
     FaultState::Verified,
     FaultState::Closed,
     FaultState::Open,
+    FaultState::Repaired,
 ];
-
-/// Room for the names of the fields, and how wide these are, points.
-const NAMES: f32 = 200.0;
-const NARROWEST: f32 = 120.0;
-const WIDEST: f32 = 420.0;
 
 /// The form, and what becomes of it.
 #[derive(Default)]
 pub struct Change {
-    form: Form,
+    /// What is written about one fault.
+    of: Option<Id>,
+    note: String,
+    /// The dialog is open.
+    asked: Option<Asked>,
     /// Answers with the fault that was changed, and when.
     under_way: Request<Written>,
     /// What is being recorded, as its button says it.
     what: &'static str,
     /// Whether what is being recorded takes a closing back, so that no undo is offered for it.
     takes_back: bool,
-}
-
-/// What is written about one fault.
-#[derive(Default)]
-struct Form {
-    of: Option<Id>,
-    note: String,
-    serial_old: String,
-    serial_new: String,
-    /// The dialog is open.
-    closing: Option<Closing>,
-}
-
-impl Form {
-    fn about(of: Id) -> Self {
-        Self {
-            of: Some(of),
-            ..Self::default()
-        }
-    }
-
-    /// What has to be written before a person brings the fault to a state: why it is verified without a run, or which
-    /// part was put in or what was done instead.
-    fn missing_reason(&self, to: FaultState, words: &Words) -> Option<&'static str> {
-        let nothing = |text: &String| text.trim().is_empty();
-        if !nothing(&self.note) {
-            return None;
-        }
-        match to {
-            FaultState::Verified => Some(words.faults.verify_reason),
-            FaultState::Repaired if nothing(&self.serial_old) && nothing(&self.serial_new) => {
-                Some(words.faults.repair_reason)
-            }
-            _ => None,
-        }
-    }
 }
 
 impl Change {
@@ -94,8 +56,8 @@ impl Change {
                     true => context.messages.note(said),
                     false => context.messages.note_written(said, changed),
                 }
-                if self.form.of == Some(changed.fault) {
-                    self.form = Form::about(changed.fault);
+                if self.of == Some(changed.fault) {
+                    (self.note, self.asked) = Default::default();
                 }
                 Some(changed.fault)
             }
@@ -118,67 +80,70 @@ impl Change {
             ui.label(RichText::new(why).color(Palette::of(ui).quiet));
             return;
         }
-        if self.form.of != Some(fault.id) {
+        if self.of != Some(fault.id) {
             // What was begun about another fault is not meant for this one.
-            self.form = Form::about(fault.id);
+            (self.of, self.note, self.asked) = (Some(fault.id), String::new(), None);
         }
-        let wide = (ui.available_width() - NAMES).clamp(NARROWEST, WIDEST);
-        Grid::new("change").num_columns(2).show(ui, |ui| {
-            field(ui, words.common.note, note_edit(&mut self.form.note, wide));
-            if fault.state.next(FaultAction::Repair).is_ok() {
-                let (old, new) = (&mut self.form.serial_old, &mut self.form.serial_new);
-                field(ui, words.faults.serial_old, name_edit(old, wide));
-                field(ui, words.faults.serial_new, name_edit(new, wide));
-            }
-        });
         let who = context.settings.operator.trim().to_owned();
-        if who.is_empty() {
-            ui.label(words.case.name_first);
-        }
-        let may = !who.is_empty() && self.under_way.is_idle() && !is_stale;
         let place = ActionPlace::new(ui, "fault", (fault.id, fault.state.as_str()));
-        ui.add_enabled_ui(may, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for state in TOWARDS {
-                    // What closed it is taken back while nothing rests on that.
-                    let reopens = (fault.state, state) == (FaultState::Closed, FaultState::Open);
-                    let taken_back = reopens && was_closed_last(detail) && !seen_since;
-                    if fault.state.next(FaultAction::towards(state)).is_err() && !taken_back {
-                        continue;
-                    }
-                    let reason = self.form.missing_reason(state, words);
-                    let button = ui.add_enabled(reason.is_none(), Button::new(name(state, words)));
-                    let button = button.on_disabled_hover_text(reason.unwrap_or_default());
-                    if place.clicked(&button) {
-                        match state {
-                            FaultState::Closed => self.form.closing = Some(Closing::default()),
-                            _ => self.bring(context, fault, state, &who),
-                        }
-                    }
-                }
-                let written = !self.form.note.trim().is_empty();
-                let add = ui.add_enabled(written, Button::new(words.faults.add_note));
-                if place.clicked(&add) {
-                    self.what = words.faults.add_note;
-                    let (id, who, note) = (fault.id, who.clone(), self.form.note.clone());
-                    self.under_way = Request::Pending(context.queries.run(move |paths| {
-                        let at_us = now_us();
-                        paths.open()?.add_note(id, &who, &note, at_us)?;
-                        Ok(Written { fault: id, at_us })
-                    }));
-                }
-            });
-        });
-        let closes =
-            may && !context.settings.locked && fault.state.next(FaultAction::Close).is_ok();
-        let dialog = self.form.closing.as_mut().filter(|_| closes);
-        match dialog.and_then(|dialog| dialog.show(ui, (words, parts), detail)) {
-            Some(Chosen::Close(note)) => {
-                self.form.note = note;
-                self.bring(context, fault, FaultState::Closed, &who);
-                self.form.closing = None;
+        let busy = (!self.under_way.is_idle() || is_stale).then_some(words.common.loading);
+        let unnamed = who.is_empty().then_some(words.case.name_first);
+        let written = !self.note.trim().is_empty();
+        ui.horizontal(|ui| {
+            let label = ui.label(words.common.note);
+            let add = Face::new(Look::Secondary, words.faults.add_note);
+            let missing = (!written).then_some(words.faults.note_first);
+            let add = add.because(unnamed.or(busy).or(missing));
+            let wide = ui.available_width() - add.wide(ui) - ui.spacing().item_spacing.x;
+            let note = ui.add(note_edit(&mut self.note, wide));
+            note.labelled_by(label.id);
+            if place.clicked(&add.show(ui)) {
+                self.what = words.faults.add_note;
+                let (id, who, note) = (fault.id, who.clone(), self.note.clone());
+                self.under_way = Request::Pending(context.queries.run(move |paths| {
+                    let at_us = now_us();
+                    paths.open()?.add_note(id, &who, &note, at_us)?;
+                    Ok(Written { fault: id, at_us })
+                }));
             }
-            Some(Chosen::Cancel) => self.form.closing = None,
+        });
+        if let Some(why) = unnamed {
+            ui.label(RichText::new(why).color(Palette::of(ui).quiet));
+        }
+        ui.horizontal_wrapped(|ui| {
+            for state in TOWARDS {
+                // What closed it is taken back while nothing rests on that.
+                let reopens = (fault.state, state) == (FaultState::Closed, FaultState::Open);
+                let taken_back = reopens && was_closed_last(detail) && !seen_since;
+                if fault.state.next(FaultAction::towards(state)).is_err() && !taken_back {
+                    continue;
+                }
+                let look = match state {
+                    FaultState::Repaired => Look::Primary,
+                    _ => Look::Secondary,
+                };
+                let reason = state == FaultState::Verified && !written;
+                let reason = reason.then_some(words.faults.verify_reason);
+                let face = Face::new(look, name(state, words)).because(unnamed.or(busy).or(reason));
+                if place.clicked(&face.show(ui)) {
+                    match state {
+                        FaultState::Closed | FaultState::Repaired => {
+                            self.asked = Some(Asked::new(state, &self.note));
+                        }
+                        _ => self.bring(context, fault, (state, self.note.clone()), &who),
+                    }
+                }
+            }
+        });
+        let may = unnamed.is_none() && busy.is_none() && !context.settings.locked;
+        let can = |asked: &&mut Asked| fault.state.next(FaultAction::towards(asked.to)).is_ok();
+        let Some(asked) = self.asked.as_mut().filter(can).filter(|_| may) else {
+            return;
+        };
+        let to = asked.to;
+        match asked.show(ui, (words, parts), detail) {
+            Some(Chosen::Write(note)) => self.bring(context, fault, (to, note), &who),
+            Some(Chosen::Cancel) => self.asked = None,
             None => {}
         }
     }
@@ -187,23 +152,26 @@ impl Change {
         &mut self,
         context: &PageContext<'_>,
         fault: &FaultSummary,
-        state: FaultState,
+        (state, note): (FaultState, String),
         who: &str,
     ) {
+        let words = context.words;
         self.what = match state {
-            FaultState::Closed => context.words.common.closed,
-            _ => name(state, context.words),
+            FaultState::Closed | FaultState::Repaired => words.common.fault_state(state),
+            _ => name(state, words),
         };
         let was_closed = fault.state == FaultState::Closed;
         self.takes_back = was_closed;
-        let undone = context.words.faults.reopen;
+        let undone = words.faults.reopen;
+        // What is typed stays until it is written.
+        let asked = self.asked.as_ref();
         let repair = RepairRecord {
             part: fault.cause().to_owned(),
-            serial_old: typed(&self.form.serial_old),
-            serial_new: typed(&self.form.serial_new),
-            note: self.form.note.clone(),
+            serial_old: asked.and_then(|asked| typed(&asked.serial_old)),
+            serial_new: asked.and_then(|asked| typed(&asked.serial_new)),
+            note: note.clone(),
         };
-        let (id, who, note) = (fault.id, who.to_owned(), self.form.note.clone());
+        let (id, who) = (fault.id, who.to_owned());
         self.under_way = Request::Pending(context.queries.run(move |paths| {
             let (store, at_us) = (paths.open()?, now_us());
             if was_closed {

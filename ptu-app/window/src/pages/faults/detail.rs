@@ -1,11 +1,11 @@
 //! One fault: its repairs and notes, its occurrences, and the freeze frame of each.
 
 use eframe::egui::{CollapsingHeader, Grid, RichText, Ui};
-use fault_db::{FaultDetail, FaultEvent, FreezeSample};
+use fault_db::{FaultDetail, FaultEvent, FreezeSample, Occurrence};
 
 use super::list::state_chip;
-use crate::parts::{link, repair_line, serial_link};
-use crate::{Destination, Palette};
+use crate::parts::{repair_line, serial_link};
+use crate::{Destination, Palette, Sizes};
 use ptu_report::event_text::{cause_text, correction_text, note_text};
 use ptu_report::limits::short;
 use ptu_report::naming::{self, PartNames};
@@ -25,47 +25,44 @@ pub fn head(
     go_to: &mut Vec<Destination>,
 ) {
     let fault = &detail.fault;
-    ui.horizontal_wrapped(|ui| {
-        let name = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
-        ui.label(RichText::new(name).strong().size(19.0));
-        state_chip(ui, words, fault.state);
-    });
-    let (first, last) = (
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    state_chip(ui, words, fault.state);
+    let name = RichText::new(parts.name(&fault.lru, words.language)).size(sizes.title);
+    let name = ui.label(name.color(palette.ink));
+    name.on_hover_text(fault.id.to_string());
+    ui.label(&*words.found(&fault.findings, &fault.message));
+    if let Some(latest) = detail.occurrences.first() {
+        ui.horizontal_wrapped(|ui| ways(ui, words, latest, go_to));
+    }
+    ui.separator();
+    let seen = (
         clock::local(fault.first_at_us),
         clock::local(fault.last_at_us),
     );
-    ui.scope(|ui| {
-        let seen = fill(
-            words.faults.times_seen,
-            &[
-                ("n", &fault.occurrences),
-                ("first", &first),
-                ("last", &last),
-            ],
-        );
-        let part = part(words, detail, parts);
-        let code = naming::code(fault.code, &fault.code_name, words);
-        let id = fault.id.to_string();
-        ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new(words.common.unit).color(Palette::of(ui).quiet));
-            serial_link(ui, words, &fault.unit_serial, go_to);
-        });
-        for (what, value) in [
-            (words.common.part, &*part),
-            (words.common.code, &code),
-            (words.common.number, &id),
-            (
-                words.common.severity,
-                words.report.severity(&fault.severity),
-            ),
-            (words.faults.seen, &seen),
-        ] {
-            ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(what).color(Palette::of(ui).quiet));
-                ui.label(value);
-            });
-        }
+    let seen: [(&str, &dyn std::fmt::Display); 3] = [
+        ("n", &fault.occurrences),
+        ("first", &seen.0),
+        ("last", &seen.1),
+    ];
+    let seen = fill(words.faults.times_seen, &seen);
+    let part = part(words, detail, parts);
+    let code = naming::code(fault.code, &fault.code_name, words);
+    let severity = words.report.severity(&fault.severity);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(words.common.unit).color(palette.quiet));
+        serial_link(ui, words, &fault.unit_serial, go_to);
     });
+    for (what, value) in [
+        (words.faults.cause, &*part),
+        (words.common.code, &code),
+        (words.common.severity, severity),
+        (words.faults.seen, &seen),
+    ] {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(what).color(palette.quiet));
+            ui.label(value);
+        });
+    }
 }
 
 /// The part that it points at, the one that it comes from, and how many other faults do.
@@ -108,36 +105,38 @@ pub fn rest(
         }
     }
     ui.separator();
-    ui.label(RichText::new(words.faults.occurrences).strong());
-    for seen in detail.occurrences.iter().take(MOST) {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(clock::local(seen.at_us));
-            if let Some(trace) = seen.trace_id
-                && ui.button(words.faults.to_trace).clicked()
-            {
-                go_to.push(Destination::Trace(trace));
-            }
-            if ui.button(words.faults.to_run).clicked() {
-                go_to.push(Destination::Report(seen.run_id));
-            }
-            if ui.button(words.faults.to_diagnosis).clicked() {
-                go_to.push(Destination::Diagnosis(seen.run_id));
-            }
-            ui.label(
-                RichText::new(&*words.found(&seen.findings, &seen.message))
-                    .color(Palette::of(ui).quiet),
-            );
-        });
-    }
-    if let Some(latest) = detail.occurrences.first() {
-        if let Some(trace) = latest.trace_id
-            && link(ui, words.faults.freeze_trace).clicked()
-        {
-            go_to.push(Destination::Trace(trace));
+    CollapsingHeader::new(words.faults.occurrences).show(ui, |ui| {
+        for seen in detail.occurrences.iter().take(MOST) {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(clock::local(seen.at_us));
+                ways(ui, words, seen, go_to);
+                let found = words.found(&seen.findings, &seen.message);
+                ui.label(RichText::new(&*found).color(Palette::of(ui).quiet));
+            });
         }
+    });
+    if let Some(latest) = detail.occurrences.first() {
         CollapsingHeader::new(words.faults.freeze_frame)
             .default_open(true)
             .show(ui, |ui| freeze_frame(ui, words, &latest.freeze));
+    }
+}
+
+/// To the trace, the sheet and the diagnosis of one time that it was seen.
+fn ways(ui: &mut Ui, words: &Words, seen: &Occurrence, go_to: &mut Vec<Destination>) {
+    let faults = &words.faults;
+    let all = [
+        (faults.to_trace, seen.trace_id.map(Destination::Trace)),
+        (faults.to_run, Some(Destination::Report(seen.run_id))),
+        (
+            faults.to_diagnosis,
+            Some(Destination::Diagnosis(seen.run_id)),
+        ),
+    ];
+    for (name, to) in all {
+        if let Some(to) = to.filter(|_| ui.button(name).clicked()) {
+            go_to.push(to);
+        }
     }
 }
 
@@ -182,8 +181,10 @@ fn freeze_frame(ui: &mut Ui, words: &Words, samples: &[FreezeSample]) {
     } else {
         2
     };
+    let wide = ui.available_width() / (2 * beside) as f32 - ui.spacing().item_spacing.x;
     Grid::new(("freeze", beside))
         .num_columns(2 * beside)
+        .max_col_width(wide)
         .striped(true)
         .show(ui, |ui| {
             for pair in samples.chunks(beside) {

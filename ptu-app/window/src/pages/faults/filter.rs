@@ -63,7 +63,7 @@ impl Filter {
 }
 
 /// Names in order, each once.
-pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<String> {
     let names: std::collections::BTreeSet<_> = all.collect();
-    names.into_iter().collect()
+    names.into_iter().map(str::to_owned).collect()
 }

@@ -1,17 +1,20 @@
 //! The fault history: filters, one fault with its freeze frame and what was done about it.
 
+mod asked;
 mod change;
-mod closing;
 mod detail;
 mod filter;
 mod list;
 
-use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use eframe::egui::{Key, Panel, RichText, ScrollArea, Ui, UiBuilder};
+use egui_material_icons::icons::ICON_ARROW_BACK;
 use fault_db::{FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 
 use crate::page_context::FaultsOf;
 use crate::parts::look_back::since_us;
-use crate::parts::{FirstHalf, MemoryReader, SavedSaid, UnitFilter, saved_questions};
+use crate::parts::{
+    Face, Look, MemoryReader, SavedSaid, UnitFilter, dialog_is_open, saved_questions,
+};
 use crate::query_worker::Pending;
 use crate::request::CachedResponse;
 use crate::request::Request;
@@ -19,15 +22,13 @@ use crate::{PageContext, Palette};
 use change::Change;
 use filter::Filter;
 use ptu_report::naming::PartNames;
+use ptu_report::words::fill;
 use ptu_runs::clock;
 
 /// As many faults as are listed.
 const MOST: u32 = 20_000;
-const LIST: FirstHalf = FirstHalf {
-    name: "fault list",
-    width: 620.0,
-    share: 0.5,
-};
+/// Width of one fault in a window of this one, points; in a narrower one it takes the place of the table.
+const DETAIL: [[f32; 2]; 2] = [[1600.0, 440.0], [1100.0, 344.0]];
 
 /// Faults of the history that the filter lets through, and names of their parts.
 struct History {
@@ -56,15 +57,33 @@ pub struct FaultsPage {
 impl FaultsPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
-        let clicked = LIST.show(ui, |ui| self.list(ui, context));
-        if let Some(id) = clicked {
+        let screen = ui.ctx().content_rect().width();
+        let detail = DETAIL.iter().find(|[from, _]| screen >= *from);
+        let mut list = ui.available_rect_before_wrap();
+        match (self.chosen.is_some(), detail) {
+            (true, None) => {
+                let back = Face::new(Look::Quiet, context.words.case.back).icon(ICON_ARROW_BACK);
+                let esc = ui.input(|input| input.key_pressed(Key::Escape));
+                if back.show(ui).clicked() || esc && !dialog_is_open(ui.ctx()) {
+                    self.chosen = None;
+                }
+                self.chosen(ui, context);
+                return;
+            }
+            (true, Some([_, wide])) => {
+                let (left, right) = list.split_left_right_at_x(list.right() - wide);
+                let right = right.with_min_x(right.left() + 12.0);
+                let right = UiBuilder::new().max_rect(right).id_salt("fault");
+                ui.scope_builder(right, |ui| self.chosen(ui, context));
+                list = left;
+            }
+            (false, _) => {}
+        }
+        let list = UiBuilder::new().max_rect(list).id_salt("faults");
+        let clicked = ui.scope_builder(list, |ui| self.list(ui, context));
+        if let Some(id) = clicked.inner {
             self.open(id, context);
         }
-        CentralPanel::default().show(ui, |ui| {
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| self.chosen(ui, context));
-        });
     }
 
     pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
@@ -129,13 +148,11 @@ impl FaultsPage {
 
     fn list(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> Option<Id> {
         let words = context.words;
-        if self.unit_log.show(ui, context) {
-            self.asked = None;
-        }
         match self.history.get() {
             Request::Ready(history) => {
-                list::filters(ui, words, &mut self.filter, history);
-                ui.horizontal_wrapped(|ui| {
+                let mut is_read = false;
+                let shown = ui.horizontal_wrapped(|ui| {
+                    list::filters(ui, words, &mut self.filter, history);
                     let saved = (&mut context.settings.faults, &mut self.question);
                     let now = self.filter.question();
                     if let Some(asked) =
@@ -143,14 +160,25 @@ impl FaultsPage {
                     {
                         self.filter = Filter::asked(asked);
                     }
-                });
-                ui.horizontal_wrapped(|ui| {
                     self.units.show(ui, context);
                     list::of_bar(ui, words, &mut self.filter, &history.parts);
+                    let all = history.faults.iter();
+                    let (filter, units) = (&self.filter, &self.units);
+                    let takes = |fault: &&FaultSummary| {
+                        filter.takes(fault) && units.takes(&fault.unit_serial)
+                    };
+                    let shown: Vec<_> = all.filter(takes).collect();
+                    let count: [(&str, &dyn std::fmt::Display); 2] =
+                        [("n", &shown.len()), ("of", &history.faults.len())];
+                    let count = fill(words.faults.shown, &count);
+                    ui.label(RichText::new(count).color(Palette::of(ui).quiet));
+                    is_read = self.unit_log.show(ui, context);
+                    shown
                 });
-                let shown = (&self.filter, &self.units);
-                let known = (history.faults.as_slice(), &history.parts);
-                list::list(ui, words, shown, known, self.chosen)
+                if is_read {
+                    self.asked = None;
+                }
+                list::table(ui, words, &shown.inner, &history.parts, self.chosen)
             }
             Request::Failed(why) => {
                 let said = RichText::new(words.faults.not_read).color(Palette::of(ui).bad);
@@ -179,7 +207,6 @@ impl FaultsPage {
             .map_or(&none, |known| &known.parts);
         match self.detail.get() {
             Request::Ready(detail) => {
-                detail::head(ui, (context.words, parts), detail, context.go_to);
                 let seen_since = self.history.get().value().is_some_and(|known| {
                     known
                         .faults
@@ -187,17 +214,20 @@ impl FaultsPage {
                         .any(|other| takes_its_place(other, &detail.fault))
                 });
                 let stands = (stale, seen_since);
-                self.change.show(ui, context, (detail, parts), stands);
-                detail::rest(ui, (context.words, parts), detail, context.go_to);
+                let foot = Panel::bottom("changes of a fault").resizable(false);
+                foot.show(ui, |ui| {
+                    self.change.show(ui, context, (detail, parts), stands)
+                });
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    detail::head(ui, (context.words, parts), detail, context.go_to);
+                    detail::rest(ui, (context.words, parts), detail, context.go_to);
+                });
             }
             Request::Failed(why) => {
                 let why = context.words.trouble(why);
                 ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
             }
-            Request::Idle => {
-                ui.label(context.words.faults.choose);
-            }
-            Request::Pending(_) => {
+            Request::Idle | Request::Pending(_) => {
                 ui.label(context.words.common.loading);
             }
         }

@@ -36,7 +36,7 @@ use wanted::Wanted;
 
 const TREE: FirstHalf = FirstHalf {
     name: "procedures",
-    width: 380.0,
+    width: 320.0,
     share: 0.35,
 };
 

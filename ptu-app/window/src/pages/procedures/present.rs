@@ -8,8 +8,8 @@ use fault_db::StepKind;
 
 use super::results::{measurements, source};
 use super::tree::{minutes, title};
-use crate::Palette;
-use crate::parts::{ActionPlace, Face, Look, progress, verdict_chip};
+use crate::parts::{ActionPlace, Face, Look, ground, progress, verdict_chip};
+use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, RunPosition};
 
@@ -35,6 +35,22 @@ pub fn present(
         ui.label(words.procedures.bringing_up);
         return None;
     };
+    let card = ground(&Palette::of(ui));
+    card.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        step(ui, words, (run, present), texts, with_path)
+    })
+    .inner
+}
+
+/// The step under way.
+fn step(
+    ui: &mut Ui,
+    words: &Words,
+    (run, present): (&Progress, &RunPosition),
+    texts: Option<&BTreeMap<String, String>>,
+    with_path: bool,
+) -> Option<bool> {
     let progress = run.procedures.get(present.procedure)?;
     let procedure = &progress.procedure;
     let name = words.step(&present.name, present.turn, StepKind::Step);
@@ -42,8 +58,8 @@ pub fn present(
         true => format!("{}: {name}", procedure.id),
         false => name,
     };
-    ui.label(RichText::new(name).strong().size(17.0));
-    ui.label(RichText::new(title(procedure, words)).italics());
+    ui.label(RichText::new(name).strong().size(Sizes::of(ui).lead));
+    ui.label(RichText::new(title(procedure, words)).color(Palette::of(ui).quiet));
     waits(ui, words, present);
     let answer = prompt(ui, words, present);
     let Some(step) = run.step() else {

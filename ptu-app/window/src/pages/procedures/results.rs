@@ -3,14 +3,22 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use btu_rig::procedure::{Findings, Measurement, StepResult, Verdict};
-use eframe::egui::{Button, Grid, Id, RichText, Ui, UiBuilder};
+use btu_rig::procedure::{Findings, Measurement, Procedure, StepResult, Verdict};
+use eframe::egui::{
+    Align, Button, Grid, Id, Label, Layout, Response, RichText, Ui, UiBuilder, vec2,
+};
+use egui_material_icons::icons::ICON_SHOW_CHART;
 use protocol::lru;
 
-use crate::parts::{NoteOn, RunNoteForm, limit_bar, link, rows, value_text, verdict_chip};
+use super::tree::title;
+use crate::parts::{
+    Cell, Column, Face, Look, NoteOn, RunNoteForm, Table, limit_bar, limits_text, rows, segments,
+    value_text, verdict_look,
+};
 use crate::query_worker::QueryWorker;
 use crate::{Density, Destination, Palette, Sizes};
-use ptu_report::naming::{self, PartNames, code, failed_turn};
+use ptu_report::limits::short;
+use ptu_report::naming::{self, DOT, PartNames, code, failed_turn};
 use ptu_report::run::source_in_words;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, outside_place};
@@ -18,6 +26,8 @@ use ptu_runs::run::CHECK_FAILED;
 
 /// Lines shown before and after a step's.
 const AROUND: Range<u32> = 1..4;
+/// Room for the button that leads to a trace, points.
+const TO_TRACE: f32 = 50.0;
 
 /// Which of the results are shown.
 #[derive(Default)]
@@ -61,49 +71,107 @@ pub fn results(
     texts: Option<&BTreeMap<String, String>>,
     (traced, go_to): (&[(Findings, fault_db::Id)], &mut Vec<Destination>),
 ) {
-    ui.separator();
+    let bad = |result: &StepResult| !matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
+    let results = || run.procedures.iter().flat_map(|of| &of.results);
+    let counts = [
+        results().filter(|result| bad(result)).count(),
+        results().count(),
+    ];
     ui.horizontal(|ui| {
-        ui.label(RichText::new(words.procedures.results).strong());
-        let mut only_bad = !shown.all;
-        ui.checkbox(&mut only_bad, words.procedures.only_bad);
-        shown.all = !only_bad;
+        ui.label(RichText::new(words.procedures.results).size(Sizes::of(ui).lead));
+        let named = [words.procedures.bad_n, words.procedures.all_n];
+        let [bad, all] = [0, 1].map(|place| fill(named[place], &[("n", &counts[place])]));
+        segments(ui, &mut shown.all, [(false, &*bad), (true, &*all)]);
     });
-    let all = shown.all;
-    let found: Vec<(usize, usize, &StepResult)> = run
-        .procedures
-        .iter()
-        .enumerate()
-        .flat_map(|(p, progress)| {
-            let results = progress.results.iter().enumerate();
-            results.map(move |(r, result)| (p, r, result))
-        })
-        .filter(|(.., result)| all || !matches!(result.verdict, Verdict::Passed | Verdict::Skipped))
-        .collect();
     if let Some(result) = chosen(run, shown) {
         details(ui, (words, parts), run, result, texts);
         ui.separator();
     }
-    faults(ui, (words, parts), run);
-    if found.is_empty() && run.id().is_some() {
-        let passed = fill(words.procedures.all_passed, &[("n", &run.counts().passed)]);
-        ui.label(RichText::new(passed).color(Palette::of(ui).quiet));
+    let mut lines = Vec::new();
+    for (p, of) in run.procedures.iter().enumerate() {
+        let all = of.results.iter().enumerate();
+        let mut of_it = all
+            .filter(|(_, result)| shown.all || bad(result))
+            .peekable();
+        lines.extend(of_it.peek().is_some().then_some((p, None)));
+        lines.extend(of_it.map(|(r, result)| (p, Some((r, result)))));
     }
-    let height = ui.spacing().interact_size.y;
-    rows(ui, height, found.len(), |ui, range| {
-        for (p, r, result) in found.get(range).into_iter().flatten() {
-            let on = shown.chosen == Some((*p, *r));
-            let trace = trace_of(run, *p, result, traced);
-            if row(
-                ui,
-                words,
-                run,
-                ((*p, *r), result, trace.is_some()),
-                on,
-                shown,
-            ) {
-                go_to.extend(trace.map(Destination::Trace));
-            }
+    if lines.is_empty() {
+        if run.id().is_some() {
+            let passed = fill(words.procedures.all_passed, &[("n", &run.counts().passed)]);
+            ui.label(RichText::new(passed).color(Palette::of(ui).quiet));
         }
+    } else {
+        table(ui, words, run, (&lines, shown), (traced, go_to));
+    }
+    faults(ui, (words, parts), run);
+}
+
+/// A line of the table: a procedure, or the place of one of its results.
+type Line<'a> = (usize, Option<(usize, &'a StepResult)>);
+
+fn table(
+    ui: &mut Ui,
+    words: &Words,
+    run: &Progress,
+    (lines, shown): (&[Line<'_>], &mut ResultsView),
+    (traced, go_to): (&[(Findings, fault_db::Id)], &mut Vec<Destination>),
+) {
+    let columns = columns(words);
+    let table = Table {
+        columns: &columns,
+        end: TO_TRACE,
+    };
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        table.head(ui, 0.0);
+        rows(ui, Table::high(ui), lines.len(), |ui, range| {
+            for (p, line) in lines.get(range).into_iter().flatten() {
+                let Some((r, result)) = line else {
+                    group(ui, &run.procedures[*p].procedure, words);
+                    continue;
+                };
+                let trace = trace_of(run, *p, result, traced);
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 0.0;
+                    let on = shown.chosen == Some((*p, *r));
+                    let id = &run.procedures[*p].procedure.id;
+                    if row(ui, words, &table, (id, result), on).clicked() {
+                        shown.chosen = (!on).then_some((*p, *r));
+                    }
+                    if trace.is_some() {
+                        let to_trace = Face::new(Look::Quiet, "").icon(ICON_SHOW_CHART);
+                        if to_trace.named(words.faults.to_trace).show(ui).clicked() {
+                            go_to.extend(trace.map(Destination::Trace));
+                        }
+                    }
+                });
+            }
+        });
+    });
+}
+
+fn columns(words: &Words) -> [Column<'static>; 6] {
+    let (common, procedures) = (&words.common, &words.procedures);
+    [
+        Column::new(common.verdict, 150.0),
+        Column::new(common.step, 0.0),
+        Column::new(common.value, 116.0).from(560.0),
+        Column::new(procedures.measured, 76.0).right().from(460.0),
+        Column::new("", 100.0).from(720.0),
+        Column::new(procedures.limit, 92.0).from(620.0),
+    ]
+}
+
+/// The procedure of the rows that follow.
+fn group(ui: &mut Ui, procedure: &Procedure, words: &Words) {
+    let size = vec2(ui.available_width(), Table::high(ui));
+    let quiet = Palette::of(ui).quiet;
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(size);
+        ui.add_space(12.0);
+        let name = Label::new(RichText::new(title(procedure, words)).color(quiet));
+        ui.add(name.truncate()).on_hover_text(&*procedure.id);
     });
 }
 
@@ -123,31 +191,48 @@ fn trace_of(
     )
 }
 
-/// A result; true when its trace is wanted.
+/// A result, with the value that decided it, or what was found where none did.
 fn row(
     ui: &mut Ui,
     words: &Words,
-    run: &Progress,
-    (place, result, has_trace): ((usize, usize), &StepResult, bool),
+    table: &Table<'_>,
+    (procedure, result): (&str, &StepResult),
     on: bool,
-    shown: &mut ResultsView,
-) -> bool {
-    let row = ui.horizontal(|ui| {
-        verdict_chip(ui, result.verdict, words);
-        let id = run.procedures.get(place.0).map(|p| p.procedure.id.as_str());
-        let name = format!("{}: {}", id.unwrap_or_default(), words.result(result));
-        let to_trace = has_trace && link(ui, words.faults.to_trace).clicked();
-        if ui.selectable_label(on, name).clicked() {
-            shown.chosen = (!on).then_some(place);
+) -> Response {
+    let palette = Palette::of(ui);
+    let (icon, colour) = verdict_look(result.verdict, &palette);
+    let name = words.result(result);
+    let found = words.findings(&result.findings);
+    let missed = |of: &&Measurement| of.verdict != Verdict::Passed;
+    let measured = result.measurements.iter().find(missed);
+    let measured = measured.or_else(|| result.measurements.first().filter(|_| found.is_empty()));
+    let mut cells = vec![
+        Cell::State(icon, words.common.verdict(result.verdict), colour),
+        Cell::Text((&*name).into(), palette.ink),
+    ];
+    match measured {
+        Some(of) => {
+            let ink = match of.verdict {
+                Verdict::Passed => palette.ink,
+                _ => palette.bad,
+            };
+            let value = of.value.map_or_else(|| "?".to_owned(), short);
+            let value = format!("{value} {}", words.unit(of.unit));
+            let limits = limits_text(words, of.low, of.high);
+            cells.extend([
+                Cell::Text(naming::measurement(&of.name, words).into(), palette.second),
+                Cell::Text(value.into(), ink),
+                Cell::Limits(of),
+                Cell::Text(limits.into(), palette.quiet),
+            ]);
         }
-        if !result.findings.is_empty() {
-            let message =
-                RichText::new(words.findings(&result.findings)).color(Palette::of(ui).quiet);
-            ui.add(eframe::egui::Label::new(message).truncate());
-        }
-        to_trace
-    });
-    row.inner
+        None => cells.push(Cell::Rest((&*found).into(), palette.second)),
+    }
+    let said = match found.is_empty() {
+        true => format!("{procedure}: {name}"),
+        false => format!("{procedure}: {name}{DOT}{found}"),
+    };
+    table.row(ui, (&said, on), &cells)
 }
 
 fn chosen<'a>(run: &'a Progress, shown: &ResultsView) -> Option<(usize, &'a StepResult)> {

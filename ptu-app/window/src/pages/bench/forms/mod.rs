@@ -37,6 +37,8 @@ pub struct Forms {
     pub test_motion: MotionForm,
     /// The TEST board's TWC frame.
     pub test_station: StationForm,
+    /// What stimuli are looked for by.
+    pub find: String,
 }
 
 impl Forms {
@@ -53,6 +55,7 @@ impl Forms {
             test_code: code,
             test_motion: MotionForm::default(),
             test_station: station,
+            find: String::new(),
         }
     }
 }

@@ -134,22 +134,21 @@ fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
     let bulb = pos2(rect.left() + 20.0, rect.center().y);
     let (name, state) = match lamp.lit {
         LampState::On => {
-            painter.rect_filled(rect, 4.0, lamp.colour);
-            let ink = ink_on(lamp.colour);
-            painter.circle_filled(bulb, 9.0, ink);
-            (ink, ink)
+            let ground = match lamp.colour {
+                bad if bad == palette.bad => palette.bad_ground,
+                warn if warn == palette.warn => palette.warn_ground,
+                _ => palette.control,
+            };
+            let line = Stroke::new(1.0, lamp.colour);
+            painter.rect(rect, 6.0, ground, line, StrokeKind::Inside);
+            painter.circle_filled(bulb, 6.0, lamp.colour);
+            (palette.ink, palette.ink)
         }
         LampState::Off => {
-            let inside = StrokeKind::Inside;
-            painter.rect(
-                rect,
-                4.0,
-                off_ground(palette),
-                Stroke::new(1.0, palette.grid),
-                inside,
-            );
-            painter.circle_stroke(bulb, 8.0, Stroke::new(1.5, palette.quiet));
-            (palette.quiet, palette.quiet)
+            let line = Stroke::new(1.0, palette.grid);
+            painter.rect(rect, 6.0, palette.panel, line, StrokeKind::Inside);
+            painter.circle_stroke(bulb, 6.0, Stroke::new(1.0, palette.quiet));
+            (palette.ink, palette.quiet)
         }
         LampState::Unknown => {
             let line = Stroke::new(1.0, palette.quiet);
@@ -173,25 +172,6 @@ fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
     }
 }
 
-fn off_ground(palette: &Palette) -> Color32 {
-    if palette.dark {
-        Color32::from_gray(12)
-    } else {
-        Color32::from_gray(250)
-    }
-}
-
-/// What can be read on a lamp that is on.
-fn ink_on(colour: Color32) -> Color32 {
-    let [red, green, blue, _] = colour.to_array().map(u32::from);
-    let light = 299 * red + 587 * green + 114 * blue;
-    if light > 130_000 {
-        Color32::BLACK
-    } else {
-        Color32::WHITE
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,11 +183,5 @@ mod tests {
         assert_eq!(lit(Some(true), true), LampState::On);
         assert_eq!(lit(Some(true), false), LampState::Off);
         assert_eq!(lit(Some(false), false), LampState::On);
-    }
-
-    #[test]
-    fn the_text_on_a_lit_lamp_is_readable() {
-        assert_eq!(ink_on(Color32::from_rgb(214, 40, 40)), Color32::WHITE);
-        assert_eq!(ink_on(Color32::from_rgb(245, 184, 65)), Color32::BLACK);
     }
 }

@@ -16,7 +16,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::BenchWorker;
 
 /// Width of a row's name.
-const NAME: f32 = 138.0;
+const NAME: f32 = 116.0;
 
 /// What the page remembers of what was given, because no signal tells it.
 #[derive(Debug, Default)]
@@ -124,8 +124,30 @@ impl StimulusPanel<'_> {
     }
 }
 
+/// Rows that follow are shown if their name has this in it; one without a name with the row before it.
+pub fn seek(ui: &Ui, sought: &str) {
+    ui.data_mut(|data| data.insert_temp(sought_id(), (sought.to_lowercase(), false)));
+}
+
+fn is_sought(ui: &Ui, name: &str) -> bool {
+    ui.data_mut(|data| {
+        let (sought, is_it) = data.get_temp_mut_or_default::<(String, bool)>(sought_id());
+        if !name.is_empty() {
+            *is_it = name.to_lowercase().contains(&**sought);
+        }
+        *is_it || sought.is_empty()
+    })
+}
+
+fn sought_id() -> Id {
+    Id::unique("sought stimuli")
+}
+
 /// A row with its name at the left.
 pub fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, Id)) {
+    if !is_sought(ui, name) {
+        return;
+    }
     ui.horizontal_top(|ui| {
         let height = ui.spacing().interact_size.y;
         let layout = Layout::left_to_right(Align::Center);

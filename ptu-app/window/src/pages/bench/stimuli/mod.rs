@@ -1,5 +1,6 @@
 //! All manual stimuli, in groups.
 
+mod acting;
 mod atp;
 mod buttons;
 mod controller;
@@ -12,11 +13,12 @@ mod test_board;
 mod twc;
 
 use btu_rig::procedure::plan::Connection;
-use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
+use eframe::egui::{CollapsingHeader, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 pub use buttons::{StimuliGiven, StimulusPanel};
 
 use super::forms::Forms;
+use buttons::seek;
 use ptu_report::words::Bench;
 use ptu_runs::run::BenchSetup;
 
@@ -74,15 +76,26 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
     if connection == Connection::Ptu {
         groups.rotate_right(1);
     }
+    let words = &hand.words().bench;
+    let find = TextEdit::singleline(&mut forms.find).hint_text(words.find);
+    let find = ui.add(find.desired_width(f32::INFINITY));
+    find.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, words.find));
+    seek(ui, "");
+    acting::acting(ui, forms, hand);
+    let sought = forms.find.trim().to_lowercase();
     ScrollArea::vertical()
         .id_salt("stimuli")
         .auto_shrink([false, false])
         .show(ui, |ui| {
             for group in groups {
-                let name = RichText::new(group.name(&hand.words().bench)).strong();
-                CollapsingHeader::new(name)
+                let name = group.name(words);
+                // A group that is looked for by its own name is shown whole.
+                let is_whole = name.to_lowercase().contains(&sought);
+                seek(ui, if is_whole { "" } else { &sought });
+                CollapsingHeader::new(RichText::new(name).strong())
                     .id_salt((group as u8, connection == Connection::Ptu))
                     .default_open(group.first_open(connection))
+                    .open((!sought.is_empty()).then_some(true))
                     .show_unindented(ui, |ui| show(ui, group, forms, setup, hand));
             }
             follow_focus(ui);
