@@ -89,7 +89,7 @@ impl Stream {
             // In its place from the first line on: other programs read while it grows.
             Place::File(file) => {
                 let begun = NewFile::begin(file, kind::EVENTS);
-                let mut file = begun.map_err(|why| Failure::usage(why.message))?;
+                let mut file = begun.map_err(|why| Failure::usage(format!("--events: {why}")))?;
                 writeln!(file, "{first}").map_err(|error| cannot(&error))?;
                 file.appear()?;
                 is_begun = true;
