@@ -20,7 +20,7 @@ pub(super) fn unknown(what: &Unknown) -> Both {
         format!("{korean} \"{asked}\"이(가) 없습니다{near:#}"),
     ];
     match what {
-        U::Fault(asked, near) => none("fault", "고장", asked, near),
+        U::Fault(asked, near) => none("fault", "고장 모드", asked, near),
         U::Part(asked, near) => none("part", "부품", asked, near),
         U::Symptom(asked, near) => none("symptom", "증상", asked, near),
         U::Procedure(asked, near) => none("procedure or file", "절차 또는 파일", asked, near),
@@ -142,7 +142,7 @@ pub(super) fn run(what: &RunTrouble) -> Both {
         R::PortsNotListed(reason) => same(format!("직렬 포트 목록을 읽을 수 없습니다: {reason}")),
         R::InjectElsewhere => [
             "faults of a unit can be injected into the simulated one only".to_owned(),
-            "장치의 고장은 모의 장치에만 주입할 수 있습니다".to_owned(),
+            "장치의 고장 모드는 모의 장치에만 주입할 수 있습니다".to_owned(),
         ],
         R::SampledOnSerial => [
             "sampled waveforms need 6 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH".to_owned(),
@@ -176,7 +176,7 @@ pub(super) fn field(what: &FieldTrouble) -> Both {
         ],
         F::NotRead(at, why) => [what.to_string(), format!("{at}: {}", log_end(why))],
         F::NotWhole(why) => [what.to_string(), format!("{}. 기록을 끝까지 읽지 못했습니다. 읽은 내용은 보관했습니다. 다시 읽으십시오", log_end(why))],
-        F::NoMemory => [what.to_string(), "이 장치에는 저장 메모리가 없습니다. 운행 기록이 전원 차단 시 없어지므로 가져올 수 없습니다".to_owned()],
+        F::NoMemory => [what.to_string(), "이 장치에는 저장 메모리가 없습니다. 주행 기록이 전원 차단 시 없어지므로 가져올 수 없습니다".to_owned()],
     }
 }
 
@@ -213,7 +213,7 @@ pub(super) fn recorded(what: &RecordTrouble) -> Both {
         R::NoCommonTime => same("두 신호 기록에 트리거 전후의 공통 시간이 없거나, 조작 기록이 신호 기록의 끝보다 늦게 시작합니다".to_owned()),
         R::Stopped => same("기록되기 전에 중지되었습니다".to_owned()),
         R::NotReady => same("모의 장치가 준비되지 않습니다".to_owned()),
-        R::NoRunRecord(signal) => same(format!("신호 기록에 {signal} 신호가 없습니다: 장치의 운행 기록이 아닙니다")),
+        R::NoRunRecord(signal) => same(format!("신호 기록에 {signal} 신호가 없습니다: 장치의 주행 기록이 아닙니다")),
         R::NeverMoves => same("이 신호 기록에서 열차가 움직이지 않습니다".to_owned()),
         R::NoMarkers => [
             "the trace passes no marker and does not stop: name its section".to_owned(),
@@ -246,3 +246,6 @@ pub(super) fn diagnosis(what: &DiagnosisTrouble) -> Both {
         D::OtherBench(config, line, train) => same(format!("고장 사전의 조건은 장치 구성 {config}, 노선 {line}, 열차 {train}입니다. 적응 시험에는 같은 조건이 필요합니다")),
     }
 }
+
+#[cfg(test)]
+mod tests;
