@@ -171,7 +171,7 @@ pub enum Finding {
         /// Why.
         why: LinkTrouble,
     },
-    /// The tester's computer stood still in an attempt at a step.
+    /// The tester's computer, or the link, stood still in an attempt at a step.
     StoodStill {
         /// For how long.
         by: Duration,

@@ -32,7 +32,7 @@ pub struct Measurement {
 pub enum ResultKind {
     /// The result that counts for the step.
     Step,
-    /// The step was not tested because the tester's computer stood still, and is begun again: another result follows.
+    /// The step was not tested because the tester's computer, or the link, stood still, and is begun again: another result follows.
     Attempt,
     /// The step was run again only for the state that it leaves, and shows something else now.
     Again,

@@ -14,7 +14,8 @@ const JUMPS_MS: i64 = 5_000;
 
 #[derive(Debug, Default)]
 pub struct Lateness {
-    /// When frames came, and by how much the bench's clock was ahead of their stamps, ms.
+    /// When frames came, and by how much the bench's clock was ahead of their stamps, ms: the fastest first, and after each
+    /// the fastest of those that came later.
     past: VecDeque<(Instant, i64)>,
 }
 
@@ -26,12 +27,14 @@ impl Lateness {
         if self.past.back().is_some_and(jumps) {
             self.past.clear();
         }
+        while self.past.back().is_some_and(|(_, ms)| *ms >= ahead_ms) {
+            self.past.pop_back();
+        }
         self.past.push_back((at, ahead_ms));
         while self.past[0].0 + SPAN < at {
             self.past.pop_front();
         }
-        let least_ms = self.past.iter().map(|(_, ms)| *ms).min();
-        Duration::from_ms(least_ms.map_or(0, |least_ms| (ahead_ms - least_ms) as u64))
+        Duration::from_ms((ahead_ms - self.past[0].1) as u64)
     }
 }
 

@@ -20,10 +20,10 @@ pub enum Unknown {
     /// A part of the catalogue.
     #[error("no part \"{0}\"{1}; `ptu catalog parts` lists them")]
     Part(String, Near),
-    /// What a unit was brought for.
+    /// A symptom that the catalogue does not have.
     #[error("no symptom \"{0}\"{1}; `ptu catalog symptoms` lists them")]
     Symptom(String, Near),
-    /// What is to be run.
+    /// A procedure, or a file with one.
     #[error("no procedure or file \"{0}\"{1}; `ptu run --list` shows all")]
     Procedure(String, Near),
     /// A step, by a glob.
@@ -78,7 +78,7 @@ pub enum Why {
     /// Something came there meanwhile.
     #[error("it is there already")]
     Taken,
-    /// Its bytes are no text.
+    /// The file's bytes are not UTF-8.
     #[error("it is not UTF-8")]
     NoText,
     /// It begins as none of `ptu key new`.
@@ -111,7 +111,7 @@ pub enum FileTrouble {
     /// A file that may not be replaced.
     #[error("{0} is there already; name another file, or say --force to replace it")]
     Exists(String),
-    /// What is named is not there.
+    /// The file that was named does not exist.
     #[error("there is no file {0}")]
     Missing(String),
     /// The system says no place for files of this user; the option that names one.
@@ -164,10 +164,10 @@ pub enum KeyTrouble {
     /// A list that is looked for.
     #[error("there is no list of keys {0}; `ptu key trust FILE.pub --keys FILE` begins one")]
     NoList(Sought),
-    /// What is to be trusted.
+    /// The public key file that is to be trusted does not exist.
     #[error("there is no file {0}; it is the `.pub` file that `ptu key new` made")]
     NoPublicFile(Sought),
-    /// A file that is none of a key.
+    /// A file that `ptu key new` did not make.
     #[error("{0} is no key file of `ptu key new`: {1}")]
     NoKeyFile(String, Why),
     /// A file that is no list.
@@ -259,7 +259,7 @@ pub enum FieldTrouble {
         "the simulated unit keeps no log from run to run; name a unit on a port with --unit serial:PATH or tcp:HOST:PORT"
     )]
     Simulated,
-    /// The same in lock step.
+    /// A unit in lock step: its clock dates no entry.
     #[error(
         "the clock of a unit in lock step stands between scans, which dates no entry; name a unit on a port with \
          --unit serial:PATH or tcp:HOST:PORT"
@@ -345,13 +345,13 @@ pub enum RecordTrouble {
     /// A run record by which no section is found.
     #[error("the trace passes no marker and does not stop: name its section with --section")]
     NoMarkers,
-    /// The same on this line.
+    /// No section of this line fits.
     #[error(
         "no section of line {0} has its markers and its stop where this run found them: name the line with --line, or \
          the section with --section"
     )]
     NoSectionFits(String),
-    /// The same, of several that fit.
+    /// Several sections of the line fit.
     #[error("sections {0} fit this run alike: name one with --section")]
     SectionsAlike(String),
 }

@@ -48,7 +48,7 @@ pub enum EndpointError {
     /// What stands after `tcp:`.
     #[error("\"{0}\" is not HOST:PORT")]
     Address(String),
-    /// What stands after the sign.
+    /// The text after `@`, which states the baud rate.
     #[error("\"{0}\" is not a baud rate")]
     Baud(String),
     /// Nothing stands after `serial:`.

@@ -293,7 +293,7 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
         (frame.lock, "", |_, context| context.settings.lock()),
         (frame.about, "", |frame, _| frame.about.open()),
     ];
-    // What has a run is let go by the unit's menu alone.
+    // A unit with a run is disconnected by its own menu alone.
     let has_run = usize::from(phase == Phase::Running);
     (actions.into_iter().skip(has_run)).map(|(name, more, act)| Row {
         kind: frame.actions,

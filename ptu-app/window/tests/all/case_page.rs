@@ -34,6 +34,24 @@ impl Counted {
         self.clicks += 1;
     }
 
+    /// Connects the simulated unit, and has the failed part looked for; in English.
+    fn look_for_part(&mut self) {
+        let case = &Language::English.words().case;
+        self.click("Connect");
+        self.window.wait_for("SIM-0001");
+        self.click(case.unknown);
+        self.click(case.find_part);
+    }
+
+    /// As far as the dialog in which the sheet of a found part is signed.
+    fn open_sign(&mut self) {
+        let case = &Language::English.words().case;
+        self.look_for_part();
+        self.window.wait_for(case.record_repair);
+        self.click(&format!("7 {}", case.stage_sheet));
+        self.click(case.sign);
+    }
+
     /// Looks at the page as a person would who reads it.
     fn look(&mut self, stage: &str) {
         let found = complaints_of(&mut self.window, self.lowest).into_iter();
@@ -80,10 +98,7 @@ fn repairing(faults: &str) -> Counted {
     let case = &Language::English.words().case;
     let size = [1280.0, 800.0];
     let mut counted = window(Language::English, size, Density::Operator, faults);
-    counted.click("Connect");
-    counted.window.wait_for("SIM-0001");
-    counted.click(case.unknown);
-    counted.click(case.find_part);
+    counted.look_for_part();
     counted.window.until("the result", |window| {
         let run = window.app().units().chosen().run_of_case();
         let is_told = window.shows(case.record_repair);
@@ -110,13 +125,7 @@ fn a_signature_that_was_begun_goes_with_its_page() {
         Density::Operator,
         "eb_relay.slow",
     );
-    counted.click("Connect");
-    counted.window.wait_for("SIM-0001");
-    counted.click(case.unknown);
-    counted.click(case.find_part);
-    counted.window.wait_for(case.record_repair);
-    counted.click(&format!("7 {}", case.stage_sheet));
-    counted.click(case.sign);
+    counted.open_sign();
     let window = &mut counted.window;
     window.wait_for(case.sign_hint);
     window.page(Page::Procedures);
@@ -408,13 +417,7 @@ fn a_wrong_pin_signs_nothing_and_keeps_what_was_chosen() {
     window.place.write("pin.txt", "246810\n");
     let new = "key new --who Kim-Signer --out ptu/keys/mine.key --pin-file pin.txt";
     window.place.ptu(new).exits(0);
-    counted.click("Connect");
-    counted.window.wait_for("SIM-0001");
-    counted.click(case.unknown);
-    counted.click(case.find_part);
-    counted.window.wait_for(case.record_repair);
-    counted.click(&format!("7 {}", case.stage_sheet));
-    counted.click(case.sign);
+    counted.open_sign();
     let window = &mut counted.window;
     window.click_last(case.key);
     window.click("mine");
