@@ -36,7 +36,7 @@ mod store;
 pub mod trace;
 mod values;
 
-pub use error::{Misplaced, QueryLimit, ServerReason, StoreError};
+pub use error::{MOST_RESULT_BYTES, Misplaced, QueryLimit, ServerReason, StoreError};
 pub use exchange::domain::{Refusals, Refused};
 pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,

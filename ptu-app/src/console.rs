@@ -71,8 +71,8 @@ impl Console {
         let thread = std::thread::Builder::new()
             .name("console".into())
             .spawn(move || show(&all, bar(steps, detail).as_ref()));
-        let thread = thread
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
+        let thread =
+            thread.map_err(|error| Failure::bench(RunTrouble::NoThread(error.to_string())))?;
         Ok(Self {
             detail,
             steps: (0, 0),

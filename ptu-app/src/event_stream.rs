@@ -10,11 +10,11 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::Procedure;
 
 use ptu_report::event_lines::EventLines;
-use ptu_report::words::asked;
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::new_file::{NewFile, kind};
 use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
 const WAITING: usize = 65_536;
@@ -89,7 +89,7 @@ impl Stream {
             // In its place from the first line on: other programs read while it grows.
             Place::File(file) => {
                 let begun = NewFile::begin(file, kind::EVENTS);
-                let mut file = begun.map_err(|why| Failure::usage(format!("--events: {why}")))?;
+                let mut file = begun.map_err(|why| why.because_of(Asked::Option("--events")))?;
                 writeln!(file, "{first}").map_err(|error| cannot(&error))?;
                 file.appear()?;
                 is_begun = true;
@@ -135,12 +135,12 @@ impl Stream {
         }
         drop(self.to.take());
         let written = self.thread.join();
-        let failed = |why: &str| Failure::bench(asked::not_all_events(&self.place, why));
+        let failed = |why| Failure::bench(Asked::NotAllEvents(self.place.to_string(), why));
         match written {
-            Ok(Ok(())) if self.is_cut => Err(failed("whoever reads it takes too few")),
+            Ok(Ok(())) if self.is_cut => Err(failed(Why::SlowReader)),
             Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err(failed(&error.to_string())),
-            Err(_) => Err(failed("its thread broke off")),
+            Ok(Err(error)) => Err(failed(Why::of(error))),
+            Err(_) => Err(failed(Why::ThreadEnded)),
         }
     }
 }

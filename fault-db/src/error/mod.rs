@@ -14,8 +14,7 @@ use crate::trace::TraceError;
 use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
 pub use misplaced::Misplaced;
-pub(crate) use query_limit::MOST_RESULT_BYTES;
-pub use query_limit::QueryLimit;
+pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
 pub(crate) use server::NO_TLS;
 pub use server::ServerReason;
 

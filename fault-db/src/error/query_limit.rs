@@ -1,7 +1,7 @@
 //! The limits of a query.
 
 /// Longest result of a query, bytes of text: it is printed from memory.
-pub(crate) const MOST_RESULT_BYTES: usize = 16 << 20;
+pub const MOST_RESULT_BYTES: usize = 16 << 20;
 
 /// The limit that a query exceeded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
-use ptu_report::words::asked;
 use ptu_runs::clock;
 use ptu_runs::failure::{Failure, FileTrouble};
+use ptu_runs::words::Asked;
 use ptu_runs::{owner_only, stdio};
 
 /// Names a history for all commands that are given none.
@@ -58,7 +58,7 @@ impl Database {
                 .ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--db")));
         };
         if path.as_os_str().is_empty() {
-            return Err(Failure::usage(asked::variable_empty(VARIABLE)));
+            return Err(Failure::usage(Asked::VariableEmpty(VARIABLE.to_string())));
         }
         Ok(match as_address(&path) {
             Some(address) => DatabasePlace::Server(address?),

@@ -13,7 +13,7 @@ mod window;
 pub use database::{Database, only_file};
 use fault_db::Address;
 pub use page::Page;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 pub use scripts::ScriptsOption;
 pub use window::WindowOptions;
 
@@ -24,12 +24,7 @@ pub use window::WindowOptions;
 pub fn refuse_password() -> Result<(), Failure> {
     let mut arguments = std::env::args_os().skip(1);
     if arguments.any(|argument| Address::holds_password(&argument.to_string_lossy())) {
-        return Err(Failure::usage(
-            "the command line holds a password, and every program on this computer can read it there: leave \
-             it out of the address and put it into ~/.pgpass (a line HOST:PORT:DATABASE:USER:PASSWORD, chmod \
-             600), into a file named with ?passfile=FILE, or into PGPASSWORD; and change it, if others work \
-             here",
-        ));
+        return Err(Failure::usage(Asked::Password));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 
 /// The file, in the user's configuration.
 ///
@@ -11,5 +11,5 @@ use ptu_runs::failure::Failure;
 pub fn usual() -> Result<PathBuf, Failure> {
     directories::ProjectDirs::from("", "", "ptu")
         .map(|directories| directories.config_dir().join("sound.json"))
-        .ok_or_else(|| Failure::usage("no user configuration directory for calibrations"))
+        .ok_or_else(|| Failure::usage(FileTrouble::NoSettingsFolder))
 }

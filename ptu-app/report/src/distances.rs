@@ -4,15 +4,15 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fault_db::read_regular_file;
 use ptu_runs::clock::Span;
 use ptu_runs::data::LONGEST_FILE;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why, WrongCell};
 
 /// The columns, in their order.
-pub(crate) const COLUMNS: [&str; 3] = ["train", "date", "km"];
+const COLUMNS: [&str; 3] = ["train", "date", "km"];
 /// No odometer has run farther, km.
 const FARTHEST_KM: f64 = 1e8;
 
@@ -27,108 +27,33 @@ struct Reading {
     km: f64,
 }
 
-/// Why readings are not taken.
-#[derive(Debug, thiserror::Error)]
-pub enum DistancesError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {reason}", .file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// The words of the operating system.
-        reason: String,
-    },
-    /// Something in it is wrong.
-    #[error("{}: {what}", .file.display())]
-    Wrong {
-        /// The file.
-        file: PathBuf,
-        /// Where it is wrong, and how.
-        what: ReadingError,
-    },
-}
-
-/// Where a file of readings is wrong.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadingError {
-    /// Its first line.
-    #[error("line 1: the columns train, date and km are expected")]
-    Heading,
-    /// A line, from 1, has more or fewer values.
-    #[error("line {0}: three values are expected")]
-    Values(u32),
-    /// A value.
-    #[error("line {line}, column {} ({}): {what}", column + 1, COLUMNS[*column])]
-    Cell {
-        /// From 1.
-        line: u32,
-        /// From 0.
-        column: usize,
-        /// What is wrong with it.
-        what: WrongCell,
-    },
-}
-
-/// How a value is not what it should be.
-#[derive(Debug, thiserror::Error)]
-pub enum WrongCell {
-    /// Nothing stands there.
-    #[error("there is no value")]
-    Empty,
-    /// A text that is no date.
-    #[error("\"{0}\" is no date like 2026-03-21")]
-    NoDate(String),
-    /// A text that is no number of kilometres an odometer can show.
-    #[error("\"{0}\" is no number of kilometres")]
-    NoDistance(String),
-    /// There is one of the same train and day before it.
-    #[error("the train has another reading of this day")]
-    Twice,
-    /// A distance, km, beside smaller ones after it or greater ones before it.
-    #[error("{0} does not fit the train's other readings: an odometer never goes back")]
-    GoesBack(f64),
-}
-
-impl From<DistancesError> for Failure {
-    fn from(error: DistancesError) -> Self {
-        Self::usage(error.to_string())
-    }
-}
-
 impl Distances {
     /// Reads a file of comma-separated values with the columns train, date and km in its first line.
     ///
     /// # Errors
     /// It cannot be read, or a value is not what it should be: the message names its line and column.
-    pub fn read(file: &Path) -> Result<Self, DistancesError> {
-        let text = read_regular_file(file, LONGEST_FILE).map_err(|error| {
-            let (file, reason) = (file.to_path_buf(), error.to_string());
-            DistancesError::Unreadable { file, reason }
-        })?;
-        let text = String::from_utf8_lossy(&text);
-        Self::parse(&text).map_err(|what| DistancesError::Wrong {
-            file: file.to_path_buf(),
-            what,
-        })
+    pub fn read(file: &Path) -> Result<Self, Failure> {
+        let text = read_regular_file(file, LONGEST_FILE)
+            .map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
+        Self::parse(&String::from_utf8_lossy(&text))
+            .map_err(|why| Failure::usage(FileTrouble::Wrong(file.display().to_string(), why)))
     }
 
-    fn parse(text: &str) -> Result<Self, ReadingError> {
+    fn parse(text: &str) -> Result<Self, Why> {
         let text = text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines());
         let heading = lines.next().map(|(_, line)| cells(line));
         if heading != Some(COLUMNS.map(str::to_owned).to_vec()) {
-            return Err(ReadingError::Heading);
+            return Err(Why::Heading);
         }
         let mut all = Self::default();
         for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-            let wrong = |column, what| ReadingError::Cell {
-                line: number,
-                column,
-                what,
+            let wrong = |column: usize, what| {
+                Why::Cell(number, 1 + column, COLUMNS[column].to_owned(), what)
             };
             let cells = cells(line);
             let Ok([train, date, km]) = <[String; 3]>::try_from(cells) else {
-                return Err(ReadingError::Values(number));
+                return Err(Why::Values(number));
             };
             if train.is_empty() {
                 return Err(wrong(0, WrongCell::Empty));

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::trace_notes::note_json;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::coverage::{Coverage, counts_of};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::run::Evidence;
 use ptu_runs::stored::{findings, kind_of};
 
@@ -197,7 +197,7 @@ pub fn fault_json(fault: &FaultSummary) -> Value {
 /// It is none that JSON can say.
 pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value)
-        .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+        .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;
     Ok(json_safe(&text).into_owned())
 }
 

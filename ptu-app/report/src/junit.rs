@@ -11,7 +11,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, T
 use crate::coverage::{count_text, coverage_text};
 use crate::words::Language;
 use ptu_runs::coverage::Coverage;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::stored::{WHOLE_RUN, by_procedure, kind_of};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
@@ -40,9 +40,9 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
         suite.add_test_case(case);
         report.add_test_suite(suite);
     }
-    report
-        .to_string()
-        .map_err(|error| Failure::bench(format!("cannot make the JUnit report: {error}")))
+    report.to_string().map_err(|error| {
+        Failure::bench(FileTrouble::NotPrinted("the JUnit report", Why::of(error)))
+    })
 }
 
 /// Results of each step in order; what is outside steps stands alone.

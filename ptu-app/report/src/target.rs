@@ -11,7 +11,6 @@ use protocol::display_text;
 use crate::certificate::attach;
 use crate::json::{json_text, run_json};
 use crate::run::{self, CaseSheet, Printed, RunComparison, Sheet};
-use crate::words::asked;
 use crate::words::{Language, Words};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
@@ -19,6 +18,7 @@ use ptu_runs::data::{self, ScriptsDirectory};
 use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,9 +37,9 @@ pub(crate) enum Format {
 }
 
 impl std::str::FromStr for Target {
-    type Err = String;
+    type Err = Asked;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, Asked> {
         let endings = [
             (".html", Format::Html),
             (".pdf", Format::Pdf),
@@ -50,7 +50,7 @@ impl std::str::FromStr for Target {
         let format = endings
             .into_iter()
             .find_map(|(ending, format)| text.ends_with(ending).then_some(format))
-            .ok_or("a report ends in .html, .pdf, .csv, .json or .junit.xml")?;
+            .ok_or(Asked::NoReport)?;
         Ok(Self {
             path: text.into(),
             format,
@@ -168,7 +168,10 @@ pub fn write(
 fn refuse_changed(store: &Store, run: Id) -> Result<(), Failure> {
     match store.verify_run(run)?.changes.first() {
         None => Ok(()),
-        Some(change) => Err(Failure::bench(asked::changed(run.short(), change))),
+        Some(change) => Err(Failure::bench(Asked::Changed(
+            run.short().to_string(),
+            change.to_string(),
+        ))),
     }
 }
 

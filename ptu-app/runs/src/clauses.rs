@@ -9,7 +9,7 @@ use protocol::Verdict;
 use serde::{Deserialize, Serialize};
 
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble};
 
 /// Where they stand in the scripts directory.
 pub const FILE: &str = "clauses.toml";
@@ -76,7 +76,7 @@ pub struct Matrix {
 /// # Errors
 /// The file cannot be read, or is wrong: a name given twice, a pattern that is none.
 pub fn load(directory: &ScriptsDirectory) -> Result<Vec<Clause>, Failure> {
-    let wrong = |error: String| Failure::usage(format!("{}: {error}", directory.shown(FILE)));
+    let wrong = |error: String| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error));
     let written: Written =
         toml::from_str(&directory.text(FILE)?).map_err(|error| wrong(error.to_string()))?;
     for (place, clause) in written.clause.iter().enumerate() {

@@ -179,10 +179,10 @@ impl ScriptsDirectory {
             text.push_str(&self.text(&name)?);
             text.push('\n');
             let read = FaultCatalogue::from_toml(&text);
-            let wrong = |error| Failure::usage(format!("{}: {error}", self.shown(&name)));
+            let wrong = |error| Failure::usage(FileTrouble::wrong(self.shown(&name), error));
             catalogue = Some(read.map_err(wrong)?);
         }
-        catalogue.ok_or_else(|| Failure::usage("there is no fault catalogue"))
+        catalogue.ok_or_else(|| Failure::usage(FileTrouble::NoCatalogue))
     }
 
     /// Reads every data file, used or not: how many there are.
@@ -217,7 +217,8 @@ impl ScriptsDirectory {
             Some(file) => (read(file)?, file.display().to_string()),
             None => (self.text(BENCH_SCATTER)?, self.shown(BENCH_SCATTER)),
         };
-        BenchScatter::from_toml(&text).map_err(|error| Failure::usage(format!("{shown}: {error}")))
+        BenchScatter::from_toml(&text)
+            .map_err(|error| Failure::usage(FileTrouble::wrong(shown, error)))
     }
 
     /// The fault modes of these names.
@@ -283,7 +284,7 @@ impl ScriptsDirectory {
             )));
         }
         let text = self.text(&file)?;
-        let wrong = |e: E| Failure::usage(format!("{}: {e}", self.shown(&file)));
+        let wrong = |e: E| Failure::usage(FileTrouble::wrong(self.shown(&file), e));
         let content = parse(&text).map_err(wrong)?;
         Ok(DataFile {
             name: name.to_owned(),

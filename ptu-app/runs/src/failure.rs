@@ -9,15 +9,12 @@ use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
 use crate::link::NoUnit;
+use crate::run_diagnosis::Warning;
 
 mod near;
-mod refused;
 
+pub use crate::words::*;
 pub use near::{Near, did_you_mean, did_you_mean_number};
-pub use refused::{
-    BrokenOff, DiagnosisTrouble, FieldTrouble, FileTrouble, KeyTrouble, RecordTrouble, RunTrouble,
-    Sought, Unknown, Why,
-};
 
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +49,8 @@ impl Exit {
 pub enum Trouble {
     /// The history.
     Store(Arc<StoreError>),
+    /// The history, in a file that was not named with `--db`.
+    NamedStore(Arc<StoreError>),
     /// A run that the history does not hold.
     NotStored {
         /// The run.
@@ -83,38 +82,23 @@ pub enum Trouble {
         /// The day it was due; none: it was never calibrated.
         due: Option<String>,
     },
-    /// A name that is none.
-    Unknown(Unknown),
-    /// A file or a folder.
-    File(FileTrouble),
-    /// Keys that sign.
-    Key(KeyTrouble),
-    /// A bench, or a run on it.
-    Run(RunTrouble),
-    /// The log or the memory of a unit.
-    Field(FieldTrouble),
-    /// A trace, or the recording that belongs to it.
-    Recorded(RecordTrouble),
-    /// A diagnosis.
-    Diagnosis(DiagnosisTrouble),
+    /// What of the dictionary an adaptive run must not go by.
+    Stale(Vec<Warning>),
+    /// What has its sentences in the tables of words.
+    Refused(Box<Refusal>),
+    /// The first one because of the second.
+    Because(Box<[Self; 2]>),
     /// Several at once.
     All(Vec<Self>),
-    /// What the catalogue of words says, in English and in Korean.
-    Said([String; 2]),
     /// In words of others.
     Told(String),
-}
-
-impl<T: Into<String>> From<T> for Trouble {
-    fn from(words: T) -> Self {
-        Self::Told(words.into())
-    }
 }
 
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Store(error) => f.write_str(&store_message(error)),
+            Self::NamedStore(error) => error.fmt(f),
             Self::NotStored {
                 run,
                 error,
@@ -159,22 +143,18 @@ impl fmt::Display for Trouble {
             }
             Self::NoUnit(why) => why.fmt(f),
             Self::Link(why) => why.fmt(f),
-            Self::Unknown(why) => why.fmt(f),
-            Self::File(why) => why.fmt(f),
-            Self::Key(why) => why.fmt(f),
-            Self::Run(why) => why.fmt(f),
-            Self::Field(why) => why.fmt(f),
-            Self::Recorded(why) => why.fmt(f),
-            Self::Diagnosis(why) => why.fmt(f),
-            Self::All(all) => f.write_str(
-                &all.iter()
-                    .map(Self::to_string)
-                    .collect::<Vec<_>>()
-                    .join("\n"),
-            ),
-            Self::Said([words, _]) | Self::Told(words) => f.write_str(words),
+            Self::Refused(what) => f.write_str(&what.say(Manner::COMMAND_LINE)),
+            Self::Stale(all) => joined(f, all, "; "),
+            Self::Because(both) => joined(f, &**both, ": "),
+            Self::All(all) => joined(f, all, "\n"),
+            Self::Told(words) => f.write_str(words),
         }
     }
+}
+
+fn joined(f: &mut fmt::Formatter<'_>, all: &[impl fmt::Display], by: &str) -> fmt::Result {
+    let all: Vec<_> = all.iter().map(ToString::to_string).collect();
+    f.write_str(&all.join(by))
 }
 
 /// An error for a person: what happened, to which thing, what to do next.
@@ -205,6 +185,13 @@ impl Failure {
 }
 
 impl Failure {
+    /// The same, with what happened before the reason for it.
+    #[must_use]
+    pub fn because_of(self, what: impl Into<Trouble>) -> Self {
+        let message = Trouble::Because(Box::new([what.into(), self.message]));
+        Self { message, ..self }
+    }
+
     /// All that failed as one, which says each; what is to be done is done, whichever fails.
     ///
     /// # Errors
@@ -232,7 +219,12 @@ impl std::error::Error for Failure {}
 
 impl From<ScriptsError> for Failure {
     fn from(error: ScriptsError) -> Self {
-        Self::usage(error.to_string())
+        Self::usage(match error {
+            ScriptsError::NotADirectory(folder) => {
+                FileTrouble::NoDirectory(folder.display().to_string())
+            }
+            ScriptsError::Unreadable { what, why } => FileTrouble::Unread(what, Why::Said(why)),
+        })
     }
 }
 

@@ -7,7 +7,7 @@ use btu_rig::rig::UnitRecord;
 use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble, Why};
 use crate::run::{check_serial, software_version};
 
 /// The file's name in the scripts directory.
@@ -38,27 +38,26 @@ pub fn unit_records(directory: &ScriptsDirectory) -> Result<Arc<[UnitRecord]>, F
     if !directory.has(FLEET) {
         return Ok(Arc::new([]));
     }
-    let wrong = |why: &str| Failure::usage(format!("{}: {why}", directory.shown(FLEET)));
+    let wrong = |why| Failure::usage(FileTrouble::Wrong(directory.shown(FLEET), why));
     let fleet: FleetFile =
-        toml::from_str(&directory.text(FLEET)?).map_err(|error| wrong(&error.to_string()))?;
+        toml::from_str(&directory.text(FLEET)?).map_err(|error| wrong(Why::of(error)))?;
     let mut files = Files::default();
     let mut records: Vec<UnitRecord> = Vec::with_capacity(fleet.trains.len());
     for train in fleet.trains {
         let number = train.number.clone();
-        let record = files
-            .record(directory, train)
-            .map_err(|why| wrong(&format!("train {number}: {}", why.message)))?;
+        let record = files.record(directory, train).map_err(|why| {
+            why.because_of(FileTrouble::OfTrain(directory.shown(FLEET), number.clone()))
+        })?;
         let twice = records
             .iter()
             .find(|other| other.train == record.train || other.serial == record.serial);
         if let Some(other) = twice {
             let (one, serial) = (&other.train, &other.serial);
-            let why = if other.train == record.train {
-                format!("train {number} stands in it twice")
-            } else {
-                format!("unit {serial} stands in it for trains {one} and {number}")
+            let why = match other.train == record.train {
+                true => Why::TrainTwice(number),
+                false => Why::UnitTwice(serial.clone(), one.clone(), number),
             };
-            return Err(wrong(&why));
+            return Err(wrong(why));
         }
         records.push(record);
     }
@@ -103,7 +102,7 @@ impl Files {
             self.lines.insert(train.line.clone(), crc);
         }
         if train.number.trim().is_empty() {
-            return Err(Failure::usage("its number is empty"));
+            return Err(Failure::usage(FileTrouble::NoTrainNumber));
         }
         check_serial(&train.serial)?;
         Ok(UnitRecord {

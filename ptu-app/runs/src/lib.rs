@@ -16,7 +16,7 @@
 //! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person reads;
-//!   [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`platform`]: what operating systems do
+//!   [`words`]: what is refused, in both languages; [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`platform`]: what operating systems do
 //!   differently.
 
 pub mod aboard;
@@ -55,3 +55,4 @@ pub mod table;
 mod test_support;
 pub mod train_server;
 pub mod typed;
+pub mod words;

@@ -20,7 +20,7 @@ use protocol::{LruId, Verdict};
 use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble};
 pub use chain::{Chain, Link, Made};
 
 /// Where it stands in the scripts directory.
@@ -125,7 +125,7 @@ impl Structure {
     pub fn load(directory: &ScriptsDirectory, catalogue: &FaultCatalogue) -> Result<Self, Failure> {
         let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
         Self::from_toml(&directory.text(FILE)?, &parts)
-            .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(FILE))))
+            .map_err(|error| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error)))
     }
 
     /// Reads and checks the file; `parts` are those that can be replaced.

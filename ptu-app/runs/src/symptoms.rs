@@ -5,7 +5,7 @@ use protocol::injection::Lru;
 use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
-use crate::failure::{Failure, Unknown, did_you_mean};
+use crate::failure::{Failure, FileTrouble, Unknown, did_you_mean};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "symptoms.toml";
@@ -34,7 +34,7 @@ pub(crate) struct Written {
 /// The file cannot be read, or is wrong: a name given twice, a part that is not among `parts`.
 pub fn load(directory: &ScriptsDirectory, parts: &[Lru]) -> Result<Vec<Symptom>, Failure> {
     of_toml(&directory.text(FILE)?, parts)
-        .map_err(|error| Failure::usage(format!("{}: {error}", directory.shown(FILE))))
+        .map_err(|error| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error)))
 }
 
 fn of_toml(text: &str, parts: &[Lru]) -> Result<Vec<Symptom>, String> {

@@ -16,7 +16,7 @@ use super::{Database, Json, ScriptsOption};
 use ptu_report::campaign::{campaign_json, campaign_text};
 use ptu_runs::campaign::{self, Ran, Request, Suite, figures, redundancy};
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, Why};
 use ptu_runs::new_file::kind;
 use ptu_runs::pool::cores;
 use ptu_runs::progress::Progress;
@@ -161,7 +161,12 @@ impl CampaignArguments {
         };
         let (outcome, store) = outcome;
         let dictionary = &outcome.dictionary;
-        let data = dictionary.to_bytes().map_err(Failure::bench)?;
+        let data = dictionary.to_bytes().map_err(|why| {
+            Failure::bench(FileTrouble::NotPrinted(
+                "the fault dictionary",
+                Why::Said(why),
+            ))
+        })?;
         if let Some(file) = &self.out {
             ptu_runs::data::write(file, kind::DICTIONARY, &data)?;
         }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::{Json, ScriptsOption, answered};
 use ptu_runs::clauses;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{DriveTrouble, Exit, Failure};
 use ptu_runs::run_diagnosis::choose;
 use ptu_runs::stdio;
 use ptu_runs::structure::Structure;
@@ -158,10 +158,7 @@ impl CatalogArguments {
         let TrainData::Cars(data) =
             ptu_runs::drive::train::train(&self.scripts.find()?, &self.train)?
         else {
-            return Err(Failure::usage(format!(
-                "--train {}: a point mass has no cars",
-                self.train
-            )));
+            return Err(Failure::usage(DriveTrouble::PointMass(self.train.clone())));
         };
         let empty = Consist::new(&data);
         let mut full = empty.clone();

@@ -5,10 +5,10 @@ use protocol::LruId;
 
 use super::{Database, Json, ScriptsOption};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
-use ptu_report::words::asked;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run_diagnosis::{Question, diagnose};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// Find the part that failed, why it is that one, and the next best check
 ///
@@ -48,7 +48,7 @@ impl DiagnoseArguments {
         let runs = self.runs.iter().map(|run| store.resolve_run(run));
         let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
         let Some((run, with)) = runs.split_first() else {
-            return Err(Failure::usage(asked::run_unnamed()));
+            return Err(Failure::usage(Asked::RunUnnamed));
         };
         let directory = self.scripts.find()?;
         let question = Question {

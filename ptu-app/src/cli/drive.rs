@@ -15,7 +15,7 @@ use ptu_runs::data::{ScriptsDirectory, read};
 use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::failure::{DriveTrouble, Exit, Failure, FileTrouble, did_you_mean};
 use ptu_runs::pool::cores;
 use ptu_runs::stop::Stop;
 
@@ -151,8 +151,7 @@ impl DriveArguments {
         let mut controllers: Vec<_> = self.controller.into_iter().collect();
         for &kind in &self.compare {
             if controllers.contains(&kind) {
-                let name = kind.name();
-                return Err(Failure::usage(format!("--compare names {name} twice")));
+                return Err(Failure::usage(DriveTrouble::Twice(kind.name())));
             }
             controllers.push(kind);
         }
@@ -187,10 +186,13 @@ impl DriveArguments {
             Outcomes::Many(many) => many.iter().all(|one| one.passed()),
             Outcomes::Single(runs) => {
                 let mut endings = runs.iter().map(|run| &run.outcome.ending);
-                let lost =
-                    |ending: &&Ending| matches!(ending, Ending::LinkLost(_) | Ending::Refused(_));
-                if let Some(ending) = endings.find(lost) {
-                    return Err(Failure::bench(ending.to_string()));
+                let lost = endings.find_map(|ending| match ending {
+                    Ending::LinkLost(why) => Some(DriveTrouble::LinkLost(why.clone())),
+                    Ending::Refused(why) => Some(DriveTrouble::Refused(why.clone())),
+                    _ => None,
+                });
+                if let Some(why) = lost {
+                    return Err(Failure::bench(why));
                 }
                 runs.iter().all(Driven::aligned)
             }
@@ -207,7 +209,7 @@ fn scatter(directory: &ScriptsDirectory, file: Option<&Path>) -> Result<Scatter,
             directory.shown("scatter.toml"),
         ),
     };
-    Scatter::from_toml(&text).map_err(|error| Failure::usage(format!("{place}: {error}")))
+    Scatter::from_toml(&text).map_err(|error| Failure::usage(FileTrouble::wrong(place, error)))
 }
 
 fn controller(name: &str) -> Result<ControllerKind, String> {

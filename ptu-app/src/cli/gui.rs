@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-use ptu_runs::failure::{Failure, RunTrouble};
+use ptu_runs::failure::{Asked, Failure, RunTrouble};
 use ptu_runs::platform::become_program;
 
 /// Turns this process into the window's, with the arguments after `gui`. Returns only if the window is not installed or
@@ -12,15 +12,11 @@ use ptu_runs::platform::become_program;
 pub fn start(arguments: impl Iterator<Item = OsString>) -> Failure {
     let window = window();
     if !window.is_file() {
-        return Failure::bench(format!(
-            "the window is a program of its own, and {} is not there: install the package `ptu`, which has both, or \
-             build it with `cargo build --release -p ptu-window`; `ptu help` says what is done without a window",
-            window.display()
-        ));
+        return Failure::bench(Asked::NoWindow(window.display().to_string()));
     }
     let error = become_program(Command::new(&window).args(arguments));
     Failure::bench(RunTrouble::NotStarted(
-        Some(window.display().to_string()),
+        window.display().to_string(),
         error.to_string(),
     ))
 }

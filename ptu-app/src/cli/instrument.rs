@@ -8,11 +8,11 @@ use serde_json::json;
 
 use super::signing::SigningOption;
 use super::{Database, Json, print_out};
-use ptu_report::words::asked;
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, Unknown, did_you_mean_number};
 use ptu_runs::keys::day_argument;
 use ptu_runs::table::Table;
+use ptu_runs::words::Asked;
 
 /// Register what measures and generates on this bench, with its calibration
 ///
@@ -116,14 +116,16 @@ impl InstrumentArguments {
             } => {
                 let (serial_no, kind) = (serial_no.trim().to_owned(), kind.trim().to_owned());
                 if serial_no.is_empty() || kind.is_empty() {
-                    return Err(Failure::usage(asked::instrument_unnamed()));
+                    return Err(Failure::usage(Asked::InstrumentUnnamed));
                 }
                 if store
                     .instruments()?
                     .iter()
                     .any(|known| known.serial_no == serial_no)
                 {
-                    return Err(Failure::usage(asked::instrument_known(serial_no)));
+                    return Err(Failure::usage(Asked::InstrumentKnown(
+                        serial_no.to_string(),
+                    )));
                 }
                 store.register_instrument(&Instrument {
                     kind: kind.clone(),
@@ -147,7 +149,10 @@ impl InstrumentArguments {
                 let known = find(&store, &serial_no)?;
                 let on = on.unwrap_or_else(|| clock::local_day(at_us));
                 if due <= on {
-                    return Err(Failure::usage(asked::due_before(due, on)));
+                    return Err(Failure::usage(Asked::DueBefore(
+                        due.to_string(),
+                        on.to_string(),
+                    )));
                 }
                 let uncertainty: BTreeMap<_, _> = uncertainty.into_iter().collect();
                 store.register_instrument(&Instrument {

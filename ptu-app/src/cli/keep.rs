@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::print_out;
 use ptu_runs::data::check_writable;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 use ptu_runs::kept::{Keep, Shard};
 use ptu_runs::new_file::kind;
 
@@ -26,7 +26,7 @@ impl KeepOptions {
     /// Refuses what does not go together: only `many` runs are kept.
     pub fn check(&self, many: bool) -> Result<(), Failure> {
         if !many && self.runs.is_some() {
-            return Err(Failure::usage("--runs goes with --monte-carlo"));
+            return Err(Failure::usage(KeepTrouble::RunsOfMany));
         }
         self.keep()?;
         let check = |file| check_writable(file, kind::OWN);
@@ -38,7 +38,7 @@ impl KeepOptions {
         let shard = self.shard.as_deref().map(str::parse::<Shard>).transpose();
         Ok(Keep {
             file: self.runs.clone(),
-            shard: shard.map_err(|why| Failure::usage(format!("--shard: {why}")))?,
+            shard: shard.map_err(|why| Failure::usage(KeepTrouble::Shard(why)))?,
         })
     }
 

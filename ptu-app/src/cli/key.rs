@@ -8,7 +8,6 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
-use ptu_report::words::asked as words;
 use ptu_runs::failure::{Exit, Failure, KeyTrouble, Unknown, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
@@ -16,6 +15,7 @@ use ptu_runs::keys::{
 };
 use ptu_runs::owner_only;
 use ptu_runs::table::Table;
+use ptu_runs::words::Asked;
 use ptu_runs::{clock, data};
 
 /// Years for which a new key holds.
@@ -168,7 +168,7 @@ fn new(
     owner_only::folder_of(&path)?;
     for there in [path.clone(), public_name(&path)] {
         if there.exists() {
-            return Err(Failure::usage(words::key_stays(there.display())));
+            return Err(Failure::usage(Asked::KeyStays(there.display().to_string())));
         }
     }
     let now = clock::now_us();
@@ -286,7 +286,7 @@ fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
     }
     let new = KeyList::read(&found)?;
     if new.keys.is_empty() {
-        return Err(Failure::usage(words::no_key_in(file.display())));
+        return Err(Failure::usage(Asked::NoKeyIn(file.display().to_string())));
     }
     let mut said = Vec::new();
     for entry in new.keys {
@@ -312,7 +312,10 @@ fn revoke(asked: &str, note: &str, keys: &KeysOption) -> Result<Exit, Failure> {
             return Err(Failure::usage(Unknown::Key(asked.to_owned(), hint)));
         }
         _ => {
-            return Err(Failure::usage(words::keys_alike(found.len(), asked)));
+            return Err(Failure::usage(Asked::KeysAlike(
+                found.len(),
+                asked.to_string(),
+            )));
         }
     };
     let (who, key) = (entry.who.clone(), entry.short().to_owned());

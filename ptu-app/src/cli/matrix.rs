@@ -12,7 +12,7 @@ use diagnosis::matrix::{
 use super::{Json, ScriptsOption, print_out};
 use ptu_report::json_safe;
 use ptu_runs::data::read_within;
-use ptu_runs::failure::{Exit, Failure, did_you_mean};
+use ptu_runs::failure::{DriveTrouble, Exit, Failure, FileTrouble, Why, did_you_mean};
 use ptu_runs::stdio;
 use ptu_runs::table::Table;
 
@@ -83,7 +83,7 @@ impl MatrixArguments {
         if self.json.is_asked() {
             let text = plan
                 .to_json(&matrix, &known)
-                .map_err(|error| Failure::bench(format!("cannot write JSON: {error}")))?;
+                .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;
             stdio::document(&json_safe(&text))?;
             return Ok(Exit::Passed);
         }
@@ -106,7 +106,7 @@ fn read(file: &Path) -> Result<String, Failure> {
 }
 
 fn wrong(place: &impl Display, error: &MatrixError) -> Failure {
-    Failure::usage(format!("{place}: {error}"))
+    Failure::usage(FileTrouble::wrong(place, error))
 }
 
 /// Weighs the outcomes given, in a file or on the command line.
@@ -122,7 +122,7 @@ fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
         MatrixError::OutcomeUnknown { test } => {
             let names = matrix.tests().iter().map(|test| test.id.as_str());
             let hint = did_you_mean(test, names);
-            Failure::usage(format!("{place}: {error}{hint}"))
+            Failure::usage(FileTrouble::wrong(place, format!("{error}{hint}")))
         }
         _ => wrong(&place, &error),
     })
@@ -131,11 +131,8 @@ fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
 fn inline(given: &str) -> Result<Vec<(String, Outcome)>, Failure> {
     let one = |part: &str| {
         let (test, word) = part.rsplit_once('=').unwrap_or((part, ""));
-        let outcome = Outcome::parse(word.trim()).ok_or_else(|| {
-            Failure::usage(format!(
-                "--outcomes: \"{part}\" is not TEST=0 (passed) or TEST=1 (failed)"
-            ))
-        })?;
+        let outcome = Outcome::parse(word.trim())
+            .ok_or_else(|| Failure::usage(DriveTrouble::Outcome(part.to_owned())))?;
         Ok((test.trim().to_owned(), outcome))
     };
     given

@@ -7,9 +7,9 @@ use super::signing::SigningOption;
 use super::{Database, ScriptsOption, print_out};
 use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
-use ptu_report::words::asked;
 use ptu_report::{Target, write_case};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::words::Asked;
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///
@@ -66,10 +66,10 @@ impl ReportArguments {
         let directory = self.scripts.find()?;
         match told {
             Told::Run(_) if self.annex => {
-                return Err(Failure::usage(asked::annex_of_run()));
+                return Err(Failure::usage(Asked::AnnexOfRun));
             }
             Told::Case(_) if self.signing.is_named() && self.out.iter().any(Target::is_html) => {
-                return Err(Failure::usage(asked::case_unsigned()));
+                return Err(Failure::usage(Asked::CaseUnsigned));
             }
             Told::Run(id) => {
                 self.signing.sign(&store)?;
@@ -102,9 +102,9 @@ impl ReportArguments {
         match (run, store.resolve_fault(id)) {
             (Ok(run), Err(StoreError::NotFound { .. })) => Ok(Told::Run(run)),
             (Err(StoreError::NotFound { .. }), Ok(fault)) => Ok(Told::Case(fault)),
-            (Ok(_), _) | (_, Ok(_)) => Err(Failure::usage(asked::fits_run_and_fault(id))),
+            (Ok(_), _) | (_, Ok(_)) => Err(Failure::usage(Asked::FitsRunAndFault(id.to_string()))),
             (Err(StoreError::NotFound { .. }), Err(StoreError::NotFound { .. })) => {
-                Err(Failure::usage(asked::fits_nothing(id)))
+                Err(Failure::usage(Asked::FitsNothing(id.to_string())))
             }
             (Err(StoreError::NotFound { .. }), Err(error)) | (Err(error), _) => Err(error.into()),
         }

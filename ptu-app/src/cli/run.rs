@@ -20,7 +20,6 @@ use crate::console::Console;
 use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
-use ptu_report::words::asked;
 use ptu_report::words::tell;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::drive::{Setting, train::brakes_less};
@@ -34,6 +33,7 @@ use ptu_runs::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::symptoms;
+use ptu_runs::words::Asked;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";
@@ -184,12 +184,12 @@ impl RunArguments {
         if !errors.is_empty() {
             errors.iter().for_each(|error| stdio::note(error));
             return Err(Failure::usage(match errors.len() {
-                1 => asked::error_in_scripts(),
-                n => asked::errors_in_scripts(n),
+                1 => Asked::ErrorInScripts,
+                n => Asked::ErrorsInScripts(n),
             }));
         }
         if !need_cars.is_empty() {
-            let why = asked::needs_cars(&self.train, need_cars.join(", "));
+            let why = Asked::NeedsCars(self.train.to_string(), need_cars.join(", "));
             if procedures.is_empty() {
                 return Err(Failure::usage(why));
             }
@@ -234,10 +234,10 @@ impl RunArguments {
     fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         let unit = self.unit.clone().unwrap_or(Endpoint::Sim);
         if unit != Endpoint::Sim && self.jobs > 1 {
-            return Err(Failure::usage(asked::jobs_on_port()));
+            return Err(Failure::usage(Asked::JobsOnPort));
         }
         if self.slower > 1 && unit == Endpoint::Sim && !self.realtime {
-            return Err(Failure::usage(asked::slower_without_clock()));
+            return Err(Failure::usage(Asked::SlowerWithoutClock));
         }
         if let Some(serial) = &self.serial_no {
             check_serial(serial)?;
@@ -287,7 +287,7 @@ impl RunArguments {
         // After the history is made: no report replaces that.
         self.reports.check()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
-            return Err(Failure::usage(asked::adaptive_once()));
+            return Err(Failure::usage(Asked::AdaptiveOnce));
         }
         let stop = Stop::default();
         stop.listen();

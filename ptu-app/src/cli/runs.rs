@@ -12,13 +12,13 @@ use crate::console::verdict_table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
 use ptu_report::trace_notes::{note_text, noted_by};
 use ptu_report::words::Language;
-use ptu_report::words::asked;
 use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::coverage::counts_of;
 use ptu_runs::data;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::table::Table;
+use ptu_runs::words::Asked;
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]
@@ -120,7 +120,7 @@ impl RunsArguments {
                 self.signing.sign(&store)?;
                 let (text, who) = (text.trim(), who.trim());
                 if text.is_empty() {
-                    return Err(Failure::usage(asked::empty_note()));
+                    return Err(Failure::usage(Asked::EmptyNote));
                 }
                 let run = store.resolve_run(&id)?;
                 store.add_run_note(run, who, text, clock::now_us())?;
@@ -212,7 +212,7 @@ fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
             .is_some_and(|statement| statement.what == "run")
     });
     let Some(signed) = signed else {
-        return Err(Failure::usage(asked::unsigned(run.short())));
+        return Err(Failure::usage(Asked::Unsigned(run.short().to_string())));
     };
     data::write_text(out, format!("{signed}\n"))?;
     print_out(&format!("written: {}", out.display()))

@@ -9,7 +9,7 @@ use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
 use ptu_runs::data::{self, LONGEST_FILE};
-use ptu_runs::failure::{Exit, Failure, FileTrouble, did_you_mean};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
 use ptu_runs::table::Table;
 
 /// Ask a saved question again, or list them all
@@ -60,10 +60,10 @@ impl SavedArguments {
                 return print_out(&list(&questions));
             };
             if let Some(circle) = way.iter().position(|before| *before == name) {
-                return Err(Failure::usage(format!(
-                    "the saved question \"{name}\" asks itself: {} → {name}; correct {} or remove one with --forget",
+                return Err(Failure::usage(KeepTrouble::Circle(
+                    name,
                     way[circle..].join(" → "),
-                    file.display()
+                    file.display().to_string(),
                 )));
             }
             let cli = asked_for(&questions, &name, self.more)?;
@@ -82,9 +82,7 @@ fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli
         .iter()
         .any(|word| word == "--save" || word.starts_with("--save="))
     {
-        return Err(Failure::usage(format!(
-            "\"{name}\" is saved already; ask it in full to save it under another name"
-        )));
+        return Err(Failure::usage(KeepTrouble::SavedAlready(name.to_owned())));
     }
     let (_, words) = question(questions, name)?;
     let words = ["ptu".to_owned()]
@@ -96,11 +94,7 @@ fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli
         .try_get_matches_from(words);
     matches
         .and_then(|matches| Cli::from_arg_matches(&matches))
-        .map_err(|error| {
-            Failure::usage(format!(
-                "the saved question \"{name}\" cannot be asked so: {error}"
-            ))
-        })
+        .map_err(|error| Failure::usage(KeepTrouble::NotAsked(name.to_owned(), error.to_string())))
 }
 
 /// Keeps the question of this command line under a name.
@@ -109,16 +103,14 @@ fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli
 /// The file of questions cannot be read or written.
 pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Failure> {
     if name.trim().is_empty() || name.starts_with('-') {
-        return Err(Failure::usage(format!(
-            "\"{name}\" is no name for a question"
-        )));
+        return Err(Failure::usage(KeepTrouble::NoName(name.to_owned())));
     }
     limits::name("the question's name", name)?;
     let readable = words
         .map(OsString::into_string)
         .collect::<Result<Vec<_>, _>>();
-    let words = readable
-        .map_err(|word| Failure::usage(format!("{} is no text to save", word.display())))?;
+    let words =
+        readable.map_err(|word| Failure::usage(KeepTrouble::NoText(word.display().to_string())))?;
     let words = asked(words.into_iter());
     limits::list("the question", &words.join(" "))?;
     let file = usual_file()?;
@@ -177,10 +169,8 @@ fn question<'a>(
         .get_key_value(name)
         .map(|(name, words)| (name.as_str(), words));
     known.ok_or_else(|| {
-        let hint = did_you_mean(name, questions.keys().map(String::as_str));
-        Failure::usage(format!(
-            "no question \"{name}\" was saved{hint}; `ptu saved` lists them"
-        ))
+        let near = did_you_mean(name, questions.keys().map(String::as_str));
+        Failure::usage(Unknown::Question(name.to_owned(), near))
     })
 }
 
@@ -199,7 +189,7 @@ fn list(questions: &Questions) -> String {
 fn usual_file() -> Result<PathBuf, Failure> {
     directories::ProjectDirs::from("", "", "ptu")
         .map(|directories| directories.config_dir().join("questions.json"))
-        .ok_or_else(|| Failure::usage("no user configuration directory to save questions in"))
+        .ok_or_else(|| Failure::usage(FileTrouble::NoSettingsFolder))
 }
 
 fn load(file: &Path) -> Result<Questions, Failure> {
@@ -208,9 +198,9 @@ fn load(file: &Path) -> Result<Questions, Failure> {
         other => other.map_err(|error| Failure::bench(FileTrouble::unread(file, error)))?,
     };
     serde_json::from_slice(&text).map_err(|error| {
-        Failure::bench(format!(
-            "{} is damaged ({error}); correct or delete it",
-            file.display()
+        Failure::bench(FileTrouble::Damaged(
+            file.display().to_string(),
+            Why::of(error),
         ))
     })
 }

@@ -14,7 +14,7 @@ use ptu_report::run::html;
 use ptu_report::signal::{self as report, Recording};
 use ptu_report::words::Language;
 use ptu_runs::data::{check_writable, write};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, FULL_SCALE_MV, Strength, Wave};
 use serde_json::Value;
@@ -292,6 +292,6 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-fn hex(text: &str) -> Result<Bytes, String> {
+fn hex(text: &str) -> Result<Bytes, SoundTrouble> {
     signal::bytes_of(text).map(Bytes)
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
-use ptu_report::words::asked;
 use ptu_runs::failure::{Failure, FileTrouble, KeyTrouble};
+use ptu_runs::words::Asked;
 use ptu_runs::{keys, owner_only};
 
 /// Longest file with a PIN, bytes.
@@ -91,7 +91,7 @@ impl PinOption {
             return Err(Failure::usage(KeyTrouble::NoPin));
         }
         let terminal = console::Term::stderr();
-        let cannot = |error: std::io::Error| Failure::usage(asked::pin_unread(error));
+        let cannot = |error: std::io::Error| Failure::usage(Asked::PinUnread(error.to_string()));
         terminal.write_str(prompt).map_err(cannot)?;
         terminal.read_secure_line().map_err(cannot)
     }

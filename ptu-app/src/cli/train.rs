@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use ptu_runs::drive::SectionChoice;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, RunTrouble};
 use ptu_runs::run::BenchChoice;
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
@@ -81,7 +81,8 @@ impl TrainArguments {
         let place = match (self.serial, self.tcp) {
             (Some(port), _) => port,
             (_, Some(address)) => {
-                check_exposed(&address, self.expose).map_err(Failure::usage)?;
+                check_exposed(&address, self.expose)
+                    .map_err(|why| Failure::usage(RunTrouble::NotServed(why)))?;
                 stdio::note(NO_AUTHENTICATION);
                 Place::Tcp(address)
             }

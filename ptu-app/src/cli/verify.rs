@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use super::key::KeysOption;
 use super::{Database, Json, answered};
 use ptu_report::has_certificate;
-use ptu_report::words::asked;
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Exit, Failure, FileTrouble};
 use ptu_runs::keys::KeyList;
+use ptu_runs::words::{Asked, Why};
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -91,7 +91,7 @@ impl VerifyArguments {
         let (asked, digest) = match code.map(|code| code.split_once('/')) {
             None => (self.what.as_str(), None),
             Some(Some((run, digest))) => (run, Some(digest)),
-            Some(None) => return Err(Failure::usage(asked::no_code_of_sheet())),
+            Some(None) => return Err(Failure::usage(Asked::NoCodeOfSheet)),
         };
         let store = self.database.open_read_only()?;
         let id = store.resolve_run(asked)?;
@@ -124,21 +124,15 @@ impl VerifyArguments {
             return self.of_database(path, keys);
         }
         let bytes = fault_db::read_regular_file(path, LONGEST).map_err(cannot)?;
-        let none = |why: &str| {
-            Failure::bench(format!(
-                "{} carries no signature: it is no database, no HTML sheet with a certificate and no certificate ({why}). Nothing \
-                 in it is covered; `ptu verify RUN` verifies the run that it names",
-                path.display()
-            ))
-        };
-        let text = String::from_utf8(bytes).map_err(|_| none("it is no text"))?;
+        let none = |why| Failure::bench(Asked::NoSignature(path.display().to_string(), why));
+        let text = String::from_utf8(bytes).map_err(|_| none(Why::NoText))?;
         if has_certificate(&text) {
             return Ok(sheet::sheet(&text, keys));
         }
         if text.trim_start().starts_with('{') {
-            return self.certificate(&text, keys).map_err(|why| none(&why));
+            return self.certificate(&text, keys).map_err(none);
         }
-        Err(none("a sheet of a run that was not signed has none"))
+        Err(none(Why::Unsigned))
     }
 
     fn of_database(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
@@ -202,17 +196,17 @@ impl VerifyArguments {
     }
 
     /// A certificate by itself, and held against the run where the database has it.
-    fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, String> {
+    fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, Why> {
         let mut found = Findings {
             what: "certificate",
             is_covered: true,
             ..Findings::default()
         };
         match Signed::read(text.strip_suffix('\n').unwrap_or(text)) {
-            Err(why @ SignatureError::Unreadable(_)) => return Err(why.to_string()),
+            Err(why @ SignatureError::Unreadable(_)) => return Err(Why::of(why)),
             Err(why) => found.changes.push(format!("the certificate: {why}")),
             Ok(signed) => {
-                let statement = Statement::of(&signed).ok_or("it is no statement about a run")?;
+                let statement = Statement::of(&signed).ok_or(Why::NoStatement)?;
                 found.id = statement.id.clone();
                 found.take(&statement, keys);
                 self.hold_against_database(&statement, &mut found);

@@ -1,5 +1,6 @@
 //! The window: takes what other threads have produced, then draws the frame and the page.
 
+use crate::messages::told;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -197,7 +198,7 @@ impl App {
         if gone {
             let file = self.queries.paths().database.display().to_string();
             self.messages
-                .trouble_about(About::Database, words.frame.database_gone, file);
+                .trouble_about(About::Database, words.frame.database_gone, told(file));
         }
     }
 

@@ -60,7 +60,7 @@ impl DataWatch {
                     }
                 }
             })
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
+            .map_err(|error| Failure::bench(RunTrouble::NoThread(error.to_string())))?;
         Ok(Self {
             seen,
             _ends_when_dropped: sender,

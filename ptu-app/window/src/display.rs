@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::app::{App, Options};
 use ptu_runs::bench_worker::Wake;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 
 /// Smallest window in which every page can be used, and the first one's size.
 const SMALLEST: [f32; 2] = [900.0, 600.0];
@@ -24,10 +24,7 @@ const SOON: Duration = Duration::from_millis(1);
 pub fn open(options: Options) -> Result<(), Failure> {
     let named = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if cfg!(target_os = "linux") && !named("DISPLAY") && !named("WAYLAND_DISPLAY") {
-        return Err(Failure::bench(
-            "no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); start it from a \
-             desktop, or use `ptu run`, `ptu faults` and `ptu diagnose` here",
-        ));
+        return Err(Failure::bench(Asked::NoDisplay));
     }
     let size = options.settings.window_size.unwrap_or(USUAL);
     let native = eframe::NativeOptions {
@@ -51,11 +48,7 @@ pub fn open(options: Options) -> Result<(), Failure> {
             Ok(Box::new(App::new(&creation.egui_ctx, options, wake)?))
         }),
     )
-    .map_err(|error| {
-        Failure::bench(format!(
-            "cannot open a window: {error}; check the display and its OpenGL driver, or use `ptu run` here"
-        ))
-    })
+    .map_err(|error| Failure::bench(Asked::NotOpened(error.to_string())))
 }
 
 /// Wakes the window from other threads, which never wait for it: a thread in between takes the

@@ -8,12 +8,12 @@ use std::process::ExitCode;
 use clap::Parser;
 use fault_db::Store;
 use ptu_options::{WindowOptions, refuse_password};
-use ptu_report::words::asked;
 use ptu_report::words::tell;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, Trouble};
 use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
 use ptu_runs::run::loading;
 use ptu_runs::stop::Stop;
+use ptu_runs::words::Asked;
 use ptu_window::{DataPaths, Options, Settings, open};
 
 #[derive(Debug, Parser)]
@@ -54,10 +54,9 @@ fn run() -> Result<Exit, Failure> {
 /// What the window is opened with: what was asked for, over what was kept from the last time.
 fn options(asked: WindowOptions) -> Result<Options, Failure> {
     if !asked.create {
-        asked
-            .database
-            .check_named()
-            .map_err(|failure| Failure::bench(format!("{failure}; `ptu gui --create` makes it")))?;
+        asked.database.check_named().map_err(|why| {
+            Failure::bench(Trouble::All(vec![why.message, Asked::Creates.into()]))
+        })?;
     }
     let settings_file = Settings::usual_file();
     let mut settings = settings_file
@@ -69,7 +68,7 @@ fn options(asked: WindowOptions) -> Result<Options, Failure> {
     let scripts = asked.scripts.find()?;
     let paths = match asked.database.server()? {
         Some(_) if asked.unit.is_some() => {
-            return Err(Failure::usage(asked::server_is_read()));
+            return Err(Failure::usage(Asked::ServerIsRead));
         }
         Some(server) => {
             // Before there is a window to say it in.

@@ -69,6 +69,11 @@ const SHOWN_S: f64 = 10.0;
 /// Messages kept; older ones are dropped.
 const KEPT: usize = 100;
 
+/// A detail in words that are chosen already; none where they are empty.
+pub fn told(words: impl Into<String>) -> Trouble {
+    Trouble::Told(words.into())
+}
+
 impl Messages {
     /// Adds a message that something went wrong.
     pub fn trouble(&mut self, text: impl Into<String>, detail: impl Into<Trouble>) {
@@ -91,7 +96,7 @@ impl Messages {
 
     /// As [`note`](Self::note), until what it is about is over.
     pub fn note_about(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
-        self.push(text.into(), "".into(), false, about.into());
+        self.push(text.into(), told(""), false, about.into());
     }
 
     /// Tells what was written, which can be undone for [`UNDO_S`].

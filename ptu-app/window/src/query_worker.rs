@@ -3,9 +3,9 @@
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use super::data_paths::DataPaths;
-use ptu_report::words::asked;
 use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, RunTrouble};
+use ptu_runs::words::Asked;
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 
@@ -27,7 +27,7 @@ impl QueryWorker {
         std::thread::Builder::new()
             .name("queries".into())
             .spawn(move || receiver.iter().for_each(|query| query(&own)))
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
+            .map_err(|error| Failure::bench(RunTrouble::NoThread(error.to_string())))?;
         Ok(Self {
             queries,
             wake,
@@ -70,7 +70,7 @@ impl<T> Pending<T> {
         match self.0.try_recv() {
             Ok(answer) => Some(answer),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err(Failure::bench(asked::not_answered()))),
+            Err(TryRecvError::Disconnected) => Some(Err(Failure::bench(Asked::NotAnswered))),
         }
     }
 }

@@ -135,7 +135,9 @@ mod tests {
         assert!(cached.get().value() == Some(&2) && !cached.is_stale());
         let (third, pending_response) = pending();
         cached.request(pending_response);
-        third.send(Err(Failure::bench("gone"))).expect("heard");
+        third
+            .send(Err(Failure::bench(ptu_runs::words::RunTrouble::NoUnit)))
+            .expect("heard");
         cached.poll();
         assert!(matches!(cached.get(), Request::Failed(_)));
     }

@@ -18,7 +18,7 @@ use crate::words::Language;
 use crate::{json_text, run};
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
@@ -53,13 +53,13 @@ pub enum Outcomes {
 ///
 /// # Errors
 /// No drive has such a report.
-pub fn target(name: &str) -> Result<Target, String> {
+pub fn target(name: &str) -> Result<Target, Asked> {
     let target = name.parse().ok();
     target
         .filter(|target: &Target| {
             matches!(target.format, Format::Html | Format::Json | Format::Csv)
         })
-        .ok_or_else(|| "a report of a drive ends in .html, .json or .csv".into())
+        .ok_or(Asked::NoDriveReport)
 }
 
 /// Writes the report.

@@ -158,10 +158,7 @@ fn partition(store: &Store, view: &View, month: &str) -> Result<Vec<u8>, Failure
         from += found.rows.len();
         let is_last = found.rows.len() < ROWS && !found.truncated;
         if found.rows.is_empty() && found.truncated {
-            return Err(Failure::bench(format!(
-                "a row of {} is too long to be exported",
-                view.name
-            )));
+            return Err(Failure::bench(FileTrouble::LongRow(view.name.to_owned())));
         }
         file.put(&found.rows)?;
         if is_last {

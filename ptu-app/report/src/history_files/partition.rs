@@ -11,7 +11,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::views::{Kind, View};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 
 /// A file in memory.
 pub(super) struct Partition<'a> {
@@ -50,9 +50,9 @@ impl<'a> Partition<'a> {
                 .iter()
                 .map(|row| row.get(place).unwrap_or(&SqlValue::Null));
             put_column(&mut writer, *kind, values).map_err(|why| match why {
-                Refused::Value(value) => Failure::bench(format!(
-                    "the history has {value:?} in {}.{name}, which no other row has; look with `ptu db check`",
-                    view.name
+                Refused::Value(value) => Failure::bench(FileTrouble::OddValue(
+                    format!("{}.{name}", view.name),
+                    format!("{value:?}"),
                 )),
                 Refused::File(error) => failed(error),
             })?;
@@ -70,7 +70,10 @@ impl<'a> Partition<'a> {
 }
 
 fn failed(view: &View, error: &ParquetError) -> Failure {
-    Failure::bench(format!("cannot write {} as Parquet: {error}", view.name))
+    Failure::bench(FileTrouble::Unwritten(
+        format!("{} (Parquet)", view.name),
+        Why::of(error),
+    ))
 }
 
 enum Refused {

@@ -6,8 +6,8 @@ use std::ops::Range;
 use fault_db::TraceData;
 
 use super::series::Import;
-use crate::words::asked as words;
 use ptu_runs::failure::Failure;
+use ptu_runs::words::Asked;
 
 /// How much sooner than a row a sample's time may be rounded, microseconds.
 const ROUNDING_US: i64 = 1;
@@ -82,7 +82,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
             let is_first = names.insert(channel.name.clone());
             if known.contains(channel.name.as_str()) {
                 if !is_first {
-                    return Err(Failure::usage(words::comes_twice(&channel.name)));
+                    return Err(Failure::usage(Asked::ComesTwice(channel.name)));
                 }
                 imported.channels.push(channel);
                 imported.columns.push(held.column(&column));
@@ -176,7 +176,7 @@ fn span_us(import: &Import) -> (i64, i64) {
 fn no_time_in_common(file_us: (i64, i64), later_us: i64, trace_us: (i64, i64)) -> Failure {
     let s = |time_us: i64| format!("{:.3}", time_us as f64 / 1e6);
     let at_s = |time_us: i64| s(time_us.saturating_add(later_us));
-    Failure::usage(words::file_outside_trace(
+    Failure::usage(Asked::FileOutsideTrace(
         at_s(file_us.0),
         at_s(file_us.1),
         s(trace_us.0),

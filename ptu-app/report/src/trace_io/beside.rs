@@ -7,7 +7,7 @@ use fault_db::{Id, Store, TraceData};
 use super::align::{Aligned, align};
 use super::series::import;
 use super::times::Columns;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::replay::{Rule, rule_between};
 
 /// Names that are told of a file that has none of the trace's signals.
@@ -30,15 +30,15 @@ pub fn beside(
     if aligned.imported.channels.is_empty() {
         let more = match aligned.unknown.len().saturating_sub(SHOWN_NAMES) {
             0 => String::new(),
-            more => format!(" and {more} more"),
+            more => format!(" (+{more})"),
         };
         let shown: Vec<_> = (aligned.unknown.iter().take(SHOWN_NAMES))
             .map(String::as_str)
             .collect();
-        return Err(Failure::usage(format!(
-            "{}: none of its signals is one of the trace's: {}{more}; `--map NAME=SIGNAL` says what one is",
-            file.display(),
-            shown.join(", ")
+        let names = shown.join(", ") + &more;
+        return Err(Failure::usage(Asked::NoneShared(
+            file.display().to_string(),
+            names,
         )));
     }
     let rule = if aligned.is_row_by_row {

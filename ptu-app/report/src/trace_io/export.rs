@@ -6,9 +6,9 @@ use std::path::Path;
 use super::csv::{self, beside};
 use super::part::TracePart;
 use super::{mcap_write, parquet};
-use crate::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{NewFile, cannot_write, kind};
+use ptu_runs::words::Asked;
 
 /// What a trace is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Format {
             Some("csv") => Ok(Self::Csv),
             Some("parquet") => Ok(Self::Parquet),
             Some("mcap") => Ok(Self::Mcap),
-            _ => Err(Failure::usage(asked::no_trace_format())),
+            _ => Err(Failure::usage(Asked::NoTraceFormat)),
         }
     }
 }

@@ -8,8 +8,8 @@ use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
 use crate::words::Language;
-use crate::words::asked;
 use ptu_runs::failure::Failure;
+use ptu_runs::words::Asked;
 
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;
@@ -66,9 +66,9 @@ impl Seconds {
         let is_all = self.from.is_none() && self.to.is_none();
         if rows.is_empty() && !is_all {
             let at_s = |row: i64| format!("{:.3}", (row - trigger) as f64 * period_s);
-            return Err(Failure::usage(asked::outside_trace(
-                at_s(0),
-                at_s(head.rows as i64 - 1),
+            return Err(Failure::usage(Asked::OutsideTrace(
+                at_s(0).to_string(),
+                at_s(head.rows as i64 - 1).to_string(),
             )));
         }
         Ok(rows)

@@ -8,7 +8,7 @@ use fault_db::{Channel, ChannelKind};
 use super::about::TraceInfo;
 use super::times::Columns;
 use super::{csv_read, mcap_read, parquet_read};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 
 /// A file has at most this many signals; a trace of ours has a few hundred.
 const MOST_SIGNALS: usize = 4096;
@@ -109,5 +109,5 @@ pub(super) fn plain(name: &str) -> Channel {
 
 /// The failure of a file that is wrong.
 pub(super) fn wrong(file: &Path, what: &str) -> Failure {
-    Failure::usage(format!("{}: {what}", file.display()))
+    Failure::usage(FileTrouble::wrong(file.display(), what))
 }

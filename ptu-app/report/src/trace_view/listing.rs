@@ -5,9 +5,9 @@ use fault_db::{Id, RunFilter, RunOccurrence, RunSummary, Store, Verdict};
 use super::TraceView;
 use crate::naming::PartNames;
 use crate::words::Language;
-use crate::words::asked;
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
+use ptu_runs::words::Asked;
 
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;
@@ -188,9 +188,9 @@ pub fn open(
 ) -> Result<OpenTrace, Failure> {
     let data = store.trace(id)?;
     if !PERIODS_US.contains(&data.period_us) {
-        return Err(Failure::bench(asked::trace_damaged(
-            id.short(),
-            data.period_us,
+        return Err(Failure::bench(Asked::TraceDamaged(
+            id.short().to_string(),
+            data.period_us.to_string(),
         )));
     }
     let run = match run {

@@ -10,7 +10,7 @@ use fault_db::{Id, Store, TraceData};
 use super::TraceView;
 use crate::trace_io::{Columns, beside};
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
 /// What a trace is compared with.
@@ -46,7 +46,7 @@ pub struct FirstDifference {
     /// The first signal that differs.
     pub first: Option<Deviation>,
     /// Why it could not be told.
-    pub trouble: Option<String>,
+    pub trouble: Option<Trouble>,
 }
 
 impl Overlay {
@@ -97,7 +97,7 @@ impl Overlay {
         };
         let (found, trouble) = match compare(came, self.view.data(), &rule, &[]) {
             Ok(found) => (Some(found), None),
-            Err(failure) => (None, Some(failure.to_string())),
+            Err(failure) => (None, Some(failure.message)),
         };
         let deviations = found.map_or_else(Vec::new, |found: Comparison| found.deviations);
         FirstDifference {

@@ -44,9 +44,6 @@ wordings! {
         damaged: "Problems: {n}", "문제 {n}건";
         chain: "chain of seals: {n} entries of database {file}, the last {seal}", "봉인 사슬: 데이터베이스 {file}의 기록 {n}건, 마지막 봉인 {seal}";
         logs: "Logs and run records of a unit are imported on the pages {faults} and {traces}.", "장치의 로그와 주행 기록은 {faults}, {traces} 화면에서 가져옵니다.";
-        no_file: "There is no history file {file}", "이력 파일이 없습니다: {file}";
-        is_there: "The file {file} is there already: name another one", "파일이 이미 있습니다: {file}. 다른 이름을 적으십시오";
-        is_copy: "This history file is a copy of one that the server knows, and goes on by itself. Go on with the file that it was copied from, or import this one into it", "이 이력 파일은 서버가 아는 파일의 사본이며 따로 이어졌습니다. 원본 파일을 쓰거나, 이 파일을 원본에 가져오십시오";
         failed: "The history was not exchanged, copied or checked", "이력을 교환, 복사 또는 검사하지 못했습니다";
         reads: "reads only: {server}", "읽기 전용: {server}";
         is_server: "This window reads the history of a server. Runs, repairs and notes are recorded in the file of a laptop: open the window with it, and sync it.", "이 창은 서버의 이력을 읽기만 합니다. 시험, 수리, 메모는 노트북의 이력 파일에 기록됩니다. 그 파일로 창을 열고 동기화하십시오.";

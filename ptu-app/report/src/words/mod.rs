@@ -3,7 +3,6 @@
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
 
-pub mod asked;
 mod bench;
 mod care;
 mod case;
@@ -278,9 +277,10 @@ mod tests {
         .concat()
     }
 
-    /// With what the command line refuses.
+    /// With what is refused.
     fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
-        [all(), asked::ALL.to_vec()].concat()
+        let refused = ptu_runs::words::all().map(|[key, english, korean]| (key, english, korean));
+        all().into_iter().chain(refused).collect()
     }
 
     #[test]
@@ -363,12 +363,10 @@ mod tests {
         let mut places: Vec<_> = text
             .split('{')
             .skip(1)
-            .filter_map(|rest| {
-                rest.split_once('}')
-                    .map(|(name, _)| name.trim_end_matches(":#"))
-            })
+            .filter_map(|rest| rest.split_once('}').map(|(name, _)| name))
             .collect();
         places.sort_unstable();
+        places.dedup();
         places
     }
 }

@@ -1,6 +1,7 @@
 //! The bench thread: connects to a unit, scans the bench while nothing runs, runs procedures, and releases the
 //! unit with its outputs safe.
 
+use crate::words::RunTrouble;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -26,9 +27,6 @@ use crate::stop::Stop;
 
 /// Name from which the seed of the embedded unit's live session is made, as from a procedure's.
 const LIVE: &str = "live";
-
-/// Why a run cannot be begun.
-const NO_UNIT: &str = "no unit is connected";
 
 /// The thread's side of a [`BenchWorker`](super::BenchWorker).
 pub(super) struct BenchThread {
@@ -72,7 +70,7 @@ impl BenchThread {
                         return;
                     }
                 }
-                Order::Run(..) => self.tell(BenchEvent::RunFailed(NO_UNIT.into())),
+                Order::Run(..) => self.tell(BenchEvent::RunFailed(RunTrouble::NoUnit.into())),
                 // No unit is connected, so nothing is to be done or undone.
                 Order::Apply(..) | Order::Arm(_) | Order::MakeSafe | Order::Disconnect => {}
             }

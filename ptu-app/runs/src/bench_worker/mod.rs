@@ -80,7 +80,7 @@ impl BenchWorker {
         let thread = std::thread::Builder::new()
             .name("bench".into())
             .spawn(move || bench_thread.run_until_closed(&receiver))
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
+            .map_err(|error| Failure::bench(RunTrouble::NoThread(error.to_string())))?;
         Ok(Self {
             orders: Some(orders),
             live_state,

@@ -32,7 +32,7 @@ pub use samples::{Purpose, Sample, samples};
 pub use suite::{Suite, SuiteRun};
 
 use crate::data::ScriptsDirectory;
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, Unknown, did_you_mean};
 use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::run_diagnosis::basis;
 use crate::stop::Stop;
@@ -130,9 +130,9 @@ pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode
         .collect();
     if chosen.is_empty() {
         let known = all.iter().map(|mode| mode.id.as_str());
-        return Err(Failure::usage(format!(
-            "no fault mode matches \"{pattern}\"{}; `ptu catalog faults` lists them",
-            did_you_mean(pattern.as_str(), known)
+        return Err(Failure::usage(Unknown::FaultGlob(
+            pattern.to_string(),
+            did_you_mean(pattern.as_str(), known),
         )));
     }
     Ok(chosen)

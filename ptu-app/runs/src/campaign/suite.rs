@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::samples::Sample;
 use crate::data::ScriptsDirectory;
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::run::{
     BenchChoice, BenchSetup, ObservationBuilder, SessionEvent, TO_THE_END, Task, isolate, loading,
     run_on_fresh,
@@ -63,9 +63,7 @@ impl Suite {
         let (config, line) = (&setup.config.content, &setup.line.content);
         let loaded = loading::load(&texts, config, line, &setup.train)?;
         if let Some(error) = loaded.errors.first() {
-            return Err(Failure::usage(format!(
-                "{error}; `ptu run --check` shows all errors"
-            )));
+            return Err(Failure::usage(RunTrouble::Script(error.to_string())));
         }
         let procedures = loaded
             .procedures

@@ -10,7 +10,7 @@ use protocol::line::Line;
 
 use super::{DriveBench, Fixed, SectionChoice, Setting, drive, train, unit_config};
 use crate::data::{DataFile, ScriptsDirectory, sha256};
-use crate::failure::Failure;
+use crate::failure::{DriveTrouble, Failure};
 use crate::pool;
 use crate::stdio;
 use crate::stop::Stop;
@@ -99,7 +99,7 @@ impl Request {
                 let code = self.code.as_deref();
                 let (config, line) = (&bench.config.content, &bench.line.content);
                 let mut plan = DrivePlan::new(config, line, train.clone(), section, code)
-                    .map_err(|error| Failure::usage(error.to_string()))?;
+                    .map_err(|error| Failure::usage(DriveTrouble::NoPlan(error.to_string())))?;
                 (plan.load_kg, plan.conditions) = fixed.hold(0.0, Conditions::default());
                 cases.push(Case {
                     controller: config.ato.controller,
@@ -120,8 +120,8 @@ impl Request {
             .iter()
             .find(|setting| setting.key() == CONTROLLER_KEY);
         match set.filter(|_| !self.controllers.is_empty()) {
-            Some(setting) => Err(Failure::usage(format!(
-                "--set {setting} beside --controller or --compare: give one of them"
+            Some(setting) => Err(Failure::usage(DriveTrouble::ControllerTwice(
+                setting.to_string(),
             ))),
             None => Ok(()),
         }

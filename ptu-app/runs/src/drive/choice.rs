@@ -5,7 +5,7 @@ use std::str::FromStr;
 use btu_rig::conditions::{Conditions, Disturbance};
 use protocol::line::Line;
 
-use crate::failure::Failure;
+use crate::failure::{DriveTrouble, Failure, Unknown};
 
 /// Sections to drive through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,16 +54,22 @@ impl SectionChoice {
         for end in [from, to] {
             if line.section(end).is_none() {
                 let known: Vec<_> = all.map(|number| number.to_string()).collect();
-                return Err(Failure::usage(format!(
-                    "line {} has no section {end}; it has {}",
-                    line.name,
-                    known.join(", ")
+                return Err(Failure::usage(Unknown::SectionOf(
+                    line.name.clone(),
+                    end,
+                    known.join(", "),
                 )));
             }
         }
         Ok(all.filter(|number| (from..=to).contains(number)).collect())
     }
 }
+
+/// The disturbance of [S1].
+pub const S1: Disturbance = Disturbance::Sine {
+    amplitude_n_s_per_m: 2e4,
+    hz: 1.0,
+};
 
 /// Force against the train by its name: `none`, `s1` [S1: 2e4 N·s/m at 1 Hz] or AMP@HZ.
 ///
@@ -72,7 +78,7 @@ impl SectionChoice {
 pub fn disturbance(text: &str) -> Result<Disturbance, String> {
     let (amplitude, hz) = match text {
         "none" => return Ok(Disturbance::None),
-        "s1" => ("2e4", "1"),
+        "s1" => return Ok(S1),
         _ => text
             .split_once('@')
             .ok_or_else(|| format!("\"{text}\" is no disturbance: use none, s1 or AMP@HZ"))?,
@@ -116,8 +122,11 @@ impl Fixed {
             ("--wheel", self.wheel_factor, 0.9, 1.1),
         ] {
             if let Some(value) = value.filter(|value| !(low..=high).contains(value)) {
-                return Err(Failure::usage(format!(
-                    "{option} {value} is outside {low} .. {high}"
+                return Err(Failure::usage(DriveTrouble::Outside(
+                    option.to_owned(),
+                    value.to_string(),
+                    low.to_string(),
+                    high.to_string(),
                 )));
             }
         }

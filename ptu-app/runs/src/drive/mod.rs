@@ -14,5 +14,5 @@ pub mod train;
 
 pub use bench::{DriveBench, drive};
 pub use case::{Case, Driven, Request, drive_all};
-pub use choice::{Fixed, SectionChoice, disturbance};
+pub use choice::{Fixed, S1, SectionChoice, disturbance};
 pub use settings::{Setting, unit_config};

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use crate::data::{DataFile, ScriptsDirectory, sha256};
-use crate::failure::{Failure, did_you_mean};
+use crate::failure::{Failure, RunTrouble, did_you_mean};
 
 /// One key and its new value.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,13 +74,11 @@ impl Display for Setting {
 }
 
 impl FromStr for Setting {
-    type Err = String;
+    type Err = RunTrouble;
 
     /// `KEY=VALUE`; what is no TOML value is a text.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (key, value) = text
-            .split_once('=')
-            .ok_or("a setting is KEY=VALUE, as ato.gently_mps2=0.4")?;
+    fn from_str(text: &str) -> Result<Self, RunTrouble> {
+        let (key, value) = text.split_once('=').ok_or(RunTrouble::NoSetting)?;
         Ok(Self::new(key.trim(), value.trim()))
     }
 }

@@ -9,7 +9,7 @@ use protocol::config::UnitConfig;
 
 use super::{Fixed, Setting};
 use crate::data::{ScriptsDirectory, read};
-use crate::failure::Failure;
+use crate::failure::{DriveTrouble, Failure, FileTrouble};
 
 /// Least and greatest mass of an ideal train, kg.
 const IDEAL_KG: (f64, f64) = (1e4, 2e6);
@@ -29,7 +29,7 @@ pub fn train(directory: &ScriptsDirectory, name: &str) -> Result<TrainData, Fail
             .content);
     }
     TrainData::from_toml(&read(Path::new(name))?)
-        .map_err(|error| Failure::usage(format!("{name}: {error}")))
+        .map_err(|error| Failure::usage(FileTrouble::wrong(name, error)))
 }
 
 /// Gives the train a total mass: an ideal train is built so heavy, a train of cars is loaded so
@@ -48,11 +48,11 @@ pub fn load(
             return Ok(value);
         }
         let kg = |mass: f64| format!("{mass:.0} kg");
-        Err(Failure::usage(format!(
-            "{what} {} is outside {} .. {}",
+        Err(Failure::usage(DriveTrouble::Outside(
+            what.to_owned(),
             kg(value),
             kg(low),
-            kg(high)
+            kg(high),
         )))
     };
     match (mass_kg, train) {
@@ -131,9 +131,9 @@ pub fn check_acts(train: &TrainData, fixed: &Fixed) -> Result<(), Failure> {
     let gradient = fixed.gradient_permille.filter(|_| !ideal.gradients);
     for (option, value) in [("--gradient", gradient), ("--adhesion", fixed.adhesion)] {
         if value.is_some() {
-            return Err(Failure::usage(format!(
-                "{option} does not act on train {}; use --train line6",
-                ideal.name
+            return Err(Failure::usage(DriveTrouble::NoEffect(
+                option,
+                ideal.name.clone(),
             )));
         }
     }

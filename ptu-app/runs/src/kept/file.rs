@@ -13,7 +13,7 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use super::Head;
 use super::record::{Found, head_record, in_order};
 use crate::data;
-use crate::failure::Failure;
+use crate::failure::{Failure, KeepTrouble, Why};
 use crate::new_file::kind;
 use crate::stdio;
 
@@ -49,21 +49,16 @@ impl<R: DeserializeOwned> KeptRuns<R> {
     /// It cannot be read or written, another process writes it, it is another file, or it holds runs of another
     /// program or other scripts.
     pub fn open(path: &Path, head: &Head) -> Result<Self, Failure> {
-        let wrong = |why: &dyn Display| {
-            Failure::usage(format!(
-                "cannot use {}: {why}; name another file",
-                path.display()
-            ))
-        };
+        let wrong = |why| Failure::usage(KeepTrouble::Unusable(path.display().to_string(), why));
         if path.exists() {
             // No device or pipe.
-            open_regular_file(path).map_err(|error| wrong(&error))?;
+            open_regular_file(path).map_err(|error| wrong(Why::of(error)))?;
         }
         let mut options = OpenOptions::new();
         let options = options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(|error| wrong(&error))?;
+        let mut file = options.open(path).map_err(|error| wrong(Why::of(error)))?;
         match file.try_lock() {
-            Err(TryLockError::WouldBlock) => return Err(wrong(&"another campaign writes it")),
+            Err(TryLockError::WouldBlock) => return Err(wrong(Why::OtherWriter)),
             // A file system without locks.
             Err(TryLockError::Error(_)) | Ok(()) => {}
         }
@@ -71,22 +66,22 @@ impl<R: DeserializeOwned> KeptRuns<R> {
         let read = Read::by_ref(&mut file)
             .take(MOST_BYTES + 1)
             .read_to_end(&mut bytes);
-        read.map_err(|error| wrong(&error))?;
+        read.map_err(|error| wrong(Why::of(error)))?;
         if bytes.len() as u64 > MOST_BYTES {
-            return Err(wrong(&format!("it has more than {MOST_BYTES} bytes")));
+            return Err(wrong(Why::MoreBytes(MOST_BYTES)));
         }
         let first = head_record(head);
         // Killed while it wrote its first record.
         let is_new = bytes.len() < first.len() && first.starts_with(&bytes);
         let found = match is_new {
             true => None,
-            false => Some(Found::<R>::read(&bytes).map_err(|why| wrong(&why))?),
+            false => Some(Found::<R>::read(&bytes).map_err(|why| wrong(Why::Said(why)))?),
         };
         if let Some(why) = found
             .as_ref()
             .and_then(|found| head.other_maker(&found.head))
         {
-            return Err(wrong(&why));
+            return Err(wrong(Why::Said(why)));
         }
         for told in found.iter().flat_map(|found| &found.told) {
             stdio::note(&format!("{}: {told}", path.display()));
@@ -95,9 +90,10 @@ impl<R: DeserializeOwned> KeptRuns<R> {
         let ready = file
             .set_len(end as u64)
             .and_then(|()| file.seek(SeekFrom::End(0)));
-        ready.map_err(|error| wrong(&error))?;
+        ready.map_err(|error| wrong(Why::of(error)))?;
         if found.as_ref().is_none_or(|found| found.head != *head) {
-            file.write_all(&first).map_err(|error| wrong(&error))?;
+            file.write_all(&first)
+                .map_err(|error| wrong(Why::of(error)))?;
         }
         let runs = found.map(|found| found.runs).unwrap_or_default();
         Ok(Self {
@@ -145,9 +141,9 @@ impl RunsFile {
         if failure.is_none()
             && let Err(error) = file.write_all(record)
         {
-            *failure = Some(Failure::bench(format!(
-                "cannot write {}: {error}; it keeps the runs before, and the campaign goes on with the same command",
-                self.path.display()
+            *failure = Some(Failure::bench(KeepTrouble::Unwritten(
+                self.path.display().to_string(),
+                error.to_string(),
             )));
         }
         failure.is_none()
@@ -164,9 +160,9 @@ impl RunsFile {
     /// It cannot be read or written.
     pub fn put_in_order(&self, head: &Head) -> Result<(), Failure> {
         let cannot = |why: &dyn Display| {
-            Failure::bench(format!(
-                "cannot put {} in order: {why}; it keeps its runs",
-                self.path.display()
+            Failure::bench(KeepTrouble::Unordered(
+                self.path.display().to_string(),
+                why.to_string(),
             ))
         };
         let bytes = read_regular_file(&self.path, MOST_BYTES).map_err(|error| cannot(&error))?;

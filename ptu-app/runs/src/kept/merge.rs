@@ -1,7 +1,6 @@
 //! Shards put together, and what they lack.
 
 use std::collections::BTreeMap;
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use fault_db::read_regular_file;
@@ -11,7 +10,7 @@ use serde::de::IgnoredAny;
 use super::file::MOST_BYTES;
 use super::record::{Found, in_order};
 use super::{Head, Shard};
-use crate::failure::{Failure, FileTrouble};
+use crate::failure::{Failure, FileTrouble, KeepTrouble, Why};
 
 /// The runs of several files as one file.
 pub struct Merged {
@@ -62,13 +61,8 @@ impl Read {
     fn of(path: &Path) -> Result<Self, Failure> {
         let bytes = read_regular_file(path, MOST_BYTES)
             .map_err(|error| Failure::usage(FileTrouble::unread(path, error)))?;
-        let found = Found::read(&bytes).map_err(|why| {
-            refused(
-                path,
-                &why,
-                "make its runs again with another file, or leave it out",
-            )
-        })?;
+        let found = Found::read(&bytes)
+            .map_err(|why| Failure::usage(KeepTrouble::Again(path.display().to_string(), why)))?;
         Ok(Self {
             path: path.to_owned(),
             bytes,
@@ -80,25 +74,17 @@ impl Read {
     fn check(&self, first: &Path, head: &Head) -> Result<(), Failure> {
         let own = &self.found.head;
         let why = match head.other_maker(own) {
-            Some(why) => why,
+            Some(why) => Why::Said(why),
             None if own.plan == head.plan => return Ok(()),
-            None => format!(
-                "its {} runs are of another campaign ({})",
-                own.plan.len(),
-                own.plan.what
-            ),
+            None => Why::OtherCampaign(own.plan.len(), own.plan.what.clone()),
         };
-        let why = format!(
-            "{why}, unlike those of {} ({})",
-            first.display(),
-            head.plan.what
-        );
-        Err(refused(&self.path, &why, "leave one of the two out"))
+        Err(Failure::usage(KeepTrouble::Unlike(
+            self.path.display().to_string(),
+            why,
+            first.display().to_string(),
+            head.plan.what.clone(),
+        )))
     }
-}
-
-fn refused(path: &Path, why: &dyn Display, to_do: &str) -> Failure {
-    Failure::usage(format!("{}: {why}; {to_do}", path.display()))
 }
 
 /// Reads all files, whose runs have to be of one plan and made by the same.
@@ -114,7 +100,7 @@ fn read_all(files: &[PathBuf]) -> Result<(Head, Vec<Read>), Failure> {
     let head = all
         .first()
         .map(|read| read.found.head.of_all())
-        .ok_or_else(|| Failure::usage("no file is named"))?;
+        .ok_or_else(|| Failure::usage(KeepTrouble::NoFile))?;
     Ok((head, all))
 }
 
@@ -130,23 +116,19 @@ pub fn merge(files: &[PathBuf]) -> Result<Merged, Failure> {
     }
     for read in &all {
         if let Some(told) = read.found.told.first() {
-            return Err(refused(
-                &read.path,
-                told,
-                "give its own command once more, with this file, and then merge",
-            ));
+            let file = read.path.display().to_string();
+            return Err(Failure::usage(KeepTrouble::Cut(file, told.to_string())));
         }
         for (name, (_, at)) in &read.found.runs {
             let record = &read.bytes[at.clone()];
             match of_plan.get_mut(name) {
                 Some(place @ None) => *place = Some((&read.path, record)),
                 Some(Some((other, same))) if *same != record => {
-                    let why = format!(
-                        "its run {name} has another result than in {}",
-                        other.display()
-                    );
-                    let to_do = "one of them was changed, or made by another build of the program: make both again";
-                    return Err(refused(&read.path, &why, to_do));
+                    return Err(Failure::usage(KeepTrouble::OtherResult(
+                        read.path.display().to_string(),
+                        name.clone(),
+                        other.display().to_string(),
+                    )));
                 }
                 _ => {}
             }

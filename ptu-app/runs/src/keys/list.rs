@@ -96,10 +96,8 @@ impl KeyList {
             for entry in Self::of_file(&file)?.keys {
                 let added = list.add(entry);
                 added.map_err(|why| {
-                    Failure::bench(KeyTrouble::NoKeyList(
-                        path.display().to_string(),
-                        Why::Said(why),
-                    ))
+                    let list = FileTrouble::OfKeys(path.display().to_string());
+                    Failure::bench(why).because_of(list)
                 })?;
             }
         }
@@ -181,14 +179,13 @@ impl KeyList {
     ///
     /// # Errors
     /// It is there as another's.
-    pub fn add(&mut self, entry: KeyEntry) -> Result<KeyEntry, String> {
+    pub fn add(&mut self, entry: KeyEntry) -> Result<KeyEntry, KeyTrouble> {
         let Some(known) = self.keys.iter_mut().find(|known| known.key == entry.key) else {
             self.keys.push(entry.clone());
             return Ok(entry);
         };
         if known.name() != entry.name() {
-            let (one, other) = (known.name(), entry.name());
-            return Err(format!("one key is listed as that of {one} and of {other}"));
+            return Err(KeyTrouble::OfTwo(known.name(), entry.name()));
         }
         let earliest = |a: &Option<String>, b| [a.clone(), b].into_iter().flatten().min();
         *known = KeyEntry {

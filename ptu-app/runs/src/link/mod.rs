@@ -14,4 +14,4 @@ pub use no_unit::NoUnit;
 pub use pace::Pace;
 pub(crate) use port_lock::open_port;
 pub use sim::{SIM_SERIAL, SimLink};
-pub use wire::{Endpoint, EndpointError, WireLink};
+pub use wire::{Endpoint, WireLink};

@@ -12,7 +12,7 @@ use serialport::SerialPort;
 
 use super::NoUnit;
 use super::{Pace, open_port};
-use crate::failure::{Failure, RunTrouble};
+use crate::failure::{EndpointError, Failure, RunTrouble};
 
 /// Baud rate when none is given.
 const BAUD: u32 = 115_200;
@@ -37,23 +37,6 @@ pub enum Endpoint {
     Tcp(String),
     /// A pseudo-terminal whose unit scans once for each scan of the bench, however fast that is.
     LockStep(String),
-}
-
-/// Why a text is no place of a unit.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum EndpointError {
-    /// It begins as none.
-    #[error("a unit is `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`")]
-    Unknown,
-    /// What stands after `tcp:`.
-    #[error("\"{0}\" is not HOST:PORT")]
-    Address(String),
-    /// The text after `@`, which states the baud rate.
-    #[error("\"{0}\" is not a baud rate")]
-    Baud(String),
-    /// Nothing stands after `serial:`.
-    #[error("serial: needs a port; `ptu ports` lists them")]
-    NoPort,
 }
 
 impl Endpoint {

@@ -11,7 +11,7 @@ use super::replay_embedded::{EmbeddedReplay, from_here, on_embedded};
 use super::{Comparison, Original, compare, good_twin};
 use crate::clock;
 use crate::data::ScriptsDirectory;
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, RunTrouble};
 use crate::link::Endpoint;
 use crate::platform;
 use crate::run::{BenchContents, BenchSetup, Connected};
@@ -212,7 +212,7 @@ fn play(
         connected @ Connected::Port(..) => {
             let serial = connected.serial();
             let Connected::Port(mut session, ..) = connected else {
-                return Err(Failure::bench("the unit on the port is gone"));
+                return Err(Failure::bench(RunTrouble::PortGone));
             };
             let played = from_here(original, &mut session);
             let safe = session.make_safe();

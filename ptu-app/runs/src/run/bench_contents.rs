@@ -18,7 +18,7 @@ use super::event::RecordedStimuli;
 use crate::data::{ScriptsDirectory, sha256};
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
-use crate::failure::{Failure, RecordTrouble};
+use crate::failure::{Exit, Failure, RecordTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
 
@@ -207,12 +207,9 @@ impl BenchContents {
 }
 
 fn gone<T>(what: &'static str, made: &BenchFile, found: Result<T, Failure>) -> Result<T, Failure> {
-    found.map_err(|failure| {
-        Failure::usage(RecordTrouble::Gone(
-            what,
-            made.name.clone(),
-            Box::new(failure.message),
-        ))
+    found.map_err(|why| Failure {
+        exit: Exit::Usage,
+        ..why.because_of(RecordTrouble::Gone(what, made.name.clone()))
     })
 }
 

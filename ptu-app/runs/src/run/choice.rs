@@ -123,8 +123,7 @@ impl BenchChoice {
     /// # Errors
     /// A name is wrong, a file is missing or wrong, or the files do not fit together.
     pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
-        let endpoint = Endpoint::from_str(&self.endpoint)
-            .map_err(|why| Failure::usage(RunTrouble::Endpoint(why)))?;
+        let endpoint = Endpoint::from_str(&self.endpoint).map_err(Failure::usage)?;
         let faults = directory.chosen_faults(&self.faults)?;
         if endpoint != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
             return Err(Failure::usage(RunTrouble::InjectElsewhere));
@@ -139,7 +138,8 @@ impl BenchChoice {
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
         let train = train(directory, &self.train)?;
-        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
+        check_places(&faults, &train)
+            .map_err(|wrong| Failure::usage(RunTrouble::Misplaced(wrong.to_string())))?;
         let scatter = match self.scatter {
             true => Some(Arc::new(
                 directory.bench_scatter(self.scatter_file.as_deref())?,
@@ -181,7 +181,7 @@ impl BenchChoice {
 ///
 /// # Errors
 /// It is not three numbers up to 255.
-pub fn software_version(text: &str) -> Result<[u8; 3], String> {
+pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
     let parts: Vec<u8> = text
         .split('.')
         .map_while(|part| part.parse::<u8>().ok())
@@ -190,7 +190,7 @@ pub fn software_version(text: &str) -> Result<[u8; 3], String> {
         .try_into()
         .ok()
         .filter(|_| text.split('.').count() == 3);
-    version.ok_or_else(|| format!("\"{text}\" is not a version such as 0.1.0"))
+    version.ok_or_else(|| RunTrouble::NoVersion(text.to_owned()))
 }
 
 /// Checks a serial number that was given.

@@ -18,7 +18,7 @@ use super::session::Session;
 use super::settle::{READY_WITHIN, started};
 use super::unit_text;
 use crate::clock::{ClockState, now_us};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, RunTrouble};
 use crate::link::{Endpoint, NoUnit, WireLink};
 use crate::stop::Stop;
 
@@ -76,7 +76,7 @@ impl BenchSetup {
         if stop.presses() > 0 {
             return Err(Failure {
                 exit: Exit::Aborted,
-                message: format!("{}: stopped before the unit was reached", self.endpoint).into(),
+                message: RunTrouble::NotReached(self.endpoint.clone()).into(),
             });
         }
         let identity = identity?;

@@ -276,7 +276,9 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
 /// # Errors
 /// Its input is not understood, or its output is no longer read.
 pub fn serve() -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::bench(format!("{WORD}: {error}"));
+    let failed = |error: &dyn std::fmt::Display| {
+        Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))
+    };
     platform::limit_memory(MOST_MEMORY_MIB << 20).map_err(|error| failed(&error))?;
     let order = serde_json::from_reader(BufReader::new(std::io::stdin().lock()));
     let order: Order<'static> = order.map_err(|error| failed(&error))?;

@@ -38,7 +38,7 @@ impl Signals {
         let channel = ChannelConfig::from_toml(&text);
         channel
             .map(Some)
-            .map_err(|wrong| Failure::usage(format!("{name}: {wrong}")))
+            .map_err(|wrong| Failure::usage(FileTrouble::wrong(name, wrong)))
     }
 }
 

@@ -120,7 +120,7 @@ impl RunStore {
                 let beside = write(&store, &record, &receiver, kept, &begun, waits)?;
                 Ok(beside.map_or((store, None), |(store, lost)| (store, Some(lost))))
             })
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(None, error.to_string())))?;
+            .map_err(|error| Failure::bench(RunTrouble::NoThread(error.to_string())))?;
         match beginning.recv() {
             Ok(id) => Ok(Self {
                 entries,

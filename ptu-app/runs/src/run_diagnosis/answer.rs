@@ -18,7 +18,7 @@ use super::warning::Warning;
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
-use crate::failure::{DiagnosisTrouble, Failure, Unknown, did_you_mean};
+use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
 use crate::run::{Adaptive, of_run};
 use crate::stdio;
 use crate::structure::Structure;
@@ -260,7 +260,7 @@ pub fn adaptive(
     let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
-        return Err(Failure::usage(DiagnosisTrouble::Stale(chosen.warnings)));
+        return Err(Failure::usage(Trouble::Stale(chosen.warnings)));
     }
     let basis = &chosen.dictionary.basis;
     let made_on = Bench {

@@ -6,7 +6,7 @@ use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Settings};
 
 use crate::data::{BENCH_SCATTER, ScriptsDirectory, sha256};
-use crate::failure::Failure;
+use crate::failure::{Failure, FileTrouble};
 
 /// The bench that dictionaries are made on.
 pub const UNIT_CONFIG: &str = "sg100";
@@ -101,7 +101,7 @@ impl Contents {
 /// It cannot be read, or is wrong.
 pub fn settings(directory: &ScriptsDirectory) -> Result<Settings, Failure> {
     let file = "diagnosis.toml";
-    let wrong = |what: String| Failure::usage(format!("{}: {what}", directory.shown(file)));
+    let wrong = |what: String| Failure::usage(FileTrouble::wrong(directory.shown(file), what));
     let settings: Settings =
         toml::from_str(&directory.text(file)?).map_err(|error| wrong(error.to_string()))?;
     settings.check().map_err(wrong)?;

@@ -8,7 +8,7 @@ use fault_db::Store;
 use super::basis::Contents;
 use super::warning::Warning;
 use crate::data::ScriptsDirectory;
-use crate::failure::{DiagnosisTrouble, Failure};
+use crate::failure::{DiagnosisTrouble, Failure, FileTrouble};
 
 /// The dictionary that comes with the scripts, in their directory: of units on a bench, and of units reached by their
 /// maintenance port alone.
@@ -120,7 +120,7 @@ fn shipped(directory: &ScriptsDirectory, name: &str) -> Result<Option<Dictionary
     if !directory.has(name) {
         return Ok(None);
     }
-    let wrong = |what: String| Failure::usage(format!("{}: {what}", directory.shown(name)));
+    let wrong = |what: String| Failure::usage(FileTrouble::wrong(directory.shown(name), what));
     let packed = directory.bytes(name, LONGEST_PACKED)?;
     Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
 }

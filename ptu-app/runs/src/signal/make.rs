@@ -6,7 +6,7 @@ use btu_rig::waveform::{CodeWave, FskWave, MarkerWave, Noise};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::{SAMPLE_HZ, wav};
-use crate::failure::Failure;
+use crate::failure::{Failure, SoundTrouble, Unknown};
 
 /// Band that the noise beside a code is measured in, Hz: that of a receiver of codes.
 const CODE_BAND_HZ: f64 = 320.0;
@@ -50,13 +50,13 @@ const MOST_BYTES: usize = 2_048;
 ///
 /// # Errors
 /// They are no bytes, none, or too many.
-pub fn bytes_of(text: &str) -> Result<Vec<u8>, String> {
+pub fn bytes_of(text: &str) -> Result<Vec<u8>, SoundTrouble> {
     let digits: Vec<u32> = (text.chars().filter(|letter| !letter.is_whitespace()))
         .map(|letter| letter.to_digit(16))
         .collect::<Option<_>>()
-        .ok_or("bytes are pairs of hex digits, as '01 fe 3c'")?;
+        .ok_or(SoundTrouble::NoBytes)?;
     if digits.is_empty() || digits.len() % 2 == 1 || digits.len() > 2 * MOST_BYTES {
-        return Err("1 to 2048 bytes are needed, each of two hex digits".to_owned());
+        return Err(SoundTrouble::HowManyBytes(MOST_BYTES));
     }
     let pairs = digits.chunks_exact(2);
     Ok(pairs.map(|pair| (pair[0] << 4 | pair[1]) as u8).collect())
@@ -119,8 +119,7 @@ pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Sam
         Wave::Marker { number, kmh } => {
             let marker = &unit.marker;
             let tone_hz = marker.tones_hz.get(usize::from(*number).wrapping_sub(1));
-            let tone_hz = *tone_hz
-                .ok_or_else(|| Failure::usage("markers are PSM1 to PSM4: give 1, 2, 3 or 4"))?;
+            let tone_hz = *tone_hz.ok_or_else(|| Failure::usage(SoundTrouble::NoMarker))?;
             let mut wave = MarkerWave::new(tone_hz, level_mv, marker.reach_m, rate);
             let (from_m, step_m) = (-2.0 * wave.heard_within_m(), kmh / 3.6 / rate);
             let count = (-2.0 * from_m / step_m) as usize;
@@ -158,9 +157,6 @@ fn code<'a>(unit: &'a UnitConfig, name: &str) -> Result<&'a SpeedCode, Failure> 
     let found = unit.codes.iter().find(|code| code.name == name);
     found.ok_or_else(|| {
         let names: Vec<_> = unit.codes.iter().map(|code| code.name.as_str()).collect();
-        Failure::usage(format!(
-            "the unit configuration has no code \"{name}\"; it has {}",
-            names.join(", ")
-        ))
+        Failure::usage(Unknown::Code(name.to_owned(), names.join(", ")))
     })
 }

@@ -43,15 +43,13 @@ impl Wav {
         let file = fault_db::open_regular_file(path)
             .map_err(|error| Failure::bench(FileTrouble::unread(path, error)))?;
         let mut file = BufReader::new(file);
-        let head = wav_head::read(&mut file).map_err(|why| {
-            Failure::usage(format!(
-                "{shown} is no WAV file that can be read ({why}); give a file of PCM or floating-point samples"
-            ))
-        })?;
+        let head = wav_head::read(&mut file)
+            .map_err(|why| Failure::usage(FileTrouble::NoWav(shown.clone(), why.to_string())))?;
         if !(1..=MOST_HZ).contains(&head.sample_hz) {
-            return Err(Failure::usage(format!(
-                "{shown} has {} channels at {} Hz: nothing that can be read",
-                head.channels, head.sample_hz
+            return Err(Failure::usage(FileTrouble::NoSamples(
+                shown,
+                head.channels,
+                head.sample_hz,
             )));
         }
         Ok(Self {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CHANNELS, Side};
 use crate::data;
-use crate::failure::Failure;
+use crate::failure::{Failure, SoundTrouble, Why};
 use crate::signal::FULL_SCALE_MV;
 
 /// Longest file, bytes.
@@ -54,26 +54,19 @@ impl Calibrations {
     /// # Errors
     /// The file cannot be read or is damaged.
     pub fn load(file: &Path) -> Result<Self, Failure> {
-        let failed = |why: &dyn std::fmt::Display| {
-            Failure::bench(format!(
-                "cannot read the calibrations of sound devices in {}: {why}; correct or delete it",
-                file.display()
-            ))
-        };
+        let failed =
+            |why| Failure::bench(SoundTrouble::Calibrations(file.display().to_string(), why));
         let bytes = match read_regular_file(file, LONGEST_FILE) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self::default());
             }
-            other => other.map_err(|error| failed(&error))?,
+            other => other.map_err(|error| failed(Why::of(error)))?,
         };
-        let known: Self = serde_json::from_slice(&bytes).map_err(|error| failed(&error))?;
+        let known: Self = serde_json::from_slice(&bytes).map_err(|error| failed(Why::of(error)))?;
         let is_wrong =
             |of: &&Calibration| !(of.full_scale_mv > 0.0 && of.full_scale_mv.is_finite());
         match known.calibrations.iter().find(is_wrong) {
-            Some(wrong) => Err(failed(&format!(
-                "a full scale of {} mV",
-                wrong.full_scale_mv
-            ))),
+            Some(wrong) => Err(failed(Why::NoFullScale(wrong.full_scale_mv))),
             None => Ok(known),
         }
     }

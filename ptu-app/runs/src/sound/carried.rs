@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::failure::{Failure, RunTrouble};
+use crate::failure::{Failure, RunTrouble, SoundTrouble, Why};
 use crate::platform::shorten_pipe;
 use crate::stop::Stop;
 
@@ -42,12 +42,7 @@ impl Carried {
             .stdout(pipe(!plays))
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|error| {
-                Failure::bench(RunTrouble::NotStarted(
-                    Some(name.to_string()),
-                    error.to_string(),
-                ))
-            })?;
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(name, error.to_string())))?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
         if let Some(input) = &input {
             shorten_pipe(input);
@@ -92,18 +87,17 @@ impl Carried {
     }
 
     /// Why it ended, in its own words.
-    pub(super) fn failed(&mut self, what: &str, device: &str) -> Failure {
+    pub(super) fn failed(&mut self, what: &'static str, device: &str) -> Failure {
         self.wait();
         // What it said last may still be on its way.
         std::thread::sleep(4 * LOOK);
         let words = self.last_words.lock().map(|words| words.clone());
         let words = words.unwrap_or_default();
-        let why = if words.is_empty() {
-            "the program ended"
-        } else {
-            words.as_str()
+        let why = match words.is_empty() {
+            true => Why::ProgramEnded,
+            false => Why::Said(words),
         };
-        Failure::bench(format!("cannot {what} {device}: {why}"))
+        Failure::bench(SoundTrouble::Device(what, device.to_owned(), why))
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::Command;
 use serde::Serialize;
 
 use super::{CHANNELS, Direction, SAMPLE_HZ};
-use crate::failure::Failure;
+use crate::failure::{Failure, SoundTrouble, Why};
 use crate::platform::without_window;
 
 /// How long samples wait in the sound server, ms: with the 21 ms of the pipe, less than the 100 ms until silence.
@@ -57,10 +57,7 @@ pub(super) fn carrier(direction: Direction, device: &str) -> Result<Command, Fai
         command.arg(format!("--buffer-time={}", LATENCY_MS * 1_000));
         return Ok(ready(command));
     }
-    Err(Failure::bench(format!(
-        "no program carries sound here: neither {of_server} (pulseaudio-utils) nor {of_alsa} (alsa-utils) is \
-         installed"
-    )))
+    Err(Failure::bench(SoundTrouble::NoProgram(of_server, of_alsa)))
 }
 
 /// The device that the system has chosen.
@@ -94,19 +91,19 @@ pub fn devices() -> Result<Vec<DeviceFound>, Failure> {
 /// What a program prints.
 fn said(command: &mut Command) -> Result<String, Failure> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let failed = |why: &dyn std::fmt::Display| {
-        Failure::bench(format!("cannot list devices for sound: {name}: {why}"))
-    };
+    let failed = |why| Failure::bench(SoundTrouble::NotListed(name.clone(), why));
     let output =
         (without_window(command).env("LC_ALL", "C").output()).map_err(|error| {
             match error.kind() {
-                std::io::ErrorKind::NotFound => failed(&"it is not installed (pulseaudio-utils)"),
-                _ => failed(&error),
+                std::io::ErrorKind::NotFound => failed(Why::NotInstalled("pulseaudio-utils")),
+                _ => failed(Why::of(error)),
             }
         })?;
     match output.status.success() {
         true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        false => Err(failed(&String::from_utf8_lossy(&output.stderr).trim())),
+        false => Err(failed(Why::of(
+            String::from_utf8_lossy(&output.stderr).trim(),
+        ))),
     }
 }
 

@@ -23,7 +23,7 @@ use protocol::Instant;
 use crate::aboard::UnitAboard;
 use crate::data::ScriptsDirectory;
 use crate::drive::SectionChoice;
-use crate::failure::Failure;
+use crate::failure::{Failure, RunTrouble};
 use crate::run::{BenchChoice, BenchSetup};
 use crate::stdio;
 use crate::stop::Stop;
@@ -59,7 +59,8 @@ pub fn serve(
     let mut aboard = setup.aboard(setup.seed, Instant::ZERO);
     aboard.draw_challenges(RandomState::new().hash_one(setup.seed));
     if let Some(file) = &request.flash {
-        let flash = FileFlash::open(file).map_err(Failure::usage)?;
+        let flash =
+            FileFlash::open(file).map_err(|why| Failure::usage(RunTrouble::NotServed(why)))?;
         aboard.set_flash(Box::new(flash));
     }
     stdio::note(&format!(
@@ -75,7 +76,8 @@ pub fn serve(
     if stop.presses() > 0 {
         return Ok(());
     }
-    let mut wire = Wire::open(&request.place).map_err(|error| Failure::bench(error.to_string()))?;
+    let mut wire = Wire::open(&request.place)
+        .map_err(|error| Failure::bench(RunTrouble::NotServed(error.to_string())))?;
     let typed = Typed::listen();
     stdio::note(&cab::help());
     stdio::answer(wire.name())?;
@@ -86,7 +88,7 @@ pub fn serve(
         stop: stop.clone(),
     };
     in_real_time(&mut train, &mut wire, setup.slower)
-        .map_err(|error| Failure::bench(error.to_string()))
+        .map_err(|error| Failure::bench(RunTrouble::NotServed(error.to_string())))
 }
 
 /// Leaves the train where it is to stand, and says how it stands.
@@ -102,7 +104,7 @@ fn stand(
             SectionChoice::One(number).numbers(line)?;
             let section = line.section(number).expect("it was looked for");
             let stands = aboard.stand_at(section);
-            stands.map_err(|refusal| Failure::usage(refusal.0))?;
+            stands.map_err(|refusal| Failure::usage(RunTrouble::NoStand(refusal.0.to_string())))?;
             format!("at the departure of section {number}, over its loop")
         }
     };

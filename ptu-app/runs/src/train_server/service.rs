@@ -4,7 +4,7 @@ use btu_rig::drive::DrivePlan;
 
 use crate::aboard::{Arrival, Doors, UnitAboard};
 use crate::drive::SectionChoice;
-use crate::failure::{Failure, Trouble};
+use crate::failure::{DriveTrouble, Failure, Trouble};
 use crate::run::BenchSetup;
 use crate::stdio;
 use crate::stop::Stop;
@@ -16,7 +16,9 @@ pub fn sections(choices: &[SectionChoice], setup: &BenchSetup) -> Result<Vec<Dri
     for choice in choices {
         for section in choice.numbers(line)? {
             let plan = DrivePlan::new(config, line, setup.train.clone(), section, None);
-            plans.push(plan.map_err(|error| Failure::usage(error.to_string()))?);
+            plans.push(
+                plan.map_err(|error| Failure::usage(DriveTrouble::NoPlan(error.to_string())))?,
+            );
         }
     }
     Ok(plans)

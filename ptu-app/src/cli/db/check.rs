@@ -6,7 +6,7 @@ use fault_db::{Advice, CheckReport, ProblemKind, SealHead, Store, StoreError};
 
 use crate::cli::{Database, Json, answered};
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble};
 use ptu_runs::table::Table;
 
 pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
@@ -40,9 +40,8 @@ fn has_older_schema(database: &Database) -> bool {
 fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckReport, Failure> {
     let path = database.file()?;
     let cannot = |error: std::io::Error| {
-        Failure::bench(format!(
-            "{failure}; and it cannot be copied to be checked: {error}"
-        ))
+        let copy = FileTrouble::NotCopied(error.to_string()).into();
+        Failure::bench(Trouble::All(vec![failure.message.clone(), copy]))
     };
     let folder = tempfile::tempdir().map_err(cannot)?;
     let copy = folder.path().join("copy.db");

@@ -1,6 +1,7 @@
 //! `ptu db backup`, `import`, `export`, `prune` and `rebuild`.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use clap::Args;
 use fault_db::{
@@ -13,7 +14,7 @@ use crate::cli::{Database, Json, answered, print_json, print_out, since_argument
 use ptu_options::only_file;
 use ptu_report::history_files::{Exported, export_history};
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure, in_place_of};
+use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble, Why, in_place_of};
 use ptu_runs::stdio;
 
 /// Which traces may be deleted; those of faults that are not closed never are.
@@ -117,10 +118,11 @@ pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
 fn of_named_file(file: &Path, error: StoreError) -> Failure {
     match &error {
         StoreError::Missing { path } if path == file => {
-            let file = file.display();
-            Failure::bench(format!("there is no database {file}; choose another file"))
+            Failure::bench(FileTrouble::NoDatabase(file.display().to_string()))
         }
-        of_it if in_place_of(of_it) == Some(file) => Failure::bench(of_it.to_string()),
+        of_it if in_place_of(of_it) == Some(file) => {
+            Failure::bench(Trouble::NamedStore(Arc::new(error)))
+        }
         _ => error.into(),
     }
 }
@@ -132,7 +134,8 @@ fn tell_merged(
     json: Json,
 ) -> Result<Exit, Failure> {
     let told = if json.is_asked() {
-        let mut all = to_value(counts).map_err(|error| Failure::bench(error.to_string()))?;
+        let mut all = to_value(counts)
+            .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;
         all["conflicts"] = json!(conflicts);
         print_json(&all)
     } else {

@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use clap::Args;
-use fault_db::{QueryBounds, QueryLimit, QueryResult, SqlValue, StoreError};
+use fault_db::{MOST_RESULT_BYTES, QueryBounds, QueryLimit, QueryResult, SqlValue, StoreError};
 use serde_json::{Map, Value, json};
 
-use super::watch::{Watch, too_long};
+use super::watch::Watch;
 use crate::cli::output::Output;
 use crate::cli::{Database, print_json};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 use ptu_runs::stdio;
 use ptu_runs::table::Table;
 
@@ -87,18 +87,10 @@ impl QueryArguments {
             ..
         } = self;
         Failure::usage(match limit {
-            QueryLimit::Stopped if disk => format!(
-                "the question was given up: it takes more than {max_disk} MB of temporary disk; ask for less, or \
-                 allow more with --max-disk MB"
-            ),
-            QueryLimit::Stopped => too_long(max_time.to_owned().into()),
-            QueryLimit::Memory => format!(
-                "the question was given up: it takes more than {max_memory} MB of memory; ask for less, or \
-                 allow more with --max-memory MB"
-            ),
-            QueryLimit::Row => {
-                format!("the question was given up: {limit}; ask for less of it, as with substr()")
-            }
+            QueryLimit::Stopped if disk => KeepTrouble::Disk((*max_disk).into()),
+            QueryLimit::Stopped => KeepTrouble::Time((*max_time).into()),
+            QueryLimit::Memory => KeepTrouble::Memory((*max_memory).into()),
+            QueryLimit::Row => KeepTrouble::Row(MOST_RESULT_BYTES),
         })
     }
 }

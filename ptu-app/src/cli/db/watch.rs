@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use ptu_report::words::tell;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 
 /// From one look at the temporary files to the next.
 const LOOK: Duration = Duration::from_millis(50);
@@ -43,7 +43,7 @@ impl Watch {
         std::thread::spawn(move || {
             let left = (until + GRACE).saturating_duration_since(Instant::now());
             if waits.recv_timeout(left) == Err(mpsc::RecvTimeoutError::Timeout) {
-                let failure = Failure::usage(too_long(most_time.as_secs()));
+                let failure = Failure::usage(KeepTrouble::Time(most_time.as_secs()));
                 tell(&failure);
                 std::process::exit(Exit::Usage.code().into());
             }
@@ -74,14 +74,6 @@ impl Watch {
     pub fn stopped_by_disk(&self) -> bool {
         self.disk.load(Ordering::Relaxed)
     }
-}
-
-/// What is said of a question that takes too long.
-pub fn too_long(seconds: u64) -> String {
-    format!(
-        "the question was given up: it takes longer than {seconds} s; ask for less, or allow more with \
-         --max-time SECONDS"
-    )
 }
 
 /// Size of SQLite's temporary files that are open in this process; they have no name any more.

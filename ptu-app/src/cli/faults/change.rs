@@ -5,9 +5,9 @@ use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
 use super::part;
 use crate::cli::{ScriptsOption, print_out};
-use ptu_report::words::asked;
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::words::Asked;
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
 ///
@@ -110,7 +110,7 @@ impl RepairArguments {
     pub fn record(&self, store: &Store) -> Result<Exit, Failure> {
         let part = self.part.as_deref().unwrap_or_default();
         if part.trim().is_empty() && self.other_part.is_none() {
-            return Err(Failure::usage(asked::repair_without_part()));
+            return Err(Failure::usage(Asked::RepairWithoutPart));
         }
         let id = store.resolve_fault(&self.id)?;
         let part = match &self.other_part {
@@ -157,7 +157,7 @@ impl NoteArguments {
     pub fn note(&self, store: &Store) -> Result<Exit, Failure> {
         let text = self.text.trim();
         if text.is_empty() {
-            return Err(Failure::usage(asked::empty_note()));
+            return Err(Failure::usage(Asked::EmptyNote));
         }
         let id = store.resolve_fault(&self.id)?;
         store.add_note(id, self.who.trim(), text, now_us())?;

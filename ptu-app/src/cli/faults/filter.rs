@@ -5,9 +5,9 @@ use fault_db::{FaultFilter, FaultState, Store, code_number};
 use protocol::event::{Event, Severity};
 
 use crate::cli::{ScriptsOption, check_unit};
-use ptu_report::words::asked;
 use ptu_runs::clock::Span;
-use ptu_runs::failure::{Failure, Trouble, did_you_mean, did_you_mean_number};
+use ptu_runs::failure::{Failure, did_you_mean, did_you_mean_number};
+use ptu_runs::words::Asked;
 
 /// Which faults.
 #[derive(Debug, Args)]
@@ -110,7 +110,7 @@ impl FilterArguments {
     }
 
     /// What to say of the first code that no fault has.
-    fn unknown_code(&self, store: &Store) -> Result<Option<Trouble>, Failure> {
+    fn unknown_code(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         let Some(codes) = &self.code else {
             return Ok(None);
         };
@@ -129,12 +129,12 @@ impl FilterArguments {
         let mut named = codes.split(',').map(str::trim);
         Ok(named.find(|code| !is_known(code)).map(|code| {
             let hint = did_you_mean(code, names());
-            asked::code_never(code, hint)
+            Asked::CodeNever(code.to_string(), hint)
         }))
     }
 
     /// The first name that neither something here nor the scripts have, and the nearest that something here has.
-    fn unknown(&self, store: &Store) -> Result<Option<Trouble>, Failure> {
+    fn unknown(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         if let Some(said) = self.unknown_code(store)? {
             return Ok(Some(said));
         }
@@ -144,7 +144,7 @@ impl FilterArguments {
                 && !is_part(&self.scripts, part)
             {
                 let hint = did_you_mean(part, known.iter().map(String::as_str));
-                return Ok(Some(asked::part_never(part, hint)));
+                return Ok(Some(Asked::PartNever(part.to_string(), hint)));
             }
         }
         if let Some(cause) = &self.cause {
@@ -153,35 +153,35 @@ impl FilterArguments {
                 && !is_part(&self.scripts, cause)
             {
                 let hint = did_you_mean(cause, known.iter().map(String::as_str));
-                return Ok(Some(asked::cause_never(cause, hint)));
+                return Ok(Some(Asked::CauseNever(cause.to_string(), hint)));
             }
         }
         if let Some(train) = &self.train_no {
             let known = store.known_trains()?;
             if !known.contains(train) {
                 let hint = did_you_mean_number(train, known.iter().map(String::as_str));
-                return Ok(Some(asked::train_never(train, hint)));
+                return Ok(Some(Asked::TrainNever(train.to_string(), hint)));
             }
         }
         if let Some(line) = &self.line {
             let known = store.known_lines()?;
             if !known.contains(line) && !self.has_script(&format!("lines/{line}.toml")) {
                 let hint = did_you_mean(line, known.iter().map(String::as_str));
-                return Ok(Some(asked::line_never(line, hint)));
+                return Ok(Some(Asked::LineNever(line.to_string(), hint)));
             }
         }
         if let Some(procedure) = &self.procedure {
             let known = store.known_procedures()?;
             if !known.contains(procedure) && !self.has_script(&format!("{procedure}.star")) {
                 let hint = did_you_mean(procedure, known.iter().map(String::as_str));
-                return Ok(Some(asked::procedure_never(procedure, hint)));
+                return Ok(Some(Asked::ProcedureNever(procedure.to_string(), hint)));
             }
         }
         if let Some(serial) = &self.part_serial_no {
             let known = store.known_part_serials()?;
             if !known.contains(serial) {
                 let hint = did_you_mean_number(serial, known.iter().map(String::as_str));
-                return Ok(Some(asked::serial_never(serial, hint)));
+                return Ok(Some(Asked::SerialNever(serial.to_string(), hint)));
             }
         }
         Ok(None)

@@ -9,7 +9,7 @@ use ptu_report::life;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock::local;
-use ptu_runs::failure::{Exit, Failure, did_you_mean_number};
+use ptu_runs::failure::{Asked, Exit, Failure, did_you_mean_number};
 use ptu_runs::table::Table;
 
 /// Tell everything stored about a unit, a train or a part, by its serial number
@@ -75,8 +75,7 @@ impl LifeArguments {
         known.extend(store.known_trains()?);
         known.extend(store.known_part_serials()?);
         let hint = did_you_mean_number(&self.serial, known.iter().map(String::as_str));
-        let nothing = fill(self.lang.words().life.nothing, &[("serial", &self.serial)]);
-        Ok(Failure::usage(format!("{nothing}{hint}")))
+        Ok(Failure::usage(Asked::NoLife(self.serial.clone(), hint)))
     }
 }
 

@@ -3,10 +3,10 @@
 use fault_db::Store;
 
 use crate::cli::ScriptsOption;
-use ptu_report::words::asked as words;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, did_you_mean};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// The part that is meant, in the spelling of the catalogue.
 ///
@@ -16,7 +16,7 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     let known = known(store, scripts)?;
     spelling(&known, asked).ok_or_else(|| {
         let hint = did_you_mean(asked, known.iter().map(String::as_str));
-        Failure::usage(words::no_part_here(asked, hint))
+        Failure::usage(Asked::NoPartHere(asked.to_string(), hint))
     })
 }
 
@@ -27,7 +27,7 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
 /// It has no letter, or the database fails.
 pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
     if asked.trim().is_empty() {
-        return Err(Failure::usage(words::other_part_unnamed()));
+        return Err(Failure::usage(Asked::OtherPartUnnamed));
     }
     let known = known(store, scripts)?;
     if let Some(part) = spelling(&known, asked) {

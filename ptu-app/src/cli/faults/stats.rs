@@ -14,9 +14,9 @@ use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
 use ptu_report::distances::Distances;
 use ptu_report::fault_months::{by_month, on_the_way};
-use ptu_report::words::asked;
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::words::Asked;
 use rate_ratio::RateRatio;
 
 /// Keys of a row, in their order.
@@ -124,7 +124,7 @@ impl StatsArguments {
             GroupBy::Month => StatKey::All,
         };
         if self.distances.is_some() && self.by != GroupBy::Month {
-            return Err(Failure::usage(asked::distances_by_month()));
+            return Err(Failure::usage(Asked::DistancesByMonth));
         }
         let distances = self.distances.as_deref().map(Distances::read).transpose()?;
         let query = StatQuery {

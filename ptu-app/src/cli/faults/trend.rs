@@ -11,11 +11,11 @@ use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
-use ptu_report::words::asked;
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
 use ptu_runs::failure::{Exit, Failure, Near, did_you_mean};
 use ptu_runs::new_file::kind;
+use ptu_runs::words::{Asked, OfUnit};
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///
@@ -90,8 +90,8 @@ impl TrendArguments {
         let names = store.measurement_names()?;
         if !names.contains(&self.measurement) {
             let hint = did_you_mean(&self.measurement, names.iter().map(String::as_str));
-            return Err(Failure::usage(asked::measurement_never(
-                &self.measurement,
+            return Err(Failure::usage(Asked::MeasurementNever(
+                self.measurement.to_string(),
                 hint,
             )));
         }
@@ -130,17 +130,11 @@ impl TrendArguments {
         store: &Store,
         query: &TrendQuery,
         procedures: &[String],
-    ) -> Result<String, Failure> {
-        let of = match &self.serial_no {
-            Some(unit) => format!(" of unit {unit}"),
-            None => String::new(),
-        };
-        let what = format!("no measurement \"{}\"{of} recorded", self.measurement);
+    ) -> Result<Asked, Failure> {
+        let (name, unit) = (self.measurement.clone(), OfUnit(self.serial_no.clone()));
         if let Some(procedure) = self.procedure.as_ref().filter(|p| !procedures.contains(p)) {
-            return Ok(format!(
-                "{what} by \"{procedure}\"; it was measured by {}",
-                procedures.join(", ")
-            ));
+            let others = procedures.join(", ");
+            return Ok(Asked::MeasuredBy(name, unit, procedure.clone(), others));
         }
         if let Some(step) = &self.step {
             let known = store.trend_steps(&TrendQuery {
@@ -150,7 +144,7 @@ impl TrendArguments {
             let known = || known.iter().map(|known| known.step.as_str());
             if !known().any(|known| known == step) && known().next().is_some() {
                 let hint = did_you_mean(step, known());
-                return Ok(format!("{what} by a step \"{step}\"{hint}"));
+                return Ok(Asked::MeasuredInNo(name, unit, step.clone(), hint));
             }
         }
         let span = Span {
@@ -164,14 +158,16 @@ impl TrendArguments {
                 ..query.clone()
             })?;
             if let (Some(first), Some(last)) = (days.first(), days.last()) {
-                return Ok(format!(
-                    "{what} in {span}; it was recorded from {} to {}",
-                    utc_day(first.day_us),
-                    utc_day(last.day_us)
+                return Ok(Asked::MeasuredFrom(
+                    name,
+                    unit,
+                    span.to_string(),
+                    utc_day(first.day_us).to_string(),
+                    utc_day(last.day_us).to_string(),
                 ));
             }
         }
-        Ok(format!("{what} so; `ptu runs list` shows the units"))
+        Ok(Asked::NotMeasured(name, unit))
     }
 }
 
@@ -282,5 +278,9 @@ fn never_repaired(
         true => Near::default(),
         false => did_you_mean(part, known.iter().map(String::as_str)),
     };
-    Ok(Failure::usage(asked::repair_never(part, unit, hint)))
+    Ok(Failure::usage(Asked::RepairNever(
+        part.to_string(),
+        unit.to_string(),
+        hint,
+    )))
 }

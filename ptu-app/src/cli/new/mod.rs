@@ -7,7 +7,7 @@ use script_files::{Place, own_folder};
 
 use super::{ScriptsOption, print_out};
 use ptu_runs::data::{ScriptsDirectory, write_text};
-use ptu_runs::failure::{Exit, Failure, FileTrouble, Unknown};
+use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Unknown};
 
 /// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///
@@ -106,9 +106,7 @@ impl NewArguments {
         let count = self.what != What::Fault || words.len() == 2;
         match count && words.iter().all(|word| is_word(word)) {
             true => Ok(()),
-            false => Err(Failure::usage(format!(
-                "\"{name}\" is no name here: {form}, in small letters, digits and _"
-            ))),
+            false => Err(Failure::usage(Asked::NoNewName(name.to_owned(), form))),
         }
     }
 
@@ -190,10 +188,7 @@ fn summed(text: &str) -> String {
 
 fn write_new(file: &Path, text: &str) -> Result<(), Failure> {
     if file.exists() {
-        return Err(Failure::usage(format!(
-            "{} is there already; choose another name, or change that one",
-            file.display()
-        )));
+        return Err(Failure::usage(Asked::NewExists(file.display().to_string())));
     }
     write_text(file, text)
 }

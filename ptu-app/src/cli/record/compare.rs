@@ -9,7 +9,7 @@ use fault_db::Store;
 use crate::cli::{Json, ScriptsOption};
 use ptu_report::{json_text, record};
 use ptu_runs::data::{check_writable, write_text};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::new_file::kind;
 use ptu_runs::record::CompareRequest;
 
@@ -56,9 +56,8 @@ impl CompareArguments {
         for file in &self.report {
             let ending = file.extension().and_then(|ending| ending.to_str());
             if !matches!(ending, Some("json" | "txt")) {
-                return Err(Failure::usage(format!(
-                    "--report {}: the file must end in .json or .txt",
-                    file.display()
+                return Err(Failure::usage(Asked::NoComparison(
+                    file.display().to_string(),
                 )));
             }
             check_writable(file, kind::OWN)?;

@@ -6,10 +6,10 @@ use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use glob::Pattern;
 
 use super::RunArguments;
-use ptu_report::words::asked;
 use ptu_runs::failure::{Failure, RunTrouble, Unknown, did_you_mean};
 use ptu_runs::run::{Task, select};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 impl RunArguments {
     /// All when some are named, else those that are not run on request only; without those that are left out.
@@ -92,10 +92,10 @@ fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failu
         .partition(|procedure| is_excluded(&procedure.id));
     if left_out.is_empty() {
         let hint = did_you_mean(wanted, left.iter().map(|procedure| procedure.id.as_str()));
-        return Err(Failure::usage(asked::excludes_none(name, hint)));
+        return Err(Failure::usage(Asked::ExcludesNone(name.to_string(), hint)));
     }
     if left.is_empty() {
-        return Err(Failure::usage(asked::excludes_all(name)));
+        return Err(Failure::usage(Asked::ExcludesAll(name.to_string())));
     }
     *procedures = left;
     Ok(())

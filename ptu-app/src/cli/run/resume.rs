@@ -7,11 +7,11 @@ use clap::Args;
 use fault_db::{RunDetail, RunState};
 
 use super::RunArguments;
-use ptu_report::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// Of units that were not reached.
 const UNKNOWN_SERIAL: &str = "unknown";
@@ -41,14 +41,14 @@ impl RunArguments {
         let earlier = store.run(store.resolve_run(name)?)?;
         let (run, id) = (&earlier.run, earlier.run.id.short());
         if run.state == RunState::Running {
-            return Err(Failure::usage(asked::still_running(&id)));
+            return Err(Failure::usage(Asked::StillRunning(id.to_string())));
         }
         let open = unfinished(&earlier, which);
         if open.is_empty() {
             return Err(Failure::usage(match (earlier.scripts.len(), which) {
-                (0, _) => asked::ran_nothing(&id, &run.source),
-                (_, Unfinished::WithoutVerdict) => asked::all_judged(&id),
-                (_, Unfinished::Errors) => asked::none_in_error(&id),
+                (0, _) => Asked::RanNothing(id.to_string(), run.source.to_string()),
+                (_, Unfinished::WithoutVerdict) => Asked::AllJudged(id.to_string()),
+                (_, Unfinished::Errors) => Asked::NoneInError(id.to_string()),
             }));
         }
         self.take_unit(&earlier)?;
@@ -80,16 +80,20 @@ impl RunArguments {
         let place = match run.source.parse::<Endpoint>() {
             Ok(place) => place,
             Err(error) => {
-                return Err(Failure::usage(asked::was_on_no_unit(
-                    &id,
-                    &run.source,
+                return Err(Failure::usage(Asked::WasOnNoUnit(
+                    id.to_string(),
+                    run.source.to_string(),
                     error,
                 )));
             }
         };
         let unit = self.unit.get_or_insert_with(|| place.clone());
         if (*unit == Endpoint::Sim) != (place == Endpoint::Sim) {
-            return Err(Failure::usage(asked::was_on_other_unit(&id, &place, unit)));
+            return Err(Failure::usage(Asked::WasOnOtherUnit(
+                id.to_string(),
+                place.to_string(),
+                unit.to_string(),
+            )));
         }
         if run.unit_serial == UNKNOWN_SERIAL {
             return Ok(());
@@ -98,10 +102,10 @@ impl RunArguments {
             .serial_no
             .get_or_insert_with(|| run.unit_serial.clone());
         if *serial != run.unit_serial {
-            return Err(Failure::usage(asked::was_of_other_serial(
-                &id,
-                &run.unit_serial,
-                serial,
+            return Err(Failure::usage(Asked::WasOfOtherSerial(
+                id.to_string(),
+                run.unit_serial.to_string(),
+                serial.to_string(),
             )));
         }
         Ok(())

@@ -8,7 +8,7 @@ use super::sound::{Channel, Device};
 use crate::cli::print_out;
 use ptu_options::sound_file;
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::signal;
 use ptu_runs::sound::{
     self, CHANNELS, Calibration, Calibrations, Direction, Lead, SAMPLE_HZ, Side,
@@ -93,10 +93,10 @@ impl CalibrateArguments {
                 false => now * measured / self.level,
             };
             if !(1e-3..1e9).contains(&full_scale_mv) {
-                return Err(Failure::usage(format!(
-                    "channel {}: {measured:.3} mV where {} mV were expected cannot be right",
+                return Err(Failure::usage(SoundTrouble::Implausible(
                     side.name(),
-                    self.level
+                    format!("{measured:.3}"),
+                    self.level,
                 )));
             }
             known.keep(
@@ -129,9 +129,7 @@ impl CalibrateArguments {
         stop: &Stop,
     ) -> Result<[f64; CHANNELS], Failure> {
         if self.measured.is_none() && !somebody_is_there() {
-            return Err(Failure::usage(
-                "nobody can be asked here: give what the instrument showed with --measured",
-            ));
+            return Err(Failure::usage(SoundTrouble::NobodyAsked));
         }
         let seconds = match self.measured {
             Some(_) => self.seconds.unwrap_or(REFERENCE_S),
@@ -179,10 +177,7 @@ impl CalibrateArguments {
         });
         let played = sound::play(samples, Lead::Within, device, stop)?;
         if played.clipped > 0 {
-            return Err(Failure::usage(format!(
-                "the device cannot make {} mV: choose a lower --level",
-                self.level
-            )));
+            return Err(Failure::usage(SoundTrouble::TooLoud(self.level)));
         }
         Ok([answer.unwrap_or(0.0); CHANNELS])
     }

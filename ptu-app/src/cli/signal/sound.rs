@@ -9,7 +9,7 @@ use crate::cli::print_out;
 use ptu_options::sound_file;
 use ptu_runs::clock;
 use ptu_runs::data::check_writable;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, End, Samples, Wav, Wave};
 use ptu_runs::sound::{
@@ -107,9 +107,7 @@ impl PlayArguments {
         let device = (device, full_scale_mv);
         let played = match (self.what.as_str(), &self.value) {
             ("code" | "twc", None) => {
-                return Err(Failure::usage(
-                    "name the speed code, or the bytes in hex, as in `ptu signal play code 55`",
-                ));
+                return Err(Failure::usage(SoundTrouble::NoCode));
             }
             ("code", Some(name)) => {
                 let wave = Wave::Code {
@@ -132,9 +130,7 @@ impl PlayArguments {
                 sound::play(on_both(samples, channel), Lead::Before(lead), device, &stop)?
             }
             (_, Some(_)) => {
-                return Err(Failure::usage(
-                    "a code or bytes follow `code` or `twc`, and nothing follows a file",
-                ));
+                return Err(Failure::usage(SoundTrouble::OneValue));
             }
             (file, None) => {
                 let mut broken = None;
@@ -171,9 +167,9 @@ fn of_file(
     broken: &mut Option<String>,
 ) -> Result<impl Iterator<Item = [f64; CHANNELS]>, Failure> {
     if wav.sample_hz() != SAMPLE_HZ {
-        return Err(Failure::usage(format!(
-            "the file has {} samples a second: make it one of {SAMPLE_HZ}, as with `sox IN.wav -r {SAMPLE_HZ} OUT.wav`",
-            wav.sample_hz()
+        return Err(Failure::usage(SoundTrouble::Rate(
+            wav.sample_hz(),
+            SAMPLE_HZ,
         )));
     }
     let mut over = false;

@@ -11,10 +11,10 @@ use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption, answered};
 use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
-use ptu_report::words::asked;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_runs::stdio;
+use ptu_runs::words::Asked;
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///
@@ -73,11 +73,13 @@ impl DiffArguments {
         let sides = if is_importable(file) {
             self.with_file(store, a, came, file)?
         } else if file.extension().is_some() {
-            return Err(Failure::usage(asked::no_comparable(file.display())));
+            return Err(Failure::usage(Asked::NoComparable(
+                file.display().to_string(),
+            )));
         } else if self.shift != 0.0 {
-            return Err(Failure::usage(asked::shift_of_file()));
+            return Err(Failure::usage(Asked::ShiftOfFile));
         } else if !self.names.is_empty() || self.time.is_some() || self.time_unit.is_some() {
-            return Err(Failure::usage(asked::columns_of_file()));
+            return Err(Failure::usage(Asked::ColumnsOfFile));
         } else if self.expected == "twin" {
             let original = Original::read(store, a)?;
             let (twin, rule) = good_twin(&original, &self.scripts.find()?)?;

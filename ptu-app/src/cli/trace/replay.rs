@@ -61,7 +61,8 @@ impl ReplayArguments {
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
         drop(store);
         let train = original.made.setup(&directory)?.train;
-        check_places(&faults, &train).map_err(|wrong| Failure::usage(wrong.to_string()))?;
+        check_places(&faults, &train)
+            .map_err(|wrong| Failure::usage(RunTrouble::Misplaced(wrong.to_string())))?;
         let store = database.open()?;
         let stop = Stop::default();
         stop.listen();

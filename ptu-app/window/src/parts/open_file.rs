@@ -4,8 +4,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use ptu_report::words::asked;
 use ptu_runs::failure::Failure;
+use ptu_runs::words::{Asked, RunTrouble};
 
 /// What opens files here, and what stands before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {
@@ -39,9 +39,12 @@ fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Fail
             Ok(())
         }
         Err(error) if error.kind() == ErrorKind::NotFound => Err(Failure::bench(
-            asked::opens_by_hand(program, path.display()),
+            Asked::OpensByHand(program.to_string(), path.display().to_string()),
         )),
-        Err(error) => Err(Failure::bench(format!("{program}: {error}"))),
+        Err(error) => Err(Failure::bench(RunTrouble::NotStarted(
+            program.to_owned(),
+            error.to_string(),
+        ))),
     }
 }
 

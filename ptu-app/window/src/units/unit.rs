@@ -9,7 +9,7 @@ use btu_rig::stimulus::Stimulus;
 use protocol::message::Identity;
 use protocol::signal::Signal;
 
-use crate::messages::{About, Messages};
+use crate::messages::{About, Messages, told};
 use crate::query_worker::QueryWorker;
 use crate::request::Request;
 use ptu_report::coverage_text;
@@ -244,20 +244,20 @@ impl Unit {
             }
             BenchEvent::Disconnected { safe: false } | BenchEvent::NotSafe => {
                 self.not_safe = true;
-                said.trouble(None, frame.not_safe, "");
+                said.trouble(None, frame.not_safe, told(""));
             }
             BenchEvent::StopEnded => {}
             BenchEvent::LinkLost(why) => self.lose(why, words, said),
             BenchEvent::Broken => {
                 self.not_safe = true;
-                said.trouble(None, frame.broken, "");
+                said.trouble(None, frame.broken, told(""));
                 if let Some(run) = self.run.as_mut().filter(|run| run.is_running()) {
                     run.end(None);
                 }
             }
-            BenchEvent::UnitRestarted => said.trouble(None, frame.unit_restarted, ""),
+            BenchEvent::UnitRestarted => said.trouble(None, frame.unit_restarted, told("")),
             BenchEvent::NotDone { asked, why } => {
-                said.trouble(None, fill(frame.not_done, &[("what", &asked)]), why);
+                said.trouble(None, fill(frame.not_done, &[("what", &asked)]), told(why));
             }
             BenchEvent::Logged(entry) => {
                 if self.log.len() == LOG {

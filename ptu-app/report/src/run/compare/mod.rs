@@ -15,9 +15,9 @@ use std::collections::BTreeMap;
 use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, rank};
 
 use super::steps::passed;
-use crate::words::asked;
 use ptu_runs::failure::Failure;
 use ptu_runs::stored::outside_of;
+use ptu_runs::words::Asked;
 
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};
@@ -130,7 +130,9 @@ impl RunComparison {
     /// The same run twice, no such run, or the database cannot be read.
     pub fn gather(store: &Store, a: Id, b: Id, all: bool) -> Result<Self, Failure> {
         if a == b {
-            return Err(Failure::usage(asked::run_beside_itself(a.short())));
+            return Err(Failure::usage(Asked::RunBesideItself(
+                a.short().to_string(),
+            )));
         }
         let read = |run| store.run(run);
         Ok(Self {

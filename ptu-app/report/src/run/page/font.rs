@@ -5,7 +5,7 @@ use protocol::display_text;
 use ttf_parser::Face;
 
 use crate::fonts::PRETENDARD;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble, Why};
 
 /// The shipped font, measured.
 pub struct FontMetrics {
@@ -21,8 +21,9 @@ impl FontMetrics {
     /// # Errors
     /// It cannot be read.
     pub fn new() -> Result<Self, Failure> {
-        let face = Face::parse(PRETENDARD, 0)
-            .map_err(|error| Failure::bench(format!("the shipped font cannot be read: {error}")))?;
+        let face = Face::parse(PRETENDARD, 0).map_err(|error| {
+            Failure::bench(FileTrouble::NotPrinted("the shipped font", Why::of(error)))
+        })?;
         let per_em = f32::from(face.units_per_em());
         let ascii = [(0, 0.0); 128];
         let mut letters = Self {

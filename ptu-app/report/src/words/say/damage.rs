@@ -3,9 +3,10 @@
 use fault_db::{Advice, Damage, Derived, ProblemKind, Samples, SignatureError, WrongSignature};
 use fault_db::{SchemaObject, SealPlace};
 use ptu_runs::clock;
+use ptu_runs::words::noun;
 
 use super::super::{Language, Words};
-use super::trouble::{noun, store};
+use super::trouble::store;
 
 impl Words {
     /// The kind of a problem that a check found.

@@ -6,7 +6,8 @@ use protocol::event::Event;
 use protocol::message::Refusals;
 
 use super::super::{Language, Words, content};
-use super::{condition, link};
+use super::condition;
+use ptu_runs::words::link_korean;
 
 impl Words {
     /// How an automatic run ended.
@@ -58,7 +59,7 @@ fn korean(ending: &Ending) -> String {
             behind("주행 중 자동 주행 모드에서 벗어남", mode)
         }
         Ending::TimeLimit => "제한 시간 초과: 아직 주행 중".to_owned(),
-        Ending::LinkLost(why) => format!("통신 두절: {}", link::korean(why)),
+        Ending::LinkLost(why) => format!("통신 두절: {}", link_korean(why)),
     }
 }
 

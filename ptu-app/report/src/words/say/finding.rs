@@ -14,7 +14,8 @@ use protocol::event::{Event, LOG_ENTRIES};
 use protocol::message::SelfTest;
 
 use super::super::{KOREAN, content};
-use super::{condition, link};
+use super::condition;
+use ptu_runs::words::link_korean;
 
 pub fn findings(all: &Findings) -> String {
     let said: Vec<_> = all
@@ -149,7 +150,7 @@ pub fn korean(finding: &Finding) -> String {
                 format!("제한 시간 {limit} 초과: 기다린 조건 {expected}")
             }
         },
-        Finding::LinkLost { why } => format!("장치와의 통신: {}", link::korean(why)),
+        Finding::LinkLost { why } => format!("장치와의 통신: {}", link_korean(why)),
         Finding::StoodStill { by, attempt } => {
             let by = by.as_secs();
             let then = match *attempt < ATTEMPTS {
@@ -160,7 +161,7 @@ pub fn korean(finding: &Finding) -> String {
                 "{ATTEMPTS}회 중 {attempt}회째 시도에서 시험하지 못함: 시험기 PC 또는 연결이 {by:.2} s 동안 멈춤 (장치의 결함이 아님); {then}"
             )
         }
-        Finding::BeforeStandstill(what) => format!("시험기 PC가 멈추기 전: {}", korean(what)),
+        Finding::BeforeStandstill(what) => format!("시험기 PC 또는 연결이 멈추기 전: {}", korean(what)),
         Finding::InSetUp(what) => format!("준비: {}", korean(what)),
         Finding::InCleanUp(what) => format!("종료 처리: {}", korean(what)),
         Finding::CleanUpTooLong { within } => format!("종료 처리가 {within} 이내에 끝나지 않음"),

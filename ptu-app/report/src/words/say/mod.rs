@@ -6,9 +6,8 @@ mod damage;
 mod diagnosis;
 mod drive;
 mod finding;
-mod link;
+mod helped;
 mod reasons;
-mod refused;
 mod trouble;
 
 pub use trouble::tell;

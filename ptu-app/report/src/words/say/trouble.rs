@@ -7,50 +7,53 @@ use fault_db::{
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::link::NoUnit;
 use ptu_runs::stdio;
+use ptu_runs::words::{Manner, Say as _, link_korean, noun};
 
-use super::super::{KOREAN, Language, Words, content};
+use super::super::{KOREAN, Language, Words};
 use super::diagnosis::Both;
-use super::{damage, link, refused};
-use crate::distances::{COLUMNS, DistancesError, ReadingError, WrongCell};
+use super::reasons::warned;
+use super::{damage, helped};
 
 impl Words {
     /// Why something could not be done, and the next move.
     pub fn trouble(&self, trouble: &Trouble) -> String {
-        self.choose(both(trouble))
-    }
-
-    /// Why a file of odometer readings is not read.
-    pub fn distances_error(&self, error: &DistancesError) -> String {
-        self.choose(distances(error))
+        said(trouble, self.language, false)
     }
 }
 
 /// Prints a failure on stderr, in the language that the command line asks for: in English with the commands that help.
 pub fn tell(failure: &Failure) {
-    let said = match Language::asked() {
-        Language::English => failure.to_string(),
-        Language::Korean => KOREAN.trouble(&failure.message),
-    };
+    let said = said(&failure.message, Language::asked(), true);
     stdio::note(&format!("ptu: {said}"));
+}
+
+fn said(trouble: &Trouble, language: Language, commands: bool) -> String {
+    let korean = language == Language::Korean;
+    let each = |all: &[Trouble], by: &str| -> String {
+        let all = all.iter().map(|one| said(one, language, commands));
+        all.collect::<Vec<_>>().join(by)
+    };
+    match trouble {
+        Trouble::Refused(what) => what.say(Manner { korean, commands }),
+        Trouble::Because(both) => each(&**both, ": "),
+        Trouble::All(all) => each(all, "\n"),
+        _ if !korean && commands => trouble.to_string(),
+        _ if commands => helped::with_commands(trouble, language.words().choose(both(trouble))),
+        _ => language.words().choose(both(trouble)),
+    }
 }
 
 #[rustfmt::skip]
 pub(super) fn both(trouble: &Trouble) -> Both {
     match trouble {
-        Trouble::Told(text) => [text.clone(), content::korean(text).into_owned()],
-        Trouble::Said(both) => both.clone(),
-        Trouble::All(all) => {
-            let each = |n: usize| all.iter().map(|one| both(one)[n].clone()).collect::<Vec<_>>().join("\n");
+        Trouble::Told(text) => [text.clone(), text.clone()],
+        Trouble::Stale(all) => {
+            let each = |n: usize| all.iter().map(|one| warned(one)[n].clone()).collect::<Vec<_>>().join("; ");
             [each(0), each(1)]
         }
-        Trouble::Unknown(what) => refused::unknown(what),
-        Trouble::File(what) => refused::file(what),
-        Trouble::Key(what) => refused::key(what),
-        Trouble::Run(what) => refused::run(what),
-        Trouble::Field(what) => refused::field(what),
-        Trouble::Recorded(what) => refused::recorded(what),
-        Trouble::Diagnosis(what) => refused::diagnosis(what),
-        Trouble::Store(error) => store(error),
+        // These are said before.
+        Trouble::Refused(_) | Trouble::Because(_) | Trouble::All(_) => Both::default(),
+        Trouble::Store(error) | Trouble::NamedStore(error) => store(error),
         Trouble::NotStored { run, error, left_out, kept } => {
             let (run, [why, why_ko]) = (run.short(), store(error));
             let (cut, cut_ko) = match left_out {
@@ -76,7 +79,7 @@ pub(super) fn both(trouble: &Trouble) -> Both {
             ]
         }
         Trouble::NoUnit(why) => no_unit(why),
-        Trouble::Link(why) => [why.to_string(), link::korean(why)],
+        Trouble::Link(why) => [why.to_string(), link_korean(why)],
         Trouble::Uncalibrated { kind, serial_no, due: Some(day) } => [
             format!("the calibration of {kind} {serial_no} was due on {day}; nothing was driven. Have it calibrated and its new calibration registered"),
             format!("교정 기한이 지났습니다: {kind} {serial_no} ({day}). 아무것도 구동하지 않았습니다. 교정한 후 새 교정을 등록하십시오"),
@@ -93,7 +96,6 @@ pub(super) fn both(trouble: &Trouble) -> Both {
 fn no_unit(no: &NoUnit) -> Both {
     use NoUnit as N;
     let same = |korean: String| [no.to_string(), korean];
-    let said = |why: &str| content::korean(why).into_owned();
     match no {
         N::PortHeld(path, who) => [
             format!("another program holds the port {path}: {who}; end it, or choose another port"),
@@ -101,12 +103,12 @@ fn no_unit(no: &NoUnit) -> Both {
         ],
         N::PortClosed(path, why) => [
             format!("cannot open port {path}: {why}; check the cable, or choose another port"),
-            format!("포트를 열 수 없습니다: {path} ({}). 케이블을 확인하거나 다른 포트를 선택하십시오", said(why)),
+            format!("포트를 열 수 없습니다: {path} ({}). 케이블을 확인하거나 다른 포트를 선택하십시오", why),
         ],
-        N::NotServed(address, why) => same(format!("{address}에 연결할 수 없습니다 ({}). 장치가 그 주소에 있는지 확인하십시오", said(why))),
-        N::Taken(at, why) => same(format!("{at}: {}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오", link::korean(why))),
-        N::PortFailed(why) => same(format!("{}. 케이블과 장치를 확인하십시오", link::korean(why))),
-        N::BadLink(at, why) => same(format!("{at}: {}", link::korean(why))),
+        N::NotServed(address, why) => same(format!("{address}에 연결할 수 없습니다 ({}). 장치가 그 주소에 있는지 확인하십시오", why)),
+        N::Taken(at, why) => same(format!("{at}: {}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오", link_korean(why))),
+        N::PortFailed(why) => same(format!("{}. 케이블과 장치를 확인하십시오", link_korean(why))),
+        N::BadLink(at, why) => same(format!("{at}: {}", link_korean(why))),
         N::NotReady(at, within) => same(format!("{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오")),
         N::OtherPace(at, times) => same(format!("{at}: 장치의 시계가 시험기보다 {times:.1}배 빠릅니다. 양쪽의 속도를 같게 하십시오")),
         N::Other(at, serial, expected) => same(format!("{at}의 장치는 {serial}이며 {expected}이(가) 아닙니다. 포트와 일련번호를 확인하십시오")),
@@ -275,50 +277,6 @@ fn samples(error: &TraceError) -> String {
         T::Blob { offset, .. } => format!("{offset}바이트 위치에서 손상됨"),
         T::Column { channel, .. } => format!("채널 {channel:?} 손상됨"),
         T::Compression { detail } => format!("압축 실패: {detail}"),
-    }
-}
-
-#[rustfmt::skip]
-fn distances(error: &DistancesError) -> Both {
-    let same = |korean: String| [error.to_string(), korean];
-    match error {
-        DistancesError::Unreadable { file, reason } => same(format!("읽을 수 없습니다: {} ({reason})", file.display())),
-        DistancesError::Wrong { file, what } => same(format!("{}: {}", file.display(), match what {
-            ReadingError::Heading => "1행에 train, date, km 열이 있어야 합니다".to_owned(),
-            ReadingError::Values(line) => format!("{line}행에 값 세 개가 있어야 합니다"),
-            ReadingError::Cell { line, column, what } => format!("{line}행 {}열({}): {}", column + 1, COLUMNS[*column], match what {
-                WrongCell::Empty => "값이 없습니다".to_owned(),
-                WrongCell::NoDate(value) => format!("{value:?}은(는) 2026-03-21 형식의 날짜가 아닙니다"),
-                WrongCell::NoDistance(value) => format!("{value:?}은(는) 거리(km) 값이 아닙니다"),
-                WrongCell::Twice => "같은 열차의 같은 날 값이 또 있습니다".to_owned(),
-                WrongCell::GoesBack(value) => format!("{value}은(는) 이 열차의 다른 값과 맞지 않습니다. 주행거리는 줄지 않습니다"),
-            }),
-        })),
-    }
-}
-
-/// What the store names a thing, in Korean; a name of a table that has none stays.
-pub(super) fn noun(english: &str) -> &str {
-    match english {
-        "run" => "시험",
-        "unit" => "장치",
-        "fault" => "고장",
-        "fault occurrence" => "고장 발생",
-        "trace" => "신호 기록",
-        "event" | "events" | "fault event" => "이벤트",
-        "note" | "notes" | "the note" | "run note" => "메모",
-        "measurement" => "측정",
-        "instrument" => "계측기",
-        "table" => "테이블",
-        "index" => "인덱스",
-        "view" => "뷰",
-        "trigger" => "트리거",
-        "recording" => "기록",
-        "unit configuration" => "장치 구성",
-        "line" => "노선",
-        "train" => "열차",
-        "the name of who says it" => "작성자 이름",
-        other => other,
     }
 }
 

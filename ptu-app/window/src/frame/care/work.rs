@@ -9,7 +9,7 @@ use crate::parts::{Done, Job, Told};
 use ptu_report::care::{self, Said};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, FileTrouble};
 use ptu_runs::platform::computer_name;
 
 /// Exchanges the history with a server.
@@ -30,7 +30,7 @@ pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, trac
             },
         };
         let outcome = store.sync(&server, &mut options);
-        let outcome = outcome.map_err(|error| of_copy(error, words))?;
+        let outcome = outcome.map_err(of_copy)?;
         store.close()?;
         Ok(done(care::synced(&outcome, words)))
     });
@@ -45,7 +45,7 @@ pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
         let store = stopped_by(told, paths.open()?)?;
         let counts = match store.import(&file) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
-            done => done.map_err(|error| of_file(&file, error, words))?,
+            done => done.map_err(|error| of_file(&file, error))?,
         };
         // What was taken stays: nothing stops from here on.
         store.stop_when(|| false)?;
@@ -67,7 +67,7 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     job.begin(context, (said, words.care.failed), move |paths, told| {
         match stopped_by(told, paths.read()?)?.backup(&file) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
-            done => done.map_err(|error| of_file(&file, error, words))?,
+            done => done.map_err(|error| of_file(&file, error))?,
         }
         // Of the copy: another program may have recorded more into the file meanwhile.
         let head = Store::open_read_only(&file)?.head()?;
@@ -112,24 +112,20 @@ fn stopped(words: &Words) -> Done {
 }
 
 /// An error about a file that was named here.
-fn of_file(file: &Path, error: StoreError, words: &Words) -> Failure {
+fn of_file(file: &Path, error: StoreError) -> Failure {
     let shown = file.display().to_string();
     match &error {
-        StoreError::Missing { path } if path == file => {
-            Failure::bench(fill(words.care.no_file, &[("file", &shown)]))
-        }
-        StoreError::TargetExists { .. } => {
-            Failure::bench(fill(words.care.is_there, &[("file", &shown)]))
-        }
+        StoreError::Missing { path } if path == file => Failure::bench(FileTrouble::Missing(shown)),
+        StoreError::TargetExists { .. } => Failure::bench(FileTrouble::Exists(shown)),
         _ => error.into(),
     }
 }
 
 /// An error of a sync.
-fn of_copy(error: StoreError, words: &Words) -> Failure {
+fn of_copy(error: StoreError) -> Failure {
     match error {
         StoreError::EarlierCopy { .. } | StoreError::ForkedCopy { .. } => {
-            Failure::bench(words.care.is_copy)
+            Failure::bench(FileTrouble::IsCopy)
         }
         _ => error.into(),
     }

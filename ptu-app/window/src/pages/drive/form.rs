@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 
-use btu_rig::conditions::Disturbance;
 use btu_rig::drive::Load;
 use eframe::egui::{ComboBox, Ui};
 use protocol::config::ControllerKind;
@@ -10,7 +9,7 @@ use protocol::config::ControllerKind;
 use crate::DataPaths;
 use crate::parts::named_combo;
 use ptu_report::words::Words;
-use ptu_runs::drive::{Fixed, Request, SectionChoice, disturbance};
+use ptu_runs::drive::{Fixed, Request, S1, SectionChoice};
 use ptu_runs::failure::Failure;
 
 /// Width of a list, points.
@@ -104,10 +103,7 @@ impl Form {
 
     /// The same as the command line asks for.
     pub fn request(&self) -> Result<Request, Failure> {
-        let disturbance: Option<Disturbance> = match self.disturbed {
-            true => Some(disturbance("s1").map_err(Failure::usage)?),
-            false => None,
-        };
+        let disturbance = self.disturbed.then_some(S1);
         Ok(Request {
             line: Some(self.line.clone()),
             sections: Some(self.section),

@@ -49,7 +49,9 @@ impl ProceduresPage {
                     let text = match answer.attribute(&store) {
                         Ok(()) => conclusion,
                         // The part is known all the same.
-                        Err(failure) => format!("{conclusion} ({failure})"),
+                        Err(failure) => {
+                            format!("{conclusion} ({})", words.trouble(&failure.message))
+                        }
                     };
                     Ok(Concluded {
                         text,

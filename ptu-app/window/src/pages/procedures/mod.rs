@@ -17,7 +17,7 @@ use btu_rig::procedure::{Findings, Procedure};
 use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use super::bench::{BenchSnapshot, Plot, chosen};
-use crate::messages::About;
+use crate::messages::{About, told};
 use crate::parts::{FirstHalf, RunNoteForm};
 use crate::request::Request;
 use crate::{PageContext, Palette};
@@ -290,11 +290,13 @@ impl ProceduresPage {
                         self.shown = ResultsView::default();
                     } else {
                         let run = About::Run(ordered.unit);
-                        context.messages.trouble_about(run, words.not_begun, "");
+                        context
+                            .messages
+                            .trouble_about(run, words.not_begun, told(""));
                     }
                 }
                 Request::Ready(Prepared::Changed) => {
-                    context.messages.trouble(words.scripts_changed, "");
+                    context.messages.trouble(words.scripts_changed, told(""));
                     self.load(context);
                 }
                 Request::Failed(why) => {

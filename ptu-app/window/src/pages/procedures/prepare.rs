@@ -6,12 +6,12 @@ use btu_rig::procedure::plan::Connection;
 
 use super::selection::Selection;
 use crate::DataPaths;
-use ptu_report::words::asked;
 use ptu_runs::bench_worker::RunOrder;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::{BenchChoice, RunPlan, Suite};
 use ptu_runs::run_diagnosis;
 use ptu_runs::symptoms::Symptom;
+use ptu_runs::words::{Asked, RunTrouble};
 
 /// How the chosen procedures are run.
 #[derive(Clone, Debug)]
@@ -78,11 +78,11 @@ pub fn order(
         false => Arc::new(Suite::load(&paths.scripts, &[], &setup)?),
     };
     if let Some(error) = suite.errors.first() {
-        return Err(Failure::usage(error.clone()));
+        return Err(Failure::usage(RunTrouble::Script(error.clone())));
     }
     let tasks = selection.tasks(&suite.procedures, how.repeat, how.stop_on_fail);
     if tasks.is_empty() {
-        return Err(Failure::usage(asked::no_step_chosen()));
+        return Err(Failure::usage(Asked::NoStepChosen));
     }
     let store = paths.open()?;
     let adaptive = match how.adaptive {

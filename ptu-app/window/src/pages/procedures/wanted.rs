@@ -1,5 +1,6 @@
 //! What another page asks to be run: a step, the search for a part, the proof of a repair.
 
+use crate::messages::told;
 use std::collections::BTreeSet;
 
 use super::prepare::RunSettings;
@@ -43,10 +44,10 @@ impl ProceduresPage {
         if !chosen.may_run() {
             context
                 .messages
-                .trouble(controls::why_not(chosen, context.words), "");
+                .trouble(controls::why_not(chosen, context.words), told(""));
         } else if chosen.name() != unit {
             let said = fill(words.other_unit, &[("unit", &unit)]);
-            context.messages.trouble(said, "");
+            context.messages.trouble(said, told(""));
         } else {
             self.want(Wanted::Step { procedure, step }, context);
         }
@@ -153,7 +154,7 @@ impl ProceduresPage {
         };
         if selection.extent(all).0 == 0 {
             let said = context.words.procedures.no_such_step;
-            context.messages.trouble(said, what);
+            context.messages.trouble(said, told(what));
             return;
         }
         self.order_of((unit, of_case), selection, how, context);

@@ -1,5 +1,6 @@
 //! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
+use crate::messages::told;
 use eframe::egui::{Align2, Button, ComboBox, Label, RichText, TextEdit, Ui};
 
 use super::{ReportPage, SheetOf, Shown, file};
@@ -85,7 +86,9 @@ impl ReportPage {
             return;
         };
         let Some(path) = file::with_ending(&self.file, ending) else {
-            context.messages.trouble(words.not_written, words.name_file);
+            context
+                .messages
+                .trouble(words.not_written, told(words.name_file));
             return;
         };
         let write = move |paths: &DataPaths| file::write(paths, &asked, &path);

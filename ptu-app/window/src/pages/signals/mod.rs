@@ -15,6 +15,7 @@ use crate::parts::{FirstHalf, Job};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use protocol::config::UnitConfig;
+use ptu_runs::failure::Trouble;
 use ptu_runs::sound::{self, DeviceFound};
 
 /// Where a thread that reads or records puts how it looks now.
@@ -24,7 +25,7 @@ type Slot = Arc<Mutex<Option<Seen>>>;
 struct Offered {
     unit: Arc<UnitConfig>,
     /// Devices for sound, or why there are none.
-    devices: Result<Vec<DeviceFound>, String>,
+    devices: Result<Vec<DeviceFound>, Trouble>,
 }
 
 #[derive(Default)]
@@ -63,7 +64,7 @@ impl SignalsPage {
             self.offered = Request::Pending(context.queries.run(move |paths| {
                 Ok(Offered {
                     unit: Arc::new(paths.scripts.unit_config(&unit_config)?.content),
-                    devices: sound::devices().map_err(|failure| failure.to_string()),
+                    devices: sound::devices().map_err(|failure| failure.message),
                 })
             }));
         }

@@ -13,6 +13,7 @@ use crate::parts::{Done, Job, Told, named_combo, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
 use ptu_report::words::{Words, fill};
+use ptu_runs::failure::Trouble;
 use ptu_runs::new_file::free_beside;
 use ptu_runs::signal::{self, FULL_SCALE_MV, Receivers};
 use ptu_runs::sound::{
@@ -51,7 +52,12 @@ pub enum Asked {
 }
 
 impl Source {
-    pub fn show(&mut self, ui: &mut Ui, devices: &Result<Vec<DeviceFound>, String>, words: &Words) {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        devices: &Result<Vec<DeviceFound>, Trouble>,
+        words: &Words,
+    ) {
         let said = &words.signals;
         ui.horizontal(|ui| {
             let label = ui.label(words.common.file);
@@ -62,7 +68,7 @@ impl Source {
         match devices {
             Err(why) => {
                 ui.label(RichText::new(said.no_sound).color(Palette::of(ui).warn))
-                    .on_hover_text(why);
+                    .on_hover_text(words.trouble(why));
             }
             Ok(devices) => {
                 ui.horizontal_wrapped(|ui| {

@@ -7,11 +7,11 @@ use fault_db::{FaultFilter, FaultStat, StatKey, StatQuery, Store};
 
 use crate::DataPaths;
 use crate::parts::look_back::since_us;
-use ptu_report::distances::{Distances, DistancesError};
+use ptu_report::distances::Distances;
 use ptu_report::fault_months::{Month, OnTheWay, by_month, on_the_way};
 use ptu_report::naming::PartNames;
 use ptu_runs::clock;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Failure, Trouble};
 
 /// A repair after which the fault is seen again within this many days did not hold.
 pub const BACK_WITHIN_DAYS: u32 = 30;
@@ -37,7 +37,7 @@ pub struct Counted {
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
     /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
-    pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, DistancesError>>,
+    pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, Trouble>>,
     pub parts: PartNames,
 }
 
@@ -79,7 +79,7 @@ impl Counted {
         if asked.unit.is_none() && !asked.distances.is_empty() {
             counted.on_the_way = match Distances::read(Path::new(&asked.distances)) {
                 Ok(known) => Some(Ok(on_the_way(&store, &query, &known)?)),
-                Err(error) => Some(Err(error)),
+                Err(why) => Some(Err(why.message)),
             };
         }
         Ok(counted)

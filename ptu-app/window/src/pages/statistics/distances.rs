@@ -41,7 +41,7 @@ impl DistancesFile {
                 context.go_to.extend(month.map(Destination::Faults));
             }
             Some(Err(why)) => {
-                let why = words.distances_error(why);
+                let why = words.trouble(why);
                 ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
             }
             None if counted.asked.unit.is_some() => {

@@ -48,7 +48,7 @@ impl OverlayRequest {
                 if let Some(why) = &parting.trouble {
                     context
                         .messages
-                        .trouble(context.words.traces.cannot_compare, why);
+                        .trouble(context.words.traces.cannot_compare, why.clone());
                 }
                 scene.told(against, parting);
             }

@@ -1,5 +1,6 @@
 //! A file that is dropped on the page: what can be read is laid behind the open trace.
 
+use crate::messages::told;
 use std::path::PathBuf;
 
 use eframe::egui::{Align2, FontId, Ui};
@@ -34,7 +35,7 @@ pub fn file(ui: &Ui, context: &mut PageContext<'_>) -> Option<PathBuf> {
     let file = dropped.pop()?;
     if !is_importable(&file) {
         let name = file.display().to_string();
-        context.messages.trouble(words.not_importable, name);
+        context.messages.trouble(words.not_importable, told(name));
         return None;
     }
     Some(file)

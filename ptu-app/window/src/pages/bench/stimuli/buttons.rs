@@ -1,5 +1,6 @@
 //! Buttons for manual stimuli: enabled only while the stimulus is permitted, with the reason otherwise.
 
+use crate::messages::told;
 use std::ops::RangeInclusive;
 
 use btu_rig::procedure::plan::Connection;
@@ -100,7 +101,8 @@ impl StimulusPanel<'_> {
             Err(why) => {
                 let what = stimulus.to_string();
                 let text = fill(self.words.frame.not_done, &[("what", &what)]);
-                self.messages.trouble(text, self.words.bench.refusal(why));
+                self.messages
+                    .trouble(text, told(self.words.bench.refusal(why)));
             }
         }
     }

@@ -4,6 +4,7 @@ use btu_rig::procedure::link_trouble::{
     GarbageCause, LinkFailure, LinkTrouble, PortFailure, Property, Refused, channel_name,
 };
 
+/// The trouble as a sentence.
 #[rustfmt::skip]
 pub fn korean(trouble: &LinkTrouble) -> String {
     use LinkTrouble as T;

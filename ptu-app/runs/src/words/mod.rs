@@ -1,0 +1,233 @@
+//! What is refused or does not work, in both languages: data, and one table of sentences for each area.
+//!
+//! A row is `Name(what: Type): "English" ["; what helps at a command line" "; the same in a window"], "한국어" […];`. What stands
+//! in brackets ends the sentence; without a second text a window says nothing there. `ptu_report::words` chooses the language.
+
+mod asked;
+mod link;
+mod nouns;
+mod refused;
+
+pub use asked::{Asked, DriveTrouble, KeepTrouble, SoundTrouble};
+pub use link::korean as link_korean;
+pub use nouns::noun;
+pub use refused::{
+    BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble,
+    RecordTrouble, RunTrouble, Sought, Unknown, Why, WrongCell,
+};
+
+use fault_db::Id;
+
+use crate::failure::{Near, Trouble};
+
+/// How something is said.
+#[derive(Clone, Copy, Debug)]
+pub struct Manner {
+    /// In Korean, not in English.
+    pub korean: bool,
+    /// With the commands and options that help.
+    pub commands: bool,
+}
+
+impl Manner {
+    /// As a text that no window shows has it.
+    pub const COMMAND_LINE: Self = Self {
+        korean: false,
+        commands: true,
+    };
+
+    /// One of the two.
+    pub fn choose<T>(self, [english, korean]: [T; 2]) -> T {
+        match self.korean {
+            true => korean,
+            false => english,
+        }
+    }
+}
+
+/// What a sentence has in it.
+pub trait Say {
+    /// In this manner.
+    fn say(&self, how: Manner) -> String;
+}
+
+macro_rules! as_it_is {
+    ($($kind:ty),*) => { $(
+        impl Say for $kind {
+            fn say(&self, _: Manner) -> String {
+                self.to_string()
+            }
+        }
+    )* };
+}
+as_it_is!(
+    String,
+    u16,
+    u32,
+    u64,
+    usize,
+    i64,
+    f64,
+    protocol::Duration,
+    crate::link::Endpoint
+);
+
+/// A word of this program; a `String` is in words of others.
+impl Say for &'static str {
+    fn say(&self, how: Manner) -> String {
+        how.choose([self, noun(self)]).to_owned()
+    }
+}
+
+impl Say for Id {
+    fn say(&self, _: Manner) -> String {
+        self.short().to_string()
+    }
+}
+
+impl Say for Near {
+    fn say(&self, how: Manner) -> String {
+        how.choose([format!("{self}"), format!("{self:#}")])
+    }
+}
+
+/// A unit that something is of, if one was named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OfUnit(pub Option<String>);
+
+impl Say for OfUnit {
+    fn say(&self, how: Manner) -> String {
+        self.0.as_ref().map_or_else(String::new, |unit| {
+            how.choose([format!(" of unit {unit}"), format!(" (장치 {unit})")])
+        })
+    }
+}
+
+impl Say for btu_rig::rig::LinkTrouble {
+    fn say(&self, how: Manner) -> String {
+        how.choose([self.to_string(), link_korean(self)])
+    }
+}
+
+/// Declares what can be refused in an area, with its sentences.
+macro_rules! sentences {
+    ($($(#[$doc:meta])* $area:ident { $(
+        $name:ident $(($($part:ident: $kind:ty),*))?:
+        $english:literal $([$tail:literal $($plain:literal)?])?,
+        $korean:literal $([$tail_ko:literal $($plain_ko:literal)?])?;
+    )* })*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Debug, PartialEq)]
+            pub enum $area { $(#[doc = concat!($english $(, $tail)?)] $name $(($($kind),*))?,)* }
+
+            impl $crate::words::Say for $area {
+                fn say(&self, how: $crate::words::Manner) -> String {
+                    match self { $(
+                        Self::$name $(($($part),*))? => {
+                            $($(let $part = $crate::words::Say::say($part, how);)*)?
+                            let _ = ($($(&$part,)*)?);
+                            match (how.korean, how.commands) {
+                                (false, true) => [format!($english), String::new() $(+ &format!($tail))?].concat(),
+                                (false, false) => [format!($english), String::new() $($(+ &format!($plain))?)?].concat(),
+                                (true, true) => [format!($korean), String::new() $(+ &format!($tail_ko))?].concat(),
+                                (true, false) => [format!($korean), String::new() $($(+ &format!($plain_ko))?)?].concat(),
+                            }
+                        }
+                    )* }
+                }
+            }
+
+            impl std::fmt::Display for $area {
+                fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                    f.write_str(&$crate::words::Say::say(self, $crate::words::Manner::COMMAND_LINE))
+                }
+            }
+
+            impl std::error::Error for $area {}
+        )*
+
+        /// All sentences: name, English and Korean, with all that can end them.
+        pub(super) const ALL: &[[&str; 3]] = &[$($([
+            stringify!($name),
+            concat!($english $(, "[", $tail $(, "|", $plain)?, "]")?),
+            concat!($korean $(, "[", $tail_ko $(, "|", $plain_ko)?, "]")?),
+        ],)*)*];
+    };
+}
+use sentences;
+
+/// Makes one type of all areas.
+macro_rules! areas {
+    ($($area:ident),*) => {
+        /// What is refused, by area.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Refusal { $(#[doc = stringify!($area)] $area($area),)* }
+
+        impl Say for Refusal {
+            fn say(&self, how: Manner) -> String {
+                match self { $(Self::$area(of) => of.say(how),)* }
+            }
+        }
+
+        $(impl From<$area> for Trouble {
+            fn from(of: $area) -> Self {
+                Self::Refused(Box::new(Refusal::$area(of)))
+            }
+        })*
+    };
+}
+areas!(
+    Asked,
+    DiagnosisTrouble,
+    DriveTrouble,
+    EndpointError,
+    FieldTrouble,
+    FileTrouble,
+    KeepTrouble,
+    KeyTrouble,
+    RecordTrouble,
+    RunTrouble,
+    SoundTrouble,
+    Unknown
+);
+
+/// All sentences, for tests of their wording: name, English and Korean.
+pub fn all() -> impl Iterator<Item = [&'static str; 3]> {
+    [asked::ALL, refused::ALL].concat().into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: what helps at a command line is said there in both languages, and a window says nothing of it. Method: each
+    /// sentence with a command or an option, by its parts.
+    #[test]
+    fn commands_stand_where_a_window_does_not_say_them() {
+        for [name, english, korean] in all() {
+            for text in [english, korean] {
+                let (said, end) = text.split_once('[').unwrap_or((text, ""));
+                let plain = end.split_once('|').map_or("", |(_, plain)| plain);
+                let is_option = |text: &str| text.contains("`ptu ") || text.contains("--");
+                // The command line alone refuses them.
+                let is_asked = asked::ALL.iter().any(|[other, ..]| *other == name);
+                assert!(
+                    is_asked || !is_option(said) && !is_option(plain),
+                    "{name}: {text}"
+                );
+            }
+            let options = |text: &str| -> Vec<String> {
+                let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
+                let mut words: Vec<_> = words
+                    .filter(|word| word.starts_with("--"))
+                    .map(str::to_owned)
+                    .collect();
+                words.sort_unstable();
+                words.dedup();
+                words
+            };
+            assert_eq!(options(english), options(korean), "{name}");
+        }
+    }
+}
