@@ -15,6 +15,26 @@ const SLACK: Duration = Duration::from_millis(200);
 /// A stopped run makes its outputs safe and ends within this time.
 const ENDS_WITHIN: Duration = Duration::from_secs(45);
 
+/// Goal: a question waits for its answer, whatever is typed meanwhile. Method: at a terminal Ctrl-D, then 201 letters that begin as
+/// an answer does, which are none, and then "yes".
+#[test]
+fn a_question_takes_its_answer_after_an_end_of_input_and_a_line_that_is_none() {
+    let (place, terminal) = (Place::new(), Terminal::open());
+    let script = place.write(
+        "ask.star",
+        "procedure(title = \"Test\", title_ko = \"시험\", needs = \"ptu\")\n\
+     step(\"asked\", do = prompt(\"Is the lamp lit?\"))\n",
+    );
+    let mut ptu = terminal.start(&place.command(&["run", &script]));
+    terminal.until_shown("[y/n]");
+    terminal.type_line("\u{4}");
+    terminal.type_line(&"y".repeat(201));
+    terminal.until_shown("type y for yes");
+    assert!(ptu.try_wait().expect("its state").is_none(), "it is over");
+    terminal.type_line("yes");
+    assert_eq!(ended(&mut ptu, || terminal.read()), Some(0));
+}
+
 /// Method: a clean-up that cannot succeed is reported when it ran.
 #[test]
 fn stopped_by_the_operator_the_run_cleans_up_and_leaves_the_unit_disarmed() {
