@@ -178,7 +178,7 @@ pub enum Finding {
         /// In which attempt, from 1.
         attempt: u32,
     },
-    /// It was found before the tester's computer stood still.
+    /// It was found before the tester's computer, or the link, stood still.
     BeforeStandstill(Box<Finding>),
     /// In the actions before the first step.
     InSetUp(Box<Finding>),

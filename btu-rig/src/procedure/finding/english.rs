@@ -196,7 +196,7 @@ impl Display for Finding {
             Self::BeforeStandstill(what) => {
                 write!(
                     f,
-                    "before the tester's computer stood still: {}",
+                    "before the tester's computer or the link stood still: {}",
                     Part(what, said)
                 )
             }

@@ -249,7 +249,7 @@ fn what_came_before_the_pause_counts_and_is_told() {
     assert_eq!(overall(&outcome), Verdict::Failed);
     let told = outcome.events.iter().any(|event| {
         matches!(event, RunEvent::ProcedureFinished { findings, .. }
-            if findings.to_string().contains("before the tester's computer stood still: the unit logged inputs_lost"))
+            if findings.to_string().contains("before the tester's computer or the link stood still: the unit logged inputs_lost"))
     });
     assert!(told, "{:#?}", outcome.events);
 }
