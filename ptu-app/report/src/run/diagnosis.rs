@@ -4,6 +4,7 @@ use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::diagnosis::{MOST_PARTS, Possible, ranked, shown_reasons};
 use crate::words::{Language, Words, fill};
+use protocol::lru::from_stored;
 use ptu_runs::run_diagnosis::Answer;
 
 /// Parts less likely than this are not named.
@@ -85,6 +86,7 @@ impl Sheet {
         });
         match name {
             Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{name} ({lru})"),
+            None if from_stored(lru).is_none() => words.common.no_part.to_owned(),
             _ => lru.to_owned(),
         }
     }

@@ -277,6 +277,8 @@ fn by_command(monitor: &mut Monitor, made: &mut [Made], place: &Place) {
         let mut told = short(&cells[5]);
         told.extend([fact("verdict", &cells[4]), fact("faults", &cells[6])]);
         monitor.hold(&mut run.facts, "list of runs", told);
+        let shown = place.ptu(&["runs", "show", &run.id.to_string()]).exits(0);
+        monitor.hold(&mut run.facts, "run shown", console(&shown.out));
         let unit = format!("M-{}", run.seed);
         let of_run = list(&faults)
             .iter()
