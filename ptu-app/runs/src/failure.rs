@@ -8,7 +8,6 @@ use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
-use crate::link::NoUnit;
 use crate::run_diagnosis::Warning;
 
 mod near;
@@ -69,19 +68,8 @@ pub enum Trouble {
         /// The file.
         rest: PathBuf,
     },
-    /// A unit on a port.
-    NoUnit(NoUnit),
     /// The link to a unit that was there.
     Link(LinkTrouble),
-    /// An instrument of the bench whose calibration does not hold, and nothing was driven.
-    Uncalibrated {
-        /// Its kind, as "tachometer".
-        kind: String,
-        /// Which.
-        serial_no: String,
-        /// The day it was due; none: it was never calibrated.
-        due: Option<String>,
-    },
     /// What of the dictionary an adaptive run must not go by.
     Stale(Vec<Warning>),
     /// What has its sentences in the tables of words.
@@ -124,24 +112,6 @@ impl fmt::Display for Trouble {
                      the database is free"
                 )
             }
-            Self::Uncalibrated {
-                kind,
-                serial_no,
-                due,
-            } => {
-                match due {
-                    Some(due) => {
-                        write!(f, "the calibration of {kind} {serial_no} was due on {due}")
-                    }
-                    None => write!(f, "{kind} {serial_no} was never calibrated"),
-                }?;
-                write!(
-                    f,
-                    "; nothing was driven. `ptu instrument calibrate {serial_no}` states a new calibration, \
-                     --uncalibrated goes on without one, and the sheet says so"
-                )
-            }
-            Self::NoUnit(why) => why.fmt(f),
             Self::Link(why) => why.fmt(f),
             Self::Refused(what) => f.write_str(&what.say(Manner::COMMAND_LINE)),
             Self::Stale(all) => joined(f, all, "; "),

@@ -17,7 +17,7 @@ use starlark::syntax::ast::{
 
 use super::context::Context;
 use super::item::Item;
-use super::suggest::hint;
+use super::suggest::{hint, near};
 use super::{LoadError, error_at};
 
 /// Expressions and blocks nested deeper than this are refused: no person can read them, and walking
@@ -62,10 +62,7 @@ fn undefined_names(ast: &AstModule, names: &BTreeSet<String>) -> Vec<LoadError> 
         .filter(|lint| lint.short_name == "using-undefined")
         .map(|lint| {
             let name = &lint.original;
-            let hint = match hint(name, names.iter().map(String::as_str)) {
-                near if near.contains("did you mean") => near,
-                _ => String::new(),
-            };
+            let hint = near(name, names.iter().map(String::as_str));
             error_at(&lint.location, format!("unknown name `{name}`{hint}"))
         })
         .collect()

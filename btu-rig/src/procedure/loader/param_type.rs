@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::item::Item;
 use super::quantity::Dimension;
-use super::suggest::hint;
+use super::suggest::near;
 
 /// Longest text of a script that people read, in characters.
 const LONGEST_TEXT: usize = 2_000;
@@ -92,7 +92,11 @@ impl ParamType {
             Self::Choice(words) => match item {
                 Item::Text(word) if words.contains(&word.as_str()) => true,
                 Item::Text(word) => {
-                    return Err(format!("{}{}", item.found(), near(word, words)));
+                    return Err(format!(
+                        "{}{}",
+                        item.found(),
+                        near(word, words.iter().copied())
+                    ));
                 }
                 _ => false,
             },
@@ -156,16 +160,6 @@ fn text(item: &Item, longest: usize) -> Result<(), String> {
         Item::Text(text) if text.chars().count() <= longest => Ok(()),
         Item::Text(text) => Err(format!("one of {}", text.chars().count())),
         other => Err(other.found()),
-    }
-}
-
-/// Near misses only: the choice itself is listed anyway.
-fn near(word: &str, words: &[&'static str]) -> String {
-    let hint = hint(word, words.iter().copied());
-    if hint.contains("did you mean") {
-        hint
-    } else {
-        String::new()
     }
 }
 

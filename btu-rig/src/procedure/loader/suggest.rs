@@ -4,19 +4,22 @@
 /// are few, else nothing.
 pub(super) fn hint<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let candidates: Vec<&str> = candidates.into_iter().collect();
-    let nearest = candidates
-        .iter()
-        .map(|&name| (strsim::osa_distance(wrong, name), name))
-        .min();
-    match nearest {
-        Some((distance, name)) if distance <= (wrong.chars().count() / 3).max(2) => {
-            format!("; did you mean `{name}`?")
-        }
+    match near(wrong, candidates.iter().copied()) {
+        near if !near.is_empty() => near,
         _ if !candidates.is_empty() && candidates.len() <= 12 => {
             format!("; possible: {}", candidates.join(", "))
         }
         _ => String::new(),
     }
+}
+
+/// The same where a candidate is near, else nothing.
+pub(super) fn near<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    let candidates = candidates.into_iter();
+    let all = candidates.map(|name| (strsim::osa_distance(wrong, name), name));
+    all.min()
+        .filter(|(distance, _)| *distance <= (wrong.chars().count() / 3).max(2))
+        .map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 #[cfg(test)]

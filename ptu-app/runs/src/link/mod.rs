@@ -1,7 +1,6 @@
 //! Links to a unit: the embedded one, or one on a port.
 
 mod delayed;
-mod no_unit;
 mod pace;
 mod port_lock;
 pub mod ports;
@@ -10,7 +9,6 @@ mod wire;
 
 pub use ato_under_test::serve::keep_time;
 pub use delayed::Delayed;
-pub use no_unit::NoUnit;
 pub use pace::Pace;
 pub(crate) use port_lock::open_port;
 pub use sim::{SIM_SERIAL, SimLink};

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use serialport::SerialPort;
 
-use super::NoUnit;
 use crate::failure::Failure;
 use crate::platform;
+use crate::words::NoUnit;
 
 /// Opens a port and keeps it to this program until it is closed.
 ///

@@ -10,9 +10,8 @@ use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
-use super::NoUnit;
 use super::{Pace, open_port};
-use crate::failure::{EndpointError, Failure, RunTrouble};
+use crate::failure::{EndpointError, Failure, NoUnit, RunTrouble};
 
 /// Baud rate when none is given.
 const BAUD: u32 = 115_200;

@@ -18,8 +18,8 @@ use super::session::Session;
 use super::settle::{READY_WITHIN, started};
 use super::unit_text;
 use crate::clock::{ClockState, now_us};
-use crate::failure::{Exit, Failure, RunTrouble};
-use crate::link::{Endpoint, NoUnit, WireLink};
+use crate::failure::{Exit, Failure, NoUnit, RunTrouble};
+use crate::link::{Endpoint, WireLink};
 use crate::stop::Stop;
 
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
@@ -187,19 +187,20 @@ impl BenchSetup {
         if CLOCKS_AGREE.contains(&times_faster) {
             return Ok(());
         }
-        Err(NoUnit::OtherPace(self.endpoint.clone(), times_faster).into())
+        Err(NoUnit::OtherPace(self.endpoint.clone(), format!("{times_faster:.1}")).into())
     }
 
     fn check_identity(&self, identity: &Identity) -> Result<(), Failure> {
         let serial = unit_text::serial(identity);
         unit_text::check_expected(&self.endpoint, identity, self.serial.as_deref())?;
+        let sum = |crc: u32| format!("{crc:08x}");
         let (unit, ours) = (identity.config_crc, self.config.crc);
         if unit != ours {
-            return Err(NoUnit::OtherConfiguration(serial, unit, ours).into());
+            return Err(NoUnit::OtherConfiguration(serial, sum(unit), sum(ours)).into());
         }
         let (unit, ours) = (identity.tdb_crc, self.line.crc);
         if unit != ours {
-            return Err(NoUnit::OtherTrack(serial, unit, ours).into());
+            return Err(NoUnit::OtherTrack(serial, sum(unit), sum(ours)).into());
         }
         Ok(())
     }

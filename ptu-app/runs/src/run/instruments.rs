@@ -8,7 +8,7 @@ use fault_db::{Instrument, Store};
 use super::bench_setup::BenchSetup;
 use super::plan::Task;
 use crate::clock;
-use crate::failure::{Failure, RunTrouble, Trouble};
+use crate::failure::{Failure, RunTrouble};
 use crate::link::Endpoint;
 
 /// The instruments of this bench that a run on a port uses: all that are registered and not retired. A simulated unit is
@@ -66,11 +66,14 @@ fn shift(limit: &mut Operand, by: f64) {
     }
 }
 
-fn not_calibrated(instrument: &Instrument) -> Trouble {
-    let due = instrument.due.clone();
-    Trouble::Uncalibrated {
-        kind: instrument.kind.clone(),
-        serial_no: instrument.serial_no.clone(),
-        due: due.filter(|_| instrument.calibrated.is_some()),
+fn not_calibrated(instrument: &Instrument) -> RunTrouble {
+    let (kind, serial) = (instrument.kind.clone(), instrument.serial_no.clone());
+    let due = instrument
+        .due
+        .clone()
+        .filter(|_| instrument.calibrated.is_some());
+    match due {
+        Some(due) => RunTrouble::Uncalibrated(kind, serial, due),
+        None => RunTrouble::NeverCalibrated(kind, serial),
     }
 }

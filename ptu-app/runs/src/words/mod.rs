@@ -12,7 +12,7 @@ pub use asked::{Asked, DriveTrouble, KeepTrouble, SoundTrouble};
 pub use link::korean as link_korean;
 pub use nouns::noun;
 pub use refused::{
-    BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble,
+    BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
     RecordTrouble, RunTrouble, Sought, Unknown, Why, WrongCell,
 };
 
@@ -186,6 +186,7 @@ areas!(
     FileTrouble,
     KeepTrouble,
     KeyTrouble,
+    NoUnit,
     RecordTrouble,
     RunTrouble,
     SoundTrouble,

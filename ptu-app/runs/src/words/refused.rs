@@ -8,7 +8,7 @@ use fault_db::Id;
 use protocol::Duration;
 
 use super::{Manner, Say, sentences};
-use crate::failure::Near;
+use crate::failure::{Failure, Near};
 use crate::keys::Standing;
 use crate::link::Endpoint;
 
@@ -125,6 +125,21 @@ sentences! {
         NoPort: "serial: needs a port" ["; `ptu ports` lists them"], "serial: 뒤에 포트를 지정하십시오" [". 목록: `ptu ports`"];
     }
 
+    /// Why a unit on a port cannot be tested, and the next move.
+    NoUnit {
+        PortHeld(port: String, who: String): "another program holds the port {port}: {who}; end it, or choose" [" one of `ptu ports`" " another port"], "다른 프로그램이 포트를 사용 중입니다: {port}, {who}. 그 프로그램을 끝내거나 다른 포트를 선택하십시오" [": `ptu ports`"];
+        PortClosed(port: String, why: String): "cannot open port {port}: {why}; check the cable, or choose" [" one of `ptu ports`" " another port"], "포트를 열 수 없습니다: {port} ({why}). 케이블을 확인하거나 다른 포트를 선택하십시오" [": `ptu ports`"];
+        NotServed(at: String, why: String): "cannot connect to {at}: {why}; check that the unit is served there", "{at}에 연결할 수 없습니다 ({why}). 장치가 그 주소에 있는지 확인하십시오";
+        Taken(at: Endpoint, why: LinkTrouble): "{at}: {why}; wait until it has left, or end it there", "{at}: {why}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오";
+        PortFailed(why: LinkTrouble): "{why}; check the cable and that the unit is served there", "{why}. 케이블과 장치를 확인하십시오";
+        BadLink(at: Endpoint, why: LinkTrouble): "{at}: {why}", "{at}: {why}";
+        NotReady(at: Endpoint, within: Duration): "{at}: the unit answers but does not become ready within {within}; power it off and on", "{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오";
+        OtherPace(at: Endpoint, times: String): "{at}: the unit's clock goes {times} times as fast as the tester's; slow both ends down alike, or neither", "{at}: 장치의 시계가 시험기보다 {times}배 빠릅니다. 양쪽의 속도를 같게 하십시오";
+        Other(at: Endpoint, serial: String, expected: String): "the unit on {at} is {serial}, not {expected}; check the port and the serial number asked for", "{at}의 장치는 {serial}이며 {expected}이(가) 아닙니다. 포트와 일련번호를 확인하십시오";
+        OtherConfiguration(serial: String, unit: String, ours: String): "the unit configuration of unit {serial} has checksum {unit}, the tests were loaded for {ours}; choose the unit configuration of that unit", "장치 {serial}의 장치 구성이 시험용과 다릅니다 (체크섬 {unit}, 시험용 {ours}). 그 장치의 구성을 선택하십시오";
+        OtherTrack(serial: String, unit: String, ours: String): "the track database of unit {serial} has checksum {unit}, the tests were loaded for {ours}; choose the track database of that unit", "장치 {serial}의 선로 데이터베이스가 시험용과 다릅니다 (체크섬 {unit}, 시험용 {ours}). 그 장치의 노선을 선택하십시오";
+    }
+
     /// A bench, or a run on it.
     RunTrouble {
         NoUnit: "no unit is connected", "연결된 장치가 없습니다";
@@ -139,6 +154,8 @@ sentences! {
         NoVersion(text: String): "\"{text}\" is not a version such as 0.1.0", "\"{text}\"은(는) 0.1.0과 같은 버전이 아닙니다";
         NoSetting: "a setting is KEY=VALUE, as ato.gently_mps2=0.4", "설정은 ato.gently_mps2=0.4와 같이 KEY=VALUE 형식입니다";
         Misplaced(why: String): "{why}", "고장 모드를 주입할 수 없습니다: {why}";
+        Uncalibrated(kind: String, serial: String, due: String): "the calibration of {kind} {serial} was due on {due}; nothing was driven." [" `ptu instrument calibrate {serial}` states a new calibration, --uncalibrated goes on without one, and the sheet says so" " Have it calibrated and its new calibration registered"], "교정 기한이 지났습니다: {kind} {serial} ({due}). 아무것도 구동하지 않았습니다. 교정한 후 새 교정을 등록하십시오" [": `ptu instrument calibrate {serial}`. --uncalibrated로 교정 없이 시험하면 성적서에 표시됩니다"];
+        NeverCalibrated(kind: String, serial: String): "{kind} {serial} was never calibrated; nothing was driven." [" `ptu instrument calibrate {serial}` states a new calibration, --uncalibrated goes on without one, and the sheet says so" " Have it calibrated and its calibration registered"], "교정한 적이 없습니다: {kind} {serial}. 아무것도 구동하지 않았습니다. 교정한 후 등록하십시오" [": `ptu instrument calibrate {serial}`. --uncalibrated로 교정 없이 시험하면 성적서에 표시됩니다"];
         NoUncertainty: "no instrument is registered with an uncertainty, by which limits could be narrowed" ["; `ptu instrument calibrate` states one"], "불확도가 등록된 계측기가 없어 한계값을 좁힐 수 없습니다" [". 등록: `ptu instrument calibrate`"];
         Glob(glob: String, why: String): "\"{glob}\" is not a glob: {why}", "\"{glob}\"은(는) 올바른 패턴이 아닙니다: {why}";
         Script(error: String): "{error}" ["; `ptu run --check` shows all errors"], "스크립트 오류: {error}" [". 모든 오류: `ptu run --check`"];
@@ -199,6 +216,12 @@ sentences! {
 impl From<LinkTrouble> for BrokenOff {
     fn from(why: LinkTrouble) -> Self {
         Self::Link(why)
+    }
+}
+
+impl From<NoUnit> for Failure {
+    fn from(why: NoUnit) -> Self {
+        Self::bench(why)
     }
 }
 

@@ -45,7 +45,10 @@ fn what_the_generator_saves_is_opened_and_heard() {
         let text = window.place.text_path("text.wav");
         window.write_over(words.common.file, &text);
         window.click(said.open);
-        window.wait_for_part("text.wav is no WAV file");
+        window.wait_for_part(match language {
+            Language::English => "text.wav is no WAV file",
+            Language::Korean => "읽을 수 있는 WAV 파일이 아닙니다",
+        });
         assert!(window.shows("5a c3"), "what was shown stays");
     }
 }

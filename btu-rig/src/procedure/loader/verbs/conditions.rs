@@ -7,7 +7,7 @@ use crate::procedure::loader::args::{Args, event};
 use crate::procedure::loader::item::Item;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
-use crate::procedure::loader::suggest::hint;
+use crate::procedure::loader::suggest::near;
 use crate::procedure::loader::verb::{Param, Verb, needs, takes};
 use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand};
@@ -261,10 +261,7 @@ pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
     match (definition.kind, item) {
         (Kind::Enum(labels), Item::Text(text)) => match labels.iter().position(|l| l == text) {
             Some(index) => Ok(Operand::Literal(index as f64)),
-            None => wrong(match hint(text, labels.iter().copied()) {
-                near if near.contains("did you mean") => near,
-                _ => String::new(),
-            }),
+            None => wrong(near(text, labels.iter().copied())),
         },
         (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(u8::from(*on)))),
         (Kind::Enum(_) | Kind::Bit, Item::Measured(name, None)) => Ok(measured(name, 0.0)),

@@ -161,7 +161,9 @@ pub fn korean(finding: &Finding) -> String {
                 "{ATTEMPTS}회 중 {attempt}회째 시도에서 시험하지 못함: 시험기 PC 또는 연결이 {by:.2} s 동안 멈춤 (장치의 결함이 아님); {then}"
             )
         }
-        Finding::BeforeStandstill(what) => format!("시험기 PC 또는 연결이 멈추기 전: {}", korean(what)),
+        Finding::BeforeStandstill(what) => {
+            format!("시험기 PC 또는 연결이 멈추기 전: {}", korean(what))
+        }
         Finding::InSetUp(what) => format!("준비: {}", korean(what)),
         Finding::InCleanUp(what) => format!("종료 처리: {}", korean(what)),
         Finding::CleanUpTooLong { within } => format!("종료 처리가 {within} 이내에 끝나지 않음"),

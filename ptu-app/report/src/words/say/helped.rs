@@ -2,7 +2,6 @@
 
 use fault_db::StoreError;
 use ptu_runs::failure::{Trouble, in_place_of};
-use ptu_runs::link::NoUnit;
 
 pub(super) fn with_commands(trouble: &Trouble, said: String) -> String {
     let help = match trouble {
@@ -11,10 +10,6 @@ pub(super) fn with_commands(trouble: &Trouble, said: String) -> String {
             kept: Some(file), ..
         }
         | Trouble::RestKept { rest: file, .. } => format!("`ptu db import {}`", file.display()),
-        Trouble::NoUnit(NoUnit::PortHeld(..) | NoUnit::PortClosed(..)) => "`ptu ports`".to_owned(),
-        Trouble::Uncalibrated { serial_no, .. } => {
-            format!("`ptu instrument calibrate {serial_no}`, --uncalibrated")
-        }
         _ => String::new(),
     };
     match help.is_empty() {

@@ -5,7 +5,6 @@ use fault_db::{
     WithdrawalError,
 };
 use ptu_runs::failure::{Failure, Trouble};
-use ptu_runs::link::NoUnit;
 use ptu_runs::stdio;
 use ptu_runs::words::{Manner, Say as _, link_korean, noun};
 
@@ -78,42 +77,7 @@ pub(super) fn both(trouble: &Trouble) -> Both {
                 format!("{why_ko}. 그 후의 측정은 {rest}에 보관했으니 데이터베이스를 쓸 수 있게 되면 그 파일을 가져오십시오"),
             ]
         }
-        Trouble::NoUnit(why) => no_unit(why),
         Trouble::Link(why) => [why.to_string(), link_korean(why)],
-        Trouble::Uncalibrated { kind, serial_no, due: Some(day) } => [
-            format!("the calibration of {kind} {serial_no} was due on {day}; nothing was driven. Have it calibrated and its new calibration registered"),
-            format!("교정 기한이 지났습니다: {kind} {serial_no} ({day}). 아무것도 구동하지 않았습니다. 교정한 후 새 교정을 등록하십시오"),
-        ],
-        Trouble::Uncalibrated { kind, serial_no, due: None } => [
-            format!("{kind} {serial_no} was never calibrated; nothing was driven. Have it calibrated and its calibration registered"),
-            format!("교정한 적이 없습니다: {kind} {serial_no}. 아무것도 구동하지 않았습니다. 교정한 후 등록하십시오"),
-        ],
-    }
-}
-
-/// Why a unit on a port cannot be tested; what the link or the system said of it stays as it is where it has no Korean.
-#[rustfmt::skip]
-fn no_unit(no: &NoUnit) -> Both {
-    use NoUnit as N;
-    let same = |korean: String| [no.to_string(), korean];
-    match no {
-        N::PortHeld(path, who) => [
-            format!("another program holds the port {path}: {who}; end it, or choose another port"),
-            format!("다른 프로그램이 포트를 사용 중입니다: {path}, {who}. 그 프로그램을 끝내거나 다른 포트를 선택하십시오"),
-        ],
-        N::PortClosed(path, why) => [
-            format!("cannot open port {path}: {why}; check the cable, or choose another port"),
-            format!("포트를 열 수 없습니다: {path} ({}). 케이블을 확인하거나 다른 포트를 선택하십시오", why),
-        ],
-        N::NotServed(address, why) => same(format!("{address}에 연결할 수 없습니다 ({}). 장치가 그 주소에 있는지 확인하십시오", why)),
-        N::Taken(at, why) => same(format!("{at}: {}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오", link_korean(why))),
-        N::PortFailed(why) => same(format!("{}. 케이블과 장치를 확인하십시오", link_korean(why))),
-        N::BadLink(at, why) => same(format!("{at}: {}", link_korean(why))),
-        N::NotReady(at, within) => same(format!("{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오")),
-        N::OtherPace(at, times) => same(format!("{at}: 장치의 시계가 시험기보다 {times:.1}배 빠릅니다. 양쪽의 속도를 같게 하십시오")),
-        N::Other(at, serial, expected) => same(format!("{at}의 장치는 {serial}이며 {expected}이(가) 아닙니다. 포트와 일련번호를 확인하십시오")),
-        N::OtherConfiguration(serial, unit, ours) => same(format!("장치 {serial}의 장치 구성이 시험용과 다릅니다 (체크섬 {unit:08x}, 시험용 {ours:08x}). 그 장치의 구성을 선택하십시오")),
-        N::OtherTrack(serial, unit, ours) => same(format!("장치 {serial}의 선로 데이터베이스가 시험용과 다릅니다 (체크섬 {unit:08x}, 시험용 {ours:08x}). 그 장치의 노선을 선택하십시오")),
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::super::super::Language;
 use super::*;
+use ptu_runs::failure::{Near, RunTrouble, Unknown};
 
 const SOURCE: &str = include_str!("../trouble.rs");
 const ERRORS: &str = include_str!("../../../../../../fault-db/src/error/mod.rs");
@@ -119,21 +120,14 @@ fn what_is_known_is_told_without_commands_and_in_korean() {
             "이력에 없고 보관하지도 못했습니다: ",
         ),
         (
-            Trouble::Uncalibrated {
-                kind: "tachometer".to_owned(),
-                serial_no: "T7".to_owned(),
-                due: None,
-            },
+            RunTrouble::NeverCalibrated("tachometer".to_owned(), "T7".to_owned()).into(),
             "tachometer T7 was never calibrated; nothing was driven. Have it calibrated",
             "교정한 적이 없습니다: tachometer T7. ",
         ),
         (
-            Trouble::NoUnit(NoUnit::PortHeld(
-                "/dev/ttyUSB0".into(),
-                "minicom, 4711".into(),
-            )),
-            "another program holds the port /dev/ttyUSB0: minicom, 4711; end it, or choose another port",
-            "다른 프로그램이 포트를 사용 중입니다: /dev/ttyUSB0, minicom, 4711. ",
+            Unknown::Fault("x9".to_owned(), Near(Some("n9".to_owned()))).into(),
+            "no fault \"x9\" (did you mean \"n9\"?)",
+            "고장 모드 \"x9\"이(가) 없습니다 (\"n9\"?)",
         ),
         (
             Trouble::Told("what another program said".to_owned()),
