@@ -63,4 +63,6 @@ fn a_sheet_without_a_dictionary_says_why_it_has_no_diagnosis() {
     let sheet = Sheet::gather(&store, &place.no_scripts(), run).expect("a sheet");
     let page = html(&sheet, Language::English.words());
     assert!(page.contains("No diagnosis: cannot read "));
+    let page = html(&sheet, Language::Korean.words());
+    assert!(page.contains("진단 불가: 읽을 수 없습니다: "));
 }

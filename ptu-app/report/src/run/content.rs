@@ -194,7 +194,10 @@ fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
                 .collect()
         }
         Err(why) => {
-            let missing = fill(report.trace_missing, &[("id", &id), ("why", why)]);
+            let missing = fill(
+                report.trace_missing,
+                &[("id", &id), ("why", &words.trouble(why))],
+            );
             vec![Block::Text(Tone::Bad, missing)]
         }
     }

@@ -16,7 +16,7 @@ pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(report.diagnosis.into())];
     match &sheet.diagnosis {
         Err(why) => {
-            let none = fill(report.no_diagnosis, &[("why", &words.content(why))]);
+            let none = fill(report.no_diagnosis, &[("why", &words.trouble(why))]);
             blocks.push(Block::Text(Tone::Soft, none));
         }
         Ok(answer) => {

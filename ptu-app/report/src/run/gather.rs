@@ -26,12 +26,12 @@ impl Sheet {
             samples: store
                 .trace(id)
                 .map(drawn_channels)
-                .map_err(|error| error.to_string()),
+                .map_err(|error| Failure::from(error).message),
             id,
             steps,
             faults,
         };
-        let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.to_string());
+        let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.message);
         let parts = (directory.faults().ok())
             .map(|catalogue| catalogue.lrus)
             .unwrap_or_default();

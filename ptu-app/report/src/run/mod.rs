@@ -34,6 +34,7 @@ pub use paper::{Paper, Printed};
 pub use pdf::pdf;
 pub use sources::in_words as source_in_words;
 
+use ptu_runs::failure::Trouble;
 use ptu_runs::run_diagnosis::Answer;
 
 /// All a test sheet says, in no language yet.
@@ -45,7 +46,7 @@ pub struct Sheet {
     /// Traces of the run beyond those.
     pub more_traces: usize,
     /// What the run says about the unit's parts, or why nothing.
-    pub diagnosis: Result<Answer, String>,
+    pub diagnosis: Result<Answer, Trouble>,
     /// Names of parts in English and Korean, by their short name.
     pub parts: BTreeMap<String, [String; 2]>,
 }
@@ -59,7 +60,7 @@ pub struct SheetTrace {
     /// Names of the faults it shows.
     pub faults: Vec<String>,
     /// The samples of what is drawn, or why there are none.
-    pub samples: Result<TraceData, String>,
+    pub samples: Result<TraceData, Trouble>,
 }
 
 impl Sheet {

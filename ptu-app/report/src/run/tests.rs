@@ -9,6 +9,7 @@ use fault_db::{
 
 use protocol::display_text;
 use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::Trouble;
 
 use super::page::font::FontMetrics;
 use super::page::{self, HEIGHT, Item, WIDTH};
@@ -308,7 +309,7 @@ fn a_document_is_the_same_each_time_and_in_both_languages_a_pdf() {
 fn a_trace_that_cannot_be_read_is_named_and_the_sheet_goes_on() {
     let (store, id) = stored(4, true);
     let mut sheet = sheet(&store, id);
-    sheet.traces[0].samples = Err("it is gone".into());
+    sheet.traces[0].samples = Err(Trouble::Told("it is gone".to_owned()));
     let page = html(&sheet, Language::English.words());
     assert!(page.contains("cannot be shown: it is gone"));
     assert_eq!(page.matches("<figure").count(), 2);
