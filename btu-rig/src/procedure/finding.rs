@@ -133,6 +133,13 @@ pub enum Finding {
         /// Why.
         why: String,
     },
+    /// Others started a unit on a train again while it was tested.
+    StartedAgain,
+    /// A unit on a train ended test mode by itself.
+    TestModeEnded {
+        /// The code of why, as the unit gives it.
+        refusal: u8,
+    },
     /// A motion or request of the tester did not end in time.
     NotFinished {
         /// The time it had.

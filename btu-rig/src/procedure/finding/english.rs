@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use protocol::event::LOG_ENTRIES;
-use protocol::message::SelfTest;
+use protocol::message::{ArmRefusal, SelfTest};
 
 use super::{Before, Finding, Findings, LimitMissed, LoggedEvent, WaitedFor, WhyNoValue};
 use crate::procedure::EventSource;
@@ -143,6 +143,13 @@ impl Display for Finding {
                 write!(f, "{name}: a limit refers to a measurement without a value")
             }
             Self::Refused { why } | Self::Told(why) => f.write_str(why),
+            Self::StartedAgain => {
+                f.write_str("the unit was started again: its supply was interrupted")
+            }
+            Self::TestModeEnded { refusal } => {
+                let why = session_end(ArmRefusal::from_code(*refusal));
+                write!(f, "the unit ended test mode by itself: {why}")
+            }
             Self::NotFinished { within } => {
                 write!(f, "motion or tester request not finished within {within}")
             }
@@ -302,4 +309,17 @@ fn happened(logged: &LoggedEvent) -> String {
 fn because(f: &mut Formatter<'_>, why: Option<&impl Display>) -> fmt::Result {
     let said = f.alternate();
     why.map_or(Ok(()), |why| write!(f, ": {}", Part(why, said)))
+}
+
+/// Why a unit ends a session, in words a technician can act on.
+fn session_end(refusal: ArmRefusal) -> &'static str {
+    match refusal {
+        ArmRefusal::KeyOff => "the maintenance key was turned off",
+        ArmRefusal::Moving | ArmRefusal::TrainMoved => "the train moved",
+        ArmRefusal::CodeChanged => "the speed code in the rail changed",
+        ArmRefusal::ModeChanged => "the mode switch was turned",
+        ArmRefusal::BrakesReleased => "the train does not prove that its brakes are applied",
+        ArmRefusal::TesterSilent => "it did not hear the tester for a second",
+        other => other.label(),
+    }
 }

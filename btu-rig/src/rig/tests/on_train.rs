@@ -184,7 +184,11 @@ fn what_others_do_to_the_unit_is_told() {
         bench.link_mut().link.send(now, &notice.into(), &mut frame);
         bench.rig_mut().receive(now, &frame);
         assert_eq!(
-            bench.rig_mut().take_intervention().as_deref(),
+            bench
+                .rig_mut()
+                .take_intervention()
+                .map(|why| why.to_string())
+                .as_deref(),
             Some("the unit ended test mode by itself: the maintenance key was turned off")
         );
         assert_eq!(bench.rig_mut().take_intervention(), None);
@@ -193,7 +197,11 @@ fn what_others_do_to_the_unit_is_told() {
     bench.link_mut().harness = false;
     bench.run_ms(4000);
     assert_eq!(
-        bench.rig_mut().take_intervention().as_deref(),
+        bench
+            .rig_mut()
+            .take_intervention()
+            .map(|why| why.to_string())
+            .as_deref(),
         Some("the unit was started again: its supply was interrupted")
     );
     assert_eq!(bench.rig_mut().take_intervention(), None);

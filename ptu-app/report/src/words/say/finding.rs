@@ -11,7 +11,7 @@ use btu_rig::procedure::runner::ATTEMPTS;
 use btu_rig::stimulus::number;
 use fault_db::StepKind;
 use protocol::event::{Event, LOG_ENTRIES};
-use protocol::message::SelfTest;
+use protocol::message::{ArmRefusal, SelfTest};
 
 use super::super::{KOREAN, content};
 use super::condition;
@@ -123,6 +123,15 @@ pub fn korean(finding: &Finding) -> String {
             format!("{}: 값이 없는 측정을 한계로 참조함", measured(measurement))
         }
         Finding::Refused { why } | Finding::Told(why) => told(why),
+        Finding::StartedAgain => "장치가 다시 시작됨: 전원이 차단되었음".to_owned(),
+        Finding::TestModeEnded { refusal } => {
+            let label = ArmRefusal::from_code(*refusal).label();
+            let why = condition::state("arm_refusal", label);
+            format!(
+                "장치가 시험을 스스로 종료함: {}",
+                why.unwrap_or_else(|| label.to_owned())
+            )
+        }
         Finding::NotFinished { within } => {
             format!("{within} 이내에 주행 또는 시험기 요청이 끝나지 않음")
         }

@@ -159,7 +159,7 @@ impl<L: UnitLink> Session<L> {
             runner.paused_with_unit(self.bench.now(), pause);
         }
         if let Some(why) = self.bench.rig_mut().take_intervention() {
-            runner.interrupted(Finding::Told(why));
+            runner.interrupted(why);
         }
         runner.behind(self.behind());
     }

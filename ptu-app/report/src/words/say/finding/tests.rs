@@ -100,3 +100,13 @@ fn what_came_more_than_once_is_counted_and_what_is_in_another_is_told() {
     let stored = Findings::from_json(&all.to_json().expect("stored"));
     assert_eq!(stored, Some(all));
 }
+
+/// Goal: what others do to a unit on a train is told in Korean with its reason. Method: each reason a unit gives.
+#[test]
+fn the_end_of_test_mode_is_told_with_its_reason() {
+    for (refusal, label) in (0..).zip(ArmRefusal::LABELS) {
+        let said = korean(&Finding::TestModeEnded { refusal });
+        assert!(!said.contains(label), "{said}");
+    }
+    assert!(korean(&Finding::TestModeEnded { refusal: 9 }).ends_with(": 차량 이동"));
+}
