@@ -93,17 +93,18 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
             ui.set_max_width((ui.ctx().content_rect().width() - at.x - 40.0).min(WIDE));
             if let Some(trouble) = trouble {
                 ui.horizontal_wrapped(|ui| {
-                    noted = Face::new(Look::Secondary, words.frame.dismiss)
-                        .show(ui)
-                        .clicked();
+                    let place = ActionPlace::new(ui, "dismiss", trouble.at_us);
+                    let dismiss = Face::new(Look::Secondary, words.frame.dismiss).show(ui);
+                    noted = place.clicked(&dismiss);
                     said(ui, trouble, words);
                 });
             }
             if let Some(last) = last {
                 ui.horizontal_wrapped(|ui| {
-                    // It may stand over what is read.
+                    // It may stand over what is read. It may also have come under a pointer that clicks twice.
+                    let place = ActionPlace::new(ui, "seen", last.at_us);
                     let close = Face::new(Look::Quiet, "").icon(ICON_CLOSE);
-                    seen = close.named(words.frame.seen).show(ui).clicked();
+                    seen = place.clicked(&close.named(words.frame.seen).show(ui));
                     said(ui, last, words);
                 });
             }

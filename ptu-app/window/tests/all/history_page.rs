@@ -137,6 +137,9 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         window.double_click(words.frame.undo);
         let undone = words.frame.undone.replace("{what} ", "");
         window.wait_for_part(&undone);
+        // Nor does it take away what has come to its place.
+        window.click_in_haste(words.frame.seen);
+        window.wait_for_part(&undone);
         window.wait_for_part(words.frame.undo_reason);
         assert!(!window.shows(words.frame.undo));
         let mut after = window.place.json(&show);
