@@ -21,7 +21,11 @@ fn named(code: i64, lru: &str, step_index: Option<u32>, at_us: i64) -> FaultReco
 
 /// A run of one step that sees these faults.
 fn run(store: &Store, faults: &[FaultRecord], verdict: Verdict) -> Vec<Id> {
-    let mut writer = RunWriter::begin(store, &run_record("ATC-1")).expect("begun");
+    run_of("ATC-1", store, faults, verdict)
+}
+
+fn run_of(unit: &str, store: &Store, faults: &[FaultRecord], verdict: Verdict) -> Vec<Id> {
+    let mut writer = RunWriter::begin(store, &run_record(unit)).expect("begun");
     let mut of_run = step(3);
     of_run.verdict = verdict;
     writer.step(of_run).expect("kept");
@@ -229,6 +233,25 @@ fn a_diagnosis_attributes_only_what_it_changes() {
         store.fault(faults[2]).expect("there").fault.cause(),
         "io_board"
     );
+}
+
+/// What is closed is settled: it is shown in no case, and none is shown with it. The same part of another unit is
+/// another case.
+#[test]
+fn a_closed_fault_and_one_of_another_unit_are_in_no_case() {
+    let folder = tempdir().expect("a folder");
+    let (store, faults) = slow_relay(&folder);
+    let other = [named(1, "eb_relay", Some(3), T0_US + 5)];
+    let other = run_of("ATC-2", &store, &other, Verdict::Failed);
+    store.put_diagnosed(&other, &from("eb_relay"), T0_US + 6);
+    store.put_state(faults[2], FaultState::Closed, "kim", "", T0_US + DAY_US);
+    let case = |fault: Id| {
+        let case = store.fault(fault).expect("there").case;
+        case.iter().map(|other| other.id).collect::<Vec<_>>()
+    };
+    assert_eq!(case(faults[0]), [faults[1]]);
+    assert_eq!(case(faults[2]), [] as [Id; 0]);
+    assert_eq!(case(faults[3]), [] as [Id; 0]);
 }
 
 fn by_cause(store: &Store, filter: FaultFilter) -> (Vec<FaultStat>, FaultStat) {

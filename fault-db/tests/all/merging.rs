@@ -544,6 +544,28 @@ fn an_earlier_copy_of_a_run_is_not_different() {
     whole(&b, "in two parts");
 }
 
+/// Goal: the seal of a run never comes to a file that has another end of this run.
+/// Method: a run is copied while it is under way, and ended by hand in the copy.
+#[test]
+fn the_seal_of_a_run_that_ended_otherwise_here_is_left_out() {
+    let dir = tempdir().expect("a directory");
+    let (a, b) = (laptop(&dir, "a.db", 1), laptop(&dir, "b.db", 2));
+    let mut writer = RunWriter::begin(&a, &run_record("ATC-7")).expect("begun");
+    writer.step(step(0)).expect("kept");
+    b.merge_from(&a).expect("in the middle");
+    change(b.path(), "UPDATE run SET verdict = 'passed'");
+    writer.finish(&end(Verdict::Failed)).expect("finished");
+    let met = b.merge_from(&a).expect("merged");
+    let named: Vec<_> = met.different.iter().map(|run| run.id).collect();
+    assert_eq!(named, [writer.id()]);
+    let conn = Connection::open(b.path()).expect("opens");
+    let of_other = "SELECT count(*) FROM seal WHERE what = 'run' AND says NOT LIKE '%found%'";
+    let seals: i64 = conn
+        .query_row(of_other, [], |row| row.get(0))
+        .expect("a count");
+    assert_eq!(seals, 0);
+}
+
 /// A run with a step, a measurement and a fault.
 fn measured_run(store: &Store) -> Id {
     let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");

@@ -37,7 +37,11 @@ impl PlausibilityCheck {
             && [input.accel_mps2, input.granted_n / input.mass_kg]
                 .iter()
                 .all(|a| libm::fabs(*a) <= HARDEST_MPS2)
-            && input.to_stop_m.is_none_or(f64::is_finite);
+            && input
+                .to_stop_m
+                .iter()
+                .chain(&input.markers_to_stop_m)
+                .all(|m| m.is_finite());
         let mass_kg = if mass { input.mass_kg } else { self.empty_kg };
         (!sound).then_some(Demand {
             target_mps: 0.0,
