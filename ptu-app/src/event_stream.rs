@@ -10,11 +10,10 @@ use std::thread::JoinHandle;
 use btu_rig::procedure::Procedure;
 
 use ptu_report::event_lines::EventLines;
-use ptu_runs::failure::{Failure, FileTrouble, Why};
+use ptu_runs::failure::{Asked, Failure, FileTrouble, Why};
 use ptu_runs::new_file::{NewFile, kind};
 use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
 const WAITING: usize = 65_536;

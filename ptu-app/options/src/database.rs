@@ -6,8 +6,7 @@ use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
 use ptu_runs::clock;
-use ptu_runs::failure::{Failure, FileTrouble};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure, FileTrouble};
 use ptu_runs::{owner_only, stdio};
 
 /// Names a history for all commands that are given none.

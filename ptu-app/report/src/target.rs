@@ -15,10 +15,9 @@ use crate::words::{Language, Words};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
 use ptu_runs::data::{self, ScriptsDirectory};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -168,10 +167,7 @@ pub fn write(
 fn refuse_changed(store: &Store, run: Id) -> Result<(), Failure> {
     match store.verify_run(run)?.changes.first() {
         None => Ok(()),
-        Some(change) => Err(Failure::bench(Asked::Changed(
-            run.short().to_string(),
-            change.to_string(),
-        ))),
+        Some(change) => Err(Failure::bench(Asked::Changed(run, change.to_string()))),
     }
 }
 

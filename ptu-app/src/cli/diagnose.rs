@@ -5,10 +5,9 @@ use protocol::LruId;
 
 use super::{Database, Json, ScriptsOption};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::run_diagnosis::{Question, diagnose};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// Find the part that failed, why it is that one, and the next best check
 ///

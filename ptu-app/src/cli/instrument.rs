@@ -9,10 +9,9 @@ use serde_json::json;
 use super::signing::SigningOption;
 use super::{Database, Json, print_out};
 use ptu_runs::clock;
-use ptu_runs::failure::{Exit, Failure, Unknown, did_you_mean_number};
+use ptu_runs::failure::{Asked, Exit, Failure, Unknown, did_you_mean_number};
 use ptu_runs::keys::day_argument;
 use ptu_runs::table::Table;
-use ptu_runs::words::Asked;
 
 /// Register what measures and generates on this bench, with its calibration
 ///

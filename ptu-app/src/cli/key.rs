@@ -8,14 +8,13 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
-use ptu_runs::failure::{Exit, Failure, KeyTrouble, Unknown, did_you_mean};
+use ptu_runs::failure::{Asked, Exit, Failure, KeyTrouble, Unknown, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
     name_argument, own_folder, public_name, sought,
 };
 use ptu_runs::owner_only;
 use ptu_runs::table::Table;
-use ptu_runs::words::Asked;
 use ptu_runs::{clock, data};
 
 /// Years for which a new key holds.

@@ -8,8 +8,7 @@ use super::{Database, ScriptsOption, print_out};
 use ptu_report::run::CaseSheet;
 use ptu_report::words::Language;
 use ptu_report::{Target, write_case};
-use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Exit, Failure};
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///

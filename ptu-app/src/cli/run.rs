@@ -23,7 +23,7 @@ use crate::run_recording::RunRecording;
 use ptu_report::words::tell;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::drive::{Setting, train::brakes_less};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{
     self, BenchChoice, BenchSetup, MeasuringRules, RunControl, RunPlan, Signals, Suite,
@@ -33,7 +33,6 @@ use ptu_runs::run_diagnosis::{Bench, adaptive, prove_repairs};
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::symptoms;
-use ptu_runs::words::Asked;
 
 /// What is taken where nothing is named.
 const LINE: &str = "line8";

@@ -16,9 +16,8 @@ use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparis
 use ptu_runs::clock::{self, Span};
 use ptu_runs::coverage::counts_of;
 use ptu_runs::data;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::table::Table;
-use ptu_runs::words::Asked;
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]
@@ -212,7 +211,7 @@ fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
             .is_some_and(|statement| statement.what == "run")
     });
     let Some(signed) = signed else {
-        return Err(Failure::usage(Asked::Unsigned(run.short().to_string())));
+        return Err(Failure::usage(Asked::Unsigned(run)));
     };
     data::write_text(out, format!("{signed}\n"))?;
     print_out(&format!("written: {}", out.display()))

@@ -7,8 +7,7 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
-use ptu_runs::failure::{Failure, FileTrouble, KeyTrouble};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure, FileTrouble, KeyTrouble};
 use ptu_runs::{keys, owner_only};
 
 /// Longest file with a PIN, bytes.

@@ -12,9 +12,8 @@ use super::key::KeysOption;
 use super::{Database, Json, answered};
 use ptu_report::has_certificate;
 use ptu_runs::clock::{self, rfc3339};
-use ptu_runs::failure::{Exit, Failure, FileTrouble};
+use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Why};
 use ptu_runs::keys::KeyList;
-use ptu_runs::words::{Asked, Why};
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;

@@ -1,6 +1,5 @@
 //! The window: takes what other threads have produced, then draws the frame and the page.
 
-use crate::messages::told;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -18,6 +17,7 @@ use super::query_worker::QueryWorker;
 use super::settings::Settings;
 use super::units::{Unit, Units};
 use super::{fonts, theme};
+use crate::messages::told;
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::{Wake, Watched};
 use ptu_runs::clock;

@@ -9,11 +9,10 @@ use clap::Parser;
 use fault_db::Store;
 use ptu_options::{WindowOptions, refuse_password};
 use ptu_report::words::tell;
-use ptu_runs::failure::{Exit, Failure, Trouble};
+use ptu_runs::failure::{Asked, Exit, Failure, Trouble};
 use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
 use ptu_runs::run::loading;
 use ptu_runs::stop::Stop;
-use ptu_runs::words::Asked;
 use ptu_window::{DataPaths, Options, Settings, open};
 
 #[derive(Debug, Parser)]

@@ -4,8 +4,7 @@ use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use super::data_paths::DataPaths;
 use ptu_runs::bench_worker::Wake;
-use ptu_runs::failure::{Failure, RunTrouble};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 

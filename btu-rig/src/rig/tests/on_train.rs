@@ -158,6 +158,12 @@ fn a_procedure_of_a_bench_is_not_run_on_a_train() {
     }
 }
 
+/// What others did to the unit, as the runner tells it.
+fn intervention(bench: &mut Bench<FakeUnit>) -> Option<String> {
+    let what = bench.rig_mut().take_intervention();
+    what.map(|what| what.to_string())
+}
+
 /// Goal: what people do to a unit on a train while it is tested is reported, once, and is not taken for what a bench
 /// did. Method: the unit ends the session, also while a request waits for its answer; then it is powered off and on.
 #[test]
@@ -184,11 +190,7 @@ fn what_others_do_to_the_unit_is_told() {
         bench.link_mut().link.send(now, &notice.into(), &mut frame);
         bench.rig_mut().receive(now, &frame);
         assert_eq!(
-            bench
-                .rig_mut()
-                .take_intervention()
-                .map(|why| why.to_string())
-                .as_deref(),
+            intervention(&mut bench).as_deref(),
             Some("the unit ended test mode by itself: the maintenance key was turned off")
         );
         assert_eq!(bench.rig_mut().take_intervention(), None);
@@ -197,11 +199,7 @@ fn what_others_do_to_the_unit_is_told() {
     bench.link_mut().harness = false;
     bench.run_ms(4000);
     assert_eq!(
-        bench
-            .rig_mut()
-            .take_intervention()
-            .map(|why| why.to_string())
-            .as_deref(),
+        intervention(&mut bench).as_deref(),
         Some("the unit was started again: its supply was interrupted")
     );
     assert_eq!(bench.rig_mut().take_intervention(), None);

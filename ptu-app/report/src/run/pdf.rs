@@ -33,7 +33,7 @@ pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<(Vec<u8>, BTreeSet<cha
     let paper = sheet.paper(words);
     let (pages, coded) = page::pages_of(&paper, words)?;
     let letters = FontMetrics::new()?;
-    let failed = |what: &str| Failure::bench(FileTrouble::NotPrinted("PDF", Why::of(what)));
+    let failed = |what: &str| Failure::bench(FileTrouble::NotPrinted("the PDF", Why::of(what)));
     let font = Font::new(PRETENDARD.into(), 0).ok_or_else(|| failed("the shipped font"))?;
     let size = || PageSettings::from_wh(WIDTH, HEIGHT).ok_or_else(|| failed("the page size"));
     let mut document = Document::new();

@@ -6,8 +6,7 @@ use std::ops::Range;
 use fault_db::TraceData;
 
 use super::series::Import;
-use ptu_runs::failure::Failure;
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure};
 
 /// How much sooner than a row a sample's time may be rounded, microseconds.
 const ROUNDING_US: i64 = 1;

@@ -6,9 +6,8 @@ use std::path::Path;
 use super::csv::{self, beside};
 use super::part::TracePart;
 use super::{mcap_write, parquet};
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::new_file::{NewFile, cannot_write, kind};
-use ptu_runs::words::Asked;
 
 /// What a trace is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,7 @@ use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
 use crate::words::Language;
-use ptu_runs::failure::Failure;
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure};
 
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;
@@ -67,8 +66,8 @@ impl Seconds {
         if rows.is_empty() && !is_all {
             let at_s = |row: i64| format!("{:.3}", (row - trigger) as f64 * period_s);
             return Err(Failure::usage(Asked::OutsideTrace(
-                at_s(0).to_string(),
-                at_s(head.rows as i64 - 1).to_string(),
+                at_s(0),
+                at_s(head.rows as i64 - 1),
             )));
         }
         Ok(rows)

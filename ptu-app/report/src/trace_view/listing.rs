@@ -6,8 +6,7 @@ use super::TraceView;
 use crate::naming::PartNames;
 use crate::words::Language;
 use ptu_runs::clock;
-use ptu_runs::failure::Failure;
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure};
 
 /// Runs looked through, the newest.
 pub const RUNS: u32 = 500;
@@ -188,10 +187,7 @@ pub fn open(
 ) -> Result<OpenTrace, Failure> {
     let data = store.trace(id)?;
     if !PERIODS_US.contains(&data.period_us) {
-        return Err(Failure::bench(Asked::TraceDamaged(
-            id.short().to_string(),
-            data.period_us.to_string(),
-        )));
+        return Err(Failure::bench(Asked::TraceDamaged(id, data.period_us)));
     }
     let run = match run {
         Some(run) => Some(run),

@@ -1,7 +1,6 @@
 //! The bench thread: connects to a unit, scans the bench while nothing runs, runs procedures, and releases the
 //! unit with its outputs safe.
 
-use crate::words::RunTrouble;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -18,6 +17,7 @@ use protocol::{Duration, Instant, SCAN};
 use super::event::BenchEvent;
 use super::live_state::{LiveState, Phase};
 use super::{Order, RunOrder, permit};
+use crate::failure::RunTrouble;
 use crate::link::{Pace, keep_time};
 use crate::run::{
     BenchSetup, Connected, Listener, Outcome, READY_WITHIN, RunStart, Session, SessionEvent,

@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use serialport::SerialPort;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, NoUnit};
 use crate::platform;
-use crate::words::NoUnit;
 
 /// Opens a port and keeps it to this program until it is closed.
 ///

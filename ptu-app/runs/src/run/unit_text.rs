@@ -3,9 +3,8 @@
 use protocol::display_text::is_unseen;
 use protocol::message::Identity;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, NoUnit};
 use crate::link::Endpoint;
-use crate::words::NoUnit;
 
 /// Stands for a serial number that is not set. It is longer than any field, so that no unit can say it.
 const NO_SERIAL: &str = "(no serial number)";

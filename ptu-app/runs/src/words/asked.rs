@@ -1,12 +1,13 @@
 //! What is refused of what a person asked for at a command line or in a window.
 
 use btu_rig::rig::LinkTrouble;
+use fault_db::Id;
 
 use super::{EndpointError, OfUnit, Why, sentences};
 use crate::failure::Near;
 
 sentences! {
-    /// What was asked for.
+    /// What a person asks for at a command line or in a window, and cannot be had so.
     Asked {
         // A run.
         ErrorInScripts: "1 error in the scripts; nothing was driven", "스크립트 오류 1건. 아무것도 구동하지 않았습니다";
@@ -19,13 +20,13 @@ sentences! {
         ExcludesAll(name: String): "--exclude {name} leaves nothing to run", "--exclude {name}: 시험할 것이 남지 않습니다";
         NoStepChosen: "no step is chosen", "선택한 단계가 없습니다";
         NotAnswered: "the query was not answered", "조회에 응답이 없습니다";
-        StillRunning(run: String): "run {run} is still under way; wait for its end, or stop it first", "시험 {run}이(가) 아직 진행 중입니다. 끝나기를 기다리거나 먼저 중지하십시오";
-        RanNothing(run: String, source: String): "run {run} ({source}) ran no procedures; name a run of `ptu run`, see `ptu runs list`", "시험 {run} ({source})에는 시험한 절차가 없습니다. `ptu run`의 시험을 지정하십시오. 목록: `ptu runs list`";
-        AllJudged(run: String): "each procedure of run {run} has a verdict; `ptu runs show {run}` lists them, and --retry-errors runs those again that could not be tested", "시험 {run}의 모든 절차에 판정이 있습니다. 목록: `ptu runs show {run}`. 판정 불가인 절차는 --retry-errors로 다시 시험합니다";
-        NoneInError(run: String): "no procedure of run {run} ended as an error; `ptu runs show {run}` lists their verdicts", "시험 {run}에 판정 불가로 끝난 절차가 없습니다. 판정: `ptu runs show {run}`";
-        WasOnNoUnit(run: String, source: String, error: EndpointError): "run {run} was on \"{source}\", which is no unit to connect to: {error}", "시험 {run}의 장치 \"{source}\"에는 연결할 수 없습니다: {error}";
-        WasOnOtherUnit(run: String, place: String, unit: String): "run {run} was on {place}, and --unit says {unit}: another unit does not continue a run; leave --unit out, or begin a new run", "시험 {run}의 장치는 {place}이고 --unit은 {unit}입니다. 다른 장치로 이어서 시험할 수 없습니다. --unit을 빼거나 새로 시험하십시오";
-        WasOfOtherSerial(run: String, was: String, serial: String): "run {run} tested unit {was}, and --serial-no says {serial}: another unit does not continue a run; leave --serial-no out, or begin a new run", "시험 {run}의 장치는 {was}이고 --serial-no는 {serial}입니다. 다른 장치로 이어서 시험할 수 없습니다. --serial-no를 빼거나 새로 시험하십시오";
+        StillRunning(run: Id): "run {run} is still under way; wait for its end, or stop it first", "시험 {run}이(가) 아직 진행 중입니다. 끝나기를 기다리거나 먼저 중지하십시오";
+        RanNothing(run: Id, source: String): "run {run} ({source}) ran no procedures; name a run of `ptu run`, see `ptu runs list`", "시험 {run} ({source})에는 시험한 절차가 없습니다. `ptu run`의 시험을 지정하십시오. 목록: `ptu runs list`";
+        AllJudged(run: Id): "each procedure of run {run} has a verdict; `ptu runs show {run}` lists them, and --retry-errors runs those again that could not be tested", "시험 {run}의 모든 절차에 판정이 있습니다. 목록: `ptu runs show {run}`. 판정 불가인 절차는 --retry-errors로 다시 시험합니다";
+        NoneInError(run: Id): "no procedure of run {run} ended as an error; `ptu runs show {run}` lists their verdicts", "시험 {run}에 판정 불가로 끝난 절차가 없습니다. 판정: `ptu runs show {run}`";
+        WasOnNoUnit(run: Id, source: String, error: EndpointError): "run {run} was on \"{source}\", which is no unit to connect to: {error}", "시험 {run}의 장치 \"{source}\"에는 연결할 수 없습니다: {error}";
+        WasOnOtherUnit(run: Id, place: String, unit: String): "run {run} was on {place}, and --unit says {unit}: another unit does not continue a run; leave --unit out, or begin a new run", "시험 {run}의 장치는 {place}이고 --unit은 {unit}입니다. 다른 장치로 이어서 시험할 수 없습니다. --unit을 빼거나 새로 시험하십시오";
+        WasOfOtherSerial(run: Id, was: String, serial: String): "run {run} tested unit {was}, and --serial-no says {serial}: another unit does not continue a run; leave --serial-no out, or begin a new run", "시험 {run}의 장치는 {was}이고 --serial-no는 {serial}입니다. 다른 장치로 이어서 시험할 수 없습니다. --serial-no를 빼거나 새로 시험하십시오";
         NotAllEvents(place: String, why: Why): "{place} has not all events: {why}; `ptu runs show latest` has the run", "{place}에 이벤트가 모두 있지 않습니다: {why}. 시험 기록: `ptu runs show latest`";
         // Faults and repairs.
         NoPartHere(part: String, near: Near): "no part \"{part}\"{near}; `ptu catalog parts` lists them, and --other-part names one that the catalogue lacks", "부품 \"{part}\"이(가) 없습니다{near}. 목록: `ptu catalog parts`. 목록에 없는 부품은 --other-part로 지정합니다";
@@ -51,15 +52,15 @@ sentences! {
         CaseUnsigned: "the page of a case carries no signature: leave --key and PTU_KEY out, and sign the sheet of each run", "정비 작업의 문서에는 서명하지 않습니다. --key와 PTU_KEY를 빼고 각 시험의 성적서에 서명하십시오";
         FitsRunAndFault(id: String): "\"{id}\" fits a run and a fault; give more digits, or --case for the fault", "\"{id}\"에 해당하는 시험과 고장이 모두 있습니다. 더 길게 입력하거나, 고장이면 --case를 쓰십시오";
         FitsNothing(id: String): "no run and no fault \"{id}\"; `ptu runs list` and `ptu faults list` show what there is", "\"{id}\"에 해당하는 시험과 고장이 없습니다. 목록: `ptu runs list`, `ptu faults list`";
-        Unsigned(run: String): "run {run} is not signed and has no certificate; `ptu run --key FILE` signs one", "시험 {run}에는 서명과 증명서가 없습니다. `ptu run --key FILE`로 서명합니다";
-        Changed(run: String, change: String): "the run was changed, and no sheet of it is signed: {change}" ["; `ptu verify {run}` tells all"], "시험 기록이 변경되어 성적서에 서명하지 않습니다: {change}" [". 전체 내용: `ptu verify {run}`"];
+        Unsigned(run: Id): "run {run} is not signed and has no certificate; `ptu run --key FILE` signs one", "시험 {run}에는 서명과 증명서가 없습니다. `ptu run --key FILE`로 서명합니다";
+        Changed(run: Id, change: String): "the run was changed, and no sheet of it is signed: {change}" ["; `ptu verify {run}` tells all"], "시험 기록이 변경되어 성적서에 서명하지 않습니다: {change}" [". 전체 내용: `ptu verify {run}`"];
         NoCodeOfSheet: "a code of a sheet reads ptu:RUN/SHA-256", "성적서의 코드는 ptu:RUN/SHA-256 형식입니다";
         PinUnread(why: String): "no PIN could be read: {why}", "PIN을 읽지 못했습니다: {why}";
         NoKeyIn(file: String): "{file} names no key", "{file}에 키가 없습니다";
         KeysAlike(n: usize, asked: String): "{n} keys are of \"{asked}\"; give the beginning of the key, as `ptu key list` shows it", "\"{asked}\"의 키가 {n}개 있습니다. `ptu key list`에 표시된 키의 앞부분을 입력하십시오";
         KeyStays(file: String): "{file} is there already and stays; name another file with --out", "{file}이(가) 이미 있어 그대로 둡니다. --out으로 다른 파일을 지정하십시오";
-        RunBesideItself(run: String): "both are run {run}: a run is compared with another one", "둘 다 시험 {run}입니다. 서로 다른 시험을 비교하십시오";
-        NoRunSaw(fault: String): "no run saw fault {fault}", "고장 {fault}이(가) 나타난 시험이 없습니다";
+        RunBesideItself(run: Id): "both are run {run}: a run is compared with another one", "둘 다 시험 {run}입니다. 서로 다른 시험을 비교하십시오";
+        NoRunSaw(fault: Id): "no run saw fault {fault}", "고장 {fault}이(가) 나타난 시험이 없습니다";
         // Instruments.
         InstrumentUnnamed: "an instrument has a serial number and a kind", "계측기의 일련번호와 종류를 지정하십시오";
         InstrumentKnown(serial: String): "{serial} is registered already; `ptu instrument list` shows it", "{serial}은(는) 이미 등록되어 있습니다. 목록: `ptu instrument list`";
@@ -72,7 +73,7 @@ sentences! {
         OutsideTrace(from: String, to: String): "the trace has no row in that span; it goes from {from} to {to} s of its trigger", "그 구간에는 신호 기록이 없습니다. 신호 기록은 트리거 기준 {from} ~ {to} s입니다";
         FileOutsideTrace(from: String, to: String, begin: String, end: String): "the file has no time in common with the trace: from its trigger the file goes from {from} to {to} s, the trace from {begin} to {end} s; lay it elsewhere with --shift SECONDS", "파일과 신호 기록에 공통 시간이 없습니다. 트리거 기준으로 파일은 {from} ~ {to} s, 신호 기록은 {begin} ~ {end} s입니다. --shift SECONDS로 옮기십시오";
         ComesTwice(signal: String): "signal \"{signal}\" comes twice in the file", "파일에 신호 \"{signal}\"이(가) 두 번 있습니다";
-        TraceDamaged(trace: String, period: String): "trace {trace} has rows of {period} µs: it is damaged", "신호 기록 {trace}의 주기가 {period} µs입니다: 손상되었습니다";
+        TraceDamaged(trace: Id, period: i64): "trace {trace} has rows of {period} µs: it is damaged", "신호 기록 {trace}의 주기가 {period} µs입니다: 손상되었습니다";
         // The window.
         OpensByHand(program: String, file: String): "{program} is not there: open {file} by hand", "{program} 프로그램이 없습니다. {file}을(를) 직접 여십시오";
         ServerIsRead: "a server's history is only read: without --unit, or with --db FILE", "서버의 이력은 읽기만 합니다. --unit을 빼거나 --db FILE을 쓰십시오";

@@ -45,9 +45,9 @@ impl Manner {
     }
 }
 
-/// What a sentence has in it.
+/// A value that stands in a sentence: a name, a number, or a sentence of its own.
 pub trait Say {
-    /// In this manner.
+    /// Its text in this language, with or without commands.
     fn say(&self, how: Manner) -> String;
 }
 

@@ -88,6 +88,7 @@ sentences! {
         ScriptsTooLong(folder: String, most: usize): "the scripts in {folder} are longer than {most} bytes together", "스크립트가 모두 합하여 {most}바이트를 넘습니다: {folder}";
         Shared(file: String, rights: String, command: String): "a secret that is shared protects nothing: {file} is open to others ({rights}); " ["to keep it to yourself: {command}" "keep it to yourself"], "비밀은 공유되면 보호되지 않습니다: 다른 사용자가 읽을 수 있는 파일입니다: {file} ({rights}). 본인만 읽을 수 있게 하십시오" [": {command}"];
         Unanswered(why: String): "cannot write the answer: {why}; make room on standard output or send it elsewhere", "결과를 출력할 수 없습니다: {why}. 공간을 확보하거나 다른 곳으로 출력하십시오";
+        FontUnread(why: Why): "the shipped font cannot be read: {why}", "내장 글꼴을 읽을 수 없습니다 ({why})";
         LongRow(view: String): "a row of {view} is too long to be exported", "내보내기에는 행이 너무 깁니다: {view}";
         OddValue(column: String, value: String): "the history has {value} in {column}, which no other row has" ["; look with `ptu db check`" "; check the history"], "이력의 {column} 값 {value}이(가) 다른 행과 다른 종류입니다. 이력을 검사하십시오" [": `ptu db check`"];
         NotCopied(why: String): "it cannot be copied to be checked: {why}", "검사할 사본을 만들 수 없습니다: {why}";
@@ -244,12 +245,12 @@ impl FileTrouble {
     }
 }
 
-/// A file that was looked for, and the folder of one's own keys if it was looked for there, too.
+/// A file that was looked for in vain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sought {
-    /// As it was named.
+    /// The file, as a person named it.
     pub file: String,
-    /// Where else.
+    /// The folder of a user's own keys; none if it was not looked in.
     pub folder: Option<String>,
 }
 

@@ -6,8 +6,7 @@ use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 use super::part;
 use crate::cli::{ScriptsOption, print_out};
 use ptu_runs::clock::now_us;
-use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Exit, Failure};
 
 /// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
 ///

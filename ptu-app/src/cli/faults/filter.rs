@@ -6,8 +6,7 @@ use protocol::event::{Event, Severity};
 
 use crate::cli::{ScriptsOption, check_unit};
 use ptu_runs::clock::Span;
-use ptu_runs::failure::{Failure, did_you_mean, did_you_mean_number};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Failure, did_you_mean, did_you_mean_number};
 
 /// Which faults.
 #[derive(Debug, Args)]

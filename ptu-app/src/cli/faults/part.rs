@@ -4,9 +4,8 @@ use fault_db::Store;
 
 use crate::cli::ScriptsOption;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::failure::{Failure, did_you_mean};
+use ptu_runs::failure::{Asked, Failure, did_you_mean};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// The part that is meant, in the spelling of the catalogue.
 ///

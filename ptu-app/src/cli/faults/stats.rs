@@ -15,8 +15,7 @@ use crate::cli::{at_least_one, print_out};
 use ptu_report::distances::Distances;
 use ptu_report::fault_months::{by_month, on_the_way};
 use ptu_runs::clock::{self, rfc3339};
-use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::words::Asked;
+use ptu_runs::failure::{Asked, Exit, Failure};
 use rate_ratio::RateRatio;
 
 /// Keys of a row, in their order.

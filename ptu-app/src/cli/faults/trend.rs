@@ -13,9 +13,8 @@ use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
-use ptu_runs::failure::{Exit, Failure, Near, did_you_mean};
+use ptu_runs::failure::{Asked, Exit, Failure, Near, OfUnit, did_you_mean};
 use ptu_runs::new_file::kind;
-use ptu_runs::words::{Asked, OfUnit};
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///

@@ -6,10 +6,9 @@ use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use glob::Pattern;
 
 use super::RunArguments;
-use ptu_runs::failure::{Failure, RunTrouble, Unknown, did_you_mean};
+use ptu_runs::failure::{Asked, Failure, RunTrouble, Unknown, did_you_mean};
 use ptu_runs::run::{Task, select};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 impl RunArguments {
     /// All when some are named, else those that are not run on request only; without those that are left out.

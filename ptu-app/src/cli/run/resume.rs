@@ -7,11 +7,10 @@ use clap::Args;
 use fault_db::{RunDetail, RunState};
 
 use super::RunArguments;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// Of units that were not reached.
 const UNKNOWN_SERIAL: &str = "unknown";
@@ -39,16 +38,16 @@ impl RunArguments {
         };
         let store = self.database.open_read_only()?;
         let earlier = store.run(store.resolve_run(name)?)?;
-        let (run, id) = (&earlier.run, earlier.run.id.short());
+        let (run, id) = (&earlier.run, earlier.run.id);
         if run.state == RunState::Running {
-            return Err(Failure::usage(Asked::StillRunning(id.to_string())));
+            return Err(Failure::usage(Asked::StillRunning(id)));
         }
         let open = unfinished(&earlier, which);
         if open.is_empty() {
             return Err(Failure::usage(match (earlier.scripts.len(), which) {
-                (0, _) => Asked::RanNothing(id.to_string(), run.source.to_string()),
-                (_, Unfinished::WithoutVerdict) => Asked::AllJudged(id.to_string()),
-                (_, Unfinished::Errors) => Asked::NoneInError(id.to_string()),
+                (0, _) => Asked::RanNothing(id, run.source.clone()),
+                (_, Unfinished::WithoutVerdict) => Asked::AllJudged(id),
+                (_, Unfinished::Errors) => Asked::NoneInError(id),
             }));
         }
         self.take_unit(&earlier)?;
@@ -57,7 +56,8 @@ impl RunArguments {
         let line = self.line.get_or_insert_with(|| run.line.clone());
         if *line != run.line {
             stdio::note(&format!(
-                "run {id} was on {}; what is left is run on {line}",
+                "run {} was on {}; what is left is run on {line}",
+                id.short(),
                 run.line
             ));
         }
@@ -76,13 +76,13 @@ impl RunArguments {
 
     /// The unit is that of the earlier run; its port may be another.
     fn take_unit(&mut self, earlier: &RunDetail) -> Result<(), Failure> {
-        let (run, id) = (&earlier.run, earlier.run.id.short());
+        let (run, id) = (&earlier.run, earlier.run.id);
         let place = match run.source.parse::<Endpoint>() {
             Ok(place) => place,
             Err(error) => {
                 return Err(Failure::usage(Asked::WasOnNoUnit(
-                    id.to_string(),
-                    run.source.to_string(),
+                    id,
+                    run.source.clone(),
                     error,
                 )));
             }
@@ -90,7 +90,7 @@ impl RunArguments {
         let unit = self.unit.get_or_insert_with(|| place.clone());
         if (*unit == Endpoint::Sim) != (place == Endpoint::Sim) {
             return Err(Failure::usage(Asked::WasOnOtherUnit(
-                id.to_string(),
+                id,
                 place.to_string(),
                 unit.to_string(),
             )));
@@ -103,9 +103,9 @@ impl RunArguments {
             .get_or_insert_with(|| run.unit_serial.clone());
         if *serial != run.unit_serial {
             return Err(Failure::usage(Asked::WasOfOtherSerial(
-                id.to_string(),
-                run.unit_serial.to_string(),
-                serial.to_string(),
+                id,
+                run.unit_serial.clone(),
+                serial.clone(),
             )));
         }
         Ok(())

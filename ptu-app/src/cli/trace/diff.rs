@@ -11,10 +11,9 @@ use super::explained::{deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption, answered};
 use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_runs::stdio;
-use ptu_runs::words::Asked;
 
 /// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
 ///

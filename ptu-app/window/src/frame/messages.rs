@@ -101,7 +101,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
             }
             if let Some(last) = last {
                 ui.horizontal_wrapped(|ui| {
-                    // It may stand over what is read. It may also have come under a pointer that clicks twice.
+                    // The message may stand over what is read, or have come under a pointer that clicks twice.
                     let place = ActionPlace::new(ui, "seen", last.at_us);
                     let close = Face::new(Look::Quiet, "").icon(ICON_CLOSE);
                     seen = place.clicked(&close.named(words.frame.seen).show(ui));

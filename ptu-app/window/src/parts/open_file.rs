@@ -4,8 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use ptu_runs::failure::Failure;
-use ptu_runs::words::{Asked, RunTrouble};
+use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
 /// What opens files here, and what stands before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {

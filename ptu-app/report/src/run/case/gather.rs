@@ -8,9 +8,8 @@ use fault_db::{FaultDetail, FaultEvent, FaultState, FaultSummary, Id, Store, Sto
 use super::{CaseSheet, Repair, Standing};
 use crate::run::Sheet;
 use ptu_runs::data::ScriptsDirectory;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::symptoms::{self, Symptom};
-use ptu_runs::words::Asked;
 
 impl CaseSheet {
     /// Reads all the sheet of a fault's case says.
@@ -40,7 +39,7 @@ impl CaseSheet {
             .find(|seen| repaired_at.is_none_or(|at_us| seen.at_us <= at_us))
             .or(fault.occurrences.first());
         let before = seen_before
-            .ok_or_else(|| Failure::usage(Asked::NoRunSaw(fault.fault.id.short().to_string())))?
+            .ok_or_else(|| Failure::usage(Asked::NoRunSaw(fault.fault.id)))?
             .run_id;
         let since = |event: &&FaultEvent| repaired_at.is_some_and(|at_us| event.at_us >= at_us);
         let later = || fault.events.iter().filter(since);

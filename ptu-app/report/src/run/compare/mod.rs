@@ -15,9 +15,8 @@ use std::collections::BTreeMap;
 use fault_db::{Id, MeasurementRecord, RunDetail, StepRecord, Store, Verdict, rank};
 
 use super::steps::passed;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::stored::outside_of;
-use ptu_runs::words::Asked;
 
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};
@@ -130,9 +129,7 @@ impl RunComparison {
     /// The same run twice, no such run, or the database cannot be read.
     pub fn gather(store: &Store, a: Id, b: Id, all: bool) -> Result<Self, Failure> {
         if a == b {
-            return Err(Failure::usage(Asked::RunBesideItself(
-                a.short().to_string(),
-            )));
+            return Err(Failure::usage(Asked::RunBesideItself(a)));
         }
         let read = |run| store.run(run);
         Ok(Self {

@@ -21,9 +21,8 @@ impl FontMetrics {
     /// # Errors
     /// It cannot be read.
     pub fn new() -> Result<Self, Failure> {
-        let face = Face::parse(PRETENDARD, 0).map_err(|error| {
-            Failure::bench(FileTrouble::NotPrinted("the shipped font", Why::of(error)))
-        })?;
+        let face = Face::parse(PRETENDARD, 0)
+            .map_err(|error| Failure::bench(FileTrouble::FontUnread(Why::of(error))))?;
         let per_em = f32::from(face.units_per_em());
         let ascii = [(0, 0.0); 128];
         let mut letters = Self {

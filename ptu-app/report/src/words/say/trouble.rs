@@ -50,7 +50,7 @@ pub(super) fn both(trouble: &Trouble) -> Both {
             let each = |n: usize| all.iter().map(|one| warned(one)[n].clone()).collect::<Vec<_>>().join("; ");
             [each(0), each(1)]
         }
-        // These are said before.
+        // `said` has these.
         Trouble::Refused(_) | Trouble::Because(_) | Trouble::All(_) => Both::default(),
         Trouble::Store(error) | Trouble::NamedStore(error) => store(error),
         Trouble::NotStored { run, error, left_out, kept } => {

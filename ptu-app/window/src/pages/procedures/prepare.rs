@@ -7,11 +7,10 @@ use btu_rig::procedure::plan::Connection;
 use super::selection::Selection;
 use crate::DataPaths;
 use ptu_runs::bench_worker::RunOrder;
-use ptu_runs::failure::Failure;
+use ptu_runs::failure::{Asked, Failure, RunTrouble};
 use ptu_runs::run::{BenchChoice, RunPlan, Suite};
 use ptu_runs::run_diagnosis;
 use ptu_runs::symptoms::Symptom;
-use ptu_runs::words::{Asked, RunTrouble};
 
 /// How the chosen procedures are run.
 #[derive(Clone, Debug)]

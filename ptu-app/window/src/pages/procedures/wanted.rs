@@ -1,12 +1,12 @@
 //! What another page asks to be run: a step, the search for a part, the proof of a repair.
 
-use crate::messages::told;
 use std::collections::BTreeSet;
 
 use super::prepare::RunSettings;
 use super::selection::Selection;
 use super::{ProceduresPage, controls};
 use crate::PageContext;
+use crate::messages::told;
 use ptu_report::words::fill;
 use ptu_runs::symptoms::Symptom;
 

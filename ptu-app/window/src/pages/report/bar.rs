@@ -1,10 +1,10 @@
 //! The bar above the sheet: links to trace and diagnosis, language, files, and a note.
 
-use crate::messages::told;
 use eframe::egui::{Align2, Button, ComboBox, Label, RichText, TextEdit, Ui};
 
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::data_paths::DataPaths;
+use crate::messages::told;
 use crate::parts::{NoteOn, named_combo, open_file};
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette, Sizes};

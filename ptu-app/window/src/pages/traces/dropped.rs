@@ -1,10 +1,10 @@
 //! A file that is dropped on the page: what can be read is laid behind the open trace.
 
-use crate::messages::told;
 use std::path::PathBuf;
 
 use eframe::egui::{Align2, FontId, Ui};
 
+use crate::messages::told;
 use crate::{PageContext, Palette};
 use ptu_report::trace_io::is_importable;
 

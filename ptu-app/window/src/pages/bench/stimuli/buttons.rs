@@ -1,6 +1,5 @@
 //! Buttons for manual stimuli: enabled only while the stimulus is permitted, with the reason otherwise.
 
-use crate::messages::told;
 use std::ops::RangeInclusive;
 
 use btu_rig::procedure::plan::Connection;
@@ -11,6 +10,7 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
+use crate::messages::told;
 use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::{Messages, Palette};
 use ptu_report::words::{Words, fill};
