@@ -6,7 +6,7 @@ use diagnosis::{Basis, Dictionary};
 use fault_db::Store;
 
 use super::basis::Contents;
-use super::warning::Warning;
+use super::warning::{Differs, Warning};
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, FileTrouble};
 
@@ -125,8 +125,7 @@ fn shipped(directory: &ScriptsDirectory, name: &str) -> Result<Option<Dictionary
     Dictionary::from_bytes(&packed).map(Some).map_err(wrong)
 }
 
-/// What differs, in a few words.
-fn differences(made_of: &Basis, now: &Basis) -> String {
+fn differences(made_of: &Basis, now: &Basis) -> Differs {
     let is_changed = |(name, sum): &(&String, &String)| {
         now.procedures.get(*name).is_some_and(|there| there != *sum)
     };
@@ -138,8 +137,7 @@ fn differences(made_of: &Basis, now: &Basis) -> String {
         .filter(|name| !now.procedures.contains_key(*name))
         .count();
     if changed.is_empty() && gone == 0 {
-        return "made of another unit configuration, line, train, scatter or fault catalogue"
-            .into();
+        return Differs::Configuration;
     }
     let shown = changed
         .iter()
@@ -148,9 +146,9 @@ fn differences(made_of: &Basis, now: &Basis) -> String {
         .collect::<Vec<_>>()
         .join(", ");
     match changed.len() {
-        0 => format!("made with {gone} scripts that are gone"),
-        n if n > 3 => format!("made before {shown} and {} more scripts changed", n - 3),
-        _ => format!("made before {shown} changed"),
+        0 => Differs::Gone(gone),
+        n if n > 3 => Differs::ManyChanged(shown, n - 3),
+        _ => Differs::Changed(shown),
     }
 }
 

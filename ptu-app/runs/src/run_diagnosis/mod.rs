@@ -15,4 +15,4 @@ pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, Origin, choose};
 pub use history::OwnHistory;
 pub use proof::{RepairProof, prove_repairs};
-pub use warning::Warning;
+pub use warning::{Differs, Warning};

@@ -2,6 +2,23 @@
 
 use thiserror::Error;
 
+/// What a dictionary was made of, where that is not what there is now.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Differs {
+    /// Another unit, line or train, other scatter or other faults.
+    #[error("made of another unit configuration, line, train, scatter or fault catalogue")]
+    Configuration,
+    /// Scripts that are not there now: how many.
+    #[error("made with {0} scripts that are gone")]
+    Gone(usize),
+    /// Scripts that are otherwise now: the first three, separated by commas.
+    #[error("made before {0} changed")]
+    Changed(String),
+    /// The first three of more, and how many are left.
+    #[error("made before {0} and {1} more scripts changed")]
+    ManyChanged(String, usize),
+}
+
 /// Why an answer is worth less than others.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Warning {
@@ -17,7 +34,7 @@ pub enum Warning {
     #[error("the fault dictionary is stale, {differs}: make a new one with `ptu campaign{how}`")]
     Stale {
         /// In what it differs.
-        differs: String,
+        differs: Differs,
         /// Options of the command that makes one.
         how: &'static str,
     },

@@ -5,7 +5,7 @@ use diagnosis::{FaultText, Known, Repaired, Sign, StepReason};
 use fault_db::RunDetail;
 use protocol::event::Event;
 use ptu_runs::clock::local_day;
-use ptu_runs::run_diagnosis::Warning;
+use ptu_runs::run_diagnosis::{Differs, Warning};
 use ptu_runs::stored::findings;
 
 use super::super::{Language, content, names};
@@ -197,10 +197,21 @@ pub(super) fn warned(warning: &Warning) -> Both {
                 "고장 사전이 다른 연결 방식으로 만들어짐. `ptu campaign{how}`(으)로 다시 만드십시오"
             )
         }
-        Warning::Stale { differs, how } => format!(
-            "고장 사전이 현재와 맞지 않음 ({}). `ptu campaign{how}`(으)로 다시 만드십시오",
-            content::korean(differs)
-        ),
+        Warning::Stale { differs, how } => {
+            let differs = match differs {
+                Differs::Configuration => {
+                    "장치 구성, 노선, 열차, 산포 또는 고장 목록이 다름".to_owned()
+                }
+                Differs::Gone(count) => format!("스크립트 {count}개가 없어짐"),
+                Differs::Changed(names) => format!("변경된 스크립트: {names}"),
+                Differs::ManyChanged(names, more) => {
+                    format!("변경된 스크립트: {names} 외 {more}개")
+                }
+            };
+            format!(
+                "고장 사전이 현재와 맞지 않음 ({differs}). `ptu campaign{how}`(으)로 다시 만드십시오"
+            )
+        }
         Warning::KnowsPart { modes, of } => {
             format!("고장 사전은 고장 모드 {of}개 중 {modes}개만 알고 있음")
         }
