@@ -48,7 +48,7 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
         // Of each cause its cases, their share and that of all so far, in the order of the list.
         let cases = |row: &Value| row["faults"].as_u64().expect("a number");
         let all: u64 = list(&stats).iter().map(cases).sum();
-        let percent = |part: u64| (100.0 * part as f64 / all as f64).round() as u64;
+        let percent = |part: u64| (100.0 * part as f64 / all as f64).round_ties_even() as u64;
         let told = |part: &str| {
             let place = list(&stats).iter().position(|row| row["key"] == part);
             let rows = &list(&stats)[..=place.expect("counted")];
