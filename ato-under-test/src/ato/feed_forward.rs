@@ -28,7 +28,8 @@ pub fn holding_force_n(
     (track_kgf_t + train.rolling_kgf_t) * KGF_PER_T * weight_kg
 }
 
-/// The least of it from PSM2 to the stop point, N for each kilogram that weighs: below 0 = downhill.
+/// The least of it from PSM2 to the stop point, N for each kilogram that weighs, below 0 = downhill; 0 where nothing
+/// takes of the brake, as the rate that is asked for is the greatest on a climb, too.
 pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
     let [_, psm2, _, _] = section.markers_m;
     let distance_m = (section.stop_m - psm2).max(0.0);
@@ -36,7 +37,7 @@ pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
         .map(|i| psm2 + distance_m * f64::from(i) / f64::from(APPROACH_PLACES))
         .map(|position_m| under(section, position_m, 1.0, train))
         .fold(f64::INFINITY, f64::min);
-    (least + train.rolling_kgf_t) * KGF_PER_T
+    ((least + train.rolling_kgf_t) * KGF_PER_T).min(0.0)
 }
 
 /// Mean resistance of the track under the train with its head at `position_m`, kgf/t, a gradient times `uphill`.
@@ -66,4 +67,26 @@ fn at(section: &Section, position_m: f64, uphill: f64, train: &AtoTrainConfig) -
         .filter(|&r| r > 0.0)
         .map_or(0.0, |r| train.curve_kgf_m_t / r);
     uphill * permille.unwrap_or(0.0) + curve
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::line::Line;
+
+    use super::*;
+
+    /// On an approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance: 31.7 kgf/t, 0.311 m/s²; level or up: nothing.
+    #[test]
+    fn an_approach_takes_of_the_brake_downhill_only() {
+        let line8 = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
+        let mut section = line8.section(61).unwrap().clone();
+        section.curves.clear();
+        section.gradients.truncate(1);
+        let train = super::super::tests::config().train;
+        for (permille, expected) in [(-35.0, -0.311), (0.0, 0.0), (35.0, 0.0)] {
+            section.gradients[0].permille = permille;
+            let least = approach_n_per_kg(&section, &train);
+            assert!((least - expected).abs() < 1e-3, "{permille} ‰: {least}");
+        }
+    }
 }

@@ -182,6 +182,13 @@ impl CodeDecoder {
         }
     }
 
+    /// The code in force says stop, on the line and in a yard.
+    pub fn stops(&self, codes: &[SpeedCode]) -> bool {
+        let of_table =
+            |code: &SpeedCode| code.meaning == CodeMeaning::Line && code.limit_kmh == 0.0;
+        self.code == Code::AbsoluteStop || self.known(codes).is_some_and(of_table)
+    }
+
     /// The limit under cab signal that the code in force stands for; none means zero.
     pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
         self.known(codes)

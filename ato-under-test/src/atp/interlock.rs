@@ -9,6 +9,8 @@ use crate::timer::{Edge, OnDelay};
 
 /// Time in which the train's brake line follows the relay, and TCMS tells of it [default].
 const FOLLOWS: Duration = Duration::from_ms(1_000);
+/// Time in which the wheels slow, where TCMS tells nothing [default].
+const SLOWS: Duration = Duration::from_ms(2_500);
 
 /// Time in which the line alone follows the relay when it is released [default].
 const LINE_FOLLOWS: Duration = Duration::from_ms(300);
@@ -41,23 +43,28 @@ impl Interlock {
 pub struct BrakePath {
     stays: OnDelay,
     denied: OnDelay,
+    rolls: OnDelay,
     failed: Edge,
 }
 
 impl BrakePath {
-    /// One scan: the brake is asked for, its line is energised all the same, and what TCMS tells of it.
+    /// One scan: the brake is asked for, its line is energised all the same, what TCMS tells of it, and whether the train
+    /// moves and does not slow.
     pub fn step(
         &mut self,
         now: Instant,
         asked: bool,
         line_stays: bool,
         tcms: Option<bool>,
+        unslowed: bool,
         log: &mut EventLog,
     ) {
         let stays = self.stays.update(now, asked && line_stays, FOLLOWS);
         let denied = asked && tcms == Some(false);
         let denied = self.denied.update(now, denied, FOLLOWS);
-        let failed = stays || denied || asked && self.failed.value();
+        let rolls = asked && tcms.is_none() && unslowed;
+        let rolls = self.rolls.update(now, rolls, SLOWS);
+        let failed = stays || denied || rolls || asked && self.failed.value();
         if self.failed.rises(failed) {
             log.push(now, Event::EbIneffective, i32::from(!stays));
         }
@@ -98,8 +105,9 @@ mod tests {
     #[test]
     fn a_brake_that_does_not_act_is_told_once_and_until_it_is_released() {
         let (mut path, mut log) = (BrakePath::default(), EventLog::default());
-        let mut at = |ms: u64, asked, stays, tcms| {
-            path.step(Instant::from_ms(ms), asked, stays, tcms, &mut log);
+        let mut at = |ms: u64, asked, stays, tcms: Option<bool>| {
+            // The train rolls on all the while.
+            path.step(Instant::from_ms(ms), asked, stays, tcms, true, &mut log);
             path.failed()
         };
         assert!(!at(0, true, true, Some(true)));
@@ -110,6 +118,9 @@ mod tests {
         assert!(!at(1_300, true, false, Some(false)));
         assert!(at(2_300, true, false, Some(false)));
         assert!(!at(2_400, false, false, None));
-        assert_eq!(log.next_index(), 2);
+        assert!(!at(2_500, true, false, None));
+        assert!(!at(4_900, true, false, None));
+        assert!(at(5_000, true, false, None), "by the wheels alone");
+        assert_eq!(log.next_index(), 3);
     }
 }

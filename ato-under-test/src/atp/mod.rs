@@ -162,8 +162,9 @@ impl Atp {
         let still = self.tachometers.still();
         let mode = self.sequence.mode();
         let known = self.decoder.known(&config.codes);
-        self.yard
-            .step(now, mode, known.map(|code| code.meaning), log);
+        let meaning = known.map(|code| code.meaning);
+        let stops = self.decoder.stops(&config.codes);
+        self.yard.step(now, mode, meaning, stops, log);
         let proceed_inputs = ProceedInputs {
             without_code: self.by_code() && self.decoder.code() == Code::None,
             by_driver: matches!(inputs.mode_switch, ModeSwitch::Manual | ModeSwitch::Yard),
@@ -256,9 +257,14 @@ impl Atp {
         // The brake of a power-up is not judged at standstill: TCMS may not have told of the line yet.
         let asked =
             self.brake.applied() && (self.brake.cause() != EbCause::NotReleased || !standstill);
+        let unslowed = !standstill && !proof.proved;
+        let stays = context.line_stays;
         self.path
-            .step(now, asked, context.line_stays, context.tcms_eb, log);
-        let held = self.brake.applied() || context.line_fell || !self.doors_closed;
+            .step(now, asked, stays, context.tcms_eb, unslowed, log);
+        let held = self.brake.applied()
+            || context.line_fell
+            || !self.doors_closed
+            || self.sequence.unmanned();
         self.interlock
             .step(now, held, context.line_open, inputs.controller);
     }

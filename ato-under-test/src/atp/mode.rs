@@ -3,13 +3,13 @@
 //!
 //! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake
 //! not released), the service brake stops the train first: there may be no driver. Then there is no
-//! Automatic until that is acknowledged or the mode switch has left its automatic positions. A driverless
-//! train then waits for a new departure, or for the start button: the one that was still
-//! given began the run that failed. So it does after a run that ended away from its stop point, or by the emergency brake:
-//! who acknowledges that does not send the train off. It departs once its doors have been served, too.
-//! So it does after a power-up, and after a run that mode off has ended: the supply may have failed in a run.
+//! Automatic until that is acknowledged or the mode switch has left its automatic positions.
+//!
+//! A driverless train waits for a new departure, or for the start button, after each run, after an emergency brake and after
+//! a power-up: a departure that is still given began the run before, and who acknowledges a brake does not send the train
+//! off. It departs once its doors have been served.
 //! A departure is new if it was heard withheld before: neither the first that is heard nor one that is heard again
-//! after silence says when it was given. One that is given while the emergency brake is applied, or before such a failure
+//! after silence says when it was given. One that is given on the way, while the emergency brake is applied, or before such a failure
 //! is acknowledged, is not: it was given to a train that may not go, and has to be given again.
 //!
 //! An emergency brake line that others open ends a run at once, and bars the next while it is open. The service brake stops
@@ -62,10 +62,14 @@ pub struct ModeInputs {
     pub acknowledge: bool,
     /// The train stands at the end of its run.
     pub arrived: bool,
+    /// A section began: what was authorised was a run through the one before.
+    pub relocated: bool,
     /// It stands away from the stop point, and ATO has given that up.
     pub gave_up: bool,
     /// Others than the unit have opened the emergency brake line.
     pub line_open: bool,
+    /// The unit itself reads that line, and does not have it from TCMS alone.
+    pub line_fell: bool,
     /// Doors are open on a side that is not enabled.
     pub forced: bool,
 }
@@ -85,6 +89,8 @@ pub struct ModeSequence {
     departs_anew: bool,
     /// The line has ended a run on the way: the train is stopped.
     stops: bool,
+    /// Position of the mode switch in the cycle before.
+    switch: ModeSwitch,
     refusals: Refusals,
 }
 
@@ -101,6 +107,7 @@ impl ModeSequence {
             failed: Refusals::empty(),
             departs_anew: true,
             stops: false,
+            switch: ModeSwitch::Off,
             refusals: Refusals::empty(),
         }
     }
@@ -120,6 +127,10 @@ impl ModeSequence {
             && (pressed || driverless && !self.departs_anew);
         self.refusals = inputs.lacking;
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
+        let turned = core::mem::replace(&mut self.switch, inputs.switch) != inputs.switch;
+        let stands = !inputs.lacking.contains(Refusals::NOT_STANDSTILL);
+        // At rest who turns the switch authorises anew: one position departs by a button, the other without.
+        inputs.arrived |= inputs.relocated || turned && stands;
         let next = next(self.mode, &inputs, departing);
         if pressed && next != Mode::AutomaticRun {
             log.push(
@@ -129,8 +140,8 @@ impl ModeSequence {
             );
         }
         match (self.mode, next) {
-            (Mode::AutomaticRun, Mode::Off) => self.departs_anew = true,
-            (Mode::AutomaticRun, _) => {}
+            (Mode::AutomaticRun, Mode::AutomaticRun) => {}
+            (Mode::AutomaticRun, _) => self.departs_anew = true,
             (_, Mode::AutomaticRun) => self.departs_anew = false,
             _ => {}
         }
@@ -145,7 +156,10 @@ impl ModeSequence {
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
         // A train that is held departs by what is given when it may go: who releases it does not send it off.
-        let held = inputs.lacking.contains(Refusals::EB_APPLIED) || self.failed();
+        let held = inputs
+            .lacking
+            .intersects(Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL)
+            || self.failed();
         let departs = self.new_departure(inputs.heard) && !held;
         let left = !matches!(
             inputs.switch,
@@ -163,7 +177,7 @@ impl ModeSequence {
         }
         let braked = inputs.lacking.contains(Refusals::EB_APPLIED);
         // A door that was forced is looked after before the train departs.
-        self.departs_anew |= runs && (inputs.gave_up || braked) || inputs.forced;
+        self.departs_anew |= runs && inputs.gave_up || braked || inputs.forced;
         self.departs_anew &= !departs;
     }
 
@@ -187,8 +201,10 @@ impl ModeSequence {
             self.departs_anew = true;
             self.stops = true;
         }
-        if self.mode == Mode::AutomaticRun && inputs.line_open {
-            log.push(now, Event::LineOpened, 0);
+        // The emergency brake of a train that moves logs what it follows.
+        let braked = inputs.line_fell && moves;
+        if self.mode == Mode::AutomaticRun && inputs.line_open && !braked {
+            log.push(now, Event::LineOpened, i32::from(!inputs.line_fell));
         }
         let by_ato = matches!(
             inputs.switch,
@@ -223,6 +239,11 @@ impl ModeSequence {
 
     pub fn refusals(&self) -> Refusals {
         self.refusals
+    }
+
+    /// The switch is at driverless and no run is under way: no lever drives such a train.
+    pub fn unmanned(&self) -> bool {
+        self.switch == ModeSwitch::Driverless && self.mode != Mode::AutomaticRun
     }
 }
 

@@ -1,8 +1,9 @@
 //! Where yard mode ends: a code of the line, or one that cancels yard mode, takes its limit away.
 //!
 //! Then the code counts as under cab signal, and no more than the yard's limit is permitted. A yard code gives the limit
-//! back; so does the mode switch, when it leaves its position and comes back. A yard without any code changes nothing, nor
-//! does a unit whose code table has no codes for the yard.
+//! back; so does the mode switch, when it leaves its position and comes back. A yard without any code changes nothing.
+//! Where the code table has no codes for the yard, only a code that says stop ends it, and one that lets a train run gives
+//! the limit back.
 
 use protocol::Instant;
 use protocol::config::{CodeMeaning, UnitConfig};
@@ -27,16 +28,18 @@ impl Yard {
         }
     }
 
-    /// One scan, with what the code in force is for; `None` = no code of the table.
+    /// One scan, with what the code in force is for, `None` = no code of the table, and whether it says stop.
     pub fn step(
         &mut self,
         now: Instant,
         mode: Mode,
         code: Option<CodeMeaning>,
+        stops: bool,
         log: &mut EventLog,
     ) {
         let before = self.ended;
         self.ended = match (mode, code) {
+            (Mode::Yard, _) if stops => true,
             (Mode::Yard, Some(CodeMeaning::YardCancel | CodeMeaning::Line)) => self.has_codes,
             (Mode::Yard, None) => before,
             _ => false,
@@ -75,7 +78,7 @@ mod tests {
             (Mode::Yard, None, false),
             (Mode::Manual, Some(OfYard), false),
         ] {
-            yard.step(Instant::ZERO, mode, code, &mut log);
+            yard.step(Instant::ZERO, mode, code, false, &mut log);
             assert_eq!(yard.ended(), ended, "{mode:?} {code:?}");
         }
         assert_eq!(
@@ -85,15 +88,19 @@ mod tests {
     }
 
     #[test]
-    fn a_table_without_yard_codes_ends_no_yard() {
+    fn where_the_table_has_no_yard_codes_only_a_stop_ends_it() {
         let text = include_str!("../../../scripts/units/sg100.toml");
         let mut yard = Yard::new(&UnitConfig::from_toml(text).expect("shipped"));
-        yard.step(
-            Instant::ZERO,
-            Mode::Yard,
-            Some(Line),
-            &mut EventLog::default(),
-        );
-        assert!(!yard.ended());
+        let mut log = EventLog::default();
+        for (code, stops, ended) in [
+            (Some(Line), false, false),
+            (None, true, true),
+            (None, false, true),
+            (Some(Line), false, false),
+            (Some(Line), true, true),
+        ] {
+            yard.step(Instant::ZERO, Mode::Yard, code, stops, &mut log);
+            assert_eq!(yard.ended(), ended, "{code:?} {stops}");
+        }
     }
 }

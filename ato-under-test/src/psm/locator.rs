@@ -70,6 +70,8 @@ pub struct Locator {
     /// Markers are held against the way: nothing is wrong with that.
     holds_markers: bool,
     wheel_reported: bool,
+    /// Share by which the wheels run farther than they tell, as markers proved before others contradicted them.
+    proved_farther: f64,
     /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
     span: Option<MarkerSpan>,
     last_marker: u8,
@@ -112,6 +114,7 @@ impl Locator {
             holds_ways: true,
             holds_markers: true,
             wheel_reported: false,
+            proved_farther: 0.0,
             span: None,
             last_marker: 0,
             count: 0,
@@ -123,17 +126,18 @@ impl Locator {
         self.odometer.set_pulse(pulse_m);
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
         self.wheel_reported = false;
+        self.proved_farther = 0.0;
         self.ways.clear();
         self.rescaled = true;
     }
 
-    /// At a departure loop a new section begins.
-    pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) {
+    /// At a departure loop a new section begins; whether one does.
+    pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) -> bool {
         let Some(section) = line.section(data.section) else {
-            return;
+            return false;
         };
-        if standstill && self.contradicts(section, line) {
-            return;
+        if standstill && self.contradicts(data, section, line) {
+            return false;
         }
         let left = self.anchor().cloned();
         let same = self
@@ -142,7 +146,8 @@ impl Locator {
             .is_some_and(|s| s.section == section.section);
         let departing = data.loop_id == section.from_loop;
         let run = same && self.position_m() > section.start_m + self.config.start_window_m;
-        if standstill && (!same || (departing && run)) {
+        let begins = standstill && (!same || (departing && run));
+        if begins {
             self.fix = PositionFix {
                 place_m: section.start_m,
                 distance_m: self.odometer.distance_m(),
@@ -160,6 +165,7 @@ impl Locator {
             self.contradicted = false;
             self.wheel_reported = false;
         }
+        begins
     }
 
     pub fn step(
@@ -300,16 +306,15 @@ impl Locator {
     /// Stopped within tolerance of the stop point, by the last marker and by the way from the marker before.
     pub fn aligned(&self) -> bool {
         let within = |distance_m: f64| libm::fabs(distance_m) <= self.aligned_m;
-        self.passed_last_marker()
-            && !self.contradicted
+        self.knows_stop_point()
             && self
                 .to_stop_m()
                 .is_some_and(|to_stop_m| within(to_stop_m) && within(to_stop_m - self.by_way_m))
     }
 
-    /// The section's last marker was seen: the stop point is known by it.
-    pub fn passed_last_marker(&self) -> bool {
-        self.fix.marker == MARKERS
+    /// The section's last marker was seen, and no way contradicts it.
+    pub fn knows_stop_point(&self) -> bool {
+        self.fix.marker == MARKERS && !self.contradicted
     }
 
     /// Distance to the stop point, m.
@@ -326,7 +331,8 @@ impl Locator {
 
     /// Share by which markers prove that the wheels run farther than is measured; 0 within what wheels may differ by.
     pub fn runs_farther(&self) -> f64 {
-        self.wheel.impossible().unwrap_or_default().max(0.0)
+        let proved = self.wheel.impossible().unwrap_or_default();
+        proved.max(self.proved_farther)
     }
 
     pub fn section(&self) -> Option<&Section> {

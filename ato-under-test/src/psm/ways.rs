@@ -39,6 +39,11 @@ impl Ways {
         self.count += 1;
     }
 
+    /// Ways are there to be held against each other.
+    pub fn compared(&self) -> bool {
+        self.count > 1
+    }
+
     /// Difference of the shares of two ways that no wheel explains.
     pub fn contradiction(&self) -> Option<f64> {
         let ways = &self.noted[..self.count];

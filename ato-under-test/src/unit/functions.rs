@@ -49,6 +49,8 @@ pub struct Functions {
     debounce: Debounce,
     /// Station data are of another place than that at which the train is known to stand.
     elsewhere: Edge,
+    /// A section began in this cycle.
+    relocated: bool,
     tacho_compare: TachoCompare,
     pub ato: Ato,
     pub ato_outputs: AtoOutputs,
@@ -72,6 +74,7 @@ impl Functions {
             locator: Locator::new(config),
             debounce: Debounce::default(),
             elsewhere: Edge::default(),
+            relocated: false,
             tacho_compare: TachoCompare::default(),
             ato: Ato::new(config),
             ato_outputs: AtoOutputs::default(),
@@ -92,23 +95,28 @@ impl Functions {
 
     /// One cycle.
     pub fn cycle(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
+        self.relocated = false;
         let between_loops = self.between_loops(around);
         self.twc.step(now, between_loops, log);
         if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
             let standstill = self.atp.tachometers().standstill();
             let line = &around.setup.line;
             let section = line.section(data.section).filter(|_| around.guards.station);
-            let elsewhere = section.is_some_and(|section| self.locator.contradicts(section, line));
+            let elsewhere =
+                section.is_some_and(|section| self.locator.contradicts(data, section, line));
             if self.elsewhere.rises(elsewhere && standstill) {
                 log.push(now, Event::TwcStationInvalid, i32::from(data.station));
             }
-            self.locator.locate(data, line, standstill);
+            self.relocated = self.locator.locate(data, line, standstill);
         }
         let by_signal = matches!(
             self.atp.sequence().mode(),
             Mode::Manual | Mode::Automatic | Mode::AutomaticRun
         );
-        self.locator.keep_place(by_signal && around.guards.station);
+        // A cab that is left, and taken up again, may stand elsewhere, or face the other way.
+        let stands = self.atp.tachometers().standstill() && self.atp.sequence().mode() != Mode::Off;
+        self.locator
+            .keep_place((by_signal || stands) && around.guards.station);
         self.serve_station(now, around, log);
         self.carry_out(now, around, log);
         let mode_inputs = self.mode_inputs(around);
@@ -149,7 +157,7 @@ impl Functions {
             overrun_m: self
                 .locator
                 .to_stop_m()
-                .filter(|_| self.locator.passed_last_marker())
+                .filter(|_| self.locator.knows_stop_point())
                 .map(|to_stop_m| -to_stop_m),
         };
         log.freeze(FreezeFrame {
@@ -346,8 +354,10 @@ impl Functions {
             start: !around.barred && lines.contains(TrainLines::START),
             acknowledge: lines.contains(TrainLines::ACKNOWLEDGE),
             arrived: self.ato.arrived(),
+            relocated: self.relocated,
             gave_up: self.ato.gave_up(),
             line_open: line_open && !self.atp.brake().applied(),
+            line_fell: around.line_fell,
             forced: self.atp.forced(),
         }
     }

@@ -21,6 +21,10 @@ fn scans(journey: &mut Journey, number: u32) {
 
 /// Runs until the train has stood at the stop point of section 61 for three seconds.
 fn arrive(mut journey: Journey) -> Journey {
+    // In motion: at rest it would end the run that has begun.
+    while journey.v_mps < 1.0 {
+        step(&mut journey);
+    }
     journey.bench.input.mode_switch = ModeSwitch::Driverless;
     while journey.x_m < 1.0 || journey.v_mps > 0.0 {
         step(&mut journey);

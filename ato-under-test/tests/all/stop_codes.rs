@@ -101,23 +101,24 @@ fn who_has_moved_under_a_stop_is_held_until_a_code_lets_it_run() {
     assert!(!bench.has(Outputs::FSB));
 }
 
-/// Yard and emergency mode have a limit of their own.
+/// Yard and emergency mode have a limit of their own, and need no code; in yard mode one that says stop is obeyed.
 #[test]
-fn a_mode_that_needs_no_code_is_not_stopped_by_one() {
+fn a_mode_that_needs_no_code_is_stopped_by_none_and_a_yard_by_a_stop() {
     for switch in [ModeSwitch::Yard, ModeSwitch::Emergency] {
-        for (stop, _) in STOPS {
+        for (stop, cause) in STOPS {
             let mut bench = standing_under(stop, &[]);
             bench.input.mode_switch = switch;
             bench.run(0.3);
             bench.speed_kmh(12.0);
-            bench.run(5.0);
+            bench.run(1.0);
+            let stops = switch == ModeSwitch::Yard && cause == FsbCause::StopCode;
             let outputs = bench.output.outputs;
-            let braked = Outputs::FSB | Outputs::ALARM | Outputs::POWER_CUT;
-            assert!(
-                !outputs.intersects(braked),
-                "{switch:?} {stop:?}: {outputs:?}"
-            );
-            assert!(!bench.braking());
+            let braked = [Outputs::FSB, Outputs::POWER_CUT];
+            for output in braked {
+                assert_eq!(outputs.contains(output), stops, "{switch:?} {stop:?}");
+            }
+            bench.run(4.0);
+            assert_eq!(bench.braking(), stops, "{switch:?} {stop:?}: by proof");
         }
     }
 }

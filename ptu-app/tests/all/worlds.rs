@@ -108,14 +108,20 @@ fn line(chance: &mut Chance, codes: &[(usize, f64)], steepest: f64) -> String {
     line
 }
 
-/// A train of cars, or a point mass, that brakes at this rate.
-fn train(chance: &mut Chance, brake: f64) -> String {
+/// A train of cars, or a point mass, that brakes at this rate, of which its unit is told.
+fn train(chance: &mut Chance, brake: f64, unit: &mut String) -> String {
+    set(unit, "[ato.train]", "brake_kmh_per_s", brake);
     let emergency = brake.max(4.5);
     if chance.one_in(2) {
         let mut ideal =
             shipped("trains/ideal.toml").replace("gradients = false", "gradients = true");
         set(&mut ideal, "", "service_kmh_per_s", brake);
-        set(&mut ideal, "", "power_kmh_per_s", between(chance, 2.0, 3.5));
+        let power = between(chance, 2.0, 3.5);
+        set(&mut ideal, "", "power_kmh_per_s", power);
+        set(unit, "[ato.train]", "power_kmh_per_s", power);
+        set(unit, "[ato.train]", "empty_kg", 200_000.0);
+        set(unit, "[ato.train]", "rotating_kg", 0.0);
+        set(unit, "[ato.train]", "base_speed_kmh", 130.0);
         set(&mut ideal, "", "emergency_kmh_per_s", emergency);
         return ideal;
     }
@@ -146,7 +152,6 @@ fn world(place: &Place, seed: usize) -> PathBuf {
     let table =
         unit.find("[[codes]]").expect("codes")..unit.find("[receiver]").expect("a receiver");
     unit.replace_range(table, &codes.collect::<String>());
-    // A unit that is told its train.
     let proof_mps2 = 0.6 * (brake - KMH_PER_S_PER_PERMILLE * steepest) / 3.6;
     set(
         &mut unit,
@@ -155,10 +160,9 @@ fn world(place: &Place, seed: usize) -> PathBuf {
         proof_mps2.min(0.4),
     );
     set(&mut unit, "[ato]", "decel_kmh_per_s", brake.min(3.5));
-    set(&mut unit, "[ato.train]", "brake_kmh_per_s", brake);
     let folder = place.path("scripts");
     copy_folder(&scripts(), &folder);
-    let train = train(&mut chance, brake);
+    let train = train(&mut chance, brake, &mut unit);
     for (kind, text) in [("lines", line), ("units", unit), ("trains", train)] {
         let file = folder.join(kind).join("drawn.toml");
         std::fs::write(file, text).expect("written");

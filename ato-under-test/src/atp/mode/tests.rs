@@ -12,10 +12,53 @@ const GOOD: ModeInputs = ModeInputs {
     start: false,
     acknowledge: false,
     arrived: false,
+    relocated: false,
     gave_up: false,
     line_open: false,
+    line_fell: false,
     forced: false,
 };
+
+/// Goal: who opened the line is logged once. Method: a run that the line ends, at rest and in motion, read back or told by
+/// TCMS; in motion the emergency brake logs a line that is read back.
+#[test]
+fn a_line_that_others_open_is_logged_once() {
+    for (moves, line_fell, logged) in [
+        (false, true, Some(0)),
+        (false, false, Some(1)),
+        (true, true, None),
+        (true, false, Some(1)),
+    ] {
+        let mut sequence = ModeSequence::new();
+        let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
+        let mut after = |inputs| {
+            now += Duration::from_ms(600);
+            sequence.step(now, inputs, &mut log);
+            sequence.mode()
+        };
+        after(GOOD);
+        let run = ModeInputs {
+            start: true,
+            ..GOOD
+        };
+        assert_eq!(after(run), Mode::AutomaticRun);
+        let mut lacking = Refusals::EB_APPLIED;
+        lacking.set(Refusals::NOT_STANDSTILL, moves);
+        let open = ModeInputs {
+            line_open: true,
+            line_fell,
+            lacking,
+            ..GOOD
+        };
+        assert_eq!((after(open), after(open)), (Mode::Manual, Mode::Manual));
+        let code = Event::LineOpened.definition().code;
+        let entries = (0..log.next_index()).filter_map(|at| log.entries().at_or_after(at));
+        let of_line = entries.filter(|entry| entry.code == code);
+        let parameters = of_line.map(|entry| entry.parameter);
+        assert!(parameters.eq(logged), "{moves} {line_fell}");
+    }
+}
 
 #[test]
 fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
@@ -87,6 +130,79 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
     }
 }
 
+/// Goal: a driverless train departs by what is given to it at rest, free to go. Method: a departure given in motion, and one
+/// given under the emergency brake; both stay given.
+#[test]
+fn a_departure_given_on_the_way_or_under_the_brake_sends_no_train_off() {
+    for lacking in [Refusals::NOT_STANDSTILL, Refusals::EB_APPLIED] {
+        let mut sequence = ModeSequence::new();
+        let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
+        let mut after = |departure, lacking| {
+            now += Duration::from_ms(1_100);
+            let inputs = ModeInputs {
+                switch: ModeSwitch::Driverless,
+                departure,
+                heard: Some(departure),
+                lacking,
+                ..GOOD
+            };
+            sequence.step(now, inputs, &mut log);
+            sequence.mode()
+        };
+        let free = Refusals::empty();
+        for (departure, lacking) in [(false, free), (false, lacking), (true, lacking)] {
+            after(departure, lacking);
+        }
+        for _ in 0..3 {
+            assert_eq!(after(true, free), Mode::Automatic, "{lacking:?}");
+        }
+        after(false, free);
+        assert_eq!(after(true, free), Mode::AutomaticRun, "{lacking:?}");
+    }
+}
+
+/// Goal: a run that was authorised by one position of the switch, or for one section, does not go on by another. Method: the
+/// switch turned to automatic at rest and in motion, and data of the next section before the train has arrived.
+#[test]
+fn a_run_goes_on_by_the_switch_and_through_the_section_that_began_it() {
+    let turned = |switch| ModeInputs { switch, ..GOOD };
+    let moves = ModeInputs {
+        lacking: Refusals::NOT_STANDSTILL,
+        ..GOOD
+    };
+    let next_section = ModeInputs {
+        relocated: true,
+        ..GOOD
+    };
+    for (then, mode) in [
+        (turned(ModeSwitch::Driverless), Mode::AutomaticRun),
+        (turned(ModeSwitch::Automatic), Mode::Automatic),
+        (moves, Mode::AutomaticRun),
+        (next_section, Mode::Automatic),
+    ] {
+        let mut sequence = ModeSequence::new();
+        let mut log = EventLog::default();
+        let mut now = Instant::ZERO;
+        let mut after = |inputs| {
+            now += Duration::from_ms(1_100);
+            sequence.step(now, inputs, &mut log);
+            sequence.mode()
+        };
+        let driverless = turned(ModeSwitch::Driverless);
+        for departure in [false, false, true] {
+            let given = ModeInputs {
+                departure,
+                heard: Some(departure),
+                ..driverless
+            };
+            after(given);
+        }
+        assert_eq!(after(driverless), Mode::AutomaticRun);
+        assert_eq!(after(then), mode, "{then:?}");
+    }
+}
+
 /// Goal: no run that ends on the way leaves the train to roll. Method: a door or the cab, as others read them, for a cycle.
 #[test]
 fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
@@ -118,8 +234,14 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
         assert_eq!(after(true, moves | lost), (Mode::Manual, stops), "{lost:?}");
         assert_eq!(after(true, moves), (Mode::Manual, stops), "{lost:?}");
         after(true, Refusals::empty());
-        let departs = after(true, Refusals::empty()).0 == Mode::AutomaticRun;
-        assert_eq!(departs, !stops, "{lost:?}: by the departure from before");
+        let mode = after(true, Refusals::empty()).0;
+        assert_eq!(
+            mode,
+            Mode::Automatic,
+            "{lost:?}: by the departure from before"
+        );
+        after(false, Refusals::empty());
+        assert_eq!(after(true, Refusals::empty()).0, Mode::AutomaticRun);
     }
 }
 

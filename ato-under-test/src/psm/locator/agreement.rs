@@ -43,9 +43,14 @@ impl Locator {
     pub(super) fn compare_ways(&mut self, now: Instant, log: &mut EventLog) {
         let holds = self.holds_markers && self.holds_ways;
         let Some(share) = self.ways.contradiction().filter(|_| holds) else {
+            if self.ways.compared() {
+                self.proved_farther = 0.0;
+            }
             return;
         };
         self.contradicted = true;
+        // A speed that is told too high is the safe error: the doors alone lose what was learned.
+        self.proved_farther = self.runs_farther();
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
         log.push(
             now,

@@ -8,6 +8,7 @@ fn departed() -> (Locator, Section) {
     let line = Line::from_toml(line).unwrap();
     let section = line.section(61).unwrap().clone();
     let mut locator = Locator::new(&config);
+    locator.keep_place(true);
     let departing = TwcWayside {
         section: section.section,
         loop_id: section.from_loop,
@@ -36,14 +37,14 @@ fn position_after_psm1(driven: bool, edge_age_s: f64) -> (f64, f64) {
     (locator.position_m(), section.markers_m[0])
 }
 
-/// Whether the doors of a train that stops at section 61's stop point by its last marker may be enabled: wheels as
-/// configured, markers displaced by these, m.
-fn aligned(displaced_m: [f64; 4]) -> bool {
+/// A train that stops at section 61's stop point by its last marker: wheels that tell this share of the way, markers
+/// displaced by these, m.
+fn stopped(wheel: f64, displaced_m: [f64; 4]) -> Locator {
     let (mut locator, section) = departed();
     let mut log = EventLog::default();
-    let mut go = |moved_m, pulse| {
+    let mut go = |way_m, pulse| {
         let movement = Movement {
-            moved_m,
+            moved_m: wheel * way_m,
             edge_age_s: 0.01,
             speed_mps: 5.0,
             standstill: false,
@@ -64,7 +65,12 @@ fn aligned(displaced_m: [f64; 4]) -> bool {
     }
     let left_m = section.stop_m - section.markers_m[3];
     go(left_m, None);
-    locator.aligned()
+    locator
+}
+
+/// Whether its doors may be enabled, on wheels as configured.
+fn aligned(displaced_m: [f64; 4]) -> bool {
+    stopped(1.0, displaced_m).aligned()
 }
 
 /// Goal: doors are enabled where markers and way agree alone. Method: one or two of the last markers displaced; the
@@ -80,6 +86,49 @@ fn markers_that_contradict_the_way_open_nothing() {
         assert!(!aligned([0.0, 0.0, by_m, by_m]), "both by {by_m} m");
     }
     assert!(aligned([0.0, 0.0, 5.0, 0.0]), "PSM3 alone is not believed");
+}
+
+/// Goal: a marker that lies elsewhere does not make the train seem slower. Method: wheels that tell 9 % too little, and PSM3
+/// and PSM4 too early.
+#[test]
+fn a_contradiction_keeps_what_was_proved_of_the_speed() {
+    assert_eq!(stopped(1.0, [0.0; 4]).runs_farther(), 0.0);
+    let proved = stopped(1.0 / 1.09, [0.0; 4]).runs_farther();
+    assert!((proved - 0.09).abs() < 2e-3, "{proved}");
+    let kept = stopped(1.0 / 1.09, [0.0, 0.0, -2.5, -2.5]);
+    assert!(!kept.aligned());
+    assert!(kept.runs_farther() > 0.08, "{}", kept.runs_farther());
+}
+
+/// Goal: a train that stands at a stop point takes the data of this end and of the section that begins there alone.
+/// Method: data of section 61 at its end and at its begin, of the next section and of another, at the end of section 61.
+#[test]
+fn data_of_another_place_contradict_the_stop_point() {
+    let line = include_str!("../../../../scripts/lines/line8.toml");
+    let line = Line::from_toml(line).unwrap();
+    let here = line.section(61).unwrap();
+    let next = line.after(here).unwrap();
+    let far = line.section(64).unwrap();
+    let (at_begin, at_end) = (here.from_loop, next.from_loop);
+    let mut locator = stopped(1.0, [0.0; 4]);
+    for (section, loop_id, contradicts) in [
+        (here, at_end, false),
+        (here, at_begin, true),
+        (next, at_end, false),
+        (far, far.from_loop, true),
+    ] {
+        let data = TwcWayside {
+            section: section.section,
+            loop_id,
+            ..TwcWayside::default()
+        };
+        let found = locator.contradicts(&data, section, &line);
+        assert_eq!(found, contradicts, "{} {loop_id}", section.section);
+        let begins = locator.clone().locate(&data, &line, true);
+        assert_eq!(begins, section.section == next.section);
+    }
+    locator.keep_place(false);
+    assert!(!locator.contradicts(&TwcWayside::default(), far, &line));
 }
 
 #[test]

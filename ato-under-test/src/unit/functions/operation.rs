@@ -33,7 +33,7 @@ impl Functions {
             position_m: self.locator.position_m(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: around.setup.config.doors.aligned_m,
-            last_marker: self.locator.passed_last_marker(),
+            last_marker: self.locator.knows_stop_point(),
             jogs: around.guards.jogging,
             speed: self.wheel_speed(),
             standstill: tachometers.standstill(),

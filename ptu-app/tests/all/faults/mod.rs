@@ -121,7 +121,7 @@ fn is_the_same(id: &str, found: FaultRun, in_process: FaultRun) {
     assert_eq!(found.exit, in_process.exit, "{id}");
     let reports = (normalised(found.report), normalised(in_process.report));
     assert_eq!(reports.0, reports.1, "{id}");
-    assert_eq!(found.first_candidate, in_process.first_candidate, "{id}");
+    assert_eq!(found.named, in_process.named, "{id}");
 }
 
 /// The procedures that the table names for this fault.
@@ -270,11 +270,14 @@ fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     problems.into_iter().map(named).collect()
 }
 
-/// Diagnosis puts the broken part first, whatever the stored faults name.
+/// Diagnosis puts the broken part first, or says what to measure to tell it from others, whatever the stored faults name.
 fn check_diagnosis(mode: &FaultMode, run: &FaultRun) -> Option<String> {
     let excused = excused("not diagnosed", mode);
-    match (run.first_candidate == mode.lru.as_str(), excused) {
-        (false, None) => Some(format!("diagnosed as {}", run.first_candidate)),
+    match (
+        run.named.iter().any(|part| part == mode.lru.as_str()),
+        excused,
+    ) {
+        (false, None) => Some(format!("diagnosed as {}", run.named.join(" or "))),
         (true, Some(reason)) => Some(format!("diagnosed now; strike out of the table: {reason}")),
         _ => None,
     }

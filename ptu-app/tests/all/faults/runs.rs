@@ -20,8 +20,8 @@ pub struct FaultRun {
     pub exit: u8,
     /// The report as JSON.
     pub report: Value,
-    /// The part that diagnosis names first.
-    pub first_candidate: String,
+    /// The part that diagnosis names first, or the group of parts that measuring alone tells apart.
+    pub named: Vec<String>,
     /// The trace of each stored fault that has one.
     pub traces: Vec<Window>,
 }
@@ -101,19 +101,22 @@ impl TestBench {
         let store = Store::open(&path, clock::open_options()).expect("a database");
         let ran = run::run(&mut plan, setup, store, &Stop::default(), &mut ());
         let (store, outcome) = ran.unwrap_or_else(|failure| panic!("{failure}"));
-        let mut first_candidate = String::new();
+        let mut named = Vec::new();
         if is_diagnosed {
             let answer = diagnose_run(&store, &self.directory, outcome.id).expect("a diagnosis");
             answer.attribute(&store).expect("attributed");
-            let first = answer.diagnosis.candidates.first();
-            first_candidate = first.map_or(String::new(), |first| first.lru.to_string());
+            let diagnosis = &answer.diagnosis;
+            let first = || diagnosis.candidates.first().map(|first| first.lru.clone());
+            let group = diagnosis.conclusion.group().map(|group| group.parts);
+            let parts = group.unwrap_or_else(|| first().into_iter().collect());
+            named = parts.iter().map(ToString::to_string).collect();
         }
         let detail = store.run(outcome.id).expect("the run");
         let ids = detail.faults.iter().filter_map(|fault| fault.trace_id);
         FaultRun {
             exit: outcome.exit.code(),
             report: run_json(&detail),
-            first_candidate,
+            named,
             traces: ids
                 .map(|id| Window::of(id.to_string(), &store.trace(id).expect("a trace")))
                 .collect(),
@@ -129,7 +132,11 @@ pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     let (said, report) = place.run(&arguments);
     assert!(!said.err.contains("panicked"), "{}", said.all());
     let diagnosis = place.json("diagnose latest --json");
-    let first = &diagnosis["candidates"][0]["part"];
+    let named = match &diagnosis["group"] {
+        Value::Null => vec![&diagnosis["candidates"][0]["part"]],
+        group => list(&group["parts"]).iter().collect(),
+    };
+    let named = named.into_iter().filter_map(Value::as_str);
     let path = place.path("history.db");
     let store = Store::open(&path, clock::open_options()).expect("the program's database");
     let ids = list(&report["faults"])
@@ -141,7 +148,7 @@ pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     });
     FaultRun {
         exit: said.code.expect("an exit code") as u8,
-        first_candidate: first.as_str().unwrap_or_default().to_owned(),
+        named: named.map(str::to_owned).collect(),
         traces: traces.collect(),
         report,
     }

@@ -9,6 +9,8 @@ use super::monitor::{MOVES_KMH, Observed};
 const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
 /// Time at a position of the mode switch by which a person has chosen it.
 const CHOSEN: Duration = Duration::from_ms(1_000);
+/// Time after which a train that stands does so for the unit, too: its standstill, and the window of its speed.
+const STANDS: Duration = Duration::from_ms(1_000);
 /// Way in which ATO may correct a stop, m, and its speed, km/h.
 const JOG_M: f64 = 6.2;
 const JOG_KMH: f64 = 5.6;
@@ -24,6 +26,8 @@ pub(super) struct Authority {
     departure: bool,
     given: Option<Instant>,
     stood: bool,
+    /// Since when the train stands.
+    still: Option<Instant>,
     begun: bool,
     traction_n: f64,
 }
@@ -34,7 +38,8 @@ impl Authority {
         let (before_hand, before_ato) = (self.by_hand, self.by_ato);
         self.end(seen);
         self.begin(seen);
-        self.begun = self.by_hand && !before_hand || self.by_ato && !before_ato;
+        let given_anew = self.by_ato && self.given == Some(seen.now);
+        self.begun = self.by_hand && !before_hand || self.by_ato && !before_ato || given_anew;
         let jogs = seen.to_stop_m.is_some_and(|m| m.abs() < JOG_M) && seen.kmh() < JOG_KMH;
         // What fades under the brake, and after it, is no start.
         let fades = seen.traction_n < std::mem::replace(&mut self.traction_n, seen.traction_n);
@@ -57,12 +62,14 @@ impl Authority {
             seen.on(Signal::DoorEnableRight),
         ];
         let stands = seen.kmh() < MOVES_KMH;
+        self.still = self.still.filter(|_| stands).or(stands.then_some(seen.now));
         let forced = (0..2).any(|side| seen.doors_open[side] && !enabled[side] && stands);
         if seen.on(Signal::EbLoop) || forced || !seen.on(Signal::Hcr) || !seen.powered {
             (self.by_hand, self.by_ato) = (false, false);
         }
         if switch != self.switch {
-            // From automatic to driverless a run goes on.
+            // From automatic to driverless a run goes on, of a train that does not surely stand.
+            let stands = self.still.is_some_and(|at| seen.now.since(at) > STANDS);
             let goes_on = matches!((self.switch, switch), (3, 4) | (4, 3)) && !stands;
             self.by_ato &= goes_on;
             self.turned = seen.now;
@@ -74,7 +81,8 @@ impl Authority {
             self.by_ato = false;
         }
         self.stood = stood;
-        if seen.value(Signal::Controller) <= 0.0 && stands {
+        // At driverless no lever drives.
+        if seen.value(Signal::Controller) <= 0.0 && stands || switch == 4 {
             self.by_hand = false;
         }
     }
@@ -84,7 +92,8 @@ impl Authority {
         let before = std::mem::replace(&mut self.lever, lever);
         let braked = seen.on(Signal::EbLoop);
         // Half of the first notch is told as none.
-        self.by_hand |= lever > 0.0 && before <= 0.0 && !braked || lever == 0.0;
+        let by_lever = lever > 0.0 && before <= 0.0 && !braked || lever == 0.0;
+        self.by_hand |= by_lever && self.switch != 4;
         let heard = seen.value(Signal::Wayside) == 1.0 && seen.powered;
         let departure = seen.on(Signal::Departure) && heard;
         if departure && !std::mem::replace(&mut self.departure, departure) {

@@ -30,6 +30,9 @@ impl Lately {
     }
 }
 
+/// Break of a code that no receiver notices: a scan or two.
+const BLINK: Duration = Duration::from_ms(30);
+
 /// Limits that were there long enough to be detected: each for `needs` without a break, and from then on for as long as
 /// it is heard so long in sum `within` a span.
 pub(super) struct Confirmed {
@@ -62,7 +65,10 @@ impl Confirmed {
         let long = |from: &Instant, to: &Instant| to.since(*from) + SCAN;
         let heard = self.spells.iter().filter(|(limit, ..)| *limit == limit_kmh);
         let heard_us: u64 = heard.map(|(_, from, to)| long(from, to).as_us()).sum();
-        let steady = self.spells.last().map(|(_, from, to)| long(from, to));
+        let steady = self
+            .spells
+            .last()
+            .map(|(_, _, to)| long(&self.began(limit_kmh), to));
         let takes_over = steady.is_some_and(|long| long >= self.needs);
         let known = self.lately.values().any(|known| known >= limit_kmh);
         let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
@@ -70,6 +76,21 @@ impl Confirmed {
             true => greatest(&mut self.lately.note(now, limit_kmh, span)),
             false => greatest(&mut self.lately.note_none(now, span)),
         }
+    }
+
+    /// When the present limit began: another one for a moment is no break.
+    fn began(&self, limit_kmh: f64) -> Instant {
+        let mut began = Instant::ZERO;
+        let mut follows: Option<Instant> = None;
+        for (limit, from, to) in self.spells.iter().rev() {
+            if follows.is_some_and(|next| next.since(*to) > BLINK) {
+                break;
+            }
+            if *limit == limit_kmh {
+                (began, follows) = (*from, Some(*from));
+            }
+        }
+        began
     }
 }
 

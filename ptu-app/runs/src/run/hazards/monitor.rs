@@ -28,6 +28,8 @@ const JOG_KMH: f64 = 5.0;
 const JOGS_FROM_M: f64 = 5.3 + 0.9;
 /// Sum of ways against or without a direction between two departures, m: tolerance, and one window at the speed of a roll.
 const ROLLED_M: f64 = 0.5 + 0.5;
+/// Time for which a line that is open applies no brake.
+const BOUNCES: Duration = Duration::from_ms(100);
 /// Way with a door open, m, and time in which a train that moves is braked.
 const OPEN_WAY_M: f64 = 0.3;
 const OPEN_BRAKED_S: f64 = 0.5;
@@ -186,7 +188,8 @@ pub struct Monitor {
     open_m: f64,
     /// Greatest speed since they opened, m/s.
     open_mps: f64,
-    line_open: bool,
+    /// Since when the brake line is open.
+    line_open: Option<Instant>,
     released: Option<Instant>,
     /// Since when each condition holds.
     since: Vec<Option<Instant>>,
@@ -207,7 +210,7 @@ impl Monitor {
             rolled_m: 0.0,
             open_m: 0.0,
             open_mps: 0.0,
-            line_open: true,
+            line_open: Some(Instant::ZERO),
             released: None,
             since: Vec::new(),
         }
@@ -390,13 +393,18 @@ impl Monitor {
             seen.on(Signal::Eb),
         );
         let moves = seen.kmh() > MOVES_KMH && !blind;
-        if self.line_open && !line && moves && !seen.sliding {
+        // A contact that bounces applies no brake.
+        let applied = |since: Instant| seen.now.since(since) > BOUNCES;
+        if self.line_open.is_some_and(applied) && !line && moves && !seen.sliding {
             self.released = Some(seen.now);
         }
-        self.line_open = line;
+        self.line_open = line.then(|| self.line_open.unwrap_or(seen.now));
         self.released = self.released.filter(|_| moves && !line);
         let powers = seen.traction_n > NO_POWER_N;
         let unasked = self.authority.lacks(seen, powers);
+        if self.authority.begins() {
+            self.place.begin(seen);
+        }
         let ineffective = line
             && seen.driven
             && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs();

@@ -1,7 +1,7 @@
 //! Where the train is in truth: platforms, whether the unit can know it, and what explains that it does not.
 
 use protocol::line::{Line, Section};
-use protocol::message::DoorSide;
+use protocol::message::{DoorSide, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
@@ -25,15 +25,15 @@ pub(super) struct Platform {
 pub(super) struct Place {
     line: Line,
     section: u16,
-    /// The section before it.
-    before: u16,
     /// Its distance to run when the section was laid.
     laid_m: Option<f64>,
     laid: Instant,
-    /// The train has stood at a stop point since the unit has its supply.
+    /// The train has stood at a stop point since the unit has its supply, and since its cab was last left.
     arrived: bool,
     arrivals: usize,
     standing: bool,
+    /// Section whose data the wayside gave when the last start was allowed.
+    begun_with: u16,
     slid: Option<Instant>,
     pulsed_before: usize,
 }
@@ -43,12 +43,12 @@ impl Place {
         Self {
             line: line.clone(),
             section: 0,
-            before: 0,
             laid_m: None,
             laid: Instant::ZERO,
             arrived: false,
             arrivals: 0,
             standing: false,
+            begun_with: 0,
             slid: None,
             pulsed_before: 0,
         }
@@ -56,7 +56,7 @@ impl Place {
 
     pub fn note(&mut self, seen: Observed<'_>) {
         if seen.section != self.section {
-            self.before = std::mem::replace(&mut self.section, seen.section);
+            self.section = seen.section;
             self.laid_m = seen.to_stop_m;
             self.laid = seen.now;
             self.pulsed_before = seen.pulsed;
@@ -67,13 +67,19 @@ impl Place {
             self.arrivals += 1;
         }
         self.standing = standing;
-        self.arrived = (self.arrived || standing) && seen.powered;
+        let cab_left = seen.switch() == ModeSwitch::Off.code();
+        self.arrived = (self.arrived || standing) && seen.powered && !cab_left;
         if !seen.powered {
             self.arrivals = 0;
         }
         if seen.sliding {
             self.slid = Some(seen.now);
         }
+    }
+
+    /// A start was allowed.
+    pub fn begin(&mut self, seen: Observed<'_>) {
+        self.begun_with = seen.told;
     }
 
     fn section(&self) -> Option<&Section> {
@@ -108,7 +114,7 @@ impl Place {
         })
     }
 
-    /// ATO begins to power by data of another section, although the train has stood at a stop point and the next is known.
+    /// ATO begins to power by data of another section than it departs into, although the train has stood at a stop point and the next is known.
     pub fn driven_by_other(&self, seen: Observed<'_>) -> bool {
         let heard = seen.value(Signal::Wayside) == 1.0;
         let run_m = self
@@ -117,11 +123,16 @@ impl Place {
             .map_or(0.0, |(laid, to)| laid - to);
         let begins = run_m.abs() < 30.0 && seen.now.since(self.laid) > LEFT;
         let powers = seen.by_ato() && seen.traction_n > NO_POWER_N;
-        powers && begins && heard && self.arrived && seen.told != seen.section
+        powers && begins && heard && self.arrived && self.begun_with != seen.section
     }
 
     /// The exported condition that explains a breach.
     pub fn condition(&self, seen: Observed<'_>, invariant: Invariant) -> Option<&'static str> {
+        // What wheels measure explains neither a start nor the place that data are of.
+        let by_unit = matches!(
+            invariant,
+            Invariant::I5 | Invariant::I7 | Invariant::I10 | Invariant::I11
+        );
         let by_place = matches!(invariant, Invariant::I4 | Invariant::I10);
         let slid = self.slid.is_some_and(|at| seen.now.since(at) < LATELY);
         let alike = seen.displaced[1] != 0.0
@@ -129,12 +140,11 @@ impl Place {
                 .iter()
                 .all(|by_m| *by_m == seen.displaced[1]);
         let conditions = [
-            ("rails_slippery", slid),
+            ("rails_slippery", slid && !by_unit),
             (
                 "markers_that_lie_nowhere",
                 by_place && seen.pulsed >= self.pulsed_before + 2,
             ),
-            ("section_run_again", by_place && seen.told == self.before),
             (
                 "place_lost",
                 invariant == Invariant::I10 && seen.displaced != [0.0; 4],

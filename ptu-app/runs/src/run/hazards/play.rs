@@ -35,6 +35,8 @@ pub struct Find {
     pub at: Instant,
     /// Signals and true motion at the breach.
     pub state: String,
+    /// By how much the unit tells a lower speed than there is, km/h.
+    pub hidden_kmh: f64,
     /// Faults that were injected, and those of tachometers that the bench made.
     pub faults: Vec<String>,
     /// What was done until then, in order.
@@ -203,6 +205,7 @@ impl<'a> Player<'a> {
             breach,
             at: seen.now,
             state: state(seen),
+            hidden_kmh: seen.kmh() - seen.value(Signal::Speed),
             faults,
             acts: acts
                 .map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6))
@@ -234,7 +237,10 @@ impl<'a> Player<'a> {
         self.acts.clear();
         self.acts.push((
             self.bench.now(),
-            format!("{scene:?}, section {}", self.section.section),
+            format!(
+                "{scene:?}, section {}, markers displaced by {:?} m",
+                self.section.section, self.plan.displaced_m
+            ),
         ));
         if let Some(coefficient) = self.plan.adhesion {
             self.apply(Stimulus::Adhesion {

@@ -95,9 +95,12 @@ impl Proceeding {
     }
 }
 
-/// A code of the line, or one that cancels yard mode, has ended the yard's limit.
+/// A code of the line, or one that cancels yard mode, has ended the yard's limit; where the table has no code for the yard,
+/// one that says stop.
 pub(super) struct YardEnded {
     codes: Vec<SpeedCode>,
+    /// The code table has codes for the yard.
+    has_yard: bool,
     receiver: Receiver,
     ended: bool,
     ends: Held,
@@ -106,9 +109,9 @@ pub(super) struct YardEnded {
 impl YardEnded {
     pub fn new(config: &UnitConfig) -> Self {
         let codes = config.codes.clone();
-        let of_yard = codes.iter().any(|code| code.meaning != CodeMeaning::Line);
         Self {
-            codes: if of_yard { codes } else { Vec::new() },
+            has_yard: codes.iter().any(|code| code.meaning != CodeMeaning::Line),
+            codes,
             receiver: Receiver::new(config),
             ended: false,
             ends: Held::default(),
@@ -121,8 +124,12 @@ impl YardEnded {
             (code.rate_hz - rate_hz).abs() < 0.2
                 && (code.carrier_hz - seen.value(Signal::CarrierHz)).abs() < 10.0
         };
-        let meaning = self.codes.iter().find(near).map(|code| code.meaning);
-        let ends = matches!(meaning, Some(CodeMeaning::Line | CodeMeaning::YardCancel));
+        // A table without codes of the yard has one that says stop.
+        let ends_yard = |code: &SpeedCode| match self.has_yard {
+            true => code.meaning != CodeMeaning::Yard,
+            false => code.limit_kmh == 0.0,
+        };
+        let ends = self.codes.iter().find(near).is_some_and(ends_yard);
         let in_yard = seen.value(Signal::ModeSwitch) as u8 == 1;
         let ends = in_yard && ends && alone(seen, &self.receiver);
         self.ended |= self.ends.for_long(seen, ends, self.receiver.surely);
@@ -130,7 +137,7 @@ impl YardEnded {
         let of_yard = |code: &SpeedCode| {
             let (own, other) = (rate_hz, seen.crosstalk[1]);
             let about = |hz: f64| (code.rate_hz - hz).abs() < 1.0;
-            code.meaning == CodeMeaning::Yard && (about(own) || about(other))
+            !ends_yard(code) && (about(own) || about(other))
         };
         self.ended &= in_yard && seen.powered && !self.codes.iter().any(of_yard);
         self.ended
