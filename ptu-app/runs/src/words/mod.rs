@@ -118,6 +118,7 @@ macro_rules! sentences {
     )* })*) => {
         $(
             $(#[$doc])*
+            #[allow(rustdoc::broken_intra_doc_links, reason = "brackets of a sentence are no link")]
             #[derive(Clone, Debug, PartialEq)]
             pub enum $area { $(#[doc = concat!($english $(, $tail)?)] $name $(($($kind),*))?,)* }
 
