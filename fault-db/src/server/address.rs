@@ -3,11 +3,16 @@
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
+
+use percent_encoding::percent_decode_str;
+use postgres::Config;
 
 use crate::error::StoreError;
+use crate::files::platform;
 
 const DEFAULT_PORT: u16 = 5432;
-const DEFAULT_CONNECT_TIMEOUT_S: u64 = 10;
+const DEFAULT_CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 const OPTIONS: &str =
     "host, port, dbname, user, password, passfile, sslmode, sslrootcert, connect_timeout";
 
@@ -36,7 +41,7 @@ pub struct Address {
     pub(super) database: Option<String>,
     pub(super) password_file: Option<PathBuf>,
     pub(super) root_certificates: Option<PathBuf>,
-    pub(super) connect_timeout_s: u64,
+    pub(super) connect_timeout: Duration,
     guard: Option<Guard>,
 }
 
@@ -74,35 +79,6 @@ impl Address {
             None => Guard::Verify,
         }
     }
-
-    fn set(&mut self, name: &str, value: String) -> Result<(), String> {
-        match name {
-            "host" => self.host = value,
-            "port" => self.port = port(&value)?,
-            "dbname" => self.database = Some(value),
-            "user" => self.user = Some(value),
-            "password" => self.password = Some(value),
-            "passfile" => self.password_file = Some(value.into()),
-            // libpq's name for the system's certificates.
-            "sslrootcert" if value == "system" => self.root_certificates = None,
-            "sslrootcert" => self.root_certificates = Some(value.into()),
-            "sslmode" => self.guard = Some(guard(&value)?),
-            "connect_timeout" => {
-                let seconds = value
-                    .parse()
-                    .ok()
-                    .filter(|seconds| (1..=600).contains(seconds));
-                self.connect_timeout_s =
-                    seconds.ok_or("connect_timeout is a number of seconds from 1 to 600")?;
-            }
-            _ => {
-                return Err(format!(
-                    "it has an option that is not known; there are {OPTIONS}"
-                ));
-            }
-        }
-        Ok(())
-    }
 }
 
 impl FromStr for Address {
@@ -113,86 +89,77 @@ impl FromStr for Address {
     }
 }
 
-/// The error quotes nothing of the text: any part may belong to a misspelt password.
+/// The error quotes nothing of the text: any part may belong to a misspelt password. Files and the protection are options
+/// of ours; the rest is read by the client.
 fn parse(text: &str) -> Result<Address, String> {
-    let rest = text
-        .strip_prefix("postgres://")
-        .or_else(|| text.strip_prefix("postgresql://"))
-        .ok_or("it begins with neither postgres:// nor postgresql://")?;
-    let (rest, options) = rest.split_once('?').unwrap_or((rest, ""));
-    let (place, database) = rest.split_once('/').unwrap_or((rest, ""));
-    let (login, place) = match place.rsplit_once('@') {
-        Some((login, place)) => (Some(login), place),
-        None => (None, place),
-    };
-    if place.contains(',') {
-        return Err("it names several hosts; name one".to_owned());
+    if !text.starts_with("postgres://") && !text.starts_with("postgresql://") {
+        return Err("it begins with neither postgres:// nor postgresql://".to_owned());
     }
-    let (host, number) = split_host(place)?;
-    let mut address = Address {
-        user: None,
-        password: None,
-        host: plain(host)?,
-        port: number.map_or(Ok(DEFAULT_PORT), port)?,
-        database: Some(plain(database)?).filter(|name| !name.is_empty()),
-        password_file: None,
-        root_certificates: None,
-        connect_timeout_s: DEFAULT_CONNECT_TIMEOUT_S,
-        guard: None,
-    };
-    if let Some(login) = login {
-        let (user, password) = match login.split_once(':') {
-            Some((user, password)) => (user, Some(plain(password)?)),
-            None => (login, None),
-        };
-        address.user = Some(plain(user)?).filter(|user| !user.is_empty());
-        address.password = password;
-    }
+    let (place, options) = text.split_once('?').unwrap_or((text, ""));
+    // The client ends a login at its first @, which may belong to a password.
+    let place = place.rsplit_once('@').map_or_else(
+        || place.to_owned(),
+        |(login, host)| format!("{}@{host}", login.replace('@', "%40")),
+    );
+    let (mut password_file, mut root_certificates, mut guard) = (None, None, None);
+    let mut known = String::new();
     for option in options.split('&').filter(|option| !option.is_empty()) {
         let (name, value) = option
             .split_once('=')
             .ok_or("one of its options has no value")?;
-        address.set(&plain(name)?, plain(value)?)?;
+        match name {
+            "passfile" => password_file = Some(file(value)?),
+            // libpq's name for the system's certificates.
+            "sslrootcert" if value == "system" => root_certificates = None,
+            "sslrootcert" => root_certificates = Some(file(value)?),
+            "sslmode" => guard = Some(guard_of(value)?),
+            "host" | "port" | "dbname" | "user" | "password" | "connect_timeout" => {
+                known += &format!("{name}={}&", value.replace('@', "%40"));
+            }
+            _ => {
+                return Err(format!(
+                    "it has an option that is not known; there are {OPTIONS}"
+                ));
+            }
+        }
     }
-    if address
-        .database
-        .as_deref()
-        .is_some_and(|name| name.contains('@'))
-    {
-        return Err(
-            "a / or @ of its password has to be written as %2F or %40; better, the password belongs into \
-             ~/.pgpass"
-                .to_owned(),
-        );
-    }
-    if address.host.is_empty() {
-        address.host = "localhost".to_owned();
-    }
-    Ok(address)
-}
-
-/// Host and port; an IPv6 address stands in brackets.
-fn split_host(place: &str) -> Result<(&str, Option<&str>), String> {
-    if let Some(rest) = place.strip_prefix('[') {
-        let (host, after) = rest.split_once(']').ok_or("its [ has no ]")?;
-        return match after.strip_prefix(':') {
-            Some(port) => Ok((host, Some(port))),
-            None if after.is_empty() => Ok((host, None)),
-            None => Err("after ] comes : and a port".to_owned()),
-        };
-    }
-    Ok(match place.split_once(':') {
-        Some((host, port)) => (host, Some(port).filter(|port| !port.is_empty())),
-        None => (place, None),
+    let read = format!("{place}?{known}").parse::<Config>();
+    let read = read.map_err(|_| "its host, port or time is not understood")?;
+    let host = match read.get_hosts() {
+        [] => String::new(),
+        [host] => platform::host(host)?,
+        _ => return Err("it names several hosts; name one".to_owned()),
+    };
+    let given = |text: Option<&str>| text.filter(|text| !text.is_empty()).map(str::to_owned);
+    let password = read
+        .get_password()
+        .map(|bytes| String::from_utf8(bytes.to_vec()));
+    let password = password.transpose();
+    Ok(Address {
+        user: given(read.get_user()),
+        password: password.map_err(|_| "its password is no text")?,
+        host: given(Some(&host)).unwrap_or_else(|| "localhost".to_owned()),
+        port: read.get_ports().last().copied().unwrap_or(DEFAULT_PORT),
+        database: given(read.get_dbname()),
+        password_file,
+        root_certificates,
+        connect_timeout: read
+            .get_connect_timeout()
+            .copied()
+            .unwrap_or(DEFAULT_CONNECT_TIMEOUT),
+        guard,
     })
 }
 
-fn port(text: &str) -> Result<u16, String> {
-    let port = text.parse().ok().filter(|port| *port > 0);
-    port.ok_or_else(|| "its port is no number from 1 to 65535".to_owned())
+/// The file of an option.
+fn file(value: &str) -> Result<PathBuf, &'static str> {
+    let path = percent_decode_str(value).decode_utf8();
+    path.map_or(Err("its % digits make no text"), |path| {
+        Ok(PathBuf::from(&*path))
+    })
 }
 
-fn guard(word: &str) -> Result<Guard, String> {
+fn guard_of(word: &str) -> Result<Guard, String> {
     match word {
         "disable" => Ok(Guard::Disable),
         "prefer" => Ok(Guard::Prefer),
@@ -201,28 +168,6 @@ fn guard(word: &str) -> Result<Guard, String> {
             "its sslmode is not known; it is disable, prefer, require, verify-ca or verify-full"
                 .to_owned(),
         ),
-    }
-}
-
-/// Decodes percent escapes.
-fn plain(text: &str) -> Result<String, String> {
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let Some((first, after)) = rest.split_first() {
-        rest = after;
-        if *first != b'%' {
-            bytes.push(*first);
-            continue;
-        }
-        let digits = after.get(..2).and_then(|two| std::str::from_utf8(two).ok());
-        let byte = digits.and_then(|two| u8::from_str_radix(two, 16).ok());
-        // The error does not quote the text: it may be a password.
-        bytes.push(byte.ok_or("after % come two hex digits; a % itself is written %25")?);
-        rest = &after[2..];
-    }
-    match String::from_utf8(bytes) {
-        Ok(text) if !text.contains('\0') => Ok(text),
-        _ => Err("its % digits make no text".to_owned()),
     }
 }
 
@@ -277,6 +222,14 @@ mod tests {
         assert_eq!(socket.host, "/run/postgresql");
         assert_eq!(address(&socket.to_string()), socket);
         assert_eq!(address("postgres:///h?host=/run/postgresql"), socket);
+        for text in [
+            "postgres://kim:s3/cr@et@a/h",
+            "postgres://kim@a/h?password=s3/cr@et",
+        ] {
+            let a = address(text);
+            assert!(a.has_password(), "{text}");
+            assert!(!a.to_string().contains("s3"), "{a}");
+        }
     }
 
     #[test]
@@ -301,18 +254,17 @@ mod tests {
         for (text, words) in [
             ("mysql://h/d", "neither postgres://"),
             ("postgres://a,b/d", "several hosts"),
-            ("postgres://a:99999/d", "1 to 65535"),
-            // Passwords whose / and ? were not escaped.
-            ("postgres://kim:pa/ss@a/d", "1 to 65535"),
-            ("postgres://kim:77/pass@a/d", "%2F or %40"),
+            ("postgres://a:99999/d", "host, port or time"),
+            // Passwords whose ? was not escaped.
             ("postgres://kim:77?pass@a/d", "has no value"),
             ("postgres://kim:77?pass=1@a/d", "option that is not known"),
-            ("postgres://kim:pa%zz@a/d", "two hex digits"),
+            ("postgres://kim:77?port=pass@a/d", "not understood"),
+            ("postgres://kim:pass%ff@a/d", "is no text"),
             ("postgres://a/d?sslmode=yes", "disable, prefer"),
             ("postgres://a/d?colour=red", "not known; there are"),
             ("postgres://a/d?sslmode", "no value"),
-            ("postgres://[::1/d", "no ]"),
-            ("postgres://a/d?connect_timeout=0", "1 to 600"),
+            ("postgres://[::1/d", "host, port or time"),
+            ("postgres://a/d?connect_timeout=soon", "host, port or time"),
         ] {
             let said = text.parse::<Address>().expect_err(text).to_string();
             assert!(said.contains(words), "{text}: {said}");

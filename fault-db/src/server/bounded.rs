@@ -7,15 +7,18 @@ use std::io;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 
+use postgres::Socket;
 use postgres::tls::{ChannelBinding, MakeTlsConnect, TlsConnect, TlsStream};
 use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadBuf};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
+use super::address::Guard;
 use crate::error::NO_TLS;
 
-/// Longest message before authentication is complete, bytes.
-const MOST_BEFORE: u32 = 64 << 10;
-/// Longest message after it, bytes: a row may hold all samples of a trace.
+/// Most bytes of all messages that the client keeps while it is connected: what comes before authentication is complete,
+/// and later the server's settings and notifications.
+const MOST_KEPT: u32 = 1 << 20;
+/// Longest other message, bytes: a row may hold all samples of a trace.
 const MOST: u32 = 64 << 20;
 
 /// PostgreSQL's SSLRequest message.
@@ -24,124 +27,85 @@ const TLS_REQUEST: [u8; 8] = [0, 0, 0, 8, 0x04, 0xd2, 0x16, 0x2f];
 const TLS_YES: u8 = b'S';
 
 type Failed = Box<dyn Error + Sync + Send>;
+type Tls = <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream;
 
 /// Opens streams. It negotiates TLS itself, so that plain streams are bounded, too; the client takes every
 /// stream for one with TLS.
+#[derive(Clone)]
 pub(super) struct BoundedConnector {
-    pub tls: Option<MakeRustlsConnect>,
-    /// Whether an unencrypted connection is allowed if the server has no TLS.
-    pub or_clear: bool,
+    pub tls: MakeRustlsConnect,
+    pub guard: Guard,
+    pub host: String,
 }
 
-/// Opens one stream.
-pub(super) struct Connecting<S>
-where
-    MakeRustlsConnect: MakeTlsConnect<S>,
-{
-    tls: Option<<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect>,
-    or_clear: bool,
-}
-
-impl<S> MakeTlsConnect<S> for BoundedConnector
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
-    <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
-{
-    type Stream = BoundedStream<S>;
-    type TlsConnect = Connecting<S>;
+impl MakeTlsConnect<Socket> for BoundedConnector {
+    type Stream = BoundedStream;
+    type TlsConnect = Self;
     type Error = Failed;
 
-    fn make_tls_connect(&mut self, domain: &str) -> Result<Self::TlsConnect, Failed> {
-        let tls = self
-            .tls
-            .as_mut()
-            .map(|tls| <MakeRustlsConnect as MakeTlsConnect<S>>::make_tls_connect(tls, domain));
-        Ok(Connecting {
-            tls: tls.transpose().map_err(Into::<Failed>::into)?,
-            or_clear: self.or_clear,
-        })
+    fn make_tls_connect(&mut self, _: &str) -> Result<Self, Failed> {
+        Ok(self.clone())
     }
 }
 
-impl<S> TlsConnect<S> for Connecting<S>
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    <MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect: Send + 'static,
-    <<MakeRustlsConnect as MakeTlsConnect<S>>::TlsConnect as TlsConnect<S>>::Future: Send,
-{
-    type Stream = BoundedStream<S>;
+impl TlsConnect<Socket> for BoundedConnector {
+    type Stream = BoundedStream;
     type Error = Failed;
-    type Future = Pin<Box<dyn Future<Output = Result<BoundedStream<S>, Failed>> + Send>>;
+    type Future = Pin<Box<dyn Future<Output = Result<BoundedStream, Failed>> + Send>>;
 
-    fn connect(self, mut stream: S) -> Self::Future {
+    fn connect(mut self, mut socket: Socket) -> Self::Future {
         Box::pin(async move {
-            let Some(tls) = self.tls else {
-                return Ok(BoundedStream::new(MaybeTls::Clear(stream)));
-            };
-            stream.write_all(&TLS_REQUEST).await?;
             let mut answer = [0];
-            stream.read_exact(&mut answer).await?;
-            if answer == [TLS_YES] {
-                let stream = tls.connect(stream).await.map_err(Into::<Failed>::into)?;
-                return Ok(BoundedStream::new(MaybeTls::Tls(Box::new(stream))));
+            if self.guard != Guard::Disable {
+                socket.write_all(&TLS_REQUEST).await?;
+                socket.read_exact(&mut answer).await?;
             }
-            match self.or_clear {
-                true => Ok(BoundedStream::new(MaybeTls::Clear(stream))),
-                false => Err(NO_TLS.into()),
-            }
+            let way = match self.guard {
+                _ if answer == [TLS_YES] => {
+                    let tls =
+                        MakeTlsConnect::<Socket>::make_tls_connect(&mut self.tls, &self.host)?;
+                    Way::Tls(Box::new(tls.connect(socket).await?))
+                }
+                Guard::Disable | Guard::Prefer => Way::Clear(socket),
+                Guard::Verify => return Err(NO_TLS.into()),
+            };
+            let lengths = Lengths::default();
+            Ok(BoundedStream { way, lengths })
         })
     }
 }
-
-type Tls<S> = <MakeRustlsConnect as MakeTlsConnect<S>>::Stream;
 
 /// With or without TLS.
-enum MaybeTls<S>
-where
-    MakeRustlsConnect: MakeTlsConnect<S>,
-{
-    Clear(S),
-    Tls(Box<Tls<S>>),
+enum Way {
+    Clear(Socket),
+    Tls(Box<Tls>),
 }
 
 /// A stream that checks the length of incoming messages.
-pub(super) struct BoundedStream<S>
-where
-    MakeRustlsConnect: MakeTlsConnect<S>,
-{
-    way: MaybeTls<S>,
+pub(super) struct BoundedStream {
+    way: Way,
     lengths: Lengths,
 }
 
-impl<S> BoundedStream<S>
-where
-    MakeRustlsConnect: MakeTlsConnect<S>,
-{
-    fn new(way: MaybeTls<S>) -> Self {
-        Self {
-            way,
-            lengths: Lengths::default(),
-        }
+impl BoundedStream {
+    fn writer(self: Pin<&mut Self>) -> Pin<&mut (dyn AsyncWrite + Unpin)> {
+        Pin::new(match &mut self.get_mut().way {
+            Way::Clear(stream) => stream,
+            Way::Tls(stream) => stream,
+        })
     }
 }
 
-impl<S> TlsStream for BoundedStream<S>
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-{
+impl TlsStream for BoundedStream {
     fn channel_binding(&self) -> ChannelBinding {
         match &self.way {
-            MaybeTls::Clear(_) => ChannelBinding::none(),
-            MaybeTls::Tls(stream) => stream.channel_binding(),
+            Way::Clear(_) => ChannelBinding::none(),
+            Way::Tls(stream) => stream.channel_binding(),
         }
     }
 }
 
-impl<S> AsyncRead for BoundedStream<S>
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-{
+impl AsyncRead for BoundedStream {
     fn poll_read(
         self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -150,40 +114,28 @@ where
         let Self { way, lengths } = self.get_mut();
         let before = into.filled().len();
         ready!(match way {
-            MaybeTls::Clear(stream) => Pin::new(stream).poll_read(context, into),
-            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_read(context, into),
+            Way::Clear(stream) => Pin::new(stream).poll_read(context, into),
+            Way::Tls(stream) => Pin::new(stream).poll_read(context, into),
         })?;
         Poll::Ready(lengths.take(&into.filled()[before..]))
     }
 }
 
-impl<S> AsyncWrite for BoundedStream<S>
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-{
+impl AsyncWrite for BoundedStream {
     fn poll_write(
         self: Pin<&mut Self>,
         context: &mut Context<'_>,
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        match &mut self.get_mut().way {
-            MaybeTls::Clear(stream) => Pin::new(stream).poll_write(context, bytes),
-            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_write(context, bytes),
-        }
+        self.writer().poll_write(context, bytes)
     }
 
     fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        match &mut self.get_mut().way {
-            MaybeTls::Clear(stream) => Pin::new(stream).poll_flush(context),
-            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_flush(context),
-        }
+        self.writer().poll_flush(context)
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        match &mut self.get_mut().way {
-            MaybeTls::Clear(stream) => Pin::new(stream).poll_shutdown(context),
-            MaybeTls::Tls(stream) => Pin::new(&mut **stream).poll_shutdown(context),
-        }
+        self.writer().poll_shutdown(context)
     }
 }
 
@@ -197,10 +149,16 @@ struct Lengths {
     rest: usize,
     /// Whether the server has reported ReadyForQuery.
     is_in: bool,
+    /// Bytes of the messages that the client keeps.
+    kept: u32,
 }
 
 /// The type of ReadyForQuery, sent after authentication and after each result.
 const READY: u8 = b'Z';
+/// The type of ParameterStatus, a setting of the server.
+const SETTING: u8 = b'S';
+/// The type of NotificationResponse.
+const NOTIFICATION: u8 = b'A';
 
 impl Lengths {
     fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
@@ -226,14 +184,18 @@ impl Lengths {
         let [letter, length @ ..] = self.head;
         let length = u32::from_be_bytes(length);
         self.is_in |= letter == READY;
-        let most = if self.is_in { MOST } else { MOST_BEFORE };
+        let is_kept = !self.is_in || matches!(letter, SETTING | NOTIFICATION);
+        let most = if is_kept { MOST_KEPT - self.kept } else { MOST };
         if !(4..=most).contains(&length) {
             return Err(io::Error::new(
                 io::ErrorKind::InvalidData,
                 format!(
-                    "it announces a message of {length} bytes, which no history has; it is no server of ours"
+                    "it announces a message of {length} bytes where at most {most} are expected; it is no server of ours"
                 ),
             ));
+        }
+        if is_kept {
+            self.kept += length;
         }
         self.rest = length as usize - 4;
         Ok(())
@@ -257,7 +219,8 @@ mod tests {
         let greeting = [message(b'R', 8), message(b'S', 30), message(READY, 5)].concat();
         let good = [greeting.clone(), message(b'D', 900), message(READY, 5)].concat();
         let long = [greeting.clone(), message(b'D', MOST + 1)].concat();
-        let early = message(b'R', MOST_BEFORE + 1);
+        let early = message(b'R', MOST_KEPT + 1);
+        let settings = [greeting.clone(), message(SETTING, 1000).repeat(1100)].concat();
         let short = [greeting, message(b'D', 3)].concat();
         for piece in [1, 2, 3, 7, 4096] {
             let taken = |bytes: &[u8]| {
@@ -265,7 +228,7 @@ mod tests {
                 bytes.chunks(piece).try_for_each(|some| lengths.take(some))
             };
             assert!(taken(&good).is_ok(), "{piece}");
-            for bad in [&long, &early, &short, &message(b'R', u32::MAX)] {
+            for bad in [&long, &early, &settings, &short, &message(b'R', u32::MAX)] {
                 let refused = taken(bad).expect_err("bounded").to_string();
                 assert!(refused.contains("it announces a message of"), "{refused}");
             }

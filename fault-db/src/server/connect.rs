@@ -5,9 +5,9 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use postgres::config::{SslMode, SslNegotiation};
-use postgres::{Client, Config, NoTls};
+use postgres::{Client, Config};
 
-use super::address::{Address, Guard};
+use super::address::Address;
 use super::bounded::BoundedConnector;
 use super::password::{self, Password};
 use super::{schema, tls};
@@ -66,93 +66,72 @@ pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> 
     })?;
     let database = address.database.clone().unwrap_or_else(|| user.clone());
     let password = password::find(address, &user, &database, &environment);
-    let config = config(address, &user, &database);
-    let mut config = config.map_err(|reason| StoreError::BadAddress {
-        reason: reason.to_owned(),
-    })?;
+    let mut config = config(address, &user, &database);
     if let Some(secret) = &password.secret {
         config.password(secret);
     }
-    let mut client = reach(config, address, &path, password)?;
-    let agreed = client.batch_execute(MANNERS);
-    agreed.map_err(|error| StoreError::from_sql(&path, DOING, error.into()))?;
-    check_text(&mut client, &path)?;
+    let (client, encoding) = reach(config, address, &path, password)?;
+    // Text of any language has to be stored unchanged.
+    if encoding != "UTF8" {
+        return Err(StoreError::ServerRefuses {
+            path,
+            reason: ServerReason::Said(format!(
+                "its text is {encoding}; make the database with `createdb -E UTF8 -T template0`"
+            )),
+        });
+    }
     Ok((Backend::Server(Server::new(client)), path))
 }
 
-/// Text of any language has to be stored unchanged.
-fn check_text(client: &mut Client, path: &Path) -> Result<(), StoreError> {
-    let row = client.query_one("SHOW server_encoding", &[]);
-    let encoding: String = row
-        .and_then(|row| row.try_get(0))
-        .map_err(|error| StoreError::from_sql(path, DOING, error.into()))?;
-    if encoding == "UTF8" {
-        return Ok(());
-    }
-    Err(StoreError::ServerRefuses {
-        path: path.to_path_buf(),
-        reason: ServerReason::Said(format!(
-            "its text is {encoding}; make the database with `createdb -E UTF8 -T template0`"
-        )),
-    })
-}
-
-fn config(address: &Address, user: &str, database: &str) -> Result<Config, &'static str> {
+fn config(address: &Address, user: &str, database: &str) -> Config {
     let mut config = Config::new();
     config
         .user(user)
         .dbname(database)
+        // A folder is one of a socket.
+        .host(&address.host)
         .port(address.port)
+        // Whoever may put a socket into that folder is trusted. Any other stream is ours, which negotiates TLS.
+        .ssl_mode(match address.is_socket() {
+            true => SslMode::Disable,
+            false => SslMode::Require,
+        })
+        .ssl_negotiation(SslNegotiation::Direct)
         .application_name("ptu")
-        .connect_timeout(Duration::from_secs(address.connect_timeout_s))
+        .connect_timeout(address.connect_timeout)
         .tcp_user_timeout(NETWORK_PATIENCE)
         .keepalives_idle(Duration::from_secs(20))
         .keepalives_interval(Duration::from_secs(10))
         .keepalives_retries(3);
-    if address.is_socket() {
-        config.ssl_mode(SslMode::Disable);
-        platform::at_socket(&mut config, &address.host)?;
-    } else {
-        // Our own stream negotiates TLS, and whether there is any.
-        config
-            .ssl_mode(SslMode::Require)
-            .ssl_negotiation(SslNegotiation::Direct)
-            .host(&address.host);
-    }
-    Ok(config)
+    config
 }
 
 /// Connects on a thread of its own, because resolving a name, and a server that accepts a connection and then
-/// falls silent, both block longer than the time limit.
+/// falls silent, both block longer than the time limit. Also the encoding of its texts.
 fn reach(
     config: Config,
     address: &Address,
     path: &Path,
     password: Password,
-) -> Result<Client, StoreError> {
-    let guard = address.guard();
+) -> Result<(Client, String), StoreError> {
     let not_trusted = |reason| StoreError::ServerNotTrusted {
         path: path.to_path_buf(),
         reason: ServerReason::Said(reason),
     };
-    let tls = match guard {
-        Guard::Disable => None,
-        Guard::Prefer | Guard::Verify => Some(tls::connector(address).map_err(not_trusted)?),
-    };
     let bounded = BoundedConnector {
-        tls,
-        or_clear: guard != Guard::Verify,
+        tls: tls::connector(address).map_err(not_trusted)?,
+        guard: address.guard(),
+        host: address.host.clone(),
     };
-    let is_socket = address.is_socket();
     let (done, waiting) = mpsc::channel();
     let connecting = std::thread::Builder::new()
         .name("connecting".into())
         .spawn(move || {
-            // Whoever may put a socket into that folder is trusted; no other stream is made of one.
-            let connected = match is_socket {
-                true => config.connect(NoTls),
-                false => config.connect(bounded),
-            };
+            let connected = config.connect(bounded).and_then(|mut client| {
+                client.batch_execute(MANNERS)?;
+                let encoding = client.query_one("SHOW server_encoding", &[])?;
+                Ok((client, encoding.try_get(0)?))
+            });
             // Nobody receives it if it took too long.
             let _ = done.send(connected);
         });
@@ -162,9 +141,8 @@ fn reach(
         reason,
     };
     connecting.map_err(|error| away(ServerReason::Said(error.to_string())))?;
-    let patience = Duration::from_secs(address.connect_timeout_s + 1);
     let connected = waiting
-        .recv_timeout(patience)
+        .recv_timeout(address.connect_timeout)
         .map_err(|_| away(ServerReason::NoAnswer))?;
     connected.map_err(
         |error| match StoreError::from_sql(path, DOING, error.into()) {

@@ -1,6 +1,8 @@
 //! Servers that are away, refuse, or hold something else.
 
-use std::net::TcpListener;
+use std::io::{Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 use fault_db::{Id, StoreError};
@@ -174,44 +176,72 @@ fn a_read_only_store_answers_queries_and_refuses_writes() {
     );
 }
 
+/// What a server says when it lets somebody in.
+const LET_IN: &[u8] = b"R\0\0\0\x08\0\0\0\0Z\0\0\0\x05I";
+
+/// A false server for one laptop: it answers the greeting, then does what is told.
+fn false_server<T: Send + 'static>(
+    answer: &'static [u8],
+    and_then: impl FnOnce(TcpStream) -> T + Send + 'static,
+) -> (String, JoinHandle<T>) {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let at = listener.local_addr().expect("its number");
+    let server = std::thread::spawn(move || {
+        let (mut laptop, _) = listener.accept().expect("a laptop");
+        laptop.read_exact(&mut [0; 8]).expect("a greeting");
+        laptop.write_all(answer).expect("answered");
+        and_then(laptop)
+    });
+    let address = format!("postgres://ptu@{at}/h?sslmode=disable");
+    (address, server)
+}
+
 /// Goal: what a false server announces costs nothing but its announcement.
-/// Method: one that says it has two gigabytes to tell, before and after somebody was let in, and counts what it
-/// gets rid of.
+/// Method: one that says it has two gigabytes to tell, before and after somebody was let in, and one whose settings do
+/// not end. Each counts what it gets rid of.
 #[test]
 fn an_oversized_message_is_refused_without_being_read() {
-    use std::io::{Read as _, Write as _};
-    let let_in = |letter: u8| {
-        let ready = [&b"R\0\0\0\x08\0\0\0\0"[..], b"Z\0\0\0\x05I"].concat();
-        if letter == b'D' { ready } else { Vec::new() }
-    };
-    for letter in [b'R', b'D'] {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-        let port = listener.local_addr().expect("its number").port();
-        let server = std::thread::spawn(move || {
-            let (mut laptop, _) = listener.accept().expect("a laptop");
-            let mut greeting = [0; 8];
-            laptop.read_exact(&mut greeting).expect("a greeting");
-            laptop.write_all(&let_in(letter)).expect("let in");
-            let mut announced = vec![letter];
-            announced.extend(0x7fff_ff00_u32.to_be_bytes());
-            laptop.write_all(&announced).expect("announced");
-            let some = vec![0; 1 << 20];
+    let announced = |letter| [&[letter][..], &0x7fff_ff00_u32.to_be_bytes()].concat();
+    let setting = [&b"S\0\x01\0\0"[..], &[b'x'; 0xfffa], b"\0\0"].concat();
+    let nothing = vec![0; 1 << 20];
+    for (answer, first, endless, words) in [
+        (
+            &b""[..],
+            announced(b'R'),
+            nothing.clone(),
+            "of 2147483392 bytes",
+        ),
+        (LET_IN, announced(b'D'), nothing, "of 2147483392 bytes"),
+        (LET_IN, Vec::new(), setting.repeat(16), "of 65536 bytes"),
+    ] {
+        let (address, server) = false_server(answer, move |mut laptop| {
+            laptop.write_all(&first).expect("announced");
             let mut taken = 0_usize;
-            while taken < 256 << 20 && laptop.write_all(&some).is_ok() {
-                taken += some.len();
+            while taken < 256 << 20 && laptop.write_all(&endless).is_ok() {
+                taken += endless.len();
             }
             taken
         });
-        let false_server = format!("postgres://ptu@127.0.0.1:{port}/h?sslmode=disable");
-        let refused = connect(&false_server)
-            .expect_err("a false server")
-            .to_string();
-        assert!(
-            refused.contains("a message of 2147483392 bytes"),
-            "{refused}"
-        );
+        let refused = connect(&address).expect_err("a false server").to_string();
+        assert!(refused.contains(words), "{refused}");
         let taken = server.join().expect("no panic");
         // As much as fits into the two systems' own buffers.
         assert!(taken <= 16 << 20, "{taken} bytes were taken");
     }
+}
+
+/// Goal: a server that hangs once it has let somebody in is given up in the time that the address allows.
+#[test]
+fn a_server_that_hangs_after_the_login_is_given_up_in_time() {
+    let (given_up, waiting) = std::sync::mpsc::channel::<()>();
+    // It holds the connection until the laptop has gone.
+    let (address, server) = false_server(LET_IN, move |_laptop| {
+        waiting.recv().expect_err("given up");
+    });
+    let begun = Instant::now();
+    let away = connect(&format!("{address}&connect_timeout=1")).expect_err("a server that hangs");
+    assert!(away.to_string().contains("no answer in time"), "{away}");
+    assert!(begun.elapsed().as_secs() < 10);
+    drop(given_up);
+    server.join().expect("no panic");
 }

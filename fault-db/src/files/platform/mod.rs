@@ -14,7 +14,7 @@ use unix as system;
 use windows as system;
 
 pub(crate) use system::{
-    LOCKS_BIND_ALL, LOGGED_IN, at_socket, for_all, for_owner, is_open_to_others, password_file,
+    LOCKS_BIND_ALL, LOGGED_IN, for_all, for_owner, host, is_open_to_others, password_file,
     special_kind,
 };
 

@@ -7,6 +7,8 @@ use std::os::unix::fs::{
 };
 use std::path::{Path, PathBuf};
 
+use postgres::config::Host;
+
 use super::Identity;
 
 /// The variable with the name of who is logged in.
@@ -63,12 +65,14 @@ pub(crate) fn password_file(environment: &dyn Fn(&str) -> Option<OsString>) -> O
     environment("HOME").map(|home| Path::new(&home).join(".pgpass"))
 }
 
-/// Connects to the socket in this folder.
+/// The name of a host, or the folder of its socket.
 ///
 /// # Errors
 /// Never.
 #[expect(clippy::unnecessary_wraps, reason = "it can fail elsewhere")]
-pub(crate) fn at_socket(config: &mut postgres::Config, folder: &str) -> Result<(), &'static str> {
-    config.host_path(folder);
-    Ok(())
+pub(crate) fn host(host: &Host) -> Result<String, &'static str> {
+    Ok(match host {
+        Host::Tcp(name) => name.clone(),
+        Host::Unix(folder) => folder.to_string_lossy().into_owned(),
+    })
 }

@@ -4,6 +4,8 @@ use std::ffi::OsString;
 use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::path::{Path, PathBuf};
 
+use postgres::config::Host;
+
 use super::Identity;
 
 /// The variable with the name of who is logged in.
@@ -44,10 +46,13 @@ pub(crate) fn password_file(environment: &dyn Fn(&str) -> Option<OsString>) -> O
     environment("APPDATA").map(|folder| Path::new(&folder).join(r"postgresql\pgpass.conf"))
 }
 
-/// There is no socket in a folder.
+/// The name of a host.
 ///
 /// # Errors
-/// Always.
-pub(crate) fn at_socket(_: &mut postgres::Config, _: &str) -> Result<(), &'static str> {
-    Err("on Windows a server is reached by host name, not by a folder")
+/// A folder is named; it holds no socket here.
+pub(crate) fn host(Host::Tcp(name): &Host) -> Result<String, &'static str> {
+    match name.starts_with('/') {
+        true => Err("on Windows a server is reached by host name, not by a folder"),
+        false => Ok(name.clone()),
+    }
 }
