@@ -3,13 +3,19 @@
 use ptu_runs::signal::{NotUnderstood, Picture, Reading, Receivers, Source, Span, Why};
 use ptu_runs::table::Table as TextTable;
 
-use crate::plot::{Plot, Raster, Series, Style};
+use crate::plot::{Place, Plot, Raster, Series, Style};
 use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
 
 /// Level below the strongest that is shown, dB.
 const SHOWN_DB: f32 = 70.0;
+/// Most signals that are named above the spectrum over time.
+const MOST_NAMED: usize = 200;
+/// Columns of a sketch.
+const SKETCHED: usize = 512;
+/// Height of a curve, in units of the drawing.
+const CURVE: f64 = 220.0;
 
 /// A recording that was read.
 pub struct Recording {
@@ -143,7 +149,7 @@ impl Printed for Recording {
                 said.of_channel,
                 &[("n", &(place + 1))],
             )));
-            let plots = plots(picture, self.reading.duration_s, words).into_iter();
+            let plots = plots(picture, (&self.reading, place), words).into_iter();
             blocks.extend(plots.map(|plot| Block::Plot(Box::new(plot))));
         }
         blocks.push(Block::Text(Tone::Soft, self.made.clone()));
@@ -180,44 +186,55 @@ fn table(sources: &[Source], words: &Words) -> block::Table {
     }
 }
 
-/// How a channel looks.
-pub fn plots(picture: &Picture, duration_s: f64, words: &Words) -> Vec<Plot> {
+/// How a channel looks, and where what was heard on it begins.
+pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plot> {
     let said = &words.signals;
-    let (wave, each_s) = picture.wave();
-    let time = |title: &str, y_label: &str, curve| Plot {
-        title: title.into(),
-        x_label: said.time.into(),
-        y_label: y_label.into(),
-        x_range: Some((0.0, duration_s)),
-        series: vec![curve],
-        height: Some(220.0),
-        ..Plot::default()
+    let over_time = |title, unit, (columns, each_s): (&[Span], f64)| {
+        let ends = (said.time, unit, of.0.duration_s);
+        curve(title, ends, spans(columns, each_s))
     };
-    let waveform = time(said.waveform, said.millivolts, line(spans(wave, each_s)));
-    let (envelope, each_s) = picture.envelope();
-    let envelope = time(
-        said.envelope,
-        said.millivolts_rms,
-        line(spans(envelope, each_s)),
-    );
-    let mut plots = vec![waveform, spectrogram(picture, duration_s, words), envelope];
     let (levels, row_hz) = picture.mean_spectrum();
     let points = levels.iter().enumerate();
-    plots.push(Plot {
-        title: said.spectrum.into(),
-        x_label: said.frequency.into(),
-        y_label: said.decibels.into(),
-        x_range: Some((0.0, row_hz * levels.len() as f64)),
-        series: vec![line(
-            points
-                .map(|(place, level)| (place as f64 * row_hz, f64::from(*level)))
-                .collect(),
-        )],
-        height: Some(220.0),
-        ..Plot::default()
-    });
+    let points = points.map(|(place, level)| (place as f64 * row_hz, f64::from(*level)));
+    let ends = (said.frequency, said.decibels, row_hz * levels.len() as f64);
+    let mut plots = vec![
+        over_time(said.waveform, said.millivolts, picture.wave()),
+        spectrogram(picture, of, words),
+        over_time(said.envelope, said.millivolts_rms, picture.envelope()),
+        curve(said.spectrum, ends, points.collect()),
+    ];
     plots.extend(eye(picture, words));
     plots
+}
+
+/// A waveform that is not recorded: what the generator makes.
+pub fn sketch(samples: &[f32], sample_hz: f64, words: &Words) -> Plot {
+    let said = &words.signals;
+    let together = samples.len().div_ceil(SKETCHED).max(1);
+    let columns = samples.chunks(together).map(|some| Span {
+        low: some.iter().copied().fold(f32::INFINITY, f32::min),
+        high: some.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+    });
+    let columns: Vec<_> = columns.collect();
+    let ends = (said.time, said.millivolts, samples.len() as f64 / sample_hz);
+    curve(
+        said.made,
+        ends,
+        spans(&columns, together as f64 / sample_hz),
+    )
+}
+
+/// One curve; the names of both axes, and how far the horizontal one reaches from 0 on.
+fn curve(title: &str, (x_label, y_label, to): (&str, &str, f64), points: Vec<(f64, f64)>) -> Plot {
+    Plot {
+        title: title.into(),
+        x_label: x_label.into(),
+        y_label: y_label.into(),
+        x_range: Some((0.0, to)),
+        series: vec![line(points)],
+        height: Some(CURVE),
+        ..Plot::default()
+    }
 }
 
 fn line(points: Vec<(f64, f64)>) -> Series {
@@ -230,7 +247,7 @@ fn line(points: Vec<(f64, f64)>) -> Series {
 }
 
 /// Columns as one line that goes through the least and the greatest value of each.
-pub fn spans(columns: &[Span], each_s: f64) -> Vec<(f64, f64)> {
+fn spans(columns: &[Span], each_s: f64) -> Vec<(f64, f64)> {
     let ends = columns.iter().enumerate().flat_map(|(place, span)| {
         let at = (place as f64 + 0.5) * each_s;
         [(at, f64::from(span.low)), (at, f64::from(span.high))]
@@ -239,7 +256,7 @@ pub fn spans(columns: &[Span], each_s: f64) -> Vec<(f64, f64)> {
 }
 
 /// The spectrum over time, and the levels of its least and greatest shade.
-pub fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
+fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
     let (spectra, _) = picture.spectra();
     let rows = spectra.first().map_or(0, Vec::len);
     let high = (spectra.iter().flatten()).fold(f32::MIN, |high, level| high.max(*level));
@@ -251,14 +268,23 @@ pub fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
     (spectra.len(), shades.collect(), (low, high))
 }
 
-fn spectrogram(picture: &Picture, duration_s: f64, words: &Words) -> Plot {
-    let said = &words.signals;
+fn spectrogram(picture: &Picture, (reading, channel): (&Reading, usize), words: &Words) -> Plot {
+    let (said, duration_s) = (&words.signals, reading.duration_s);
     let (columns, shades, (low, high)) = shades(picture);
     let (spectra, _) = picture.spectra();
     let rows = spectra.first().map_or(0, Vec::len);
     let (from_s, to_s) = picture.spectra_s();
     let highest = rows as f64 * picture.row_hz();
     let [low, high] = [low, high].map(|level| format!("{level:.0}"));
+    let heard = reading.sources.iter();
+    let heard = heard.filter(|source| source.channel == channel + 1);
+    let places = heard.take(MOST_NAMED).map(|source| {
+        let [.., name, _, _, _, _] = row(source, words);
+        Place {
+            x: source.from_s,
+            name,
+        }
+    });
     Plot {
         title: fill(said.spectrogram, &[("low", &low), ("high", &high)]),
         x_label: said.time.into(),
@@ -271,6 +297,7 @@ fn spectrogram(picture: &Picture, duration_s: f64, words: &Words) -> Plot {
             columns,
             shades,
         }),
+        places: places.collect(),
         ..Plot::default()
     }
 }

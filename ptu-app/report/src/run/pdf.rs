@@ -94,7 +94,8 @@ fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &FontMetri
             surface.set_fill(Some(fill(*ink)));
             put(surface, disc(*x, *y, *radius));
         }
-        Item::Drawing(..) => {}
+        // What has cells is looked at on a screen.
+        Item::Drawing(..) | Item::Cells(..) => {}
     }
 }
 

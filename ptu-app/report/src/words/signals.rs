@@ -61,7 +61,6 @@ wordings! {
         no_sound: "No sound device can be listed.", "사운드 장치 목록을 읽을 수 없습니다.";
         heard_in: "What was heard in {time}", "수신 결과 ({time})";
         more: "Further signals: {n}.", "그 밖의 신호: {n}건.";
-        waterfall: "Spectrum over time, kHz", "시간별 스펙트럼, kHz";
         generator: "Generator", "신호 발생기";
         code_name: "name of the code", "코드 이름";
         bytes: "bytes", "바이트";

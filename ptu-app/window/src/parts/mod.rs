@@ -53,7 +53,7 @@ pub use saved_questions::{SavedQuestion, SavedSaid, saved_questions};
 pub use segments::segments;
 pub use serial_link::{repair_line, serial_link};
 pub use share_bar::share_bar;
-pub use sheet_view::show_sheet;
+pub use sheet_view::{drawings, show_drawings, show_sheet};
 pub use split::FirstHalf;
 pub use stepper::Step;
 pub use table::{Cell, Column, Table};

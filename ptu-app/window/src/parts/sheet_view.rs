@@ -11,11 +11,12 @@ use eframe::egui::epaint::TextShape;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{
     Color32, FontId, Galley, Key, Label, Pos2, Rangef, Rect, Role, ScrollArea, Sense, Shape,
-    Stroke, StrokeKind, Theme, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Stroke, StrokeKind, TextureId, Theme, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use crate::Palette;
-use ptu_report::run::page::{DASH, HEIGHT, Ink, Item, Page, Text, WIDTH};
+use ptu_report::plot::Plot;
+use ptu_report::run::page::{self, DASH, HEIGHT, Ink, Item, MARGIN, Page, Text, WIDTH};
 
 /// A page is so wide at least and at most, points of the window.
 const WIDE: RangeInclusive<f32> = 864.0..=1168.0;
@@ -23,6 +24,9 @@ const WIDE: RangeInclusive<f32> = 864.0..=1168.0;
 const STEP: f32 = 16.0;
 /// Free beside and between pages.
 const BETWEEN: f32 = 12.0;
+/// Points of the window in a unit of a plot, and the least height of a plot in such units.
+const UNIT: f32 = 1.13;
+const LOWEST: f32 = 150.0;
 /// Share of what is in view that a key scrolls by.
 const PAGE: f32 = 0.9;
 /// How far words reach above and below their base line, in sizes of the letters.
@@ -66,10 +70,34 @@ pub fn show_sheet(ui: &mut Ui, sheet: impl Hash + Debug, pages: &[Page]) {
                 number,
                 at,
                 scale,
+                cells: None,
             };
             page_area.draw(page, Rangef::new(seen.min / scale, seen.max / scale));
         }
     });
+}
+
+/// Plots as a window shows them: as wide as there is room, each so high.
+pub fn drawings(mut plots: Vec<Plot>, room: Vec2) -> (Page, f32) {
+    let height = (room.y / UNIT).max(LOWEST);
+    for plot in &mut plots {
+        plot.height = Some(height.into());
+    }
+    page::drawings(&plots, room.x, UNIT)
+}
+
+/// Shows drawings in the colours of the window; `cells` is the picture of the cells among them.
+pub fn show_drawings(ui: &mut Ui, (page, height): &(Page, f32), cells: Option<TextureId>) {
+    let size = vec2(ui.available_width(), *height);
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let page_area = PageArea {
+        ui,
+        number: 0,
+        at: area.min - vec2(MARGIN, 0.0),
+        scale: 1.0,
+        cells,
+    };
+    page_area.draw(page, Rangef::EVERYTHING);
 }
 
 /// A page up or down where no field has the keys.
@@ -91,6 +119,7 @@ struct PageArea<'a> {
     number: usize,
     at: Pos2,
     scale: f32,
+    cells: Option<TextureId>,
 }
 
 impl PageArea<'_> {
@@ -127,6 +156,13 @@ impl PageArea<'_> {
                     let (middle, colour) = (self.point(*x, *y), self.colour(*ink));
                     let radius = radius * self.scale;
                     self.ui.painter().circle_filled(middle, radius, colour);
+                }
+                Item::Cells(x, y, wide, high, ..) => {
+                    if let Some(cells) = self.cells {
+                        let area = self.area(*x, *y, *wide, *high);
+                        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+                        (self.ui.painter()).image(cells, area, whole, Color32::WHITE);
+                    }
                 }
                 Item::Drawing(x, y, wide, high, title) => {
                     let area = self.area(*x, *y, *wide, *high);
@@ -246,7 +282,9 @@ fn extent(item: &Item) -> Rangef {
         Item::Line { points, .. } => points.iter().fold(Rangef::NOTHING, |all, (_, y)| {
             Rangef::new(all.min.min(*y), all.max.max(*y))
         }),
-        Item::Area(_, y, _, high, _) | Item::Drawing(_, y, _, high, _) => Rangef::new(*y, y + high),
+        Item::Area(_, y, _, high, _)
+        | Item::Drawing(_, y, _, high, _)
+        | Item::Cells(_, y, _, high, ..) => Rangef::new(*y, y + high),
         Item::Disc(_, y, radius, _) => Rangef::new(y - radius, y + radius),
     }
 }

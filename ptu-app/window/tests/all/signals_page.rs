@@ -36,7 +36,8 @@ fn what_the_generator_saves_is_opened_and_heard() {
         assert!(window.place.path("made.wav").is_file());
         window.click(said.open);
         window.wait_for("5a c3");
-        window.wait_for(said.waterfall);
+        window.wait_for(said.spectrum);
+        window.keep_picture(&format!("waves {language:?}"));
         // Never over one that is there.
         window.click(said.save);
         let another = window.place.text_path("made-2.wav");

@@ -11,7 +11,7 @@ pub const HEIGHT: f32 = 841.89;
 /// Length of a dash and of the gap after it.
 pub const DASH: [f32; 2] = [3.0, 2.2];
 /// Left and right of what is printed.
-pub(super) const MARGIN: f32 = 42.0;
+pub const MARGIN: f32 = 42.0;
 /// Above what flows: the header is within it.
 pub(super) const TOP: f32 = 54.0;
 /// Below what flows: the footer is within it.
@@ -65,6 +65,8 @@ pub enum Item {
     /// A drawing is here (left, top, width and height), which the items after it make up, with its title
     /// for those who cannot see it.
     Drawing(f32, f32, f32, f32, String),
+    /// Cells: left, top, width and height, how many are in a row, and their shades, row by row.
+    Cells(f32, f32, f32, f32, usize, Vec<u8>),
 }
 
 /// Words on a page.
@@ -144,7 +146,10 @@ impl Item {
     pub(crate) fn lowered(mut self, by: f32) -> Self {
         match &mut self {
             Self::Text(text) => text.lines.iter_mut().for_each(|line| line.0 += by),
-            Self::Area(_, y, ..) | Self::Disc(_, y, ..) | Self::Drawing(_, y, ..) => *y += by,
+            Self::Area(_, y, ..)
+            | Self::Disc(_, y, ..)
+            | Self::Drawing(_, y, ..)
+            | Self::Cells(_, y, ..) => *y += by,
             Self::Line { points, .. } => points.iter_mut().for_each(|point| point.1 += by),
         }
         self

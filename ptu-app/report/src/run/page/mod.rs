@@ -11,11 +11,12 @@ mod table;
 use std::collections::BTreeSet;
 
 use font::FontMetrics;
-pub use item::{DASH, HEIGHT, Ink, Item, Text, WIDTH};
-use item::{INSIDE, MARGIN};
+use item::INSIDE;
+pub use item::{DASH, HEIGHT, Ink, Item, MARGIN, Text, WIDTH};
 
 use super::block::Block;
 use super::{Paper, Printed};
+use crate::plot::Plot;
 use crate::words::{Words, fill};
 use ptu_runs::failure::Failure;
 
@@ -85,6 +86,18 @@ fn write_codes(page: &mut Page, letters: &FontMetrics) -> BTreeSet<char> {
         }
     }
     lacking
+}
+
+/// Plots below each other on a page so wide between its margins, in points of which a unit of a plot has `scale`; and how
+/// far down they reach.
+pub fn drawings(plots: &[Plot], wide: f32, scale: f32) -> (Page, f32) {
+    let (mut page, mut height) = (Page::new(), 0.0);
+    for plot in plots {
+        let piece = plot::drawing(plot, wide, scale);
+        page.extend(piece.items.into_iter().map(|item| item.lowered(height)));
+        height += piece.height;
+    }
+    (page, height)
 }
 
 /// How many pages blocks take; none where the shipped font does not serve.

@@ -5,27 +5,35 @@ use protocol::display_text;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece, Text};
 use crate::plot::{Mark, Plot, Role};
 
-/// Width of the drawing in its own units: words in it are as large as those around it.
-const WIDTH: f64 = 800.0;
+/// Width of the drawing on paper in its own units: words in it are as large as those around it.
+const WIDTH: f32 = 800.0;
 /// Size of words in it, in its own units.
 const SIZE: f32 = 11.5;
 /// Radius of a dot there.
 const DOT: f32 = 2.0;
-/// Free below.
+/// Free below on paper.
 const BELOW: f32 = 6.0;
 
-/// The drawing, which is never cut.
+/// The drawing on paper, which is never cut.
 pub fn piece(plot: &Plot) -> Piece {
-    let (width, height) = plot.size(WIDTH);
-    let scale = INSIDE / width as f32;
-    let height = height as f32 * scale;
-    let marks = plot.marks(WIDTH);
-    let all = Item::Drawing(MARGIN, 0.0, INSIDE, height, plot.title.clone());
+    let drawing = drawing(plot, INSIDE, INSIDE / WIDTH);
+    Piece {
+        height: drawing.height + BELOW,
+        ..drawing
+    }
+}
+
+/// A drawing so wide, in points, of which a unit of its own has so many.
+pub fn drawing(plot: &Plot, wide: f32, scale: f32) -> Piece {
+    let width = f64::from(wide / scale);
+    let height = plot.size(width).1 as f32 * scale;
+    let marks = plot.marks(width);
+    let all = Item::Drawing(MARGIN, 0.0, wide, height, plot.title.clone());
     Piece {
         items: std::iter::once(all)
             .chain(marks.iter().flat_map(|mark| items(mark, scale)))
             .collect(),
-        height: height + BELOW,
+        height,
         ..Piece::default()
     }
 }
@@ -83,8 +91,16 @@ fn items(mark: &Mark, scale: f32) -> Vec<Item> {
             }
             vec![Item::Area(x, y, wide, high, ink(*role))]
         }
-        // What has cells is looked at on a screen.
-        Mark::Raster { .. } => Vec::new(),
+        Mark::Raster {
+            at,
+            size,
+            columns,
+            shades,
+        } => {
+            let (x, y) = place(*at);
+            let (wide, high) = (size.0 as f32 * scale, size.1 as f32 * scale);
+            vec![Item::Cells(x, y, wide, high, *columns, shades.clone())]
+        }
         Mark::Dot { role, at } => {
             let (x, y) = place(*at);
             vec![Item::Disc(x, y, DOT * scale, ink(*role))]

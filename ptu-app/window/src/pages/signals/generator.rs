@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Button, Checkbox, ComboBox, Slider, TextEdit, Ui};
+use eframe::egui::{Button, Checkbox, ComboBox, Slider, TextEdit, Ui, vec2};
 use protocol::config::UnitConfig;
 
-use super::seen::sketch;
 use crate::PageContext;
-use crate::parts::named_combo;
+use crate::parts::{drawings, named_combo, show_drawings};
 use crate::request::CachedResponse;
+use ptu_report::signal::sketch;
 use ptu_report::words::Words;
 use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
@@ -16,6 +16,8 @@ use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 const WIDE: f32 = 150.0;
 /// How much of a waveform is sketched, s.
 const SKETCHED_S: f64 = 0.5;
+/// Height of the sketch, points.
+const SKETCH: f32 = 180.0;
 /// Longest code, s, and most bytes.
 const LONGEST_S: f64 = 600.0;
 const MOST_BYTES: usize = 200;
@@ -180,7 +182,6 @@ impl Sketch {
         unit: &Arc<UnitConfig>,
         context: &PageContext<'_>,
     ) {
-        let words = &context.words.signals;
         let now = (wave.clone(), strength);
         if self.of.as_ref() != Some(&now) {
             let (unit, (wave, strength)) = (unit.clone(), now.clone());
@@ -193,7 +194,8 @@ impl Sketch {
         }
         self.samples.poll();
         let samples = self.samples.items();
-        let each_s = 1.0 / f64::from(SAMPLE_HZ);
-        sketch(ui, (words.made, words.millivolts), samples, each_s);
+        let plot = sketch(samples, f64::from(SAMPLE_HZ), context.words);
+        let room = vec2(ui.available_width(), SKETCH);
+        show_drawings(ui, &drawings(vec![plot], room), None);
     }
 }

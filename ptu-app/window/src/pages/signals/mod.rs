@@ -40,7 +40,7 @@ pub struct SignalsPage {
 
 impl SignalsPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        self.poll(ui, context);
+        self.poll(context);
         let first = FirstHalf {
             name: "signals",
             width: 590.0,
@@ -58,7 +58,7 @@ impl SignalsPage {
         });
     }
 
-    fn poll(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
+    fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.offered.is_idle() {
             let unit_config = context.settings.unit.unit_config.clone();
             self.offered = Request::Pending(context.queries.run(move |paths| {
@@ -76,7 +76,7 @@ impl SignalsPage {
             .unwrap_or_else(PoisonError::into_inner)
             .take();
         if let Some(seen) = seen {
-            self.view.take(seen, ui.ctx());
+            self.view.take(seen);
         }
     }
 

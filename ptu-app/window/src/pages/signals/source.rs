@@ -116,7 +116,7 @@ impl Source {
             };
             if asked == Asked::Open {
                 let (reading, pictures) = signal::read_and_picture(&file, &unit, FULL_SCALE_MV)?;
-                show(Seen::of(reading, &pictures), told);
+                show(Seen { reading, pictures }, told);
                 return Ok(done(String::new(), Vec::new()));
             }
             let file = free_beside(&file);
@@ -142,13 +142,13 @@ impl Source {
                 let (reading, pictures) = receivers.so_far();
                 let so_far = format!("{:.1} s", count as f64 / f64::from(SAMPLE_HZ));
                 *slot.lock().unwrap_or_else(PoisonError::into_inner) =
-                    Some(Seen::of(reading, &pictures));
+                    Some(Seen { reading, pictures });
                 told.say(fill(words.signals.recording, &[("time", &so_far)]));
             };
             let recorded = sound::record_to_file(&file, device_of, None, &told.stop, &mut hear)?;
             receivers.take(&waiting);
             let (reading, pictures) = receivers.end(None);
-            show(Seen::of(reading, &pictures), told);
+            show(Seen { reading, pictures }, told);
             let seconds = format!("{:.2}", recorded.seconds);
             let file = file.display().to_string();
             let mut notes = uncalibrated(&known, &device, Direction::Input, words);
