@@ -20,24 +20,34 @@ pub(crate) struct HeldFile {
 }
 
 impl HeldFile {
-    /// Makes it, perhaps for its owner only; SQLite and the umask would let others read it.
+    /// Makes it.
     ///
     /// # Errors
     /// It exists, or cannot be made.
-    pub(crate) fn make(path: &Path, is_private: bool) -> Result<Self> {
-        let mut options = OpenOptions::new();
-        options.read(true).write(true).create_new(true);
-        if is_private {
-            platform::for_owner(&mut options);
-        }
-        loop {
-            let file = options.open(path)?;
-            let _ = file.lock();
-            // Before it was locked another program may have taken it for abandoned.
-            if path.exists() {
-                let path = path.to_path_buf();
-                return Ok(Self { file, path });
-            }
+    pub(crate) fn make(path: &Path) -> Result<Self> {
+        Ok(Self {
+            file: make_locked(path, false)?,
+            path: path.to_path_buf(),
+        })
+    }
+}
+
+/// Makes a file and locks it, perhaps for its owner only; SQLite and the umask would let others read it.
+///
+/// # Errors
+/// It exists, or cannot be made.
+pub(crate) fn make_locked(path: &Path, is_private: bool) -> Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create_new(true);
+    if is_private {
+        platform::for_owner(&mut options);
+    }
+    loop {
+        let file = options.open(path)?;
+        let _ = file.lock();
+        // Before it was locked another program may have taken it for abandoned.
+        if path.exists() {
+            return Ok(file);
         }
     }
 }

@@ -335,7 +335,7 @@ impl Store {
         }
         let lock = self.lock_of(run);
         // It holds nothing, and who shares the history is to see that it is locked.
-        let made = HeldFile::make(&lock, false).and_then(|held| for_all(&held.file).map(|()| held));
+        let made = HeldFile::make(&lock).and_then(|held| for_all(&held.file).map(|()| held));
         made.map_err(|error| StoreError::CannotWrite {
             path: lock.clone(),
             reason: error.to_string(),

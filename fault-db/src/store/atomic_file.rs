@@ -2,23 +2,28 @@
 //! temporary name and then renamed, so a crash leaves either the old file or the new one.
 
 use std::fs::File;
-use std::hash::{BuildHasher as _, RandomState};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags};
+use tempfile::{Builder, NamedTempFile};
 
 use crate::error::StoreError;
-use crate::files::databases::{is_of_database, with_end};
-use crate::files::held_file::{HeldFile, remove_abandoned};
+use crate::files::databases::is_of_database;
+use crate::files::held_file::{make_locked, remove_abandoned};
 use crate::files::platform;
 use crate::schema;
+
+/// Between the name of a file and the random letters while it is unfinished: nobody else's file is called so.
+const MARK: &str = ".ptu-";
+/// Random letters there.
+const RANDOM: usize = 16;
 
 /// An unfinished file. Dropped before [`replace`](Self::replace) or [`publish_as`](Self::publish_as), it is
 /// removed.
 #[derive(Debug)]
 pub struct AtomicFile {
-    beside: HeldFile,
+    beside: NamedTempFile,
     to: PathBuf,
 }
 
@@ -34,7 +39,7 @@ impl AtomicFile {
 
     /// The file to write to.
     pub fn file(&self) -> &File {
-        &self.beside.file
+        self.beside.as_file()
     }
 
     /// Renames it to its name, replacing an existing file; readers see either the old or the new one,
@@ -43,7 +48,9 @@ impl AtomicFile {
     /// # Errors
     /// Of the file system; the old file is still there then.
     pub fn replace(self) -> std::io::Result<()> {
-        std::fs::rename(&self.beside.path, &self.to)?;
+        self.beside
+            .persist(&self.to)
+            .map_err(|failed| failed.error)?;
         sync_names(&self.to);
         Ok(())
     }
@@ -51,19 +58,22 @@ impl AtomicFile {
     /// Gives it a name that must be free. What was written must be on the disk already.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`], or of the file system; another name can be tried then.
-    pub fn publish_as(&self, name: &Path) -> std::io::Result<()> {
-        match std::fs::hard_link(&self.beside.path, name) {
-            // No hard links on this file system.
-            Err(error)
-                if !matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::NotFound) =>
-            {
-                self.rename(name)?;
+    /// [`ErrorKind::AlreadyExists`], or of the file system; another name can be tried then with what is given back.
+    pub fn publish_as(self, name: &Path) -> Result<(), (std::io::Error, Self)> {
+        let Self { beside, to } = self;
+        match beside.persist_noclobber(name) {
+            Ok(_) => {
+                sync_names(name);
+                Ok(())
             }
-            done => done?,
+            Err(failed) => Err((
+                failed.error,
+                Self {
+                    beside: failed.file,
+                    to,
+                },
+            )),
         }
-        sync_names(name);
-        Ok(())
     }
 
     /// Copies a whole file, compacted, beside `to`.
@@ -73,7 +83,7 @@ impl AtomicFile {
         doing: &'static str,
     ) -> Result<Self, StoreError> {
         let part = Self::make(to, true).map_err(|error| cannot_write(to, error.to_string()))?;
-        let name = part.beside.path.to_str();
+        let name = part.beside.path().to_str();
         let name = name.ok_or_else(|| StoreError::CannotOpen {
             path: to.to_path_buf(),
             reason: "the name is not UTF-8".to_owned(),
@@ -120,14 +130,17 @@ impl AtomicFile {
 
     fn make(to: &Path, is_private: bool) -> std::io::Result<Self> {
         Self::remove_left(to);
+        let mut name = to.file_name().unwrap_or_default().to_owned();
+        name.push(MARK);
         // From the root: SQLite takes `file:x` for something else than a file.
-        let from_root = std::path::absolute(to)?;
-        let random = RandomState::new().hash_one(to);
+        let folder = std::path::absolute(folder_of(to))?;
+        let beside = Builder::new()
+            .prefix(&name)
+            .suffix(".part")
+            .rand_bytes(RANDOM)
+            .make_in(folder, |path| make_locked(path, is_private))?;
         Ok(Self {
-            beside: HeldFile::make(
-                &with_end(&from_root, &format!(".{random:016x}.part")),
-                is_private,
-            )?,
+            beside,
             to: to.to_path_buf(),
         })
     }
@@ -135,7 +148,7 @@ impl AtomicFile {
     /// The schema version of what was copied.
     pub(crate) fn version(&self) -> Result<i32, StoreError> {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        Connection::open_with_flags(&self.beside.path, flags)
+        Connection::open_with_flags(self.beside.path(), flags)
             .and_then(|copy| schema::user_version(&copy))
             .map_err(|error| StoreError::from_sqlite(&self.to, "reading a copy", error))
     }
@@ -145,27 +158,15 @@ impl AtomicFile {
     /// # Errors
     /// The name is taken; or of the file system.
     pub(crate) fn publish(self) -> Result<(), StoreError> {
-        let published = self.publish_as(&self.to);
-        published.map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => StoreError::TargetExists {
-                path: self.to.clone(),
-            },
+        let path = self.to.clone();
+        let published = self.publish_as(&path);
+        published.map_err(|(error, _)| match error.kind() {
+            ErrorKind::AlreadyExists => StoreError::TargetExists { path },
             _ => StoreError::Io {
-                path: self.to.clone(),
+                path,
                 reason: error.to_string(),
             },
         })
-    }
-
-    /// [`publish_as`](Self::publish_as) on a file system without hard links, such as a memory stick's: an
-    /// empty file reserves the name first.
-    fn rename(&self, name: &Path) -> std::io::Result<()> {
-        make_private(name)?;
-        let renamed = std::fs::rename(&self.beside.path, name);
-        if renamed.is_err() {
-            let _ = std::fs::remove_file(name);
-        }
-        renamed
     }
 }
 
@@ -203,9 +204,8 @@ fn folder_of(file: &Path) -> &Path {
 /// Whether a name is one of [`AtomicFile::make`].
 fn is_part(name: &str) -> bool {
     let name = name.strip_suffix(".part");
-    let random = name.and_then(|name| name.rsplit(['.', '-']).next());
-    random
-        .is_some_and(|text| text.len() == 16 && text.bytes().all(|digit| digit.is_ascii_hexdigit()))
+    let random = name.and_then(|name| name.rsplit_once(MARK));
+    random.is_some_and(|(_, letters)| letters.len() == RANDOM)
 }
 
 #[cfg(test)]
@@ -219,15 +219,19 @@ mod tests {
     fn a_file_that_nobody_writes_any_more_is_removed() {
         let dir = tempfile::tempdir().expect("a directory");
         let name = |name: &str| dir.path().join(name);
-        let left = ["a.pdf.0123456789abcdef.part", "b.db.0123456789abcdef.part"].map(name);
-        let journal = name("b.db.0123456789abcdef.part-journal");
-        let mine = name("mine.part");
+        let left = [
+            "a.pdf.ptu-0123456789abcdEF.part",
+            "b.db.ptu-0123456789abcdEF.part",
+        ]
+        .map(name);
+        let journal = name("b.db.ptu-0123456789abcdEF.part-journal");
+        let mine = name("presentation2024.part");
         for file in left.iter().chain([&journal, &mine]) {
             std::fs::write(file, "half").expect("written");
         }
         let under_way = AtomicFile::begin(&name("c.pdf")).expect("begun");
         drop(AtomicFile::begin(&name("d.pdf")).expect("begun"));
-        assert!(under_way.beside.path.exists() && mine.exists());
+        assert!(under_way.beside.path().exists() && mine.exists());
         assert!(left.iter().chain([&journal]).all(|file| !file.exists()));
     }
 
@@ -248,26 +252,5 @@ mod tests {
         assert_eq!(read(), "old");
         whole.replace().expect("replaced");
         assert_eq!((read(), names()), ("new".to_owned(), 1));
-    }
-
-    /// Goal: without hard links, too, an existing file is not replaced.
-    #[test]
-    fn without_hard_links_an_existing_file_is_not_replaced() {
-        let dir = tempfile::tempdir().expect("a directory");
-        let part = |to: &str| {
-            let part = AtomicFile::begin(&dir.path().join(to)).expect("begun");
-            part.file().write_all(b"new").expect("written");
-            part
-        };
-        let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).expect("there");
-        std::fs::write(dir.path().join("taken"), "old").expect("written");
-        let rename = |name: &str| part(name).rename(&dir.path().join(name));
-        let refused = rename("taken").expect_err("taken");
-        assert_eq!(refused.kind(), ErrorKind::AlreadyExists);
-        assert_eq!(read("taken"), "old");
-        rename("free").expect("renamed");
-        assert_eq!(read("free"), "new");
-        let names = std::fs::read_dir(dir.path()).expect("read").count();
-        assert_eq!(names, 2, "nothing is left beside them");
     }
 }

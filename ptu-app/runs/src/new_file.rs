@@ -213,11 +213,15 @@ impl NewFile {
         self.settle()?;
         let beside = (2..BESIDE).map(|number| numbered(&self.place, number));
         for name in std::iter::once(self.place.clone()).chain(beside) {
-            let done = self.part.as_ref().map(|part| part.publish_as(&name));
-            match done.unwrap_or(Ok(())) {
+            let Some(part) = self.part.take() else {
+                return Ok(name);
+            };
+            match part.publish_as(&name) {
                 Ok(()) => return Ok(name),
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(cannot_write(&name, &error)),
+                Err((error, part)) if error.kind() == ErrorKind::AlreadyExists => {
+                    self.part = Some(part);
+                }
+                Err((error, _)) => return Err(cannot_write(&name, &error)),
             }
         }
         Err(not_written(&self.place, Why::Taken))
