@@ -26,8 +26,7 @@ fn cab(hcr: bool, train: &TrainData) -> CabInputs {
         mode_switch: ModeSwitch::Automatic,
         controller: train.tcms().at(Lever::Neutral),
         dead_man: true,
-        emergency_button: false,
-        forced_release: false,
+        ..CabInputs::default()
     }
 }
 
@@ -44,18 +43,10 @@ fn scan(bencher: Bencher<'_, '_>, name: &str) {
     let inputs = TcmsInputs {
         cabs: [cab(true, &train), cab(false, &train)],
         doors_closed: true,
-        main_reservoir_low: false,
-        eb_cut_out: false,
-        security_brake: false,
-        parking_brake: false,
-        turn_back: false,
-        brakes_cut_out: CarSet::NONE,
-        inverters_cut_out: CarSet::NONE,
         contacts: Some(Outputs::EB_RELAY),
         load_kg: 80_000.0,
         equipment: Some(&equipment),
-        speed_mps: 0.0,
-        frames_refused: 0,
+        ..TcmsInputs::default()
     };
     bencher
         .counter(ItemsCount::new(SCANS))

@@ -14,7 +14,7 @@ pub const FULL_POWER: i16 = 1023;
 const INSIDE_V: f64 = 0.001;
 
 /// What a master controller gives TCMS.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInputs {
     /// P contact.
     pub power: bool,

@@ -7,7 +7,7 @@ use crate::train::{CarSet, Equipment};
 use super::controller::ControllerInputs;
 
 /// One cab as wired to TCMS.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CabInputs {
     /// Head control relay energised.
     pub hcr: bool,
@@ -26,7 +26,7 @@ pub struct CabInputs {
 }
 
 /// What TCMS is given in one scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TcmsInputs<'a> {
     /// Both cabs; the unit is in the first.
     pub cabs: [CabInputs; 2],

@@ -58,7 +58,7 @@ impl ChannelKind {
 }
 
 /// A trace, whole or some of its channels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TraceData {
     /// Bench time of row 0.
     pub t0_bench_us: i64,

@@ -330,10 +330,9 @@ pub fn realistic_trace(rows: usize, seed: u64) -> TraceData {
         t0_us: T0_US,
         period_us: 50_000,
         trigger_row: Some((rows / 3) as u32),
-        partial: false,
-        gaps: false,
         channels,
         columns,
+        ..TraceData::default()
     }
 }
 

@@ -83,18 +83,15 @@ fn run(seed: u64, number: usize) -> RecordedRun {
         at_ms: 1_000,
         date: None,
         trace: TraceData {
-            t0_bench_us: 0,
             t0_us: clock::now_us(),
             period_us: 50_000,
-            trigger_row: None,
-            partial: false,
-            gaps: false,
             channels: vec![Channel {
                 name: "speed".into(),
                 unit: "km/h".into(),
                 kind: ChannelKind::Number { lsb: 0.1 },
             }],
             columns: vec![vec![0.0, 0.1]],
+            ..TraceData::default()
         },
         is_cut: false,
     }

@@ -258,11 +258,9 @@ fn channel(name: &str, kind: ChannelKind) -> Channel {
 fn trace(rows: usize) -> TraceData {
     let labels = [(0, "off".to_owned()), (1, "ato".to_owned())].into();
     TraceData {
-        t0_bench_us: 0,
         t0_us: 1_772_323_200_000_000,
         period_us: 50_000,
         trigger_row: Some(2),
-        partial: false,
         gaps: true,
         channels: vec![
             channel("speed", ChannelKind::Number { lsb: 0.01 }),
@@ -280,6 +278,7 @@ fn trace(rows: usize) -> TraceData {
                 .map(|row| if row % 5 == 0 { f64::NAN } else { 1.0 })
                 .collect(),
         ],
+        ..TraceData::default()
     }
 }
 

@@ -279,12 +279,9 @@ impl CabDesk {
         // Nobody drives from there: its desk is as it was left.
         let other = CabInputs {
             hcr: self.is_on(TrainSwitch::OtherCab),
-            reverser: 0,
-            mode_switch: ModeSwitch::Off,
             controller: tcms.at(Lever::Neutral),
-            dead_man: false,
             emergency_button: self.is_on(TrainSwitch::Button2),
-            forced_release: false,
+            ..CabInputs::default()
         };
         [first, other]
     }

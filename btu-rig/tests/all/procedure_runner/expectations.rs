@@ -9,71 +9,33 @@ use super::stand_in::{HEAD, OFF, World, run};
 
 #[test]
 fn each_expectation_passes_fails_and_errs() {
-    let cases: [(&str, Option<f64>, Verdict, &str); 12] = [
-        ("becomes(eb, 'applied')", Some(1.0), Verdict::Passed, ""),
-        (
-            "becomes(eb, 'applied')",
-            Some(0.0),
-            Verdict::Failed,
-            "eb = applied did not come within 2.000 s",
-        ),
-        (
-            "becomes(eb, 'applied')",
-            None,
-            Verdict::Error,
-            "eb = applied did not come within 2.000 s: no data for eb",
-        ),
-        (
-            "holds(eb, 'released', for_ = s(1))",
-            Some(0.0),
-            Verdict::Passed,
-            "",
-        ),
-        (
-            "holds(eb, 'released', for_ = s(1))",
-            Some(1.0),
-            Verdict::Failed,
-            "eb = released held only for 0.500 s",
-        ),
-        (
-            "holds(eb, 'released', for_ = s(1))",
-            None,
-            Verdict::Error,
-            "eb = released held only for 0.500 s: no data for eb",
-        ),
-        (
-            "[never(eb, 'applied'), holds(speed, kmh(0), for_ = s(1))]",
-            Some(0.0),
-            Verdict::Passed,
-            "",
-        ),
-        (
-            "[never(eb, 'applied'), holds(speed, kmh(0), for_ = s(1))]",
-            Some(1.0),
-            Verdict::Failed,
-            "eb = applied came true",
-        ),
-        (
-            "[never(eb, 'applied'), holds(speed, kmh(0), for_ = s(1))]",
-            None,
-            Verdict::Error,
-            "no data for eb, so never eb = applied cannot be told",
-        ),
-        (
-            "logs('mode_changed', within = s(1))",
-            Some(0.0),
-            Verdict::Failed,
-            "the unit did not log mode_changed within 1.000 s",
-        ),
-        (
-            "logs('inverter_failed', within = s(1))",
-            Some(0.0),
-            Verdict::Failed,
-            "TCMS did not log inverter_failed within 1.000 s",
-        ),
-        ("never_logs('mode_changed')", Some(0.0), Verdict::Passed, ""),
-    ];
-    for (expect, eb, verdict, message) in cases {
+    use Verdict::{Error, Failed, Passed};
+    let comes = "becomes(eb, 'applied')";
+    let late = "eb = applied did not come within 2.000 s";
+    let stays = "holds(eb, 'released', for_ = s(1))";
+    let short = "eb = released held only for 0.500 s";
+    let never = "[never(eb, 'applied'), holds(speed, kmh(0), for_ = s(1))]";
+    let (applied, released) = (Some(1.0), Some(0.0));
+    let logs_mode = "logs('mode_changed', within = s(1))";
+    let logs_inverter = "logs('inverter_failed', within = s(1))";
+    let of_unit = "the unit did not log mode_changed within 1.000 s";
+    let of_tcms = "TCMS did not log inverter_failed within 1.000 s";
+    let untold = "no data for eb, so never eb = applied cannot be told";
+    let [late_unknown, short_unknown] = [late, short].map(|what| format!("{what}: no data for eb"));
+    for (expect, eb, verdict, message) in [
+        (comes, applied, Passed, ""),
+        (comes, released, Failed, late),
+        (comes, None, Error, &late_unknown[..]),
+        (stays, released, Passed, ""),
+        (stays, applied, Failed, short),
+        (stays, None, Error, &short_unknown),
+        (never, released, Passed, ""),
+        (never, applied, Failed, "eb = applied came true"),
+        (never, None, Error, untold),
+        (logs_mode, released, Failed, of_unit),
+        (logs_inverter, released, Failed, of_tcms),
+        ("never_logs('mode_changed')", released, Passed, ""),
+    ] {
         let outcome = run(&format!("{HEAD}step('a', expect = {expect})"), |world| {
             if world.ms() == 500 {
                 world.sample.set(Signal::Eb, eb.unwrap_or(f64::NAN));
@@ -175,6 +137,7 @@ fn an_event_nobody_asked_for_fails_the_step() {
 /// follow, since an inverter does not repair itself. What a step provokes names nothing.
 #[test]
 fn an_event_nobody_asked_for_names_the_part() {
+    use Event::{AtcSilent, AtoOrderContradicts, InverterFailed, OverspeedEb, TwcLost};
     let suspects = |source, event, provokes: &str| {
         let step = "do = wait(s(1)), expect = becomes(alarm, True, within = ms(10))";
         let script = format!(
@@ -194,29 +157,15 @@ fn an_event_nobody_asked_for_names_the_part() {
         suspects.collect::<Vec<_>>()
     };
     let (unit, tcms) = (EventSource::Unit, EventSource::Tcms);
+    let (ato, provoked) = ("ato_cpu", ", provokes = ['inverter_failed']");
     for (source, event, provokes, expected) in [
-        (unit, Event::TwcLost, "", ["ato_cpu", "twc_cpu", "tra"]),
-        (unit, Event::OverspeedEb, "", ["ato_cpu", "ato_cpu", "tra"]),
-        (
-            tcms,
-            Event::InverterFailed,
-            "",
-            ["ato_cpu", "inverter", "inverter"],
-        ),
+        (unit, TwcLost, "", [ato, "twc_cpu", "tra"]),
+        (unit, OverspeedEb, "", [ato, ato, "tra"]),
+        (tcms, InverterFailed, "", [ato, "inverter", "inverter"]),
         // The link and the unit are none of the train's parts.
-        (tcms, Event::AtcSilent, "", ["ato_cpu", "rs485_link", "tra"]),
-        (
-            tcms,
-            Event::AtoOrderContradicts,
-            "",
-            ["ato_cpu", "ato_cpu", "tra"],
-        ),
-        (
-            tcms,
-            Event::InverterFailed,
-            ", provokes = ['inverter_failed']",
-            ["ato_cpu", "ato_cpu", "tra"],
-        ),
+        (tcms, AtcSilent, "", [ato, "rs485_link", "tra"]),
+        (tcms, AtoOrderContradicts, "", [ato, ato, "tra"]),
+        (tcms, InverterFailed, provoked, [ato, ato, "tra"]),
     ] {
         assert_eq!(
             suspects(source, event, provokes),

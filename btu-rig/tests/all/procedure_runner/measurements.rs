@@ -57,57 +57,21 @@ fn a_condition_that_many_measurements_await_is_reported_once() {
 
 #[test]
 fn limits_missing_data_and_nan_never_pass() {
-    let cases = [
-        (
-            "value('v', speed, high = kmh(20))",
-            20.0,
-            Verdict::Passed,
-            "",
-        ),
-        (
-            "value('v', speed, high = kmh(20))",
-            21.0,
-            Verdict::Failed,
-            "v = 21, allowed at most 20 km/h",
-        ),
-        (
-            "value('v', speed, low = kmh(5), high = kmh(20))",
-            4.0,
-            Verdict::Failed,
-            "v = 4, allowed 5 to 20 km/h",
-        ),
-        (
-            "value('v', speed, high = kmh(20))",
-            f64::NAN,
-            Verdict::Error,
-            "v: no data for speed",
-        ),
-        (
-            "value('v', speed)",
-            f64::NAN,
-            Verdict::Error,
-            "v: no data for speed",
-        ),
-        (
-            "maximum('v', speed, high = kmh(20))",
-            f64::NAN,
-            Verdict::Error,
-            "v: no data for speed",
-        ),
-        (
-            "change('v', speed)",
-            f64::NAN,
-            Verdict::Error,
-            "v: no data for speed",
-        ),
-        (
-            "value('v', speed, high = kmh(20))",
-            f64::INFINITY,
-            Verdict::Error,
-            "v: no data for speed",
-        ),
-    ];
-    for (measure, speed, verdict, message) in cases {
+    use Verdict::{Error, Failed, Passed};
+    let most = "value('v', speed, high = kmh(20))";
+    let both = "value('v', speed, low = kmh(5), high = kmh(20))";
+    let greatest = "maximum('v', speed, high = kmh(20))";
+    let (nan, no_data) = (f64::NAN, "v: no data for speed");
+    for (measure, speed, verdict, message) in [
+        (most, 20.0, Passed, ""),
+        (most, 21.0, Failed, "v = 21, allowed at most 20 km/h"),
+        (both, 4.0, Failed, "v = 4, allowed 5 to 20 km/h"),
+        (most, nan, Error, no_data),
+        ("value('v', speed)", nan, Error, no_data),
+        (greatest, nan, Error, no_data),
+        ("change('v', speed)", nan, Error, no_data),
+        (most, f64::INFINITY, Error, no_data),
+    ] {
         let outcome = run(&format!("{HEAD}step('a', measure = {measure})"), |world| {
             world.sample.set(Signal::Speed, speed);
         });

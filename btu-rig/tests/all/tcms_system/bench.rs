@@ -27,13 +27,11 @@ pub struct Bench {
 
 pub fn cab(train: &TrainData, lever: Lever) -> CabInputs {
     CabInputs {
-        hcr: false,
         reverser: 1,
         mode_switch: ModeSwitch::Manual,
         controller: train.tcms().at(lever),
         dead_man: true,
-        emergency_button: false,
-        forced_release: false,
+        ..CabInputs::default()
     }
 }
 
@@ -63,18 +61,8 @@ impl Bench {
             inputs: TcmsInputs {
                 cabs: [first, cab(train, Lever::Neutral)],
                 doors_closed: true,
-                main_reservoir_low: false,
-                eb_cut_out: false,
-                security_brake: false,
-                parking_brake: false,
-                turn_back: false,
-                brakes_cut_out: CarSet::NONE,
-                inverters_cut_out: CarSet::NONE,
                 contacts: Some(Outputs::EB_RELAY),
-                load_kg: 0.0,
-                equipment: None,
-                speed_mps: 0.0,
-                frames_refused: 0,
+                ..TcmsInputs::default()
             },
             equipment: Equipment::default(),
             order: Some(AtcToTcms::default()),

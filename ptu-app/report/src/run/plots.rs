@@ -247,11 +247,8 @@ mod tests {
         };
         let labels = [(0, "off".to_owned()), (1, "manual".to_owned())].into();
         TraceData {
-            t0_bench_us: 0,
-            t0_us: 0,
             period_us: 50_000,
             trigger_row: Some(2),
-            partial: false,
             gaps: true,
             channels: vec![
                 channel("speed", ChannelKind::Number { lsb: 0.1 }),
@@ -267,6 +264,7 @@ mod tests {
                 vec![0.0; 4],
                 vec![f64::NAN, f64::NAN, 0.0, 1.0],
             ],
+            ..TraceData::default()
         }
     }
 

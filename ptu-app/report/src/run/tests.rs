@@ -157,17 +157,15 @@ fn trace() -> TraceData {
         kind,
     };
     TraceData {
-        t0_bench_us: 0,
-        t0_us: 0,
         period_us: 50_000,
         trigger_row: Some(2),
         partial: true,
-        gaps: false,
         channels: vec![
             channel("speed", ChannelKind::Number { lsb: 1.0 }),
             channel("eb", ChannelKind::Bit),
         ],
         columns: vec![vec![1.0, 2.0, 3.0, 4.0], vec![0.0, 0.0, 1.0, 1.0]],
+        ..TraceData::default()
     }
 }
 

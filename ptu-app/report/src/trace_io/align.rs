@@ -63,10 +63,8 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         t0_us: trace.t0_us,
         period_us: trace.period_us,
         trigger_row: trace.trigger_row,
-        partial: false,
         gaps: true,
-        channels: Vec::new(),
-        columns: Vec::new(),
+        ..TraceData::default()
     };
     let (mut first, mut end, mut is_row_by_row) = (rows, 0, true);
     let known: BTreeSet<&str> = trace.channels.iter().map(|c| c.name.as_str()).collect();
@@ -190,14 +188,12 @@ mod tests {
 
     fn trace(samples: &[f64]) -> TraceData {
         TraceData {
-            t0_bench_us: 0,
             t0_us: 1_000_000,
             period_us: 50_000,
             trigger_row: Some(2),
-            partial: false,
-            gaps: false,
             channels: vec![plain("a")],
             columns: vec![samples.to_vec()],
+            ..TraceData::default()
         }
     }
 

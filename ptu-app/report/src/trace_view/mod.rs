@@ -74,14 +74,10 @@ mod tests {
             kind: ChannelKind::Number { lsb: 0.001 },
         };
         TraceData {
-            t0_bench_us: 0,
-            t0_us: 0,
             period_us: 50_000,
-            trigger_row: None,
-            partial: false,
-            gaps: false,
             channels: columns.iter().map(channel).collect(),
             columns: columns.iter().map(|(_, column)| column.to_vec()).collect(),
+            ..TraceData::default()
         }
     }
 }

@@ -41,17 +41,16 @@ pub fn trace() -> TraceData {
         }
     };
     TraceData {
-        t0_bench_us: 0,
         t0_us: clock::now_us() - ROWS as i64 * PERIOD_US,
         period_us: PERIOD_US,
         trigger_row: Some(TRIGGER),
-        partial: false,
         gaps: true,
         channels: signals().map(channel).collect(),
         columns: signals()
             .zip(1..)
             .map(|(signal, seed)| column(signal, seed))
             .collect(),
+        ..TraceData::default()
     }
 }
 

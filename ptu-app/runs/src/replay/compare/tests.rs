@@ -4,18 +4,15 @@ use super::*;
 
 fn trace(name: &str, kind: ChannelKind, unit: &str, column: &[f64]) -> TraceData {
     TraceData {
-        t0_bench_us: 0,
-        t0_us: 0,
         period_us: 50_000,
         trigger_row: Some(2),
-        partial: false,
-        gaps: false,
         channels: vec![Channel {
             name: name.into(),
             unit: unit.into(),
             kind,
         }],
         columns: vec![column.to_vec()],
+        ..TraceData::default()
     }
 }
 

@@ -45,18 +45,15 @@ fn fault() -> FaultRecord {
 
 fn trace() -> TraceData {
     TraceData {
-        t0_bench_us: 0,
-        t0_us: 0,
         period_us: 50_000,
         trigger_row: Some(1),
-        partial: false,
-        gaps: false,
         channels: vec![Channel {
             name: "speed".into(),
             unit: "km/h".into(),
             kind: ChannelKind::Number { lsb: 0.1 },
         }],
         columns: vec![vec![0.0, 0.1]],
+        ..TraceData::default()
     }
 }
 
