@@ -129,7 +129,7 @@ impl ModeSequence {
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let turned = core::mem::replace(&mut self.switch, inputs.switch) != inputs.switch;
         let stands = !inputs.lacking.contains(Refusals::NOT_STANDSTILL);
-        // At rest who turns the switch authorises anew: one position departs by a button, the other without.
+        // Who turns the switch at rest has to authorise the next run: one position departs by a button, the other without.
         inputs.arrived |= inputs.relocated || turned && stands;
         let next = next(self.mode, &inputs, departing);
         if pressed && next != Mode::AutomaticRun {

@@ -19,6 +19,17 @@ const GOOD: ModeInputs = ModeInputs {
     forced: false,
 };
 
+/// A switch at driverless, a departure that is heard given or withheld, and preconditions that do not hold.
+fn driverless(departure: bool, lacking: Refusals) -> ModeInputs {
+    ModeInputs {
+        switch: ModeSwitch::Driverless,
+        departure,
+        heard: Some(departure),
+        lacking,
+        ..GOOD
+    }
+}
+
 /// Goal: who opened the line is logged once. Method: a run that the line ends, at rest and in motion, read back or told by
 /// TCMS; in motion the emergency brake logs a line that is read back.
 #[test]
@@ -140,14 +151,7 @@ fn a_departure_given_on_the_way_or_under_the_brake_sends_no_train_off() {
         let mut now = Instant::ZERO;
         let mut after = |departure, lacking| {
             now += Duration::from_ms(1_100);
-            let inputs = ModeInputs {
-                switch: ModeSwitch::Driverless,
-                departure,
-                heard: Some(departure),
-                lacking,
-                ..GOOD
-            };
-            sequence.step(now, inputs, &mut log);
+            sequence.step(now, driverless(departure, lacking), &mut log);
             sequence.mode()
         };
         let free = Refusals::empty();
@@ -189,16 +193,10 @@ fn a_run_goes_on_by_the_switch_and_through_the_section_that_began_it() {
             sequence.step(now, inputs, &mut log);
             sequence.mode()
         };
-        let driverless = turned(ModeSwitch::Driverless);
         for departure in [false, false, true] {
-            let given = ModeInputs {
-                departure,
-                heard: Some(departure),
-                ..driverless
-            };
-            after(given);
+            after(driverless(departure, Refusals::empty()));
         }
-        assert_eq!(after(driverless), Mode::AutomaticRun);
+        assert_eq!(after(turned(ModeSwitch::Driverless)), Mode::AutomaticRun);
         assert_eq!(after(then), mode, "{then:?}");
     }
 }
@@ -217,14 +215,7 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
         let mut now = Instant::ZERO;
         let mut after = |departure, lacking| {
             now += Duration::from_ms(1_100);
-            let inputs = ModeInputs {
-                switch: ModeSwitch::Driverless,
-                departure,
-                heard: Some(departure),
-                lacking,
-                ..GOOD
-            };
-            sequence.step(now, inputs, &mut log);
+            sequence.step(now, driverless(departure, lacking), &mut log);
             (sequence.mode(), sequence.stops())
         };
         after(false, Refusals::empty());
