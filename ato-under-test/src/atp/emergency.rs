@@ -20,7 +20,7 @@ pub struct BrakeInputs {
     pub excess_cms: i32,
     pub proof: Proof,
     pub standstill: bool,
-    /// No pulse, or a lone one, for the time of standstill.
+    /// Standstill, and no pulse, or a lone one, for the time of standstill.
     pub still: bool,
     pub doors_closed: bool,
     pub acknowledge: bool,

@@ -248,7 +248,7 @@ impl Atp {
             excess_cms: self.overspeed.excess_cms,
             proof,
             standstill,
-            still: still || !guards.release_standstill && standstill,
+            still: standstill && (still || !guards.release_standstill),
             doors_closed: self.doors_closed,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             compares_cause: guards.release,

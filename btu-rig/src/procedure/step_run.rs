@@ -20,6 +20,8 @@ const TOO_LATE: Duration = CYCLE;
 const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
 /// And its log, for so long.
 const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
+/// A step whose unit is silent at its end waits no longer for the unit; a link is lost before.
+const SPEAKS_WITHIN: Duration = Duration::from_ms(10_000);
 /// A step waits no longer for the unit's log; the reader of the log gives up before.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
@@ -50,6 +52,10 @@ pub(super) struct StepRun {
     log: LogState,
     /// Since when the step waits for nothing but the unit's log.
     awaits_log: Option<Instant>,
+    /// When the unit was silent last.
+    silent_at: Option<Instant>,
+    /// Since when the step waits for nothing but a unit that is silent.
+    awaits_unit: Option<Instant>,
     /// Frames that had not come through when the step began, and by now.
     lost_or_damaged: Option<(u64, u64)>,
 }
@@ -83,6 +89,8 @@ impl StepRun {
             behind: Duration::ZERO,
             log: LogState::Read,
             awaits_log: None,
+            silent_at: None,
+            awaits_unit: None,
             lost_or_damaged: None,
         }
     }
@@ -143,8 +151,11 @@ impl StepRun {
     }
 
     /// Takes note of how far what is heard in this scan can be trusted.
-    pub(super) fn note_evidence(&mut self, evidence: &Evidence) {
+    pub(super) fn note_evidence(&mut self, now: Instant, evidence: &Evidence) {
         self.log = evidence.log;
+        if evidence.line.silent {
+            self.silent_at = Some(now);
+        }
         self.note_behind(evidence.line.late);
         let lost_or_damaged = evidence.line.lost_or_damaged;
         let (before, _) = self
@@ -186,7 +197,11 @@ impl StepRun {
         let Some(since) = self.refused_at.filter(|_| !self.broken_off) else {
             return true;
         };
-        let waited = now.since(since);
+        self.has_said_why(now.since(since))
+    }
+
+    /// So long after a request was refused, or the unit was silent.
+    fn has_said_why(&self, waited: Duration) -> bool {
         waited >= LOGS_WHY_WITHIN || waited >= SAYS_WHY_WITHIN && self.log == LogState::Read
     }
 
@@ -204,6 +219,14 @@ impl StepRun {
         let within = LOG_WITHIN;
         self.give_up(Problem::Bench(Finding::LogNotRead { within }));
         false
+    }
+
+    /// Whether the step is held back until a unit that is silent speaks again and its log is read: a unit that starts
+    /// again by itself says so only then.
+    fn waits_for_unit(&mut self, now: Instant) -> bool {
+        let since = *self.awaits_unit.get_or_insert(now);
+        let silent_for = |at: Instant| !self.has_said_why(now.since(at));
+        now.since(since) < SPEAKS_WITHIN && self.silent_at.is_some_and(silent_for)
     }
 
     /// One scan; `true` when the step is over.
@@ -247,7 +270,7 @@ impl StepRun {
             for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
                 run.explain(expectation, driver);
             }
-            return !self.waits_for_log(scan.now);
+            return !self.waits_for_log(scan.now) && !self.waits_for_unit(scan.now);
         }
         let late = scan.now.since(self.started) >= step.time_limit;
         // What it waits for may stand in a log that is not answered: its reader reports that.

@@ -237,7 +237,7 @@ impl Runner {
         driver: &mut dyn Driver,
     ) -> Poll {
         self.begin(now);
-        self.take_evidence(driver.evidence());
+        self.take_evidence(now, driver.evidence());
         // First, because what this scan brings results from the stall.
         if let Some(reason) = self.interrupted.take() {
             self.break_off(now, sample, reason);
@@ -326,7 +326,7 @@ impl Runner {
         }
     }
 
-    fn take_evidence(&mut self, evidence: Evidence) {
+    fn take_evidence(&mut self, now: Instant, evidence: Evidence) {
         self.evidence = evidence;
         self.not_kept_before.get_or_insert(evidence.not_kept);
         match &mut self.phase {
@@ -334,7 +334,7 @@ impl Runner {
             Phase::Steps { live, .. } => {
                 self.self_test |= evidence.self_test;
                 if let Some(live) = live {
-                    live.note_evidence(&evidence);
+                    live.note_evidence(now, &evidence);
                 }
             }
             _ => {}
