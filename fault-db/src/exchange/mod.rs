@@ -1,4 +1,4 @@
-//! Replication: brings the rows of one store into another. docs/replication.md describes it.
+//! Replication: brings the rows of one store into another. REPLICATION.md describes it.
 //!
 //! A [`ChangeSet`](change_set::ChangeSet) holds rows of the declared [`tables`], read from a file or a
 //! server and checked against their columns' domain. One of two appliers adds them: [`to_file`] to a SQLite

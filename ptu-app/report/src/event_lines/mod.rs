@@ -1,4 +1,4 @@
-//! The stream of a run as JSON lines, for other programs: `docs/events.md`.
+//! The stream of a run as JSON lines, for other programs: `docs/commands.md`.
 //!
 //! What a line has is in one table, [`EVENTS`], of which the schema in `docs/` is made. A key is never given another
 //! meaning and never left out within a version; new keys and new events may come, and a reader passes over those that it

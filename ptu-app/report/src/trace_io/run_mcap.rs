@@ -1,5 +1,5 @@
 //! A whole run as MCAP, written while it goes on: rows of all signals under the topic `signals`, and the events of
-//! `docs/events.md` under `events`.
+//! `docs/commands.md` under `events`.
 //!
 //! A message's time is that of the run's beginning and the bench time since, so that procedures whose units were switched
 //! on one after the other follow each other.

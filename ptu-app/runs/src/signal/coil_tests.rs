@@ -203,7 +203,7 @@ fn no_more_permissive_code_is_decided_in_hard_cases() {
     assert_eq!(more, 0);
 }
 
-/// The figures of `docs/figures.md` on codes as a unit decides on them, with seeds that nothing was chosen by.
+/// The figures of `docs/dev/figures.md` on codes as a unit decides on them, with seeds that nothing was chosen by.
 #[test]
 #[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_decisions -- --ignored --nocapture"]
 fn figures_of_decisions() {

@@ -407,7 +407,7 @@ fn what_is_no_such_signal_is_said() {
     }
 }
 
-/// The figures of `docs/figures.md`: bit errors over Eb/N0 with known bit timing, codes decided at 10 dB, and more
+/// The figures of `docs/dev/figures.md`: bit errors over Eb/N0 with known bit timing, codes decided at 10 dB, and more
 /// permissive codes at any noise, crosstalk and splice.
 #[test]
 #[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_the_receivers -- --ignored --nocapture"]

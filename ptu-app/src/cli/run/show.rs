@@ -17,7 +17,7 @@ pub struct ShowOptions {
     /// Say each step and each measured value with its limits
     #[arg(short, long)]
     verbose: bool,
-    /// Print each event of the run as a JSON line (docs/events.md) while it goes on; with --list, print the list as JSON
+    /// Print each event of the run as a JSON line (docs/commands.md) while it goes on; with --list, print the list as JSON
     #[arg(long, conflicts_with_all = ["check", "events"])]
     pub json: bool,
     /// Write the lines of --json to a file instead
