@@ -148,19 +148,20 @@ fn the_hash_is_of_the_text_and_the_same_text_gives_the_same_plan() {
 }
 
 #[test]
-fn the_worked_example_of_the_reference_loads() {
+fn the_examples_of_the_reference_load() {
+    let mut scripts = Scripts::new();
+    collect(&root().join("../scripts"), "", &mut scripts);
     let reference = std::fs::read_to_string(root().join("../scripts/README.md")).unwrap();
-    let example = reference.split("```python\n").nth(1).unwrap();
-    let example = example.split("```").next().unwrap();
-    let library = "def at_rest():\n    return []\ndef cab_ready():\n    return []\n";
-    let scripts = Scripts::from([
-        ("_bench.star".into(), library.into()),
-        ("atp/example.star".into(), example.into()),
-    ]);
+    for (number, example) in reference.split("```python\n").enumerate().skip(1) {
+        let example = example.split("```").next().unwrap();
+        scripts.insert(format!("atp/example_{number}.star"), example.into());
+    }
     let loaded = load_all(&scripts);
     assert_eq!(loaded.errors, []);
-    assert_eq!(loaded.procedures[0].id, "atp/example");
-    assert_eq!(loaded.procedures[0].steps.len(), 18);
+    let examples = loaded.procedures.iter();
+    let examples = examples.filter(|one| one.id.starts_with("atp/example_"));
+    let steps: Vec<_> = examples.map(|one| one.steps.len()).collect();
+    assert_eq!(steps, [18, 6]);
 }
 
 fn collect(folder: &Path, prefix: &str, scripts: &mut Scripts) {
