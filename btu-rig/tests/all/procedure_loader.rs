@@ -122,6 +122,22 @@ fn bad_scripts_are_refused_with_place_and_reason() {
 }
 
 #[test]
+fn an_error_in_a_library_names_the_line_that_calls_it() {
+    let library = "def place(section):\n    at = section.stop\n    return at\n";
+    let script =
+        "load('//_lib.star', 'place')\nprocedure(title = 'x')\nstep('a', do = wait(place('61')))";
+    let texts = [("_lib.star", library), ("a.star", script)];
+    let loaded = load_all(
+        &texts
+            .map(|(name, text)| (name.to_owned(), text.to_owned()))
+            .into(),
+    );
+    let errors: Vec<_> = loaded.errors.iter().map(ToString::to_string).collect();
+    let told = "_lib.star:2:10: Object of type `string` has no attribute `stop`, did you mean `strip`? — place() is called at a.star:3:21";
+    assert_eq!(errors, [told]);
+}
+
+#[test]
 fn errors_of_one_script_do_not_hide_another() {
     let mut scripts = folder("good");
     scripts.extend(folder("bad"));

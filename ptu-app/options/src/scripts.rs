@@ -16,11 +16,13 @@ pub struct ScriptsOption {
 }
 
 impl ScriptsOption {
-    /// The folder that was named, or the one that counts where none was.
+    /// The folder that was named, or the one that counts where none was. Its Korean texts are taken for all that is said from now on.
     ///
     /// # Errors
-    /// The named folder cannot be read.
+    /// The named folder or its Korean texts cannot be read.
     pub fn find(&self) -> Result<ScriptsDirectory, Failure> {
-        ScriptsDirectory::find(self.scripts.as_deref())
+        let scripts = ScriptsDirectory::find(self.scripts.as_deref())?;
+        ptu_report::words::take_own(&scripts)?;
+        Ok(scripts)
     }
 }

@@ -88,6 +88,17 @@ impl ScriptsDirectory {
         }
     }
 
+    /// How the file is shown and its text in each place that has it, the one that counts first.
+    ///
+    /// # Errors
+    /// One of them cannot be read.
+    pub fn layers(&self, name: &str) -> Result<Vec<(String, String)>, Failure> {
+        let files = self.0.files(name);
+        files
+            .map(|found| Ok((found.shown(), text(&found)?)))
+            .collect()
+    }
+
     /// The file's bytes, at most `most` of them.
     ///
     /// # Errors

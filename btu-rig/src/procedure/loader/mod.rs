@@ -218,7 +218,9 @@ fn cut(text: &str) -> String {
 }
 
 fn error_from(path: &str, error: &starlark::Error) -> LoadError {
-    let message = cut(&plain_words(&error.without_diagnostic().to_string()));
+    let words = plain_words(&error.without_diagnostic().to_string());
+    let caller = caller(path, error).unwrap_or_default();
+    let message = cut(&format!("{words}{caller}"));
     match error.span() {
         Some(span) => error_at(span, message),
         None => LoadError {
@@ -228,6 +230,23 @@ fn error_from(path: &str, error: &starlark::Error) -> LoadError {
             message,
         },
     }
+}
+
+/// Where the script calls the library in which the error is.
+fn caller(path: &str, error: &starlark::Error) -> Option<String> {
+    if error.span()?.filename() == path {
+        return None;
+    }
+    let mut frames = error.call_stack().frames.iter().rev();
+    frames.find_map(|frame| {
+        let at = frame.location.as_ref().filter(|at| at.filename() == path)?;
+        let begin = at.resolve_span().begin;
+        let (line, column) = (begin.line + 1, begin.column + 1);
+        Some(format!(
+            " — {}() is called at {path}:{line}:{column}",
+            frame.name
+        ))
+    })
 }
 
 /// Starlark's messages are for programmers; the two that need it are said in plain words.

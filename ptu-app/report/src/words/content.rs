@@ -1,14 +1,16 @@
 //! What scripts and catalogues say, in Korean: names of steps, measurements, fault modes, signals, reasons of limits.
 //!
 //! They are written in English; `scripts/korean.toml` has the Korean beside the scripts it belongs to. A text is looked up with
-//! its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry. What is not in it, as a
-//! name that a depot gave its own step, is shown as it was written.
+//! its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry. A depot's own `korean.toml`
+//! beside its procedures is looked in first. What is in neither is shown as it was written.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use protocol::event::Event;
+use ptu_runs::data::ScriptsDirectory;
+use ptu_runs::failure::{Failure, FileTrouble};
 use serde::Deserialize;
 
 /// The texts that are built in, as their file has them.
@@ -19,18 +21,72 @@ const JOINED: &str = "; ";
 static CONTENT: LazyLock<Content> =
     LazyLock::new(|| Content::read(KOREAN).expect("a test reads the file that is built in"));
 
+/// Those of the user and of the depot, the ones that count most first.
+static OWN: OnceLock<Vec<Content>> = OnceLock::new();
+const FILE: &str = "korean.toml";
+
+/// Takes the Korean texts that lie beside the scripts, for as long as the program runs.
+///
+/// # Errors
+/// A file cannot be read, or is wrong.
+pub fn take_own(scripts: &ScriptsDirectory) -> Result<(), Failure> {
+    let mut own = Vec::new();
+    for (shown, text) in scripts.layers(FILE)? {
+        if text != KOREAN {
+            let wrong = |error| Failure::usage(FileTrouble::wrong(shown, error));
+            own.push(Content::read(&text).map_err(wrong)?);
+        }
+    }
+    OWN.get_or_init(|| own);
+    Ok(())
+}
+
+fn contents() -> impl Iterator<Item = &'static Content> {
+    OWN.get().into_iter().flatten().chain([&*CONTENT])
+}
+
 /// The Korean of a text of scripts, catalogues or the runner; the text itself where there is none.
 pub(super) fn korean(text: &str) -> Cow<'_, str> {
-    CONTENT.say(text).map_or(Cow::Borrowed(text), Cow::Owned)
+    said(text).map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
-/// What a measurement is called in Korean, by the name that its script gives it; `None` where there is none.
+fn said(text: &str) -> Option<String> {
+    let (key, numbers) = without_numbers(text);
+    if let Some(korean) = contents().find_map(|content| content.texts.get(&key)) {
+        return Some(with_numbers(korean, &numbers));
+    }
+    if let Some(event) = Event::from_name(text) {
+        return Some(event.definition().text_ko.to_owned());
+    }
+    if !text.contains(JOINED) {
+        return None;
+    }
+    let parts = text.split(JOINED);
+    let said = parts.map(|part| said(part).unwrap_or_else(|| part.to_owned()));
+    Some(said.collect::<Vec<_>>().join(JOINED))
+}
+
+/// What a measurement is called in Korean, by the name that its script gives it; `None` where there is none. A number at the end of
+/// a name is that of a pair, an input or a speed.
 pub(super) fn measurement(name: &str) -> Option<String> {
-    CONTENT.measurement(name)
+    let named = |key: &str| contents().find_map(|content| content.measurements.get(key));
+    if let Some(korean) = named(name) {
+        return Some(korean.clone());
+    }
+    if let Some(item) = super::KOREAN.bench.self_test_item(name) {
+        return Some(item);
+    }
+    let (key, numbers) = match name.rsplit_once('_') {
+        Some((what, number)) if number_length(number) == number.len() => {
+            (format!("{what}_#"), vec![number])
+        }
+        _ => without_numbers(name),
+    };
+    Some(with_numbers(named(&key)?, &numbers))
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 struct File {
     steps: BTreeMap<String, String>,
     /// Apart from the others: `released` is a state, too.
@@ -60,40 +116,6 @@ impl Content {
             texts: parts.into_iter().flatten().collect(),
             measurements: file.measurements,
         })
-    }
-
-    fn say(&self, text: &str) -> Option<String> {
-        let (key, numbers) = without_numbers(text);
-        if let Some(korean) = self.texts.get(&key) {
-            return Some(with_numbers(korean, &numbers));
-        }
-        if let Some(event) = Event::from_name(text) {
-            return Some(event.definition().text_ko.to_owned());
-        }
-        if !text.contains(JOINED) {
-            return None;
-        }
-        let parts = text.split(JOINED);
-        let said = parts.map(|part| self.say(part).unwrap_or_else(|| part.to_owned()));
-        Some(said.collect::<Vec<_>>().join(JOINED))
-    }
-
-    /// A number at the end of a name is that of a pair, an input or a speed.
-    fn measurement(&self, name: &str) -> Option<String> {
-        if let Some(korean) = self.measurements.get(name) {
-            return Some(korean.clone());
-        }
-        if let Some(item) = super::KOREAN.bench.self_test_item(name) {
-            return Some(item);
-        }
-        let (key, numbers) = match name.rsplit_once('_') {
-            Some((what, number)) if number_length(number) == number.len() => {
-                (format!("{what}_#"), vec![number])
-            }
-            _ => without_numbers(name),
-        };
-        let korean = self.measurements.get(&key)?;
-        Some(with_numbers(korean, &numbers))
     }
 }
 

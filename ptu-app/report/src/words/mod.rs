@@ -27,6 +27,7 @@ pub use bench::Bench;
 pub use care::Care;
 pub use case::Case;
 pub use common::Common;
+pub use content::take_own;
 pub use diagnosis::Diagnosis;
 pub use drive::Drive;
 pub use faults::Faults;

@@ -8,6 +8,7 @@ use script_files::{Place, own_folder};
 use super::{ScriptsOption, print_out};
 use ptu_runs::data::{ScriptsDirectory, write_text};
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Unknown};
+use ptu_runs::run::select;
 
 /// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///
@@ -17,6 +18,7 @@ use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Unknown};
 ///
 /// Examples:
 ///   ptu new procedure door/depot_doors
+///   ptu new procedure depot/doors --like door/interlocks
 ///   ptu new unit sg200
 ///   ptu new line line9
 ///   ptu new train emu9
@@ -32,6 +34,9 @@ pub struct NewArguments {
     /// Its name: of a procedure with its folder, of a fault with its part
     #[arg(required_if_eq_any([("what", "procedure"), ("what", "unit"), ("what", "line"), ("what", "train"), ("what", "fault")]))]
     name: Option<String>,
+    /// Begin a procedure from one of the same kind: its path, folder or glob; of several the first
+    #[arg(long, value_name = "PROCEDURE")]
+    like: Option<String>,
     /// Scripts directory to write into [default: the one that is read alone, else the user's own]
     #[arg(long = "in", value_name = "DIR")]
     into: Option<PathBuf>,
@@ -115,7 +120,10 @@ impl NewArguments {
         Ok(match self.what {
             What::Procedure => {
                 let title = name.rsplit('/').next().unwrap_or(name).replace('_', " ");
-                let text = include_str!("procedure.star").replace("{title}", &title);
+                let text = match &self.like {
+                    Some(like) => retitled(&like_of(scripts, like)?, &title),
+                    None => include_str!("procedure.star").replace("{title}", &title),
+                };
                 (format!("{name}.star"), text)
             }
             What::Unit => (
@@ -160,6 +168,28 @@ impl NewArguments {
             What::Stubs | What::Schemas => String::new(),
         }
     }
+}
+
+/// The text of the first procedure that this names.
+fn like_of(scripts: &ScriptsDirectory, like: &str) -> Result<String, Failure> {
+    let (mut texts, order) = select::scripts(scripts, &[like.to_owned()])?;
+    let text = order.first().and_then(|path| texts.remove(path));
+    Ok(text.unwrap_or_default())
+}
+
+/// A procedure with a title of its own.
+fn retitled(text: &str, title: &str) -> String {
+    let mut lines = String::new();
+    for line in text.lines() {
+        match line.strip_prefix("    title") {
+            Some(rest) if rest.starts_with(" = ") => {
+                lines += &format!("    title = \"{title}\",\n")
+            }
+            Some(rest) if rest.starts_with("_ko = ") => {}
+            _ => lines += &format!("{line}\n"),
+        }
+    }
+    lines
 }
 
 /// A shipped file under another name, where it says its own.
