@@ -1,11 +1,11 @@
 //! `ptu help-files`: what a package installs that the program knows best.
 
 mod documents;
+mod manual_page;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory as _};
-use clap_complete::Shell;
 
 use super::{Cli, WindowOptions, help, print_out};
 use ptu_runs::data::write_text;
@@ -50,12 +50,8 @@ fn manuals(folder: &Path) -> Result<(), Failure> {
 /// The page of a command, and those of its verbs.
 fn pages(folder: &Path, command: &Command) -> Result<(), Failure> {
     let name = command.get_display_name().unwrap_or(command.get_name());
-    let mut page = Vec::new();
     let file = folder.join(format!("{name}.1"));
-    clap_mangen::Man::new(command.clone())
-        .manual("PTU")
-        .render(&mut page)
-        .map_err(|error| cannot_write(&file, &error))?;
+    let page = manual_page::page(command).map_err(|error| cannot_write(&file, &error))?;
     write_text(&file, page)?;
     command
         .get_subcommands()
@@ -65,13 +61,11 @@ fn pages(folder: &Path, command: &Command) -> Result<(), Failure> {
 
 fn completions(folder: &Path) -> Result<(), Failure> {
     for (shell, file) in [
-        (Shell::Bash, "bash/ptu.bash"),
-        (Shell::Zsh, "zsh/_ptu"),
-        (Shell::Fish, "fish/ptu.fish"),
+        ("bash", "bash/ptu.bash"),
+        ("zsh", "zsh/_ptu"),
+        ("fish", "fish/ptu.fish"),
     ] {
-        let mut text = Vec::new();
-        clap_complete::generate(shell, &mut Cli::command(), "ptu", &mut text);
-        write_text(&folder.join(file), text)?;
+        write_text(&folder.join(file), super::completions::script(shell))?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod catalog;
+mod completions;
 mod db;
 mod diagnose;
 mod doctor;
@@ -94,6 +95,7 @@ enum Verb {
     Drive(Box<drive::DriveArguments>),
     Matrix(matrix::MatrixArguments),
     New(new::NewArguments),
+    Completions(completions::CompletionsArguments),
     Train(Box<train::TrainArguments>),
     /// Write manual pages and shell completions, for packages
     #[command(name = "help-files", hide = true)]
@@ -110,6 +112,7 @@ impl Cli {
     /// It holds a server's password. Looked at first: whatever else is wrong would be shown as it stands.
     pub fn asked() -> Result<Self, Failure> {
         refuse_password()?;
+        completions::answer();
         let matches = help::sectioned(help::flowing(Self::command())).try_get_matches();
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
@@ -157,6 +160,7 @@ impl Cli {
             Verb::Ports(arguments) => arguments.run(),
             Verb::Doctor(arguments) => arguments.run(),
             Verb::New(arguments) => arguments.run(),
+            Verb::Completions(arguments) => arguments.run(),
             Verb::HelpFiles(arguments) => arguments.run(),
             Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }

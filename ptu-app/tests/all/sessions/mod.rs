@@ -56,6 +56,7 @@ sessions! {
     campaigns,
     catalogues,
     chosen_procedures,
+    completions,
     diagnoses,
     drive_reports,
     drives,
