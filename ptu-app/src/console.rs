@@ -22,6 +22,7 @@ use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
 use ptu_runs::stdio;
 use ptu_runs::stored::{by_procedure, of_procedure, standing};
 use ptu_runs::table::{Table, cell};
+use ptu_runs::terminal::{self, Style, verdict};
 
 /// How often the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
@@ -112,7 +113,7 @@ fn show(all: &Receiver<Shown>, bar: Option<&ProgressBar>) {
         match (shown, bar) {
             (Shown::RunPosition(what), Some(bar)) => bar.set_message(what),
             (Shown::StepDone, Some(bar)) => bar.inc(1),
-            (Shown::Line(line), Some(bar)) => bar.println(display_text::line(&line)),
+            (Shown::Line(line), Some(bar)) => bar.println(stdio::noted(&display_text::line(&line))),
             (Shown::Line(line), None) => stdio::note(&display_text::line(&line)),
             (Shown::RunPosition(_) | Shown::StepDone, None) => {}
         }
@@ -177,7 +178,8 @@ impl Listener for Console {
                 };
                 let name = Language::English.words().result(result);
                 let more = after_colon(&result.findings);
-                Some(format!("{verdict:<7} {}: {name}{more}", procedure.id))
+                let verdict = terminal::verdict(&format!("{verdict:<7}"));
+                Some(format!("{verdict} {}: {name}{more}", procedure.id))
             }
             SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict, findings, ..
@@ -185,7 +187,8 @@ impl Listener for Console {
                 || !matches!(verdict, Verdict::Passed | Verdict::Skipped) =>
             {
                 let more = after_colon(findings);
-                Some(format!("{:<7} {}{more}", verdict.label(), procedure.id))
+                let verdict = terminal::verdict(&format!("{:<7}", verdict.label()));
+                Some(format!("{verdict} {}{more}", procedure.id))
             }
             // Quietly the failed step says it.
             SessionEvent::Fault(fault) if self.detail != Detail::Quiet => Some(format!(
@@ -227,8 +230,10 @@ fn measured(measurement: &Measurement) -> String {
         (Some(low), Some(high)) => format!(", allowed {} to {}", short(low), short(high)),
     };
     let text = format!(
-        "{} = {value}{limits} {}",
-        measurement.name, measurement.unit
+        "{} = {value}{} {}",
+        measurement.name,
+        Style::Limit.mark(&limits),
+        measurement.unit
     );
     text.trim_end().to_owned()
 }
@@ -286,7 +291,8 @@ pub fn verdict_table(run: &RunDetail) -> String {
     text.push_str(&repeated(run));
     text.push_str(&skipped(run));
     if !run.faults.is_empty() {
-        let mut table = Table::new(&["FAULT", "CODE", "PART", "SEVERITY", "SEEN", "TRACE"]);
+        let mut table =
+            Table::new(&["FAULT", "CODE", "PART", "SEVERITY", "SEEN", "TRACE"]).parts([2]);
         for fault in &run.faults {
             let trace = fault.trace_id.map_or_else(String::new, |id| id.short());
             table.row([
@@ -326,7 +332,7 @@ fn not_passed(run: &RunDetail) -> String {
     if failed.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(&["VERDICT", "STEP", "WHY"]);
+    let mut table = Table::new(&["VERDICT", "STEP", "WHY"]).verdicts(0);
     for step in failed {
         let name = named(step);
         table.row([step.verdict.as_str().into(), name, step.message.clone()]);
@@ -335,7 +341,8 @@ fn not_passed(run: &RunDetail) -> String {
 }
 
 fn procedures(run: &RunDetail) -> Table {
-    let mut table = Table::new(&["PROCEDURE", "VERDICT", "STEPS", "PASSED", "BENCH TIME"]);
+    let mut table =
+        Table::new(&["PROCEDURE", "VERDICT", "STEPS", "PASSED", "BENCH TIME"]).verdicts(1);
     for (procedure, mine) in by_procedure(&run.steps) {
         let counts = StepCounts::of(mine.iter().copied());
         let verdict = of_procedure(mine.iter().copied(), run.run.verdict);
@@ -363,7 +370,7 @@ fn summary(run: &RunDetail) -> String {
         display_text::line(&run.run.unit_serial),
         count_short(&counts_of(&run.run)),
         run.faults.len(),
-        verdict_word(run)
+        verdict(verdict_word(run))
     )
 }
 
@@ -376,6 +383,6 @@ fn verdict_word(run: &RunDetail) -> &'static str {
 fn part(run: &RunDetail) -> String {
     let coverage = coverage_text(&Coverage::of_run(run), Language::English.words());
     coverage.map_or_else(String::new, |part| {
-        format!("{}: {part}\n\n", verdict_word(run))
+        format!("{}: {part}\n\n", verdict(verdict_word(run)))
     })
 }

@@ -4,7 +4,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::backend::values;
+use crate::backend::{Value, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal;
@@ -36,12 +36,27 @@ pub struct TraceSummary {
 impl Store {
     /// The traces of a run, in order.
     pub fn traces(&self, run: Id) -> Result<Vec<TraceSummary>, StoreError> {
+        self.listed_traces("WHERE r.id = ?1 ORDER BY t.seq", &values![run])
+    }
+
+    /// The traces that were recorded last, newest first.
+    pub fn newest_traces(&self, limit: u32) -> Result<Vec<TraceSummary>, StoreError> {
+        self.listed_traces("ORDER BY t.seq DESC LIMIT ?1", &values![limit])
+    }
+
+    fn listed_traces(
+        &self,
+        which: &str,
+        values: &[Value],
+    ) -> Result<Vec<TraceSummary>, StoreError> {
         self.select(
             "listing traces",
-            "SELECT t.id, r.id, t.t0_us, t.period_us, t.row_count, length(t.data),
+            &format!(
+                "SELECT t.id, r.id, t.t0_us, t.period_us, t.row_count, length(t.data),
                         (SELECT count(*) FROM fault_occurrence o WHERE o.trace = t.seq)
-                     FROM trace t JOIN run r ON r.seq = t.run WHERE r.id = ?1 ORDER BY t.seq",
-            &values![run],
+                     FROM trace t JOIN run r ON r.seq = t.run {which}"
+            ),
+            values,
             |row| {
                 Ok(TraceSummary {
                     id: row.get(0)?,

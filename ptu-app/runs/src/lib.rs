@@ -16,7 +16,7 @@
 //! * [`kept`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person reads;
-//!   [`words`]: what is refused, in both languages; [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`platform`]: what operating systems do
+//!   [`words`]: what is refused, in both languages; [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`terminal`]: its width and colours; [`platform`]: what operating systems do
 //!   differently.
 
 pub mod aboard;
@@ -51,6 +51,7 @@ pub mod stored;
 pub mod structure;
 pub mod symptoms;
 pub mod table;
+pub mod terminal;
 #[cfg(test)]
 mod test_support;
 pub mod train_server;

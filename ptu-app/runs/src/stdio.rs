@@ -3,6 +3,7 @@
 //! Control characters in printed text are escaped. An output error stops nothing:
 //! a run goes on without a reader.
 
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use protocol::display_text;
@@ -10,6 +11,7 @@ use protocol::display_text;
 use crate::failure::{Failure, FileTrouble};
 use crate::platform;
 use crate::table::cut;
+use crate::terminal::{Terminal, coloured};
 
 /// Longest line, in columns.
 const WIDEST: usize = 10_000;
@@ -19,7 +21,12 @@ const WIDEST: usize = 10_000;
 /// # Errors
 /// Standard output does not take it.
 pub fn answer(text: &str) -> Result<(), Failure> {
-    document(&readable(text))
+    document(&shown(text))
+}
+
+/// Text for people as standard output takes it.
+pub fn shown(text: &str) -> String {
+    coloured(&readable(text), Terminal::get().colours_answers).into_owned()
 }
 
 /// Answers with a whole document, JSON or CSV, as it stands.
@@ -44,7 +51,12 @@ pub fn begins_file() -> bool {
 
 /// Prints a note on stderr; an output error is ignored.
 pub fn note(text: &str) {
-    let _ = writeln!(stderr().lock(), "{}", readable(text));
+    let _ = writeln!(stderr().lock(), "{}", noted(&readable(text)));
+}
+
+/// The text as standard error takes it, in colour or not.
+pub fn noted(text: &str) -> Cow<'_, str> {
+    coloured(text, Terminal::get().colours_notes)
 }
 
 /// Progress can be drawn: notes go to a terminal.

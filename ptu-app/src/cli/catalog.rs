@@ -9,7 +9,8 @@ use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
 use serde_json::{Value, json};
 
-use super::{Json, ScriptsOption, answered};
+use super::output::Form;
+use super::{ScriptsOption, answered, print_json};
 use ptu_runs::clauses;
 use ptu_runs::failure::{DriveTrouble, Exit, Failure};
 use ptu_runs::run_diagnosis::choose;
@@ -24,6 +25,8 @@ pub struct CatalogArguments {
     /// What to show
     #[arg(value_enum)]
     what: CatalogTopic,
+    /// Only what has this text in it, as `eb`
+    text: Option<String>,
     /// Unit configuration whose speed codes to show
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
@@ -31,7 +34,7 @@ pub struct CatalogArguments {
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
     #[command(flatten)]
-    json: Json,
+    form: Form,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -61,7 +64,7 @@ enum CatalogTopic {
 impl CatalogArguments {
     /// Prints the catalogue.
     pub fn run(self) -> Result<Exit, Failure> {
-        let entries = match self.what {
+        let mut entries = match self.what {
             CatalogTopic::Clauses => return self.clauses(),
             CatalogTopic::Faults => self.faults()?,
             CatalogTopic::Signals => signals(),
@@ -72,7 +75,22 @@ impl CatalogArguments {
             CatalogTopic::Symptoms => self.symptoms()?,
             CatalogTopic::Train => self.train()?,
         };
-        self.json.answer(|| &entries, || as_table(&entries))
+        entries.retain(|entry| self.is_about(entry));
+        self.form.print(&entries, || as_table(&entries))
+    }
+
+    /// The entry has the text that was asked for.
+    fn is_about(&self, entry: &Value) -> bool {
+        let wanted = self.text.as_deref().unwrap_or_default().to_lowercase();
+        let values = entry
+            .as_object()
+            .into_iter()
+            .flat_map(|entry| entry.values());
+        let mut texts = values.map(|value| match value {
+            Value::String(text) => text.to_lowercase(),
+            other => other.to_string().to_lowercase(),
+        });
+        texts.any(|text| text.contains(&wanted))
     }
 
     fn faults(&self) -> Result<Vec<Value>, Failure> {
@@ -116,10 +134,17 @@ impl CatalogArguments {
         for warning in &chosen.warnings {
             stdio::note(&warning.to_string());
         }
-        let matrix = clauses::matrix(&clauses::load(&directory)?, &chosen.dictionary);
+        let mut matrix = clauses::matrix(&clauses::load(&directory)?, &chosen.dictionary);
         let is_whole =
             matrix.clauses_without_step.is_empty() && matrix.steps_without_clause.is_empty();
-        let told = self.json.answer(|| &matrix, || clauses_text(&matrix));
+        matrix.clauses.retain(|proof| self.is_about(&json!(proof)));
+        let told = match self.form.is_json() {
+            true => print_json(&matrix),
+            false => {
+                let rows: Vec<_> = matrix.clauses.iter().map(|proof| json!(proof)).collect();
+                self.form.print(&rows, || clauses_text(&matrix))
+            }
+        };
         answered(told, if is_whole { Exit::Passed } else { Exit::Failed })
     }
 
@@ -243,7 +268,10 @@ fn as_table(entries: &[Value]) -> String {
         return "nothing there".into();
     };
     let keys: Vec<_> = keys.map(String::as_str).collect();
-    let mut table = Table::new(&keys);
+    let parts = keys
+        .iter()
+        .position(|key| *key == "part" || *key == "parts");
+    let mut table = Table::new(&keys).parts(parts);
     for entry in entries {
         table.row(keys.iter().map(|key| match &entry[*key] {
             Value::String(text) => text.clone(),

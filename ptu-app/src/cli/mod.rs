@@ -27,12 +27,16 @@ mod runs;
 mod saved;
 mod signal;
 mod signing;
+mod terminal;
 mod trace;
 mod train;
 mod unit_option;
 mod verify;
 #[cfg(test)]
 mod words;
+
+use std::ffi::OsString;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::RangedI64ValueParser;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -63,6 +67,8 @@ pub struct Cli {
     /// None = the window, as it was left.
     #[command(subcommand)]
     verb: Option<Verb>,
+    #[command(flatten)]
+    terminal: terminal::TerminalOption,
 }
 
 #[derive(Debug, Subcommand)]
@@ -105,6 +111,21 @@ enum Verb {
     LoadScripts,
 }
 
+/// Answers may be paged.
+static PAGES: AtomicBool = AtomicBool::new(false);
+
+impl Verb {
+    /// It only answers; what works for long with nobody watching must not wait in a pager.
+    fn is_question(&self) -> bool {
+        match self {
+            Self::Run(arguments) => arguments.is_list(),
+            Self::Drive(_) | Self::Campaign(_) | Self::Train(_) | Self::Signal(_) => false,
+            Self::Completions(_) | Self::LoadScripts => false,
+            _ => true,
+        }
+    }
+}
+
 impl Cli {
     /// What the command line asks; ends the program if that is help, or nothing that can be done.
     ///
@@ -113,7 +134,8 @@ impl Cli {
     pub fn asked() -> Result<Self, Failure> {
         refuse_password()?;
         completions::answer();
-        let matches = help::sectioned(help::flowing(Self::command())).try_get_matches();
+        let matches = help::sectioned(help::flowing(Self::command()))
+            .try_get_matches_from(form_last(std::env::args_os()));
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
             .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
@@ -123,7 +145,7 @@ impl Cli {
     fn saved(self) -> Result<saved::SavedArguments, Box<Self>> {
         match self.verb {
             Some(Verb::Saved(arguments)) => Ok(arguments),
-            verb => Err(Box::new(Self { verb })),
+            verb => Err(Box::new(Self { verb, ..self })),
         }
     }
 
@@ -133,12 +155,16 @@ impl Cli {
     /// With a message for a person and an exit code.
     pub fn run(self) -> Result<Exit, Failure> {
         loading::load_apart(running_program());
+        self.terminal.set();
+        if self.terminal.pages() && self.verb.as_ref().is_some_and(Verb::is_question) {
+            PAGES.store(true, Ordering::Relaxed);
+        }
         let Some(verb) = self.verb else {
             return Err(gui::start(std::iter::empty()));
         };
         match verb {
             // The window reads the options itself; here they are only checked and told in the help.
-            Verb::Gui(_) => Err(gui::start(std::env::args_os().skip(2))),
+            Verb::Gui(_) => Err(gui::start(terminal::words_for_window())),
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),
             Verb::Catalog(arguments) => arguments.run(),
@@ -165,6 +191,19 @@ impl Cli {
             Verb::LoadScripts => loading::serve().map(|()| Exit::Passed),
         }
     }
+}
+
+/// The words of a command line, `--json` and `--csv` before what is asked for behind it, where each verb looks for them.
+fn form_last(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut words: Vec<_> = words.collect();
+    for form in ["--json", "--csv"] {
+        if let Some(at) = words.iter().take(3).position(|word| word == form) {
+            let form = words.remove(at);
+            let end = words.iter().position(|word| word == "--");
+            words.insert(end.unwrap_or(words.len()), form);
+        }
+    }
+    words
 }
 
 /// Tells help, or why a command line cannot be read.
@@ -216,7 +255,9 @@ fn quoted(argument: &str) -> String {
 
 /// Prints text for people.
 fn print_out(text: &str) -> Result<Exit, Failure> {
-    stdio::answer(text)?;
+    if !(PAGES.load(Ordering::Relaxed) && terminal::paged(text)) {
+        stdio::answer(text)?;
+    }
     Ok(Exit::Passed)
 }
 

@@ -36,15 +36,57 @@ impl Json {
     }
 }
 
-/// How an answer is printed.
-#[derive(Clone, Debug, Args)]
-pub struct Output {
+/// `--json` and `--csv`, and a list in the form asked for.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Form {
     /// Print JSON
     #[arg(long, conflicts_with = "csv")]
     json: bool,
     /// Print CSV, a line of headings first
     #[arg(long)]
     csv: bool,
+}
+
+impl Form {
+    /// Neither JSON nor CSV.
+    pub fn is_table(self) -> bool {
+        !self.json && !self.csv
+    }
+
+    /// JSON.
+    pub fn is_json(self) -> bool {
+        self.json
+    }
+
+    /// Prints rows whose columns are the keys of the first, or the table of them.
+    pub fn print(self, rows: &[Value], table: impl FnOnce() -> String) -> Result<Exit, Failure> {
+        let first = rows.first().and_then(Value::as_object);
+        let columns: Vec<_> = first.into_iter().flat_map(|row| row.keys()).collect();
+        let columns: Vec<_> = columns.into_iter().map(String::as_str).collect();
+        self.print_columns(&columns, rows, table)
+    }
+
+    fn print_columns(
+        self,
+        columns: &[&str],
+        rows: &[Value],
+        table: impl FnOnce() -> String,
+    ) -> Result<Exit, Failure> {
+        if self.json {
+            print_json(&rows)
+        } else if self.csv {
+            print_csv(columns, rows)
+        } else {
+            print_out(&table())
+        }
+    }
+}
+
+/// How an answer is printed.
+#[derive(Clone, Debug, Args)]
+pub struct Output {
+    #[command(flatten)]
+    form: Form,
     /// Save the question under a name, for `ptu saved`
     #[arg(long, value_name = "NAME")]
     save: Option<String>,
@@ -53,12 +95,12 @@ pub struct Output {
 impl Output {
     /// Neither JSON nor CSV.
     pub fn is_table(&self) -> bool {
-        !self.json && !self.csv
+        self.form.is_table()
     }
 
     /// JSON.
     pub fn is_json(&self) -> bool {
-        self.json
+        self.form.is_json()
     }
 
     /// Saves the question, if it was given a name.
@@ -76,13 +118,7 @@ impl Output {
         rows: &[Value],
         table: impl FnOnce() -> String,
     ) -> Result<Exit, Failure> {
-        if self.json {
-            print_json(&rows)
-        } else if self.csv {
-            print_csv(columns, rows)
-        } else {
-            print_out(&table())
-        }
+        self.form.print_columns(columns, rows, table)
     }
 }
 

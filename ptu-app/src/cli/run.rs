@@ -123,9 +123,12 @@ pub struct RunArguments {
     /// Report all errors of all scripts, limits that name no source and texts without Korean, and drive nothing
     #[arg(long, conflicts_with = "list")]
     check: bool,
-    /// Show what would be run and drive nothing
+    /// Show what would be run and drive nothing: a line for each procedure; all steps of those that are named
     #[arg(long)]
     list: bool,
+    /// With --list: all steps, also where no procedure is named
+    #[arg(long, requires = "list")]
+    steps: bool,
     /// Leave these procedures out: a path, folder or glob; repeatable
     #[arg(long, value_name = "PATH|GLOB")]
     exclude: Vec<String>,
@@ -208,7 +211,8 @@ impl RunArguments {
         let operator = drives.then(Operator::at_terminal).flatten();
         let tasks = self.tasks(procedures, operator.is_some())?;
         if self.list {
-            return run_list::show(&tasks, self.harness, self.show.json);
+            let whole = self.steps || !self.procedures.is_empty() || self.step.is_some();
+            return run_list::show(&tasks, self.harness, self.show.json, whole);
         }
         let mut plan = RunPlan {
             tasks,
@@ -260,6 +264,11 @@ impl RunArguments {
             slower: self.slower,
         }
         .setup(directory)
+    }
+
+    /// It drives nothing, and lists what would be run.
+    pub fn is_list(&self) -> bool {
+        self.list
     }
 
     fn line(&self) -> &str {

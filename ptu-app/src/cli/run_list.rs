@@ -8,12 +8,16 @@ use serde_json::json;
 use super::{print_json, print_out};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::Task;
+use ptu_runs::table::Table;
 
 /// Prints what would be run.
-pub fn show(tasks: &[Task], harness: Harness, json: bool) -> Result<Exit, Failure> {
+pub fn show(tasks: &[Task], harness: Harness, json: bool, whole: bool) -> Result<Exit, Failure> {
     if json {
         let listed = |task| listed(task, harness);
         return print_json(&tasks.iter().map(listed).collect::<Vec<_>>());
+    }
+    if !whole {
+        return print_out(&overview(tasks, harness));
     }
     let described = |task| described(task, harness);
     let lines: Vec<String> = tasks.iter().flat_map(described).collect();
@@ -26,6 +30,24 @@ fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
         Harness::None => procedure.needs.lacks(Connection::Ptu),
         Harness::Auto | Harness::Bench => None,
     }
+}
+
+/// A line for each procedure.
+fn overview(tasks: &[Task], harness: Harness) -> String {
+    let mut table = Table::new(&["PROCEDURE", "STEPS", "AT MOST", "TITLE"]).right([1, 2]);
+    for Task { procedure, options } in tasks {
+        let steps = options
+            .chosen
+            .as_ref()
+            .map_or(procedure.steps.len(), |chosen| chosen.len());
+        let title = match skipped(procedure, harness) {
+            Some(why) => format!("skipped, {why}"),
+            None => procedure.title.clone(),
+        };
+        let most = format!("{:.0} s", procedure.worst_case().as_secs());
+        table.row([procedure.id.clone(), steps.to_string(), most, title]);
+    }
+    table.render()
 }
 
 /// The plan in words, with the chosen steps only.

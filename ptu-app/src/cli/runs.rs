@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use fault_db::{RunDetail, RunFilter, Signed, Statement, Store};
 
+use super::output::Form;
 use super::reports::ReportOption;
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
@@ -47,7 +48,7 @@ enum Verb {
         #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
         limit: u32,
         #[command(flatten)]
-        json: Json,
+        form: Form,
     },
     /// Show one run: an id, its beginning or end (at least 4 digits), or `latest`
     Show {
@@ -130,7 +131,7 @@ impl RunsArguments {
                 verdict,
                 when,
                 limit,
-                json,
+                form,
             } => {
                 if let Some(unit) = &serial_no {
                     check_unit(&store, unit)?;
@@ -145,8 +146,11 @@ impl RunsArguments {
                     ..RunFilter::default()
                 };
                 let runs = store.runs(&filter)?;
-                let document = || runs.iter().map(run_summary_json).collect::<Vec<_>>();
-                json.answer(document, || table(&runs))
+                let rows = match form.is_table() {
+                    true => Vec::new(),
+                    false => runs.iter().map(run_summary_json).collect(),
+                };
+                form.print(&rows, || table(&runs))
             }
             Verb::Compare {
                 before,
@@ -223,7 +227,8 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
     }
     let mut table = Table::new(&[
         "RUN", "STARTED", "UNIT", "SOURCE", "STATE", "STEPS", "FAULTS", "INJECTED",
-    ]);
+    ])
+    .verdicts(4);
     for run in runs {
         let state = run
             .verdict

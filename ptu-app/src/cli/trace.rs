@@ -10,11 +10,15 @@ mod show;
 mod signal_text;
 
 use clap::{Args, Subcommand};
-use fault_db::{Id, Store, TraceData};
+use fault_db::{Id, Store, TraceData, TraceSummary};
+use serde_json::{Value, json};
 
-use super::Database;
+use super::output::Form;
+use super::{Database, at_least_one};
 use ptu_report::trace_io::Seconds;
-use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::clock::{local, rfc3339};
+use ptu_runs::failure::{Exit, Failure, Unknown, did_you_mean};
+use ptu_runs::table::Table;
 
 /// Show, explain, compare, replay and export recorded traces
 #[derive(Debug, Args)]
@@ -27,6 +31,14 @@ pub struct TraceArguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
+    /// List traces, newest first
+    List {
+        /// At most N traces
+        #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
+        limit: u32,
+        #[command(flatten)]
+        form: Form,
+    },
     /// Show a trace and where it parts from what was expected: an id, its beginning or end (at least 4
     /// digits), or `latest`
     Show(show::ShowArguments),
@@ -56,12 +68,42 @@ impl TraceArguments {
     /// Shows, compares, replays or exports.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
+            Verb::List { limit, form } => {
+                let traces = self.database.open_read_only()?.newest_traces(limit)?;
+                let rows: Vec<_> = traces.iter().map(listed).collect();
+                form.print(&rows, || table(&traces))
+            }
             Verb::Show(arguments) => arguments.run(&self.database.open_read_only()?),
             Verb::Diff(arguments) => arguments.run(&self.database.open_read_only()?),
             Verb::Replay(arguments) => arguments.run(&self.database),
             Verb::Export(arguments) => arguments.run(&self.database.open_read_only()?),
         }
     }
+}
+
+fn listed(trace: &TraceSummary) -> Value {
+    json!({
+        "id": trace.id.to_string(), "run_id": trace.run_id.to_string(), "t0": rfc3339(trace.t0_us),
+        "period_ms": trace.period_us as f64 / 1e3, "rows": trace.rows, "occurrences": trace.occurrences,
+    })
+}
+
+fn table(traces: &[TraceSummary]) -> String {
+    if traces.is_empty() {
+        return "no traces recorded; a run that finds a fault makes one".into();
+    }
+    let mut table = Table::new(&["TRACE", "BEGINS", "RUN", "LENGTH", "FAULTS"]).right([3, 4]);
+    for trace in traces {
+        let length_s = f64::from(trace.rows) * trace.period_us as f64 / 1e6;
+        table.row([
+            trace.id.short(),
+            local(trace.t0_us),
+            trace.run_id.short(),
+            format!("{length_s:.1} s"),
+            trace.occurrences.to_string(),
+        ]);
+    }
+    table.render()
 }
 
 /// Some signals, or all where none is named, at some times.
@@ -72,7 +114,16 @@ fn read(
     span: Seconds,
 ) -> Result<(Id, TraceData), Failure> {
     let id = store.resolve_trace(asked)?;
+    let head = store.trace_head(id)?;
+    for asked in signals {
+        let mut known = head.channels.iter().map(|channel| channel.name.as_str());
+        if !known.any(|name| name == asked) {
+            let known = head.channels.iter().map(|channel| channel.name.as_str());
+            let near = did_you_mean(asked, known);
+            return Err(Failure::usage(Unknown::Signal(asked.clone(), near)));
+        }
+    }
     let names: Vec<&str> = signals.iter().map(String::as_str).collect();
-    let rows = span.rows(&store.trace_head(id)?)?;
+    let rows = span.rows(&head)?;
     Ok((id, store.trace_window(id, &names, rows)?))
 }

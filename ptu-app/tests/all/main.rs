@@ -24,6 +24,7 @@ mod json_promise;
 mod lock_step;
 mod long_service;
 mod no_unit;
+mod on_a_terminal;
 mod on_ports;
 mod outputs;
 mod package;

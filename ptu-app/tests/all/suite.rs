@@ -115,7 +115,7 @@ fn every_listed_step_is_reported_with_its_measurements() {
         .collect();
     assert_eq!(reported, planned);
 
-    let listing = place.ptu("run --list").exits(0).out;
+    let listing = place.ptu("run --list --steps").exits(0).out;
     let planned = listing
         .lines()
         .filter(|line| line.trim_start().starts_with("measure "))

@@ -1,5 +1,6 @@
 //! A terminal of its own for a program, which it loses when this is dropped.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
@@ -81,6 +82,26 @@ impl Terminal {
             );
             std::thread::sleep(Duration::from_millis(20));
         }
+    }
+
+    /// Rows and columns.
+    pub fn resize(&self, [rows, columns]: [u16; 2]) {
+        let mut size = rustix::termios::tcgetwinsize(&self.line).expect("a size");
+        (size.ws_row, size.ws_col) = (rows, columns);
+        rustix::termios::tcsetwinsize(&self.line, size).expect("resized");
+    }
+
+    /// Reads until the program ends; gives all that was shown.
+    pub fn until_end(&self, program: &mut Child) -> String {
+        let shown = RefCell::new(Vec::new());
+        let read = || {
+            let mut screen = File::from(self.screen.try_clone().expect("a copy"));
+            // Nothing more is there for now.
+            let _ = screen.read_to_end(&mut shown.borrow_mut());
+        };
+        ended(program, read);
+        read();
+        String::from_utf8_lossy(&shown.borrow()).into_owned()
     }
 
     /// Types a line.

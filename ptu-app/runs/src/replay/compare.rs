@@ -6,7 +6,7 @@ use std::ops::Range;
 use fault_db::{Channel, ChannelKind, TraceData};
 
 use super::path;
-use crate::failure::{Failure, RecordTrouble, Unknown};
+use crate::failure::{Failure, RecordTrouble, Unknown, did_you_mean};
 
 /// Signals without a unit that are quantities; all others are numbers of things, bits or codes, of which
 /// any other value is another thing.
@@ -197,7 +197,9 @@ pub fn compare(
     for signal in signals {
         let in_came = came.column(signal).is_some();
         if !in_came && !theirs.contains_key(signal.as_str()) {
-            return Err(Failure::usage(Unknown::Signal(signal.clone())));
+            let known = came.channels.iter().map(|channel| channel.name.as_str());
+            let near = did_you_mean(signal, known.chain(theirs.keys().copied()));
+            return Err(Failure::usage(Unknown::Signal(signal.clone(), near)));
         }
     }
     let mut deviations = Vec::new();

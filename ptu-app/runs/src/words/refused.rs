@@ -20,8 +20,8 @@ sentences! {
         Part(asked: String, near: Near): "no part \"{asked}\"{near}" ["; `ptu catalog parts` lists them"], "부품 \"{asked}\"이(가) 없습니다{near}" [". 목록: `ptu catalog parts`"];
         Symptom(asked: String, near: Near): "no symptom \"{asked}\"{near}" ["; `ptu catalog symptoms` lists them"], "증상 \"{asked}\"이(가) 없습니다{near}" [". 목록: `ptu catalog symptoms`"];
         Procedure(asked: String, near: Near): "no procedure or file \"{asked}\"{near}" ["; `ptu run --list` shows all"], "절차 또는 파일 \"{asked}\"이(가) 없습니다{near}" [". 전체 목록: `ptu run --list`"];
-        Step(asked: String): "no step matches \"{asked}\"" ["; `ptu run --list` shows all steps"], "\"{asked}\"에 맞는 단계가 없습니다" [". 전체 목록: `ptu run --list`"];
-        Signal(asked: String): "no signal \"{asked}\" in the traces" ["; `ptu catalog signals` lists them"], "신호 기록에 신호 \"{asked}\"이(가) 없습니다" [". 목록: `ptu catalog signals`"];
+        Step(asked: String): "no step matches \"{asked}\"" ["; `ptu run --list --steps` shows all"], "\"{asked}\"에 맞는 단계가 없습니다" [". 전체 목록: `ptu run --list --steps`"];
+        Signal(asked: String, near: Near): "no signal \"{asked}\" in the traces{near}" ["; `ptu catalog signals` lists them"], "신호 기록에 신호 \"{asked}\"이(가) 없습니다{near}" [". 목록: `ptu catalog signals`"];
         Unit(asked: String, near: Near): "no unit \"{asked}\" was ever tested{near}" ["; `ptu runs list` shows the units"], "장치 \"{asked}\"의 시험 기록이 없습니다{near}" [". 장치 목록: `ptu runs list`"];
         Instrument(asked: String, near: Near): "no instrument \"{asked}\" is registered{near}" ["; `ptu instrument list` shows them, `ptu instrument add` registers one"], "계측기 \"{asked}\"이(가) 등록되어 있지 않습니다{near}" [". 목록: `ptu instrument list`, 등록: `ptu instrument add`"];
         Key(asked: String, near: Near): "no key \"{asked}\" in the list{near}" ["; `ptu key list` shows them"], "목록에 키 \"{asked}\"이(가) 없습니다{near}" [". 목록: `ptu key list`"];

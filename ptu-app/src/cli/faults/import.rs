@@ -158,7 +158,7 @@ impl Outcome {
 }
 
 fn table(faults: &[FaultRecord]) -> String {
-    let mut table = Table::new(&["DATE", "CODE", "PART", "SEVERITY", "WHAT"]);
+    let mut table = Table::new(&["DATE", "CODE", "PART", "SEVERITY", "WHAT"]).parts([2]);
     for fault in faults {
         table.row([
             local(fault.at_us),

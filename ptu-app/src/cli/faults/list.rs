@@ -76,7 +76,7 @@ fn table(faults: &[FaultSummary]) -> String {
         "SEEN",
         "TRACE",
     ];
-    let mut table = Table::new(&headings).right([8]);
+    let mut table = Table::new(&headings).right([8]).parts([4, 5]);
     for fault in faults {
         table.row([
             fault.id.short(),

@@ -45,7 +45,9 @@ pub fn text(trend: &Trend, limit: usize) -> String {
 }
 
 fn steps_table(steps: &[TrendStep], unit: &str) -> String {
-    let mut table = Table::new(&["PROCEDURE", "STEP", "LOW", "HIGH"]).right([2, 3]);
+    let mut table = Table::new(&["PROCEDURE", "STEP", "LOW", "HIGH"])
+        .right([2, 3])
+        .limits([2, 3]);
     let limit = |value: Option<f64>| {
         value.map_or_else(|| "-".into(), |value| format!("{} {unit}", short(value)))
     };
@@ -62,7 +64,10 @@ fn steps_table(steps: &[TrendStep], unit: &str) -> String {
 
 fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
     let last = &points[points.len().saturating_sub(limit)..];
-    let mut table = Table::new(&["AT", "VALUE", "LOW", "HIGH", "VERDICT", "RUN"]).right([1, 2, 3]);
+    let mut table = Table::new(&["AT", "VALUE", "LOW", "HIGH", "VERDICT", "RUN"])
+        .right([1, 2, 3])
+        .limits([2, 3])
+        .verdicts(4);
     let number = |value: Option<f64>| value.map_or_else(|| "-".into(), short);
     for point in last {
         table.row([

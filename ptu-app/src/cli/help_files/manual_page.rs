@@ -8,7 +8,7 @@ use clap_mangen::Man;
 /// What a verb ends with whose help says no more.
 const EXITS: &str = "0 done or passed, 1 a check failed, 2 wrong command or script, 3 bench, link or database, 130 stopped";
 /// An option, the variable that stands for it, and what the variable holds.
-const VARIABLES: [[&str; 3]; 7] = [
+const VARIABLES: [[&str; 3]; 10] = [
     ["db", "PTU_DB", "The history, in place of --db"],
     [
         "scripts",
@@ -32,6 +32,13 @@ const VARIABLES: [[&str; 3]; 7] = [
         "PTU_DEPOT",
         "The depot on sheets, in place of --depot",
     ],
+    ["color", "NO_COLOR", "Not empty: without colours"],
+    [
+        "color",
+        "CLICOLOR_FORCE",
+        "Not 0: colours also where no terminal is",
+    ],
+    ["no-pager", "PAGER", "Pager of long answers [default: less]"],
 ];
 /// An option, the files that are used without it, and what they are.
 const FILES: [[&str; 3]; 4] = [

@@ -28,7 +28,10 @@ pub fn comparison_text(of: &RunComparison, words: &Words) -> String {
         report.allowed,
     ];
     let headings = headings.map(str::to_uppercase);
-    let mut table = Table::new(&headings.each_ref().map(String::as_str));
+    let mut table = Table::new(&headings.each_ref().map(String::as_str))
+        .verdicts(1)
+        .verdicts(2)
+        .limits([4]);
     let mut is_empty = true;
     for pair in of.steps() {
         if !of.all && pair.passed_in_both() {

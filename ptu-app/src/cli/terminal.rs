@@ -1,0 +1,97 @@
+//! How answers are shown: colours, and a pager for what is longer than the screen.
+
+use std::ffi::OsString;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
+use clap::{Args, ColorChoice};
+
+use ptu_runs::stdio;
+use ptu_runs::stop::Stop;
+use ptu_runs::terminal::{Terminal, wants_colour};
+
+/// Among the options: after all others but `--help`.
+const LAST: usize = 999;
+/// Without another in `PAGER`.
+const PAGER: &str = "less";
+/// `less` shows colours, ends by itself when all fits, and leaves what it showed.
+const LESS: &str = "FRX";
+
+/// How answers are shown on a terminal.
+#[derive(Debug, Args)]
+pub struct TerminalOption {
+    /// Colours of verdicts, limits and parts: auto, always or never; auto follows NO_COLOR, CLICOLOR and CLICOLOR_FORCE
+    #[arg(long, value_name = "WHEN", global = true, default_value = "auto", hide_default_value = true,
+        hide_possible_values = true, display_order = LAST)]
+    color: ColorChoice,
+    /// Never page an answer that is longer than the screen; PAGER says by which program [default: less]
+    #[arg(long, global = true, display_order = LAST)]
+    no_pager: bool,
+}
+
+impl TerminalOption {
+    /// Takes the terminal as it is now.
+    pub fn set(&self) {
+        let screen = console::Term::stdout();
+        let size = screen.size_checked();
+        let colours = |is_terminal| match self.color {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            ColorChoice::Auto => wants_colour(is_terminal),
+        };
+        let terminal = Terminal {
+            size: size.map(|(rows, columns)| [columns.into(), rows.into()]),
+            colours_answers: colours(screen.is_term()),
+            colours_notes: colours(stdio::draws()),
+        };
+        terminal.set();
+    }
+
+    /// An answer to a question may be paged.
+    pub fn pages(&self) -> bool {
+        !self.no_pager
+    }
+}
+
+/// Shows what is longer than the screen in a pager; says whether one did.
+pub fn paged(text: &str) -> bool {
+    let Some([_, rows]) = Terminal::get().size else {
+        return false;
+    };
+    let pager = std::env::var("PAGER").unwrap_or_else(|_| PAGER.to_owned());
+    let mut words = pager.split_whitespace();
+    let (Some(program), true) = (words.next(), text.lines().count() >= rows) else {
+        return false;
+    };
+    let mut command = Command::new(program);
+    command.args(words).stdin(Stdio::piped());
+    if std::env::var_os("LESS").is_none() {
+        command.env("LESS", LESS);
+    }
+    let Ok(mut pager) = command.spawn() else {
+        return false;
+    };
+    // Who stops a search in the pager means the pager.
+    Stop::default().listen();
+    if let Some(mut input) = pager.stdin.take() {
+        // Who has read enough leaves it.
+        let _ = writeln!(input, "{}", stdio::shown(text));
+    }
+    let _ = pager.wait();
+    true
+}
+
+/// The words after `gui`, without those that the window has no use for.
+pub fn words_for_window() -> impl Iterator<Item = OsString> {
+    let mut words = std::env::args_os().skip(1).skip_while(|word| word != "gui");
+    words.next();
+    let mut kept = Vec::new();
+    while let Some(word) = words.next() {
+        match word.to_str() {
+            Some("--color") => drop(words.next()),
+            Some(word) if word == "--no-pager" || word.starts_with("--color=") => {}
+            _ => kept.push(word),
+        }
+    }
+    kept.into_iter()
+}
