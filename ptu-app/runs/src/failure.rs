@@ -200,6 +200,14 @@ impl From<ScriptsError> for Failure {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
+        if let StoreError::Trace {
+            source: TraceError::UnknownChannel { channel, known },
+            ..
+        } = error
+        {
+            let near = did_you_mean(&channel, known.iter().map(String::as_str));
+            return Self::usage(Unknown::Signal(channel, near));
+        }
         // Asking for the wrong thing is the caller's mistake; a file that does not serve is not.
         let exit = match error {
             StoreError::NotFound { .. }
@@ -216,11 +224,7 @@ impl From<StoreError> for Failure {
             | StoreError::SameFile { .. }
             | StoreError::QueryRefused { .. }
             | StoreError::QueryFailed { .. }
-            | StoreError::QueryExceeds { .. }
-            | StoreError::Trace {
-                source: TraceError::UnknownChannel { .. },
-                ..
-            } => Exit::Usage,
+            | StoreError::QueryExceeds { .. } => Exit::Usage,
             _ => Exit::Bench,
         };
         Self {

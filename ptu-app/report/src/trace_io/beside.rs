@@ -7,7 +7,7 @@ use fault_db::{Id, Store, TraceData};
 use super::align::{Aligned, align};
 use super::series::import;
 use super::times::Columns;
-use ptu_runs::failure::{Asked, Failure};
+use ptu_runs::failure::{Asked, Failure, Unknown, did_you_mean};
 use ptu_runs::replay::{Rule, rule_between};
 
 /// Names that are told of a file that has none of the trace's signals.
@@ -24,7 +24,22 @@ pub fn beside(
     shift_us: i64,
     asked: &Columns,
 ) -> Result<(Aligned, Rule), Failure> {
+    let known: Vec<_> = came.channels.iter().map(|c| c.name.clone()).collect();
+    let near = |name: &str| did_you_mean(name, known.iter().map(String::as_str));
     let import = import(file, &came.channels, asked)?;
+    for (heading, signal) in &asked.names {
+        if !known.contains(signal) {
+            let unknown = Unknown::Signal(signal.clone(), near(signal));
+            return Err(Failure::usage(unknown));
+        }
+        let mut has = import.tables.iter().flat_map(|table| &table.channels);
+        if !has.any(|channel| channel.name == *signal) {
+            let names = import.tables.iter().flat_map(|table| &table.channels);
+            let near = did_you_mean(heading, names.map(|channel| channel.name.as_str()));
+            let file = file.display().to_string();
+            return Err(Failure::usage(Asked::NoColumn(file, heading.clone(), near)));
+        }
+    }
     let aligned = align(import, came, shift_us)?;
     // Nothing compared must not look like nothing that differs.
     if aligned.imported.channels.is_empty() {
@@ -32,9 +47,8 @@ pub fn beside(
             0 => String::new(),
             more => format!(" (+{more})"),
         };
-        let shown: Vec<_> = (aligned.unknown.iter().take(SHOWN_NAMES))
-            .map(String::as_str)
-            .collect();
+        let shown = aligned.unknown.iter().take(SHOWN_NAMES);
+        let shown: Vec<_> = shown.map(|name| format!("{name}{}", near(name))).collect();
         let names = shown.join(", ") + &more;
         return Err(Failure::usage(Asked::NoneShared(
             file.display().to_string(),

@@ -23,6 +23,8 @@ use ptu_runs::failure::{Failure, FileTrouble};
 const MAX_LINE: u64 = 1 << 20;
 /// Lines before the first row of a table: what a recorder says of itself.
 const MOST_BEFORE: usize = 1_000;
+/// Cells among which a column of times is looked for that was named wrong.
+const MAX_SEEN: usize = 500;
 /// Lines by which the separator is found.
 const LOOKED_AT: usize = 50;
 
@@ -32,7 +34,12 @@ pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Im
     let opened = open_regular_file(file);
     let opened = opened.map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let (table, is_utc) = read_table(file, opened, &KnownSignals::of(&[own, known]), asked)?;
+    let (table, is_utc) = read_table(
+        file,
+        opened,
+        &KnownSignals::of(&[own, known], &asked.names),
+        asked,
+    )?;
     Ok(Import {
         tables: vec![table],
         is_utc,
@@ -177,7 +184,7 @@ fn above<R: BufRead>(
     // Headings by which a column of times is known, then the unit below; else the line before the first that begins with a
     // time.
     let (mut named, mut before): (Option<Above>, Option<Vec<String>>) = (None, None);
-    let mut is_last = false;
+    let (mut is_last, mut seen) = (false, Vec::new());
     for _ in 0..MOST_BEFORE {
         if !records.next()? {
             break;
@@ -197,6 +204,9 @@ fn above<R: BufRead>(
             }
         }
         let headings = || cells.iter().map(String::as_str);
+        if seen.len() < MAX_SEEN {
+            seen.extend(cells.iter().cloned());
+        }
         let is_signal = |name: &str| known.named(name).is_some();
         match asked.time(headings(), is_signal) {
             Some(time) if cells.len() > 1 => {
@@ -233,7 +243,7 @@ fn above<R: BufRead>(
         }
         (None, Some(time)) => Err(wrong(
             records.file,
-            &format!("no column is called \"{time}\""),
+            &Columns::no_time(time, seen.iter().map(String::as_str)),
         )),
         (None, None) if before.is_none() => Err(wrong(records.file, "it is empty")),
         (None, None) => Err(wrong(
@@ -259,7 +269,7 @@ fn read_table(
     while headings.len() > 2 && headings.last().is_some_and(String::is_empty) {
         headings.pop();
     }
-    let signals = signals(&records, &headings, time, known, asked)?;
+    let signals = signals(&records, &headings, time, known)?;
     let mut table = Table {
         times_us: Vec::new(),
         columns: vec![Vec::new(); signals.len()],
@@ -314,7 +324,6 @@ fn signals<R: BufRead>(
     headings: &[String],
     time: usize,
     known: &KnownSignals,
-    asked: &Columns,
 ) -> Result<Vec<(usize, Known)>, Failure> {
     let (mut signals, mut names) = (Vec::new(), HashSet::new());
     for (place, heading) in headings
@@ -322,13 +331,12 @@ fn signals<R: BufRead>(
         .enumerate()
         .filter(|(place, _)| *place != time)
     {
-        let name = asked.name(heading);
-        let mut signal = known.signal(name);
+        let mut signal = known.signal(heading);
         if !names.insert(signal.channel.name.clone()) {
             if signal.is_of_a_trace() {
                 return Err(records.wrong_cell(place, heading, "it comes twice"));
             }
-            signal.channel = plain(&format!("{name} (column {})", place + 1));
+            signal.channel = plain(&format!("{heading} (column {})", place + 1));
         }
         signals.push((place, signal));
     }

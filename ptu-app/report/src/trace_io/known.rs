@@ -75,14 +75,19 @@ impl Known {
 }
 
 impl KnownSignals {
-    /// Of these lists, of which the first counts that has a name.
-    pub fn of(lists: &[&[Channel]]) -> Self {
+    /// Of these lists, of which the first counts that has a name; `called` has what a file calls one of them.
+    pub fn of(lists: &[&[Channel]], called: &[(String, String)]) -> Self {
         let mut all = Self::default();
         for channel in lists.iter().copied().flatten() {
             for name in [channel.name.clone(), column_name(channel)] {
                 all.places.entry(name).or_insert(all.signals.len());
             }
             all.signals.push(Known::new(channel.clone()));
+        }
+        for (heading, signal) in called {
+            if let Some(place) = all.places.get(signal).copied() {
+                all.places.insert(heading.clone(), place);
+            }
         }
         all
     }

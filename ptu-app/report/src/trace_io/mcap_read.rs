@@ -15,6 +15,7 @@ use super::about::{NAME, TraceInfo};
 use super::known::{Known, KnownSignals};
 use super::run_mcap::{EVENTS, SIGNALS};
 use super::series::{Import, Table, check_size, in_order, plain, wrong};
+use super::times::Columns;
 use ptu_runs::failure::{Failure, FileTrouble};
 
 /// A longer record, or piece of compressed messages, is refused instead of being held in memory.
@@ -55,7 +56,7 @@ fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
 
 /// Reads a file. Each number, bit or null in a message is a sample of the signal its field names; what is
 /// not JSON is passed over.
-pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
+pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let cannot = |error: std::io::Error| Failure::usage(FileTrouble::unread(file, error));
     let mut input = open_regular_file(file).map_err(cannot)?;
     let options = LinearReaderOptions::default()
@@ -65,7 +66,8 @@ pub(super) fn read(file: &Path, known: &[Channel]) -> Result<Import, Failure> {
     let mut reading = Reading {
         file,
         known,
-        names: KnownSignals::of(&[known]),
+        asked,
+        names: KnownSignals::of(&[known], &asked.names),
         topics: BTreeMap::new(),
         others: BTreeSet::new(),
         about: None,
@@ -149,6 +151,7 @@ fn told(error: &McapError) -> String {
 struct Reading<'a> {
     file: &'a Path,
     known: &'a [Channel],
+    asked: &'a Columns,
     names: KnownSignals,
     /// By the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
@@ -210,7 +213,7 @@ impl Reading<'_> {
                 let about: Option<TraceInfo> =
                     about.and_then(|about| serde_json::from_str(about).ok());
                 let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-                self.names = KnownSignals::of(&[own, self.known]);
+                self.names = KnownSignals::of(&[own, self.known], &self.asked.names);
                 self.about = about;
             }
             _ => {}
@@ -331,9 +334,10 @@ impl Topic {
     }
 }
 
-/// The signal a field stands for: of its own name, or of its topic's where it is just the value there.
+/// The signal a field stands for: of its own name, of its topic's where it is just the value there, or of both.
 fn signal<'a>(topic: &str, path: &str, known: &'a KnownSignals) -> Option<&'a Known> {
     let is_value = matches!(path, "" | "value" | "data");
     let of_topic = || is_value.then(|| known.named(topic)).flatten();
-    known.named(path).or_else(of_topic)
+    let of_both = || known.named(&format!("{topic}.{path}"));
+    known.named(path).or_else(of_topic).or_else(of_both)
 }

@@ -1,6 +1,7 @@
 //! Imports Apache Parquet: our own exports, or any table with a column of times.
 
 use std::fs::File;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -65,7 +66,7 @@ fn read_table(
     let reader = SerializedFileReader::new(opened).map_err(damaged)?;
     let about = about(reader.metadata());
     let own = about.as_ref().map_or(&[][..], |about| &about.channels);
-    let names = KnownSignals::of(&[own, known]);
+    let names = KnownSignals::of(&[own, known], &asked.names);
     let (times, columns) = columns(file, reader.metadata(), &names, asked)?;
     let mut left = MAX_UNPACKED;
     let mut table = Table {
@@ -84,8 +85,8 @@ fn read_table(
             check_pages(&pages, column, &mut left).map_err(refused)?;
         }
         let before = table.times_us.len();
-        read_group(&*group, rows, (&times, &columns), &mut table)
-            .map_err(|what| wrong(file, &format!("rows from {before}: {what}")))?;
+        read_group(&*group, before..all, (&times, &columns), &mut table)
+            .map_err(|what| wrong(file, &what))?;
     }
     in_order(&mut table);
     Ok(Import {
@@ -113,10 +114,10 @@ fn columns(
     let all = schema.columns();
     let is_signal = |name: &str| known.named(name).is_some();
     let headings = all.iter().map(|column| column.name());
-    let place = asked.time(headings, |name| name == UTC || is_signal(name));
+    let place = asked.time(headings.clone(), |name| name == UTC || is_signal(name));
     let place = match (place, &asked.time) {
         (Some(place), _) => place,
-        (None, Some(time)) => return Err(wrong(file, &format!("no column is called \"{time}\""))),
+        (None, Some(time)) => return Err(wrong(file, &Columns::no_time(time, headings))),
         (None, None) => 0,
     };
     let Some(time) = all.get(place).filter(|_| all.len() > 1) else {
@@ -151,13 +152,12 @@ fn columns(
             Values::Times { .. } => Err("times are no samples".to_owned()),
             values => Ok(values),
         });
-        let name = asked.name(&path);
-        if let (true, Err(what)) = (is_signal(name), &values) {
+        if let (true, Err(what)) = (is_signal(&path), &values) {
             return Err(wrong(file, &format!("column \"{path}\": {what}")));
         }
         signals.push(Signal {
             place: at,
-            known: known.signal(name),
+            known: known.signal(&path),
             values: values.ok(),
         });
     }
@@ -174,28 +174,30 @@ fn columns(
 
 fn read_group(
     group: &dyn RowGroupReader,
-    rows: usize,
+    rows: Range<usize>,
     (times, columns): (&Times, &[Signal]),
     table: &mut Table,
 ) -> Result<(), String> {
     let reader = |place: usize| group.get_column_reader(place).map_err(|e| e.to_string());
-    for number in samples(reader(times.place)?, rows, Values::PLAIN, None)? {
-        let time_us = times
-            .unit
-            .us(number)
-            .ok_or_else(|| format!("{number} is no time"))?;
+    for (row, number) in samples(reader(times.place)?, rows.clone(), Values::PLAIN, None)?
+        .into_iter()
+        .enumerate()
+    {
+        let time_us = times.unit.us(number);
+        let time_us =
+            time_us.ok_or_else(|| at_row(rows.start + row, &format!("{number} is no time")))?;
         table.times_us.push(time_us);
     }
     for (column, to) in columns.iter().zip(&mut table.columns) {
         let known = &column.known;
         match &column.values {
             Some(values) => {
-                let read = samples(reader(column.place)?, rows, *values, Some(known));
+                let read = samples(reader(column.place)?, rows.clone(), *values, Some(known));
                 to.extend(
                     read.map_err(|what| format!("column \"{}\": {what}", known.channel.name))?,
                 );
             }
-            None => to.resize(to.len() + rows, f64::NAN),
+            None => to.resize(to.len() + rows.len(), f64::NAN),
         }
     }
     Ok(())
@@ -204,7 +206,7 @@ fn read_group(
 /// A column's samples; an unknown one is NaN, and words are those of the channel.
 fn samples(
     reader: ColumnReader,
-    rows: usize,
+    rows: Range<usize>,
     values: Values,
     known: Option<&Known>,
 ) -> Result<Vec<f64>, String> {
@@ -239,29 +241,36 @@ fn samples(
     }
 }
 
+/// What is wrong with a row, which a person counts from 1 at the file's beginning.
+fn at_row(row: usize, what: &str) -> String {
+    format!("row {}: {what}", row + 1)
+}
+
 fn numbers<T: DataType>(
     mut column: ColumnReaderImpl<T>,
-    rows: usize,
+    rows: Range<usize>,
     number: impl Fn(&T::T) -> Result<f64, String>,
 ) -> Result<Vec<f64>, String> {
     let (mut levels, mut values) = (Vec::new(), Vec::new());
     let mut samples = Vec::new();
-    while samples.len() < rows {
+    while samples.len() < rows.len() {
         levels.clear();
         values.clear();
-        let most = AT_ONCE.min(rows - samples.len());
+        let most = AT_ONCE.min(rows.len() - samples.len());
         let (read, _, _) = column
             .read_records(most, Some(&mut levels), None, &mut values)
             .map_err(|error| error.to_string())?;
         if read == 0 {
-            return Err(format!("it has {} of {rows} rows", samples.len()));
+            return Err(format!("it has {} of {} rows", samples.len(), rows.len()));
         }
         let mut values = values.iter();
         let mut next = || values.next().map_or(Ok(f64::NAN), &number);
         for row in 0..read {
             // A column that has a value in each row has no levels.
             let has_value = levels.get(row).is_none_or(|level| *level > 0);
-            samples.push(if has_value { next()? } else { f64::NAN });
+            let sample = if has_value { next() } else { Ok(f64::NAN) };
+            let sample = sample.map_err(|what| at_row(rows.start + samples.len(), &what))?;
+            samples.push(sample);
         }
     }
     Ok(samples)
@@ -349,5 +358,32 @@ mod tests {
             let wrong = wrong.expect_err("no signal").to_string();
             assert!(wrong.contains("column \"seen\""), "{wrong}");
         }
+    }
+
+    /// Goal: a row is named by its number in the file. Method: the second row of the second group has no time.
+    #[test]
+    fn a_wrong_row_is_counted_from_the_beginning_of_the_file() {
+        let schema = "message t { required double time_s; required double speed; }";
+        let schema = Arc::new(parse_message_type(schema).expect("a schema"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("t.parquet");
+        let file = File::create(&path).expect("a file");
+        let mut writer = SerializedFileWriter::new(file, schema, Default::default());
+        let writer = writer.as_mut().expect("a writer");
+        for numbers in [[0.0, 1.0], [2.0, f64::NAN]] {
+            let mut group = writer.next_row_group().expect("a group");
+            while let Some(mut column) = group.next_column().expect("a column") {
+                let written = column
+                    .typed::<DoubleType>()
+                    .write_batch(&numbers, None, None);
+                written.expect("written");
+                column.close().expect("closed");
+            }
+            group.close().expect("closed");
+        }
+        writer.finish().expect("closed");
+        let wrong = read(&path, &[plain("speed")], &Columns::default());
+        let wrong = wrong.expect_err("no time").to_string();
+        assert!(wrong.ends_with("row 4: NaN is no time"), "{wrong}");
     }
 }

@@ -53,7 +53,7 @@ fn ending(file: &Path) -> String {
 /// The file cannot be read, or is not what its ending says: with the place where.
 pub fn import(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let import = match &*ending(file) {
-        "mcap" => mcap_read::read(file, known)?,
+        "mcap" => mcap_read::read(file, known, asked)?,
         "parquet" => parquet_read::read(file, known, asked)?,
         _ => csv_read::read(file, known, asked)?,
     };

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use chrono::{DateTime, NaiveDateTime};
+use ptu_runs::failure::did_you_mean;
 
 /// What a person says of a table's columns.
 #[derive(Clone, Debug, Default)]
@@ -51,12 +52,6 @@ const HEADINGS: [&str; 9] = [
 const DATES: [&str; 2] = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%d %H:%M:%S%.f"];
 
 impl Columns {
-    /// The signal that a heading stands for: the one that was said, or its own name.
-    pub(super) fn name<'a>(&'a self, heading: &'a str) -> &'a str {
-        let said = self.names.iter().find(|(from, _)| from == heading);
-        said.map_or(heading, |(_, signal)| signal)
-    }
-
     /// The place of the times among headings: as said; else the first that is called as times are and no signal is.
     pub(super) fn time<'a>(
         &self,
@@ -65,8 +60,14 @@ impl Columns {
     ) -> Option<usize> {
         match &self.time {
             Some(time) => headings.position(|heading| heading == time),
-            None => headings.position(|heading| is_time(heading) && !is_signal(self.name(heading))),
+            None => headings.position(|heading| is_time(heading) && !is_signal(heading)),
         }
+    }
+
+    /// That none of these is the column of times that was named.
+    pub(super) fn no_time<'a>(time: &str, headings: impl Iterator<Item = &'a str>) -> String {
+        let near = did_you_mean(time, headings);
+        format!("no column is called \"{time}\"{near}")
     }
 
     /// The unit of times below a heading, or below the unit that stands under it.

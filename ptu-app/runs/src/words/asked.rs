@@ -85,6 +85,7 @@ sentences! {
         NoComparison(file: String): "--report {file}: the file must end in .json or .txt", "--report {file}: 파일의 확장자는 .json 또는 .txt여야 합니다";
         Option(option: &'static str): "{option}", "{option}";
         NoneShared(file: String, names: String): "{file}: none of its signals is one of the trace's: {names}; `--map NAME=SIGNAL` says what one is", "{file}: 신호 기록에 있는 신호가 없습니다: {names}. `--map NAME=SIGNAL`로 지정하십시오";
+        NoColumn(file: String, column: String, near: Near): "{file}: --map names \"{column}\", which is no signal in it{near}", "{file}: --map의 \"{column}\"이(가) 파일에 없습니다{near}";
         NoNewName(name: String, form: &'static str): "\"{name}\" is no name here: {form}, in small letters, digits and _", "\"{name}\"은(는) 이름으로 쓸 수 없습니다: 소문자, 숫자, _로 된 {form}";
         NewExists(file: String): "{file} is there already; choose another name, or change that one", "이미 있습니다: {file}. 다른 이름을 쓰거나 그 파일을 고치십시오";
         Password: "the command line holds a password, and every program on this computer can read it there: leave it out of the address and put it into ~/.pgpass (a line HOST:PORT:DATABASE:USER:PASSWORD, chmod 600), into a file named with ?passfile=FILE, or into PGPASSWORD; and change it, if others work here", "명령줄에 비밀번호가 있어 이 컴퓨터의 모든 프로그램이 읽을 수 있습니다. 주소에서 빼고 ~/.pgpass(HOST:PORT:DATABASE:USER:PASSWORD 한 줄, chmod 600), ?passfile=FILE로 지정한 파일 또는 PGPASSWORD에 두십시오. 다른 사람도 쓰는 컴퓨터라면 비밀번호를 바꾸십시오";

@@ -17,7 +17,7 @@ fn read_as(text: &[u8], asked: &Columns) -> Result<(Table, bool), String> {
         unit: "km/h".into(),
         ..plain("speed")
     };
-    let known = KnownSignals::of(&[&[mode, speed]]);
+    let known = KnownSignals::of(&[&[mode, speed]], &asked.names);
     let read = read_table(Path::new("x.csv"), text, &known, asked);
     read.map_err(|failure| failure.to_string())
 }
@@ -71,6 +71,9 @@ fn every_form_of_a_table_is_read_alike() {
         time: Some("at".to_owned()),
         unit: Some(TimeUnit::Milliseconds),
     };
+    let astray = read_as(b"of a scope,\nCH1,att\n7,100\n", &asked);
+    let told = "no column is called \"at\" (did you mean \"att\"?)";
+    assert!(astray.expect_err("no such column").contains(told));
     let (table, _) = read_as(b"CH1,at\n7,100\n", &asked).expect("as said");
     assert_eq!(
         (table.times_us[0], &*table.channels[0].name),
