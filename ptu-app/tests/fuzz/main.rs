@@ -34,6 +34,7 @@ use ptu_report::Target;
 use ptu_report::trace_io::{Columns, Seconds, import};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::drive::{SectionChoice, Setting};
+use ptu_runs::failure::Failure;
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchContents, Stimuli, loading};
 
@@ -289,7 +290,16 @@ fn tables_and_messages_of_other_programs() {
     let file = |name: &str| folder.path().join(name);
     let read = |file: &PathBuf, bytes: &[u8]| {
         std::fs::write(file, bytes).expect("written");
-        let _ = import(file, &known, &Columns::default());
+        let read = import(file, &known, &Columns::default());
+        let tables = refused_by_name(file, read).map_or_else(Vec::new, |read| read.tables);
+        for table in &tables {
+            let rows = table.times_us.len();
+            assert!(table.times_us.is_sorted() && table.channels.len() == table.columns.len());
+            assert!(table.columns.iter().all(|column| column.len() == rows));
+        }
+        let columns = tables.into_iter().flat_map(|table| table.columns);
+        let samples = columns.flatten().filter(|sample| sample.is_finite());
+        samples.collect::<Vec<_>>()
     };
     let tables = [
         "time_s,speed (km/h),eb,mode\n-0.1,1.5,0,off\n-0.05,2,1,ato\n0,,true,1\n",
@@ -297,7 +307,18 @@ fn tables_and_messages_of_other_programs() {
         "t\ta\n0\t1\n",
     ];
     let csv = file("t.csv");
-    fuzz("csv", tables).run(60_000, |bytes| read(&csv, bytes));
+    fuzz("csv", tables).run(60_000, |bytes| drop(read(&csv, bytes)));
+    // What is read stands there: no number comes of two halves, or of another column's unit.
+    fuzz("csv-numbers", ["time_s,speed\n-2,20\n-1,10.5\n3,7e1\n"]).run(8_000, |bytes| {
+        let text = String::from_utf8_lossy(bytes).replace(['\u{feff}', '\0'], "");
+        let cells: Vec<_> = (text.split([',', ';', '\t', '\n', '\r', '"']))
+            .chain(text.split([';', '\t', '\n', '\r', '"']))
+            .filter_map(|cell| cell.trim().replacen(',', ".", 1).parse::<f64>().ok())
+            .collect();
+        let found = read(&csv, bytes);
+        let astray = found.iter().find(|sample| !cells.contains(sample));
+        assert_eq!(astray, None, "{text:?}: {found:?}");
+    });
     std::fs::write(&csv, tables[0]).expect("written");
     let about = r#"{"notes":[{"trace_id":"a","run_id":"b","unit_serial":"c","t0":"d","t0_us":1,"t0_bench_us":2,
         "period_us":50000,"rows":3,"trigger_row":1,"partial":false,"gaps":true,"channels":
@@ -309,9 +330,22 @@ fn tables_and_messages_of_other_programs() {
     });
     let mcap = file("t.mcap");
     let examples = [mcap_file(None), mcap_file(Some(mcap::Compression::Zstd))];
-    fuzz("mcap", examples).run(40_000, |bytes| read(&mcap, bytes));
+    fuzz("mcap", examples.clone()).run(40_000, |bytes| drop(read(&mcap, bytes)));
+    // Chunks have checksums: a number in them is that of the example, or the file is refused.
+    fuzz("mcap-numbers", examples).run(8_000, |bytes| {
+        let found = read(&mcap, bytes);
+        let is_written = |sample: &f64| [0.5, 1.0, 1.5, 2.5, 3.5].contains(sample);
+        assert!(found.iter().all(is_written), "{found:?}");
+    });
     let parquet = file("t.parquet");
-    fuzz("parquet", [parquet_file()]).run(20_000, |bytes| read(&parquet, bytes));
+    fuzz("parquet", [parquet_file()]).run(20_000, |bytes| drop(read(&parquet, bytes)));
+}
+
+/// What is read of a file; what is refused names it.
+fn refused_by_name<T>(file: &Path, read: Result<T, Failure>) -> Option<T> {
+    let name = file.display().to_string();
+    read.inspect_err(|error| assert!(error.to_string().contains(&name), "{error}"))
+        .ok()
 }
 
 /// A trace of a run, as the program itself exports it.

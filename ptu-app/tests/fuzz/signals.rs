@@ -6,7 +6,7 @@ use ptu_runs::signal;
 use ptu_runs::sound::Calibrations;
 
 use crate::common::Place;
-use crate::{fuzz, fuzz_text, memory, shipped};
+use crate::{fuzz, fuzz_text, memory, refused_by_name, shipped};
 
 #[test]
 fn waveforms_channels_and_calibrations() {
@@ -26,9 +26,9 @@ fn waveforms_channels_and_calibrations() {
     let folder = memory();
     let file = folder.path().join("a.wav");
     let whole = std::fs::read(place.path("code.wav")).expect("made");
-    fuzz("wav", [whole]).run(400, |bytes| {
+    fuzz("wav", [whole]).run(800, |bytes| {
         std::fs::write(&file, bytes).expect("written");
-        let _ = signal::read(&file, &unit, 1_000.0);
+        refused_by_name(&file, signal::read(&file, &unit, 1_000.0));
     });
     let channel = "gain = 0.9\nnoise_mv = 12.0\nhum_mv = 40.0\nhum_hz = 60.0\nhum_lines = 5\ninverter_mv = 30.0\n\
         inverter_hz = [400.0, 1200.0]\ninverter_sweep_s = 4.0\ndropouts_per_s = 0.2\ndropout_s = 0.01\nclip_mv = 900.0\n";
