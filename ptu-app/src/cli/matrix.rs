@@ -25,6 +25,7 @@ const LONGEST_FILE: u64 = 64 << 20;
 ///
 /// Examples:
 ///   ptu matrix pump.json                            cheapest order of tests
+///   ptu matrix pump.csv --outcomes flow=low         of a table with a column for each test
 ///   ptu matrix six_by_six                           of an example that comes with the program
 ///   ptu matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
 ///   ptu matrix pump.json --outcomes found.json --json
@@ -37,7 +38,7 @@ pub struct MatrixArguments {
     /// manual's chapter on dictionaries
     #[arg(value_name = "FILE|NAME")]
     file: PathBuf,
-    /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail), or a file {"TEST": 0 | 1 | "pass" | "fail"}
+    /// Outcomes found: TEST=0,TEST=1 (0 pass, 1 fail, or its word), or a file {"TEST": 0 | 1 | "pass" | "fail" | "WORD"}
     #[arg(long, value_name = "OUTCOMES")]
     outcomes: Option<String>,
     /// How the tree is made [default: optimal if it can be found, else greedy]
@@ -64,7 +65,13 @@ impl MatrixArguments {
     /// Answers for one matrix.
     pub fn run(self) -> Result<Exit, Failure> {
         let place = self.file.display();
-        let matrix = Matrix::from_json(&self.text()?).map_err(|error| wrong(&place, &error))?;
+        let content = self.text()?;
+        let is_table = (self.file.extension()).is_some_and(|end| end.eq_ignore_ascii_case("csv"));
+        let matrix = match is_table {
+            true => Matrix::from_csv(content.trim_start_matches('\u{feff}')),
+            false => Matrix::from_json(&content),
+        };
+        let matrix = matrix.map_err(|error| wrong(&place, &error))?;
         let known = match &self.outcomes {
             Some(given) => known(&matrix, given)?,
             None => Posterior::prior(&matrix),
@@ -130,10 +137,10 @@ fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
 
 fn inline(given: &str) -> Result<Vec<(String, Outcome)>, Failure> {
     let one = |part: &str| {
-        let (test, word) = part.rsplit_once('=').unwrap_or((part, ""));
-        let outcome = Outcome::parse(word.trim())
-            .ok_or_else(|| Failure::usage(DriveTrouble::Outcome(part.to_owned())))?;
-        Ok((test.trim().to_owned(), outcome))
+        let given = (part.rsplit_once('=')).filter(|(_, word)| !word.trim().is_empty());
+        let (test, word) =
+            given.ok_or_else(|| Failure::usage(DriveTrouble::Outcome(part.to_owned())))?;
+        Ok((test.trim().to_owned(), Outcome::parse(word.trim())))
     };
     given
         .split(',')
@@ -205,32 +212,33 @@ fn steps(matrix: &Matrix, plan: &Plan) -> String {
     if let [Node::Leaf(leaf)] = nodes {
         return format!("answer {}", answer(matrix, leaf));
     }
-    let headings = [
-        "STEP",
-        "TEST",
-        "COST",
-        "REACHED",
-        "IF IT PASSES",
-        "IF IT FAILS",
-    ];
-    let mut table = Table::new(&headings);
+    let headings = ["STEP", "TEST", "COST", "REACHED"];
+    let has_words = (0..matrix.tests().len()).any(|test| !matrix.words(test).is_empty());
+    let by_outcome: &[&str] = match has_words {
+        true => &["BY OUTCOME"],
+        false => &["IF IT PASSES", "IF IT FAILS"],
+    };
+    let mut table = Table::new(&[&headings, by_outcome].concat());
     for (number, node) in numbers.iter().zip(nodes) {
         if let Node::Test {
             test,
             reached,
-            pass,
-            fail,
+            ways,
         } = node
         {
-            let test = &matrix.tests()[*test];
-            table.row([
-                number.to_string(),
-                test.id.clone(),
-                test.cost.to_string(),
-                format!("{:.2} %", reached * 100.0),
-                leads(*pass),
-                leads(*fail),
-            ]);
+            let of = &matrix.tests()[*test];
+            let (cost, reached) = (of.cost.to_string(), format!("{:.2} %", reached * 100.0));
+            let mut row = vec![number.to_string(), of.id.clone(), cost, reached];
+            let led = ways.iter().map(|(outcome, node)| match has_words {
+                true => format!("{}: {}", matrix.outcome(*test, *outcome), leads(*node)),
+                false => leads(*node),
+            });
+            let led: Vec<_> = led.collect();
+            match has_words {
+                true => row.push(led.join("; ")),
+                false => row.extend(led),
+            }
+            table.row(row);
         }
     }
     table.render()

@@ -427,6 +427,10 @@ fn matrices_and_dictionaries() {
     fuzz_text("matrix", [matrix], 60_000, |text| {
         let _ = Matrix::from_json(text);
     });
+    let table = "state;p;flow;noise\ncost;;5;2,5\nsound;0.5;ok;0\nleak;0.5;low;1\n";
+    fuzz_text("matrix-table", [table], 60_000, |text| {
+        let _ = Matrix::from_csv(text);
+    });
     fuzz_text(
         "outcomes",
         [r#"{"t":"pass","u":"fail"}"#, r#"{"t":0,"u":1}"#],

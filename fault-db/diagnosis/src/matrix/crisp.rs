@@ -12,6 +12,8 @@ pub(super) struct CrispSpace {
     weights: Vec<f64>,
     /// Tests that differ in what they tell apart.
     columns: Vec<Column>,
+    /// Most outcomes of a test.
+    arity: usize,
     /// Costs of doing one, two, … of the cheapest tests.
     cheapest: Vec<f64>,
 }
@@ -19,8 +21,8 @@ pub(super) struct CrispSpace {
 struct Column {
     test: usize,
     cost: f64,
-    /// Groups in which the test fails.
-    fails: u64,
+    /// Groups of each outcome.
+    parts: Vec<u64>,
 }
 
 impl CrispSpace {
@@ -31,19 +33,18 @@ impl CrispSpace {
                 .total_cmp(&problem.weights[*b])
                 .then(a.cmp(b))
         });
-        let full = all(order.len());
         // Tests that split all groups alike differ in cost only, so one of them is enough.
-        let mut columns: BTreeMap<u64, Column> = BTreeMap::new();
+        let mut columns: BTreeMap<Vec<u64>, Column> = BTreeMap::new();
         for (test, &cost) in problem.costs.iter().enumerate() {
-            let mut fails = 0;
+            let mut parts = vec![0; problem.outcomes(test)];
             for (bit, group) in order.iter().enumerate() {
-                if problem.row(*group)[test] == 1.0 {
-                    fails |= 1 << bit;
-                }
+                parts[problem.row(*group)[test] as usize] |= 1 << bit;
             }
-            let same = fails.min(full & !fails);
-            if same != 0 && columns.get(&same).is_none_or(|known| cost < known.cost) {
-                columns.insert(same, Column { test, cost, fails });
+            parts.retain(|part| *part != 0);
+            let mut same = parts.clone();
+            same.sort_unstable();
+            if same.len() > 1 && columns.get(&same).is_none_or(|known| cost < known.cost) {
+                columns.insert(same, Column { test, cost, parts });
             }
         }
         let mut columns: Vec<_> = columns.into_values().collect();
@@ -57,6 +58,7 @@ impl CrispSpace {
         Self {
             weights: order.iter().map(|group| problem.weights[*group]).collect(),
             cheapest: std::iter::once(0.0).chain(sums).collect(),
+            arity: columns.iter().map(|c| c.parts.len()).max().unwrap_or(2),
             columns,
         }
     }
@@ -80,8 +82,11 @@ impl CrispSpace {
             count += 1;
         }
         let mut sums = [0.0; 64];
-        let (mut leaf, mut sum, mut length) = (0, 0, 0.0);
-        for made in 0..count.saturating_sub(1) {
+        let (mut leaf, mut sum, mut made, mut length) = (0, 0, 0, 0.0);
+        // As many as fill all later joints are joined first.
+        let mut joint = 2 + count.saturating_sub(2) % (self.arity - 1);
+        let mut left = count;
+        while left > 1 {
             let mut least = || match sum < made && (leaf == count || sums[sum] < leaves[leaf]) {
                 true => {
                     sum += 1;
@@ -92,9 +97,12 @@ impl CrispSpace {
                     leaves[leaf - 1]
                 }
             };
-            let joined = least() + least();
+            let joined = (0..joint).map(|_| least()).sum();
             sums[made] = joined;
+            made += 1;
             length += joined;
+            left -= joint - 1;
+            joint = self.arity;
         }
         length
     }
@@ -118,12 +126,16 @@ impl Space for CrispSpace {
         let mass = self.mass(set);
         self.columns
             .iter()
-            .filter(|column| set & column.fails != 0 && set & !column.fails != 0)
-            .map(|column| Branch {
-                test: column.test,
-                cost: column.cost * mass,
-                pass: (set & !column.fails, 1.0),
-                fail: (set & column.fails, 1.0),
+            .filter(|column| column.parts.iter().filter(|part| set & *part != 0).count() > 1)
+            .map(|column| {
+                let parts = column.parts.iter().map(|part| set & part);
+                Branch {
+                    test: column.test,
+                    cost: column.cost * mass,
+                    ways: (parts.filter(|part| *part != 0))
+                        .map(|part| (part, 1.0))
+                        .collect(),
+                }
             })
             .collect()
     }

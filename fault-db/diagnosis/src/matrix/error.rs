@@ -127,13 +127,23 @@ pub enum MatrixError {
         /// The test.
         test: String,
     },
-    /// An outcome that is neither pass nor fail.
-    #[error("test \"{test}\" has the outcome {found}; it must be 0 or \"pass\", 1 or \"fail\"")]
+    /// An outcome that the test does not have.
+    #[error("test \"{test}\" has the outcome {found}; it must be {known}")]
     OutcomeWord {
         /// The test.
         test: String,
         /// What is there.
         found: String,
+        /// What can be.
+        known: String,
+    },
+    /// A table that is none, or a cell of it.
+    #[error("line {line}: {what}")]
+    Table {
+        /// Line of the file, from 1.
+        line: u64,
+        /// What is wrong there.
+        what: String,
     },
     /// Outcomes that no state explains.
     #[error(
@@ -145,7 +155,7 @@ pub enum MatrixError {
         /// The test that leaves nothing.
         test: String,
         /// What it did.
-        outcome: &'static str,
+        outcome: String,
     },
     /// A confidence that means nothing.
     #[error("the confidence {0} must be above 0.5 and at most 1")]
@@ -162,4 +172,25 @@ pub enum MatrixError {
         /// Both may be this many.
         limit: usize,
     },
+}
+
+impl MatrixError {
+    /// What is wrong in a line of a table.
+    pub(super) fn table(line: u64, what: &str) -> Self {
+        let what = what.to_owned();
+        Self::Table { line, what }
+    }
+
+    /// An outcome that a test with these words, or without any, does not have.
+    pub(super) fn no_outcome(test: &str, found: &str, words: &[String]) -> Self {
+        let known = match words {
+            [] => "0 or \"pass\", 1 or \"fail\"".to_owned(),
+            words => format!("one of {}", words.join(", ")),
+        };
+        Self::OutcomeWord {
+            test: test.to_owned(),
+            found: format!("{found:?}"),
+            known,
+        }
+    }
 }

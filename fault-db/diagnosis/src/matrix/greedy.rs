@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::bits::Bits;
-use super::information::binary_entropy;
+use super::information::{binary_entropy, entropy};
 use super::problem::{Belief, Problem, USELESS_BITS};
 use super::tree::{Node, Tree};
 
@@ -77,17 +77,12 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
                 best
             }),
         };
-        let (pass, fail) = problem.split(&belief, test);
-        let place = nodes.len();
-        nodes[node] = Node::Test {
-            test: problem.tests[test],
-            reached: belief.mass(),
-            pass: place,
-            fail: place + 1,
-        };
-        for (belief, place) in [(pass, place), (fail, place + 1)] {
-            nodes.push(Node::Leaf(problem.leaf(&belief, false)));
-            open.push(OpenBranch::new(belief, place));
+        let split = problem.split(&belief, test);
+        nodes[node] = problem.node(&belief, test, &split, nodes.len());
+        for (_, belief) in split {
+            let leaf = Node::Leaf(problem.leaf(&belief, false));
+            open.push(OpenBranch::new(belief, nodes.len()));
+            nodes.push(leaf);
         }
     }
     GrownTree {
@@ -142,6 +137,8 @@ struct Grower<'a> {
     fails: Vec<Bits>,
     /// Entropy of the outcome of each test in each group, if they are not.
     noise: Vec<f64>,
+    /// Tests with other outcomes than passing and failing.
+    worded: Vec<usize>,
     work: u64,
     rollout_left: u64,
 }
@@ -154,7 +151,7 @@ impl<'a> Grower<'a> {
             fails.extend(groups.map(|group| {
                 let mut bits = Bits::none(problem.tests.len());
                 for (test, cell) in problem.row(group).iter().enumerate() {
-                    if *cell == 1.0 {
+                    if *cell == 1.0 && !problem.is_worded(test) {
                         bits.insert(test);
                     }
                 }
@@ -169,6 +166,9 @@ impl<'a> Grower<'a> {
             problem,
             fails,
             noise,
+            worded: (0..problem.tests.len())
+                .filter(|test| problem.is_worded(*test))
+                .collect(),
             work: 0,
             rollout_left: match problem.is_crisp() {
                 true => CRISP_ROLLOUT,
@@ -189,6 +189,10 @@ impl<'a> Grower<'a> {
             false if self.problem.is_decided(belief) => Vec::new(),
             false => self.score_noisy(belief),
         };
+        let has_words = !self.worded.is_empty();
+        if has_words && (self.problem.is_crisp() || !self.problem.is_decided(belief)) {
+            scored.extend(self.score_worded(belief));
+        }
         for (test, gain) in &mut scored {
             *gain /= self.problem.costs[*test];
         }
@@ -232,6 +236,16 @@ impl<'a> Grower<'a> {
         some.iter().map(|test| (test, gain(test))).collect()
     }
 
+    /// Gains of the tests with other outcomes of which members have more than one.
+    fn score_worded(&self, belief: &Belief) -> Vec<(usize, f64)> {
+        let gain = |test: &usize| {
+            let split = self.problem.split(belief, *test);
+            let gain = entropy(split.iter().map(|(_, belief)| belief.mass()));
+            (split.len() > 1).then_some((*test, gain))
+        };
+        self.worded.iter().filter_map(gain).collect()
+    }
+
     /// Gains of the unused tests that are of any use.
     fn score_noisy(&self, belief: &Belief) -> Vec<(usize, f64)> {
         let tests = self.problem.tests.len();
@@ -255,7 +269,7 @@ impl<'a> Grower<'a> {
             return Vec::new();
         }
         (0..tests)
-            .filter(|test| !belief.used.contains(*test))
+            .filter(|test| !belief.used.contains(*test) && !self.problem.is_worded(*test))
             .map(|test| {
                 let gain = binary_entropy(failing[test] / weighed) - noise[test] / weighed;
                 (test, gain)
@@ -289,9 +303,8 @@ impl<'a> Grower<'a> {
     /// once the work is used up.
     fn cost_after(&mut self, belief: &Belief, test: usize, left: &mut u64) -> Option<f64> {
         let mut cost = belief.mass() * self.problem.costs[test];
-        let (pass, fail) = self.problem.split(belief, test);
-        let mut open = vec![pass, fail];
-        while let Some(belief) = open.pop() {
+        let mut open = self.problem.split(belief, test);
+        while let Some((_, belief)) = open.pop() {
             let before = self.work;
             let best = self.rank(&belief).first().copied();
             let taken = self.work - before;
@@ -301,8 +314,7 @@ impl<'a> Grower<'a> {
             *left = left.checked_sub(taken)?;
             if let Some(test) = best {
                 cost += belief.mass() * self.problem.costs[test];
-                let (pass, fail) = self.problem.split(&belief, test);
-                open.extend([pass, fail]);
+                open.extend(self.problem.split(&belief, test));
             }
         }
         Some(cost)

@@ -35,6 +35,8 @@ pub struct Matrix {
     tests: Vec<Test>,
     /// One row of tests for each state.
     cells: Vec<f64>,
+    /// For each test the outcomes that it has instead of passing and failing; a cell is the place of one.
+    words: Vec<Vec<String>>,
     crisp: bool,
 }
 
@@ -45,6 +47,17 @@ impl Matrix {
     /// Empty or doubled names, probabilities or costs out of range, a sum of probabilities that is
     /// not 1, cells out of range or of a wrong number.
     pub fn new(states: Vec<State>, tests: Vec<Test>, cells: Vec<f64>) -> Result<Self, MatrixError> {
+        let words = vec![Vec::new(); tests.len()];
+        Self::worded(states, tests, cells, words)
+    }
+
+    /// The same, where a test that has words has these for outcomes, and its cells say which.
+    pub(super) fn worded(
+        states: Vec<State>,
+        tests: Vec<Test>,
+        cells: Vec<f64>,
+        words: Vec<Vec<String>>,
+    ) -> Result<Self, MatrixError> {
         check_size(states.len(), tests.len())?;
         check_ids("state", states.iter().map(|state| state.id.as_str()))?;
         check_ids("test", tests.iter().map(|test| test.id.as_str()))?;
@@ -66,8 +79,8 @@ impl Matrix {
             });
         }
         for (state, row) in states.iter().zip(cells.chunks(tests.len())) {
-            for (test, value) in tests.iter().zip(row) {
-                if !(0.0..=1.0).contains(value) {
+            for ((test, value), words) in tests.iter().zip(row).zip(&words) {
+                if words.is_empty() && !(0.0..=1.0).contains(value) {
                     return Err(MatrixError::Cell {
                         test: test.id.clone(),
                         state: state.id.clone(),
@@ -76,11 +89,12 @@ impl Matrix {
                 }
             }
         }
-        let crisp = cells.iter().all(|cell| *cell == 0.0 || *cell == 1.0);
+        let crisp = cells.iter().all(|cell| cell.fract() == 0.0);
         Ok(Self {
             states,
             tests,
             cells,
+            words,
             crisp,
         })
     }
@@ -103,7 +117,32 @@ impl Matrix {
             .unwrap_or(&[])
     }
 
-    /// Whether every test says the same of a state each time it is done: all cells 0 or 1.
+    /// Outcomes of a test that has words for them; none of one that passes or fails.
+    pub fn words(&self, test: usize) -> &[String] {
+        self.words.get(test).map_or(&[], Vec::as_slice)
+    }
+
+    /// How many outcomes a test has.
+    pub(super) fn outcomes(&self, test: usize) -> usize {
+        self.words(test).len().max(2)
+    }
+
+    /// What an outcome of a test is called.
+    pub fn outcome(&self, test: usize, outcome: usize) -> &str {
+        let word = self.words(test).get(outcome).map(String::as_str);
+        word.unwrap_or(if outcome == 0 { "pass" } else { "fail" })
+    }
+
+    /// Probability of an outcome of a test where its cell is `cell`.
+    pub(super) fn likelihood(&self, test: usize, outcome: usize, cell: f64) -> f64 {
+        match outcome {
+            _ if !self.words(test).is_empty() => f64::from(u8::from(cell == outcome as f64)),
+            0 => 1.0 - cell,
+            _ => cell,
+        }
+    }
+
+    /// Whether every test says the same of a state each time it is done: no cell is between 0 and 1.
     pub fn is_crisp(&self) -> bool {
         self.crisp
     }

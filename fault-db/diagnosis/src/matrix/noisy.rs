@@ -23,10 +23,8 @@ pub(super) struct NoisySpace<'a> {
     problem: &'a Problem<'a>,
     /// Entropy of each outcome, as the cells lie.
     noise: Vec<f64>,
-    /// For each test, groups in which it can pass.
-    can_pass: Vec<u64>,
-    /// For each test, groups in which it can fail.
-    can_fail: Vec<u64>,
+    /// For each test and outcome, groups in which it can have that.
+    ways: Vec<Vec<u64>>,
     /// For each test and group, groups with an equal cell.
     same: Vec<u64>,
     /// For each test and two groups, how alike the outcomes are: 1 if the same, 0 if never.
@@ -39,8 +37,9 @@ impl<'a> NoisySpace<'a> {
         let mut space = Self {
             problem,
             noise: Vec::new(),
-            can_pass: vec![0; tests],
-            can_fail: vec![0; tests],
+            ways: (0..tests)
+                .map(|test| vec![0; problem.outcomes(test)])
+                .collect(),
             same: vec![0; tests * groups],
             overlap: vec![0.0; tests * groups * groups],
         };
@@ -50,13 +49,18 @@ impl<'a> NoisySpace<'a> {
                 .noise
                 .extend(row.iter().map(|cell| binary_entropy(*cell)));
             for (test, &cell) in row.iter().enumerate() {
-                space.can_pass[test] |= u64::from(cell < 1.0) << group;
-                space.can_fail[test] |= u64::from(cell > 0.0) << group;
+                for (outcome, groups) in space.ways[test].iter_mut().enumerate() {
+                    let can = problem.likelihood(group, test, outcome) > 0.0;
+                    *groups |= u64::from(can) << group;
+                }
                 for other in 0..groups {
                     let that = problem.row(other)[test];
                     space.same[test * groups + group] |= u64::from(cell == that) << other;
-                    space.overlap[(test * groups + group) * groups + other] =
-                        (cell * that).sqrt() + ((1.0 - cell) * (1.0 - that)).sqrt();
+                    let both = (0..problem.outcomes(test)).map(|outcome| {
+                        let one = problem.likelihood(group, test, outcome);
+                        (one * problem.likelihood(other, test, outcome)).sqrt()
+                    });
+                    space.overlap[(test * groups + group) * groups + other] = both.sum();
                 }
             }
         }
@@ -94,38 +98,39 @@ impl<'a> NoisySpace<'a> {
         Belief { members, used }
     }
 
-    /// Tests that tell something, with the probability that they fail.
-    fn useful(&self, belief: &Belief) -> Vec<(usize, f64)> {
+    /// Tests that tell something, with the probability of each outcome.
+    fn useful(&self, belief: &Belief) -> Vec<(usize, Vec<f64>)> {
         if belief.members.len() < 2 || self.problem.is_decided(belief) {
             return Vec::new();
         }
         let tests = self.problem.tests.len();
         let mut useful = Vec::new();
         for test in (0..tests).filter(|test| !belief.used.contains(*test)) {
-            let (mut failing, mut noise) = (0.0, 0.0);
+            let (mut shares, mut noise) = (vec![0.0; self.problem.outcomes(test)], 0.0);
             for &(group, weight) in &belief.members {
-                failing += weight * self.problem.row(group)[test];
+                for (outcome, share) in shares.iter_mut().enumerate() {
+                    *share += weight * self.problem.likelihood(group, test, outcome);
+                }
                 noise += weight * self.noise[group * tests + test];
             }
-            if binary_entropy(failing) - noise > USELESS_BITS {
-                useful.push((test, failing));
+            if let [pass, fail] = &mut shares[..] {
+                *pass = 1.0 - *fail;
+            }
+            if entropy(shares.iter().copied()) - noise > USELESS_BITS {
+                useful.push((test, shares));
             }
         }
         useful
     }
 
-    fn after(&self, point: NoisyPoint, test: usize, failed: bool) -> NoisyPoint {
-        let (possible, outcomes) = match failed {
-            true => (
-                self.can_fail[test],
-                (point.passed, point.failed | 1 << test),
-            ),
-            false => (
-                self.can_pass[test],
-                (point.passed | 1 << test, point.failed),
-            ),
+    fn after(&self, point: NoisyPoint, test: usize, outcome: usize) -> NoisyPoint {
+        let possible = point.possible & self.ways[test][outcome];
+        // A test with other outcomes is certain: it weighs all alike that are still possible.
+        let outcomes = match outcome {
+            _ if self.problem.is_worded(test) => (point.passed, point.failed),
+            0 => (point.passed | 1 << test, point.failed),
+            _ => (point.passed, point.failed | 1 << test),
         };
-        let possible = point.possible & possible;
         let first = possible.trailing_zeros() as usize;
         let telling = |set: u64| {
             ones(set)
@@ -182,11 +187,16 @@ impl Space for NoisySpace<'_> {
 
     fn branches(&self, point: NoisyPoint) -> Vec<Branch<NoisyPoint>> {
         let useful = self.useful(&self.belief(point));
-        let branch = |(test, failing): (usize, f64)| Branch {
-            test,
-            cost: self.problem.costs[test],
-            pass: (self.after(point, test, false), 1.0 - failing),
-            fail: (self.after(point, test, true), failing),
+        let branch = |(test, shares): (usize, Vec<f64>)| {
+            let ways = shares.into_iter().enumerate();
+            let ways = ways.filter(|(outcome, _)| point.possible & self.ways[test][*outcome] != 0);
+            Branch {
+                test,
+                cost: self.problem.costs[test],
+                ways: ways
+                    .map(|(outcome, share)| (self.after(point, test, outcome), share))
+                    .collect(),
+            }
         };
         useful.into_iter().map(branch).collect()
     }
@@ -222,7 +232,10 @@ impl Space for NoisySpace<'_> {
                 let (low, high) = cells.fold((1.0_f64, 0.0_f64), |(low, high), cell| {
                     (low.min(cell), high.max(cell))
                 });
-                let bits = capacity(low, high);
+                let bits = match self.problem.is_worded(test) {
+                    true => (self.problem.outcomes(test) as f64).log2(),
+                    false => capacity(low, high),
+                };
                 (bits > 0.0).then(|| (self.problem.costs[test], bits))
             })
             .collect();

@@ -167,17 +167,15 @@ fn searched<S: Space>(
         if nodes.len() >= MAX_NODES {
             return Err(WorkLimitReached);
         }
-        let (pass, fail) = problem.split(&belief, branch.test);
+        let split = problem.split(&belief, branch.test);
         let next = nodes.len();
-        nodes[place] = Node::Test {
-            test: problem.tests[branch.test],
-            reached: belief.mass(),
-            pass: next,
-            fail: next + 1,
-        };
-        nodes.extend([leaf(&pass), leaf(&fail)]);
-        open.push((branch.fail.0, fail, next + 1));
-        open.push((branch.pass.0, pass, next));
+        nodes[place] = problem.node(&belief, branch.test, &split, next);
+        nodes.extend(split.iter().map(|(_, belief)| leaf(belief)));
+        let below = branch.ways.iter().zip(split).zip(next..);
+        let below = below.map(|(((point, _), (_, belief)), place)| (*point, belief, place));
+        let after = open.len();
+        open.extend(below);
+        open[after..].reverse();
     }
     Ok(Tree::new(nodes))
 }

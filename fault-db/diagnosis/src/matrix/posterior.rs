@@ -4,37 +4,51 @@ use super::error::MatrixError;
 use super::model::Matrix;
 
 /// What a test came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// It passed: outcome 0.
     Pass,
     /// It failed, so it detected something: outcome 1.
     Fail,
+    /// Another of its outcomes.
+    Word(String),
 }
 
 impl Outcome {
-    /// Reads `0`, `pass`, `passed`, `1`, `fail` or `failed`.
-    pub fn parse(word: &str) -> Option<Self> {
+    /// Reads `0`, `pass`, `passed`, `1`, `fail`, `failed`, or the word of another outcome.
+    pub fn parse(word: &str) -> Self {
         match word {
-            "0" | "pass" | "passed" => Some(Self::Pass),
-            "1" | "fail" | "failed" => Some(Self::Fail),
-            _ => None,
+            "0" | "pass" | "passed" => Self::Pass,
+            "1" | "fail" | "failed" => Self::Fail,
+            word => Self::Word(word.to_owned()),
         }
     }
 
     /// As a verb: `passes`, `fails`.
-    pub const fn verb(self) -> &'static str {
+    fn verb(&self) -> String {
         match self {
-            Self::Pass => "passes",
-            Self::Fail => "fails",
+            Self::Pass => "passes".to_owned(),
+            Self::Fail => "fails".to_owned(),
+            Self::Word(word) => format!("is \"{word}\""),
         }
     }
 
-    /// Its probability where the test fails with probability `cell`.
-    pub(super) fn likelihood(self, cell: f64) -> f64 {
+    /// As it is written.
+    fn word(&self) -> &str {
         match self {
-            Self::Pass => 1.0 - cell,
-            Self::Fail => cell,
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Word(word) => word,
+        }
+    }
+
+    /// Its place among the words of a test, or among pass and fail without words.
+    pub(super) fn place(&self, words: &[String]) -> Option<usize> {
+        match self {
+            _ if !words.is_empty() => words.iter().position(|word| Self::parse(word) == *self),
+            Self::Pass => Some(0),
+            Self::Fail => Some(1),
+            Self::Word(_) => None,
         }
     }
 }
@@ -76,7 +90,11 @@ impl Posterior {
             if known.done[test] {
                 return Err(MatrixError::OutcomeTwice { test: name.clone() });
             }
-            if !known.learn(matrix, test, *outcome) {
+            let words = matrix.words(test);
+            let Some(place) = outcome.place(words) else {
+                return Err(MatrixError::no_outcome(name, outcome.word(), words));
+            };
+            if !known.learn(matrix, test, place) {
                 return Err(MatrixError::Contradiction {
                     before: history(&before),
                     test: name.clone(),
@@ -89,9 +107,9 @@ impl Posterior {
     }
 
     /// Weighs one outcome; `false` if no state explains it.
-    fn learn(&mut self, matrix: &Matrix, test: usize, outcome: Outcome) -> bool {
+    fn learn(&mut self, matrix: &Matrix, test: usize, outcome: usize) -> bool {
         let mut likelihoods: Vec<f64> = (0..self.probabilities.len())
-            .map(|state| outcome.likelihood(matrix.row(state)[test]))
+            .map(|state| matrix.likelihood(test, outcome, matrix.row(state)[test]))
             .collect();
         let explains = |p: &f64, likelihood: f64| if *p > 0.0 { likelihood } else { 0.0 };
         let largest = self

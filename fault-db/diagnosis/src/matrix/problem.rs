@@ -3,7 +3,7 @@
 use super::bits::Bits;
 use super::model::{Matrix, equal_rows};
 use super::posterior::Posterior;
-use super::tree::Leaf;
+use super::tree::{Leaf, Node};
 
 /// Information below which a test is of no use, in bits: less than rounding leaves.
 pub(super) const USELESS_BITS: f64 = 1e-6;
@@ -98,25 +98,59 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The nodes after passing and after failing a test.
-    pub(super) fn split(&self, belief: &Belief, test: usize) -> (Belief, Belief) {
+    /// Whether a remaining test has other outcomes than passing and failing; then it is certain.
+    pub(super) fn is_worded(&self, test: usize) -> bool {
+        !self.matrix.words(self.tests[test]).is_empty()
+    }
+
+    /// How many outcomes a remaining test has.
+    pub(super) fn outcomes(&self, test: usize) -> usize {
+        self.matrix.outcomes(self.tests[test])
+    }
+
+    /// Probability of an outcome of a remaining test in a group.
+    pub(super) fn likelihood(&self, group: usize, test: usize, outcome: usize) -> f64 {
+        let cell = self.row(group)[test];
+        self.matrix.likelihood(self.tests[test], outcome, cell)
+    }
+
+    /// The nodes after each outcome of a test that is possible.
+    pub(super) fn split(&self, belief: &Belief, test: usize) -> Vec<(usize, Belief)> {
         let mut used = belief.used.clone();
         used.insert(test);
-        let (mut pass, mut fail) = (Vec::new(), Vec::new());
-        for &(group, weight) in &belief.members {
-            let cell = self.row(group)[test];
-            if cell < 1.0 {
-                pass.push((group, weight * (1.0 - cell)));
-            }
-            if cell > 0.0 {
-                fail.push((group, weight * cell));
-            }
-        }
-        let belief = |members| Belief {
-            members,
-            used: used.clone(),
+        let after = |outcome: usize| {
+            let weighed = belief.members.iter().map(|&(group, weight)| {
+                let likelihood = self.likelihood(group, test, outcome);
+                (group, weight, likelihood)
+            });
+            let possible = weighed.filter(|(_, _, likelihood)| *likelihood > 0.0);
+            let members = possible.map(|(group, weight, likelihood)| (group, weight * likelihood));
+            let used = used.clone();
+            let members = members.collect();
+            (outcome, Belief { members, used })
         };
-        (belief(pass), belief(fail))
+        let ways = (0..self.outcomes(test)).map(after);
+        ways.filter(|(_, belief)| !belief.members.is_empty())
+            .collect()
+    }
+
+    /// A test done at a node, whose outcomes lead to the nodes from `next` on.
+    pub(super) fn node(
+        &self,
+        belief: &Belief,
+        test: usize,
+        split: &[(usize, Belief)],
+        next: usize,
+    ) -> Node {
+        Node::Test {
+            test: self.tests[test],
+            reached: belief.mass(),
+            ways: split
+                .iter()
+                .map(|(outcome, _)| *outcome)
+                .zip(next..)
+                .collect(),
+        }
     }
 
     /// Whether one class of members, not told apart by any unused test, reaches the confidence.

@@ -1,9 +1,9 @@
-//! AND/OR search: at each node the test of least expected cost, where both outcomes have to be paid for.
+//! AND/OR search: at each node the test of least expected cost, where all outcomes have to be paid for.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
-/// A search graph: at each node tests can be done, each with two outcomes.
+/// A search graph: at each node tests can be done, each with its outcomes.
 pub(super) trait Space {
     /// Identifies a node.
     type Point: Copy + Eq + Hash;
@@ -20,10 +20,8 @@ pub(super) struct Branch<P> {
     pub(super) test: usize,
     /// Its cost, added to that of its node.
     pub(super) cost: f64,
-    /// The node after passing, and the weight of its cost.
-    pub(super) pass: (P, f64),
-    /// The node after failing, likewise.
-    pub(super) fail: (P, f64),
+    /// The node after each outcome, and the weight of its cost.
+    pub(super) ways: Vec<(P, f64)>,
 }
 
 /// Limits of the search.
@@ -79,31 +77,27 @@ impl<S: Space> Search<S> {
         }
         let mut order: Vec<(f64, usize)> = Vec::with_capacity(branches.len());
         for (index, branch) in branches.iter().enumerate() {
-            let least = branch.cost
-                + branch.pass.1 * self.least(branch.pass.0)
-                + branch.fail.1 * self.least(branch.fail.0);
-            order.push((least, index));
+            order.push((self.least_of(branch.cost, &branch.ways), index));
         }
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut best = (f64::INFINITY, None);
-        for (least, index) in order {
+        'tests: for (least, index) in order {
             if least >= best.0 {
                 break;
             }
             let branch = &branches[index];
             // The likelier branch first, as it is the one to exclude the test.
-            let (first, second) = match branch.pass.1 >= branch.fail.1 {
-                true => (branch.pass, branch.fail),
-                false => (branch.fail, branch.pass),
-            };
-            let cost = branch.cost + first.1 * self.solve(first.0)?;
-            if cost + second.1 * self.least(second.0) >= best.0 {
-                continue;
+            let mut ways = branch.ways.clone();
+            ways.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let (mut cost, mut left) = (branch.cost, &ways[..]);
+            while let [(point, weight), others @ ..] = left {
+                cost += weight * self.solve(*point)?;
+                left = others;
+                if self.least_of(cost, left) >= best.0 {
+                    continue 'tests;
+                }
             }
-            let cost = cost + second.1 * self.solve(second.0)?;
-            if cost < best.0 {
-                best = (cost, Some(branch.test));
-            }
+            best = (cost, Some(branch.test));
         }
         let cost = if branches.is_empty() { 0.0 } else { best.0 };
         let known = Known {
@@ -118,6 +112,15 @@ impl<S: Space> Search<S> {
     /// The best test at a solved node; `None` at a leaf.
     pub(super) fn best_test(&self, point: S::Point) -> Option<usize> {
         self.known.get(&point).and_then(|known| known.test)
+    }
+
+    /// A cost, and those known from all of these on.
+    fn least_of(&mut self, cost: f64, ways: &[(S::Point, f64)]) -> f64 {
+        let mut least = cost;
+        for (point, weight) in ways {
+            least += weight * self.least(*point);
+        }
+        least
     }
 
     /// The cost known from a node on: at least its bound.

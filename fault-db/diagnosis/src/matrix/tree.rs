@@ -1,5 +1,7 @@
 //! Decision trees, and how they are written.
 
+use std::borrow::Cow;
+
 use super::model::Matrix;
 
 /// Levels of a written tree that are indented; deeper ones would be mostly blanks.
@@ -14,10 +16,8 @@ pub enum Node {
         test: usize,
         /// Probability of reaching the node.
         reached: f64,
-        /// The node after passing: an index of [`Tree::nodes`].
-        pass: usize,
-        /// The node after failing.
-        fail: usize,
+        /// Each outcome that is possible here, and the node after it: an index of [`Tree::nodes`].
+        ways: Vec<(usize, usize)>,
     },
     /// A leaf.
     Leaf(Leaf),
@@ -79,12 +79,12 @@ impl Tree {
         self.nodes.iter().map(cut).sum()
     }
 
-    /// `{"test", "pass": …, "fail": …}` down to `{"state" | "states", "p", "reached"}`, as text indented by
-    /// `indent` levels. Not recursive, so any depth can be written.
+    /// `{"test", "pass": …, "fail": …}`, with other outcomes `{"test", "outcomes": {"low": …}}`, down to
+    /// `{"state" | "states", "p", "reached"}`, as text indented by `indent` levels. Not recursive, so any depth can be written.
     pub fn to_json(&self, matrix: &Matrix, indent: usize) -> String {
         enum Task<'a> {
             Node(usize, usize),
-            Text(&'a str, usize),
+            Text(Cow<'a, str>, usize),
         }
         let mut text = String::new();
         let mut tasks = vec![Task::Node(0, indent)];
@@ -93,25 +93,33 @@ impl Tree {
                 Task::Node(index, level) => (index, level),
                 Task::Text(part, level) => {
                     line(&mut text, level);
-                    text.push_str(part);
+                    text.push_str(&part);
                     continue;
                 }
             };
             match self.nodes.get(index) {
-                Some(Node::Test {
-                    test, pass, fail, ..
-                }) => {
+                Some(Node::Test { test, ways, .. }) => {
                     text.push('{');
                     line(&mut text, level + 1);
                     text.push_str("\"test\": ");
                     text.push_str(&quoted(&matrix.tests()[*test].id));
                     text.push(',');
-                    tasks.push(Task::Text("}", level));
-                    tasks.push(Task::Node(*fail, level + 1));
-                    tasks.push(Task::Text("\"fail\": ", level + 1));
-                    tasks.push(Task::Text(",", usize::MAX));
-                    tasks.push(Task::Node(*pass, level + 1));
-                    tasks.push(Task::Text("\"pass\": ", level + 1));
+                    tasks.push(Task::Text("}".into(), level));
+                    let mut inner = level + 1;
+                    if !matrix.words(*test).is_empty() {
+                        line(&mut text, inner);
+                        text.push_str("\"outcomes\": {");
+                        tasks.push(Task::Text("}".into(), inner));
+                        inner += 1;
+                    }
+                    for (place, (outcome, node)) in ways.iter().enumerate().rev() {
+                        tasks.push(Task::Node(*node, inner));
+                        let key = quoted(matrix.outcome(*test, *outcome)) + ": ";
+                        tasks.push(Task::Text(key.into(), inner));
+                        if place > 0 {
+                            tasks.push(Task::Text(",".into(), usize::MAX));
+                        }
+                    }
                 }
                 Some(Node::Leaf(leaf)) => leaf.write_json(matrix, &mut text),
                 None => {}

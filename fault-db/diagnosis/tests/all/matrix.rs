@@ -63,27 +63,56 @@ pub(super) fn planned(matrix: &Matrix, method: Method) -> Plan {
     plan(matrix, &Posterior::prior(matrix), options).expect("a plan")
 }
 
+/// A table whose tests have three words, words and errors by turns; `noisy_in_ten` of the errors' cells are uncertain.
+fn random_words(dice: &mut Dice, states: usize, tests: usize, noisy_in_ten: u64) -> Matrix {
+    let names = (0..tests).map(|test| format!("t{test}"));
+    let mut lines = vec![["state".to_owned()].into_iter().chain(names).collect()];
+    let costs = (0..tests).map(|_| (1 + dice.below(40)).to_string());
+    lines.push(["cost".to_owned()].into_iter().chain(costs).collect());
+    for state in 0..states {
+        let mut line = vec![format!("s{state}")];
+        line.extend((0..tests).map(|test| match test % 3 {
+            2 if dice.below(10) < noisy_in_ten => format!("{:.2}", 0.02 + 0.96 * dice.share()),
+            2 => dice.below(2).to_string(),
+            1 => ["ok", "low", "high"][dice.below(3) as usize].to_owned(),
+            _ => (dice.below(2) * 2 + 1).to_string(),
+        }));
+        lines.push(line);
+    }
+    let lines: Vec<_> = lines
+        .iter()
+        .map(|line: &Vec<String>| line.join(","))
+        .collect();
+    Matrix::from_csv(&lines.join("\n")).expect("a valid table")
+}
+
+/// Probability of an outcome in a state.
+fn chance(matrix: &Matrix, state: usize, test: usize, outcome: usize) -> f64 {
+    let cell = matrix.row(state)[test];
+    match outcome {
+        _ if !matrix.words(test).is_empty() => f64::from(u8::from(cell == outcome as f64)),
+        0 => 1.0 - cell,
+        _ => cell,
+    }
+}
+
 /// Least cost of telling states apart by certain tests: every order of every test tried.
 pub(super) fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
     let mass: f64 = states.iter().map(|s| matrix.states()[*s].probability).sum();
     let mut best = f64::INFINITY;
     for (test, it) in matrix.tests().iter().enumerate() {
-        let (fail, pass): (Vec<usize>, Vec<usize>) =
-            states.iter().partition(|s| matrix.row(**s)[test] == 1.0);
-        if !fail.is_empty() && !pass.is_empty() {
-            let cost =
-                mass * it.cost + exhaustive_crisp(matrix, &fail) + exhaustive_crisp(matrix, &pass);
-            best = best.min(cost);
+        let parts = (0..matrix.words(test).len().max(2)).map(|outcome| {
+            let is_here = |state: &usize| chance(matrix, *state, test, outcome) > 0.0;
+            let part = states.iter().copied().filter(is_here);
+            part.collect::<Vec<_>>()
+        });
+        let parts: Vec<_> = parts.filter(|part| !part.is_empty()).collect();
+        let split = |part: &Vec<usize>| exhaustive_crisp(matrix, part);
+        if parts.len() > 1 && parts.iter().all(|part| part.len() < states.len()) {
+            best = best.min(mass * it.cost + parts.iter().map(split).sum::<f64>());
         }
     }
     if best.is_finite() { best } else { 0.0 }
-}
-
-pub(super) fn bits(p: f64) -> f64 {
-    match p > 0.0 && p < 1.0 {
-        true => -p * p.log2() - (1.0 - p) * (1.0 - p).log2(),
-        false => 0.0,
-    }
 }
 
 /// The same where tests may err: `weights` are joint probabilities of all states.
@@ -105,20 +134,29 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
     }
     let mut best = f64::INFINITY;
     for test in 0..used.len() {
-        let cell = |state: usize| matrix.row(state)[test];
-        let failing: f64 = possible.iter().map(|s| weights[*s] * cell(*s)).sum();
-        let noise: f64 = possible.iter().map(|s| weights[*s] * bits(cell(*s))).sum();
-        if used[test] || bits(failing / total) - noise / total <= 1e-6 {
+        let outcomes = matrix.words(test).len().max(2);
+        let part = |outcome: usize| -> Vec<f64> {
+            let weighed = weights.iter().enumerate();
+            let weighed = weighed.map(|(s, weight)| weight * chance(matrix, s, test, outcome));
+            weighed.collect()
+        };
+        let parts: Vec<_> = (0..outcomes).map(part).collect();
+        let shannon = |p: f64| if p > 0.0 { -p * p.log2() } else { 0.0 };
+        let all = parts
+            .iter()
+            .map(|part| shannon(part.iter().sum::<f64>() / total));
+        let of_state = |s: usize| (0..outcomes).map(move |o| shannon(chance(matrix, s, test, o)));
+        let noise = possible
+            .iter()
+            .map(|s| weights[*s] * of_state(*s).sum::<f64>());
+        if used[test] || all.sum::<f64>() - noise.sum::<f64>() / total <= 1e-6 {
             continue;
         }
         used[test] = true;
-        let fail: Vec<f64> = (0..weights.len()).map(|s| weights[s] * cell(s)).collect();
-        let pass: Vec<f64> = (0..weights.len())
-            .map(|s| weights[s] * (1.0 - cell(s)))
-            .collect();
-        let cost = total * matrix.tests()[test].cost
-            + exhaustive_noisy(matrix, &fail, used)
-            + exhaustive_noisy(matrix, &pass, used);
+        let mut cost = total * matrix.tests()[test].cost;
+        for part in parts.iter().filter(|part| part.iter().sum::<f64>() > 0.0) {
+            cost += exhaustive_noisy(matrix, part, used);
+        }
         used[test] = false;
         best = best.min(cost);
     }
@@ -136,19 +174,17 @@ pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
             Node::Test {
                 test,
                 reached,
-                pass,
-                fail,
+                ways,
             } => {
                 assert!(!way.contains(test), "a test is done once on a way");
                 assert!((reached - mass).abs() < 1e-9);
                 cost += mass * matrix.tests()[*test].cost;
                 let way = [&way[..], &[*test]].concat();
-                let cells: Vec<f64> = (0..weights.len()).map(|s| matrix.row(s)[*test]).collect();
-                let weigh = |cell: &dyn Fn(usize) -> f64| -> Vec<f64> {
-                    (0..weights.len()).map(|s| weights[s] * cell(s)).collect()
-                };
-                open.push((*fail, weigh(&|s| cells[s]), way.clone()));
-                open.push((*pass, weigh(&|s| 1.0 - cells[s]), way));
+                for (outcome, node) in ways.iter().rev() {
+                    let weigh = |s: usize| weights[s] * chance(matrix, s, *test, *outcome);
+                    let after = (0..weights.len()).map(weigh).collect();
+                    open.push((*node, after, way.clone()));
+                }
             }
             Node::Leaf(leaf) => {
                 let named: f64 = leaf.states.iter().map(|s| weights[*s]).sum();
@@ -248,13 +284,79 @@ fn an_expensive_test_that_halves_the_states_beats_cheap_ones_that_remove_one_eac
     assert_eq!(best.tree.first_test(), Some(1));
 }
 
+/// Goal: a test of more than two outcomes is worth what all of them tell. Method: tables against exhaustive search, without
+/// and with tests that may err; the greedy tree is walked, too.
+#[test]
+fn tests_of_several_outcomes_make_the_cheapest_tree() {
+    for seed in 0..60 {
+        let mut dice = Dice(seed);
+        let noisy_in_ten = 5 * (seed % 2);
+        let matrix = random_words(&mut dice, 6, 5, noisy_in_ten);
+        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
+        let wanted = match matrix.is_crisp() {
+            true => exhaustive_crisp(&matrix, &(0..6).collect::<Vec<_>>()),
+            false => exhaustive_noisy(&matrix, &prior, &mut vec![false; 5]),
+        };
+        let best = planned(&matrix, Method::Optimal);
+        near(best.expected_cost, wanted, seed);
+        near(walked(&matrix, &best.tree), wanted, seed);
+        let greedy = planned(&matrix, Method::Greedy);
+        near(walked(&matrix, &greedy.tree), greedy.expected_cost, seed);
+        assert!(greedy.expected_cost >= wanted - 1e-9, "seed {seed}");
+    }
+}
+
+/// Worked by hand: "level" alone tells three states apart at 5; after "is low" it is still needed for two of them, 4 + 5 · 2/3.
+#[test]
+fn a_table_with_words_is_planned_and_its_outcomes_are_weighed() {
+    let table = "state;level;is low\ncost;5;4\nsound;ok;0\nleak;low;1,0\nvalve;high;0\n";
+    let matrix = Matrix::from_csv(table).expect("a table");
+    let best = planned(&matrix, Method::Optimal);
+    assert_eq!((best.expected_cost, best.tree.first_test()), (5.0, Some(0)));
+    let known = Posterior::prior(&matrix);
+    let json = best.to_json(&matrix, &known).expect("JSON");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["tree"]["outcomes"]["high"]["state"], "valve");
+    let given = |word: &str| {
+        let found = [("level".to_owned(), Outcome::parse(word))];
+        Posterior::given(&matrix, &found)
+    };
+    assert_eq!(given("low").expect("an outcome").probability(1), 1.0);
+    let wrong = given("lo").expect_err("none").to_string();
+    assert!(
+        wrong.contains("\"lo\"; it must be one of ok, low, high"),
+        "{wrong}"
+    );
+}
+
+#[test]
+fn a_wrong_table_is_refused_with_its_line() {
+    for (table, told) in [
+        ("", "\"states\" is empty"),
+        ("state,t\n", "\"states\" is empty"),
+        ("state\ns\n", "\"tests\" is empty"),
+        (
+            "state,t\na,0\nb\n",
+            "line 3: it has another number of cells",
+        ),
+        ("state,p,t\na,x,1\n", "line 2: \"x\" (p) is no number"),
+        ("state,t\na,0\n\nb,1.5\n", "line 4: \"1.5\" (t) is neither"),
+        ("state,t\na,low\nb,\n", "line 3: \"\" (t) is neither"),
+        ("state,t\ncost,0\na,1\n", "test \"t\" has the cost 0"),
+        ("state,p,t\na,0.5,1\n", "sum to 0.5"),
+    ] {
+        let wrong = Matrix::from_csv(table).expect_err(table).to_string();
+        assert!(wrong.contains(told), "{table:?}: {wrong}");
+    }
+}
+
 #[test]
 fn outcomes_leave_the_tree_that_is_left() {
     let mut dice = Dice(7);
     for _ in 0..50 {
         let matrix = random(&mut dice, 7, 7, 3);
         let whole = planned(&matrix, Method::Optimal);
-        let Some(Node::Test { test, fail, .. }) = whole.tree.nodes().first() else {
+        let Some(Node::Test { test, ways, .. }) = whole.tree.nodes().first() else {
             continue;
         };
         let found = [(matrix.tests()[*test].id.clone(), Outcome::Fail)];
@@ -264,7 +366,7 @@ fn outcomes_leave_the_tree_that_is_left() {
             confidence: CONFIDENCE,
         };
         let rest = plan(&matrix, &known, options).expect("a plan");
-        let next = match &whole.tree.nodes()[*fail] {
+        let next = match &whole.tree.nodes()[ways[1].1] {
             Node::Test { test, .. } => Some(*test),
             Node::Leaf(_) => None,
         };

@@ -108,7 +108,7 @@ sentences! {
         Refused(why: String): "the bench refused: {why}", "시험대가 거부했습니다: {why}";
         NoPlan(why: String): "{why}", "이 주행을 할 수 없습니다: {why}";
         PointMass(train: String): "--train {train}: a point mass has no cars", "--train {train}: 질점에는 차량이 없습니다";
-        Outcome(text: String): "--outcomes: \"{text}\" is not TEST=0 (passed) or TEST=1 (failed)", "--outcomes: \"{text}\"은(는) TEST=0(합격) 또는 TEST=1(불합격)이 아닙니다";
+        Outcome(text: String): "--outcomes: \"{text}\" is not TEST=0 (passed), TEST=1 (failed) or TEST=WORD", "--outcomes: \"{text}\"은(는) TEST=0(합격), TEST=1(불합격) 또는 TEST=WORD가 아닙니다";
     }
 
     /// Waveforms and sound devices.
