@@ -72,7 +72,7 @@ fn every_answer_has_the_keys_that_are_promised() {
     place.ptu("signal make twc 01 twc.wav").exits(0);
     let cut = std::fs::read(place.path("twc.wav")).expect("made");
     std::fs::write(place.path("twc.wav"), &cut[..cut.len() - 1]).expect("cut");
-    let asked: [&[&str]; 18] = [
+    let asked: [&[&str]; 19] = [
         &["signal", "read", "code.wav"],
         &["signal", "read", "twc.wav"],
         &["runs", "list"],
@@ -81,6 +81,7 @@ fn every_answer_has_the_keys_that_are_promised() {
         &["faults", "show", &fault],
         &["faults", "stats", "--by", "part"],
         &["faults", "life", "SIM-0001"],
+        &["trace", "list"],
         &["trace", "show", "latest"],
         &["diagnose", "latest"],
         &["catalog", "faults"],
