@@ -181,7 +181,9 @@ impl Typed {
 
     fn procedures(&self) -> Option<Vec<Candidate>> {
         let procedures = self.files()?.procedures().ok()?;
-        let names = procedures.keys().map(|file| file.trim_end_matches(".star"));
+        // What begins with `_` is a library.
+        let names = procedures.keys().filter(|file| !file.starts_with('_'));
+        let names = names.map(|file| file.trim_end_matches(".star"));
         Some(plain(names.map(str::to_owned).collect()))
     }
 
