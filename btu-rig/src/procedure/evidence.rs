@@ -23,6 +23,13 @@ pub enum LogState {
     Unanswered,
 }
 
+impl LogState {
+    /// Whether a wait of this length for entries of the log is over: after `least` once all is read, after `most` anyhow.
+    pub(super) fn has_waited(self, waited: Duration, least: Duration, most: Duration) -> bool {
+        waited >= most || waited >= least && self == Self::Read
+    }
+}
+
 /// Frames between tester and unit that did not get through as they were sent, either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineState {

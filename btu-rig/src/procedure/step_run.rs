@@ -200,9 +200,9 @@ impl StepRun {
         self.has_said_why(now.since(since))
     }
 
-    /// So long after a request was refused, or the unit was silent.
+    /// Whether the unit has had its time to say why it refused a request or was silent, `waited` after that.
     fn has_said_why(&self, waited: Duration) -> bool {
-        waited >= LOGS_WHY_WITHIN || waited >= SAYS_WHY_WITHIN && self.log == LogState::Read
+        (self.log).has_waited(waited, SAYS_WHY_WITHIN, LOGS_WHY_WITHIN)
     }
 
     /// Whether the step is held back until the unit's log is read: what it logged in the step's time is

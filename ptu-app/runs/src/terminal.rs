@@ -9,7 +9,7 @@ static TERMINAL: OnceLock<Terminal> = OnceLock::new();
 const BEGIN: u32 = 0xf8f0;
 const END: char = '\u{f8ff}';
 
-/// What is written to.
+/// The terminal that answers and notes are written to.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Terminal {
     /// Width and height, if answers go to a terminal.
@@ -39,14 +39,14 @@ pub fn wants_colour(is_terminal: bool) -> bool {
     !anstyle_query::no_color() && (anstyle_query::clicolor_force() || wanted)
 }
 
-/// What a word is.
+/// Kind of a word that has a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// It passed.
+    /// Verdict of what passed.
     Good,
-    /// It did not.
+    /// Verdict of what failed.
     Bad,
-    /// It could not be judged.
+    /// Verdict of what could not be judged.
     Doubt,
     /// A part.
     Part,

@@ -1,5 +1,6 @@
 //! `ptu completions`, and what a shell then asks the program: names from its scripts and its history.
 
+use btu_rig::procedure::loader::is_library;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, CommandFactory as _, Parser};
 use clap_complete::CompleteEnv;
@@ -181,8 +182,7 @@ impl Typed {
 
     fn procedures(&self) -> Option<Vec<Candidate>> {
         let procedures = self.files()?.procedures().ok()?;
-        // What begins with `_` is a library.
-        let names = procedures.keys().filter(|file| !file.starts_with('_'));
+        let names = procedures.keys().filter(|file| !is_library(file));
         let names = names.map(|file| file.trim_end_matches(".star"));
         Some(plain(names.map(str::to_owned).collect()))
     }

@@ -193,7 +193,8 @@ fn load_for(
     loaded
 }
 
-fn is_library(path: &str) -> bool {
+/// Whether the script of this path is a library for `load()` and no procedure.
+pub fn is_library(path: &str) -> bool {
     path.rsplit('/')
         .next()
         .is_some_and(|name| name.starts_with('_'))

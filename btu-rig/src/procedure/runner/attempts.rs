@@ -15,7 +15,6 @@ use super::{Phase, Runner};
 use crate::procedure::Verdict;
 use crate::procedure::action_run::ActionRun;
 use crate::procedure::event_set::EventSet;
-use crate::procedure::evidence::LogState;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::Procedure;
 use crate::procedure::report::{ResultKind, RunEvent, StepResult};
@@ -117,7 +116,7 @@ impl Runner {
             return true;
         }
         let waited = now.since(*self.set_up_at.get_or_insert(now));
-        waited >= LOG_WITHIN || waited >= LOG_SETTLES && self.evidence.log == LogState::Read
+        (self.evidence.log).has_waited(waited, LOG_SETTLES, LOG_WITHIN)
     }
 
     pub(super) fn obey_standstill(&mut self, now: Instant) {

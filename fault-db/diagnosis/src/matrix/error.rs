@@ -134,7 +134,7 @@ pub enum MatrixError {
         test: String,
         /// What is there.
         found: String,
-        /// What can be.
+        /// The outcomes that the test has.
         known: String,
     },
     /// A table that is none, or a cell of it.
@@ -142,7 +142,7 @@ pub enum MatrixError {
     Table {
         /// Line of the file, from 1.
         line: u64,
-        /// What is wrong there.
+        /// What is wrong in this line.
         what: String,
     },
     /// Outcomes that no state explains.

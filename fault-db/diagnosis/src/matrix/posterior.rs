@@ -33,7 +33,7 @@ impl Outcome {
         }
     }
 
-    /// As it is written.
+    /// The outcome as files and the command line write it.
     fn word(&self) -> &str {
         match self {
             Self::Pass => "pass",

@@ -55,7 +55,7 @@ impl<'de> Deserialize<'de> for Cell {
 impl Matrix {
     /// Reads `{"states":[{"id","p"}], "tests":[{"id","cost"}], "outcomes":{TEST:{STATE:p}}}`. A test with
     /// `"outcomes":["ok","low","high"]` has one of these in each state. A cell that is not there is 0, or the
-    /// first outcome; other keys are let be.
+    /// first outcome; other keys are ignored.
     ///
     /// # Errors
     /// As [`Matrix::new`]; and no JSON, keys that are missing or doubled, names that are not known.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
+use btu_rig::procedure::loader::is_library;
 use glob::Pattern;
 
 use script_files::Place;
@@ -62,13 +63,6 @@ pub fn scripts(
 
 fn clone_pair((path, text): (&String, &String)) -> (String, String) {
     (path.clone(), text.clone())
-}
-
-/// Files whose name begins with `_` are libraries.
-fn is_library(path: &str) -> bool {
-    path.rsplit('/')
-        .next()
-        .is_some_and(|name| name.starts_with('_'))
 }
 
 fn matching(
