@@ -32,6 +32,8 @@ pub(super) struct Place {
     arrived: bool,
     arrivals: usize,
     standing: bool,
+    /// Section at whose stop point the train stood when the next was laid.
+    ended: Option<u16>,
     /// Section whose data the wayside gave when the last start was allowed.
     begun_with: u16,
     slid: Option<Instant>,
@@ -48,6 +50,7 @@ impl Place {
             arrived: false,
             arrivals: 0,
             standing: false,
+            ended: None,
             begun_with: 0,
             slid: None,
             pulsed_before: 0,
@@ -56,6 +59,7 @@ impl Place {
 
     pub fn note(&mut self, seen: Observed<'_>) {
         if seen.section != self.section {
+            self.ended = self.standing.then_some(self.section);
             self.section = seen.section;
             self.laid_m = seen.to_stop_m;
             self.laid = seen.now;
@@ -109,7 +113,9 @@ impl Place {
         // Where the last section ended the train stands at a platform.
         let before = self.line.before(section).filter(|_| at_begin);
         before.map_or_else(Platform::default, |before| Platform {
-            there: self.arrived || seen.now.since(self.laid) < LEFT,
+            there: self.arrived
+                || self.ended == Some(before.section)
+                || seen.now.since(self.laid) < LEFT,
             sides: of(before),
         })
     }
