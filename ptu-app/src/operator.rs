@@ -6,6 +6,7 @@ use btu_rig::procedure::Runner;
 use btu_rig::rig::Rig;
 use protocol::Instant;
 
+use ptu_report::words::Words;
 use ptu_runs::run::RunControl;
 use ptu_runs::stdio;
 use ptu_runs::typed::{Typed, somebody_is_there};
@@ -38,7 +39,10 @@ impl RunControl for Operator {
         for line in typed.lines().iter().filter(|_| asks) {
             match answer(line) {
                 Some(yes) => runner.answer(yes),
-                None => stdio::note(&format!("type y for yes or n for no {HOW_TO_ANSWER}")),
+                None => {
+                    let said = Words::shown().terminal.type_yes_no;
+                    stdio::note(&format!("{said} {HOW_TO_ANSWER}"));
+                }
             }
         }
     }

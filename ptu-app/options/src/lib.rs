@@ -2,10 +2,12 @@
 //! the same words mean the same.
 //!
 //! * [`Database`]: `--db`; [`ScriptsOption`]: `--scripts`;
+//! * [`presets`]: defaults that a depot or a user chose, in files;
 //! * [`WindowOptions`]: all options of `ptu gui`; [`Page`]: the pages of the window.
 
 mod database;
 mod page;
+pub mod presets;
 mod scripts;
 pub mod sound_file;
 mod window;

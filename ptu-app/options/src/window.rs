@@ -19,7 +19,7 @@ use ptu_runs::link::Endpoint;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct WindowOptions {
-    /// Language, en or ko [default: as it was left]
+    /// Language, en or ko [default: as it was left, at first that of the locale]
     #[arg(long, value_name = "LANGUAGE")]
     pub lang: Option<Language>,
     #[allow(

@@ -37,10 +37,11 @@ pub fn count_text(counts: &StepCounts, words: &Words) -> String {
 }
 
 /// The same for a table: steps that were due, and how many of these were run if that is not all.
-pub fn count_short(counts: &StepCounts) -> String {
+pub fn count_short(counts: &StepCounts, words: &Words) -> String {
+    let of = [("run", &counts.run() as _), ("of", &counts.planned as _)];
     match counts.not_run() {
         0 => counts.planned.to_string(),
-        _ => format!("{} of {}", counts.run(), counts.planned),
+        _ => fill(words.terminal.of_n, &of),
     }
 }
 

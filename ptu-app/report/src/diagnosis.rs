@@ -9,7 +9,7 @@ use protocol::display_text;
 use serde_json::{Value, json};
 
 use crate::coverage::count_short;
-use crate::words::{Language, Words};
+use crate::words::{Language, Words, fill};
 use ptu_runs::coverage::counts_of;
 use ptu_runs::run_diagnosis::Answer;
 
@@ -76,41 +76,47 @@ fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
 
 /// For people. Three parts at most, each by its likeliest fault and the reasons that convince most, or all of them with
 /// what the dictionary has if `all`; the part that was asked about alone if one was.
-pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
+pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
     let counts = counts_of(run);
-    let words = Language::English.words();
-    let mut text = format!(
-        "run {}  unit {}  {} steps, {} not passed, {} faults\n\n{}\n",
-        run.id.short(),
-        display_text::line(&run.unit_serial),
-        count_short(&counts),
-        counts.not_passed(),
-        run.faults,
-        words.concluded(answer)
+    let terminal = &words.terminal;
+    let mut text = fill(
+        terminal.counts,
+        &[
+            ("run", &run.id.short()),
+            ("unit", &display_text::line(&run.unit_serial)),
+            ("steps", &count_short(&counts, words)),
+            ("failed", &counts.not_passed()),
+            ("faults", &run.faults),
+        ],
     );
+    let _ = writeln!(text, "\n\n{}", words.concluded(answer));
     if let Some(c) = &answer.why_not {
-        let _ = write!(text, "\nwhy not {}; of its faults the likeliest is", c.lru);
-        part_text(&mut text, d, c);
-        reasons_text(&mut text, (answer, c), all);
+        text += &format!("\n{}", fill(terminal.why_not, &[("part", &c.lru)]));
+        part_text(&mut text, d, c, words);
+        reasons_text(&mut text, (answer, c), all, words);
         return text.trim_end().to_owned();
     }
     for (probability, possible) in ranked(d, if all { usize::MAX } else { MOST_PARTS }) {
         let percent = 100.0 * probability;
         let _ = match possible {
             Possible::Both(two) => {
-                writeln!(text, "\n{percent:5.1} %  both {}", two.faults.join(" and "))
+                let both = [("faults", &two.faults.join(terminal.and) as _)];
+                let both = fill(words.diagnosis.both, &both);
+                writeln!(text, "\n{percent:5.1} %  {both}")
             }
-            Possible::NoFault => writeln!(text, "\n{percent:5.1} %  no fault"),
+            Possible::NoFault => {
+                writeln!(text, "\n{percent:5.1} %  {}", words.diagnosis.no_fault)
+            }
             Possible::Part(c) if all => {
                 let _ = writeln!(text, "\n{percent:5.1} %  {}", c.lru);
-                faults_text(&mut text, answer, c, probability);
+                faults_text(&mut text, (answer, c), probability, words);
                 Ok(())
             }
             Possible::Part(c) => {
-                part_text(&mut text, d, c);
-                reasons_text(&mut text, (answer, c), false);
+                part_text(&mut text, d, c, words);
+                reasons_text(&mut text, (answer, c), false, words);
                 Ok(())
             }
         };
@@ -124,15 +130,12 @@ pub fn diagnosis_text(answer: &Answer, all: bool) -> String {
     for (lru, ids) in &answer.traces {
         let ids: Vec<_> = ids.iter().map(Id::short).collect();
         if !ids.is_empty() && (all || likely(lru)) {
-            let _ = writeln!(text, "traces of faults that name {lru}: {}", ids.join(", "));
+            let of = [("part", lru as _), ("ids", &ids.join(", ") as _)];
+            let _ = writeln!(text, "{}", fill(terminal.traces_naming, &of));
         }
     }
     if !all {
-        let run = run.id.short();
-        let _ = writeln!(
-            text,
-            "`ptu diagnose {run} --all` shows all reasons, and what the dictionary has"
-        );
+        text += &fill(terminal.diagnose_all, &[("run", &run.id.short())]);
     }
     text.trim_end().to_owned()
 }
@@ -175,14 +178,21 @@ pub fn probability_of(of: &Diagnosis, c: &Candidate) -> f64 {
 }
 
 /// A part by its likeliest fault.
-fn part_text(text: &mut String, d: &Diagnosis, c: &Candidate) {
+fn part_text(text: &mut String, d: &Diagnosis, c: &Candidate, words: &Words) {
     let percent = 100.0 * probability_of(d, c);
-    let what = Language::English.words().fault_text(&c.text);
+    let what = words.fault_text(&c.text);
     let _ = writeln!(text, "\n{percent:5.1} %  {}  ({}: {what})", c.lru, c.fault);
 }
 
 /// All faults of a part, which add up to its probability.
-fn faults_text(text: &mut String, answer: &Answer, part: &Candidate, mut rest: f64) {
+fn faults_text(
+    text: &mut String,
+    (answer, part): (&Answer, &Candidate),
+    mut rest: f64,
+    words: &Words,
+) {
+    let terminal = &words.terminal;
+    let of_these = terminal.of_these;
     for c in answer
         .diagnosis
         .candidates
@@ -191,17 +201,21 @@ fn faults_text(text: &mut String, answer: &Answer, part: &Candidate, mut rest: f
     {
         rest -= c.probability;
         let percent = 100.0 * c.probability;
-        let what = Language::English.words().fault_text(&c.text);
-        let _ = writeln!(text, " of these {percent:5.1} %  {}: {what}", c.fault);
-        reasons_text(text, (answer, c), true);
+        let what = words.fault_text(&c.text);
+        let _ = writeln!(text, " {of_these} {percent:5.1} %  {}: {what}", c.fault);
+        reasons_text(text, (answer, c), true, words);
     }
     if rest >= LEAST_TOLD {
-        let _ = writeln!(text, " of these {:5.1} %  other faults", 100.0 * rest);
+        let percent = 100.0 * rest;
+        let _ = writeln!(
+            text,
+            " {of_these} {percent:5.1} %  {}",
+            terminal.other_faults
+        );
     }
 }
 
-fn reasons_text(text: &mut String, (answer, c): (&Answer, &Candidate), all: bool) {
-    let words = Language::English.words();
+fn reasons_text(text: &mut String, (answer, c): (&Answer, &Candidate), all: bool, words: &Words) {
     for (sign, reasons) in [('+', &c.for_it), ('-', &c.against)] {
         let reasons = if all {
             details(answer, reasons, words)

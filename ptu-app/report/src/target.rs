@@ -11,7 +11,7 @@ use protocol::display_text;
 use crate::certificate::attach;
 use crate::json::{json_text, run_json};
 use crate::run::{self, CaseSheet, Printed, RunComparison, Sheet};
-use crate::words::{Language, Words};
+use crate::words::{Language, Words, fill};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
 use ptu_runs::data::{self, ScriptsDirectory};
@@ -91,9 +91,8 @@ impl Target {
         let (document, coded) = run::pdf(sheet, words)?;
         if !coded.is_empty() {
             let (file, letters) = (self.path.display(), String::from_iter(coded));
-            stdio::note(&format!(
-                "{file}: the font of sheets lacks \"{letters}\", so codes such as [U+4E2D] stand there; pages (.html) have the letters"
-            ));
+            let of = [("file", &file as _), ("letters", &letters as _)];
+            stdio::note(&fill(words.terminal.letters_coded, &of));
         }
         Ok(document)
     }

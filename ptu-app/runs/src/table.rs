@@ -35,6 +35,12 @@ impl Table {
         }
     }
 
+    /// A table with these words in capitals as headings.
+    pub fn headed(words: &[&str]) -> Self {
+        let headings: Vec<_> = words.iter().map(|word| word.to_uppercase()).collect();
+        Self::new(&headings.iter().map(String::as_str).collect::<Vec<_>>())
+    }
+
     /// Puts the cells of these columns, counted from 0, at the right: numbers.
     pub fn right(mut self, columns: impl IntoIterator<Item = usize>) -> Self {
         self.right = columns.into_iter().collect();

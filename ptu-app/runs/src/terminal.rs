@@ -62,7 +62,9 @@ impl Style {
         match word.trim_end() {
             "passed" | "합격" => Some(Self::Good),
             "failed" | "불합격" => Some(Self::Bad),
-            "error" | "aborted" | "inconclusive" | "판정 불가" | "중단" => Some(Self::Doubt),
+            "error" | "aborted" | "inconclusive" | "판정 불가" | "판정 보류" | "중단" => {
+                Some(Self::Doubt)
+            }
             _ => None,
         }
     }

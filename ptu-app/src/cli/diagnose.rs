@@ -5,6 +5,7 @@ use protocol::LruId;
 
 use super::{Database, Json, ScriptsOption};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
+use ptu_report::words::Words;
 use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::run_diagnosis::{Question, diagnose};
 use ptu_runs::stdio;
@@ -57,9 +58,9 @@ impl DiagnoseArguments {
         };
         let answer = diagnose(&store, &directory, &question)?;
         for warning in &answer.warnings {
-            stdio::note(&warning.to_string());
+            stdio::note(&Words::shown().warning(warning));
         }
-        let text = || diagnosis_text(&answer, self.all);
+        let text = || diagnosis_text(&answer, self.all, Words::shown());
         self.json.answer(|| diagnosis_json(&answer), text)
     }
 }

@@ -14,11 +14,11 @@ mod trend_text;
 mod undo;
 
 use clap::{Args, Subcommand};
+pub use import::read_of;
 
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption};
 use ptu_report::naming::PartNames;
-use ptu_report::words::Language;
 use ptu_runs::failure::{Exit, Failure};
 
 /// Query and keep the fault history
@@ -41,9 +41,6 @@ enum Verb {
         id: String,
         #[command(flatten)]
         json: Json,
-        /// Language of the freeze frame and of messages: en or ko
-        #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-        lang: Language,
         #[command(flatten)]
         scripts: ScriptsOption,
     },
@@ -76,14 +73,8 @@ impl FaultsArguments {
         }
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
-            Verb::Show {
-                id,
-                json,
-                lang,
-                scripts,
-            } => {
-                let names = PartNames::of(&scripts.find()?);
-                show::show(&store, &id, json, (lang.words(), &names))
+            Verb::Show { id, json, scripts } => {
+                show::show(&store, &id, json, &PartNames::of(&scripts.find()?))
             }
             Verb::Life(arguments) => arguments.tell(&store),
             Verb::Stats(arguments) => arguments.stats(&store),

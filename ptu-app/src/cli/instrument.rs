@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::signing::SigningOption;
 use super::{Database, Json, print_out};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Exit, Failure, Unknown, did_you_mean_number};
 use ptu_runs::keys::day_argument;
@@ -106,6 +107,7 @@ impl InstrumentArguments {
         let store = self.database.open_file()?;
         self.signing.sign(&store)?;
         let at_us = clock::now_us();
+        let terminal = &Words::shown().terminal;
         match self.verb {
             Verb::List { .. } => Ok(Exit::Passed),
             Verb::Add {
@@ -133,9 +135,8 @@ impl InstrumentArguments {
                     who,
                     ..Instrument::default()
                 })?;
-                print_out(&format!(
-                    "registered: {kind} {serial_no}; until `ptu instrument calibrate {serial_no}` runs on a port do not begin"
-                ))
+                let of = [("kind", &kind as _), ("serial", &serial_no as _)];
+                print_out(&fill(terminal.instrument_new, &of))
             }
             Verb::Calibrate {
                 serial_no,
@@ -167,7 +168,12 @@ impl InstrumentArguments {
                     who,
                     ..known
                 })?;
-                print_out(&format!("calibrated: {serial_no} on {on}, due {due}"))
+                let of = [
+                    ("serial", &serial_no as _),
+                    ("on", &on as _),
+                    ("due", &due as _),
+                ];
+                print_out(&fill(terminal.instrument_calibrated, &of))
             }
             Verb::Retire { serial_no, who } => {
                 let known = find(&store, &serial_no)?;
@@ -177,7 +183,10 @@ impl InstrumentArguments {
                     who,
                     ..known
                 })?;
-                print_out(&format!("retired: {serial_no}"))
+                print_out(&fill(
+                    terminal.instrument_retired,
+                    &[("serial", &serial_no)],
+                ))
             }
         }
     }
@@ -210,18 +219,19 @@ fn list(store: &Store, json: Json) -> Result<Exit, Failure> {
         };
         known.iter().map(one).collect::<Vec<_>>()
     };
+    let terminal = &Words::shown().terminal;
     json.answer(document, || {
         if known.is_empty() {
-            return "no instrument is registered; `ptu instrument add` registers one".into();
+            return terminal.no_instrument.into();
         }
-        let mut table = Table::new(&[
-            "KIND",
-            "SERIAL",
-            "CALIBRATED",
-            "BY",
-            "DUE",
-            "UNCERTAINTY",
-            "TODAY",
+        let mut table = Table::headed(&[
+            terminal.kind,
+            terminal.serial,
+            terminal.calibrated,
+            terminal.by,
+            terminal.due,
+            terminal.uncertainty,
+            terminal.today,
         ]);
         for one in &known {
             let uncertainty = one
@@ -236,9 +246,9 @@ fn list(store: &Store, json: Json) -> Result<Exit, Failure> {
                 one.due.clone().unwrap_or_default(),
                 uncertainty.collect::<Vec<_>>().join(", "),
                 if one.is_calibrated_on(&today) {
-                    "calibrated"
+                    terminal.calibrated
                 } else {
-                    "not calibrated"
+                    terminal.not_calibrated
                 }
                 .to_owned(),
             ]);

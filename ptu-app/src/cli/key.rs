@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::signing::PinOption;
 use super::{Json, print_out};
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Asked, Exit, Failure, KeyTrouble, Unknown, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
@@ -197,9 +198,13 @@ fn file_name(who: &str) -> String {
 }
 
 fn span(entry: &KeyEntry) -> String {
+    let terminal = &Words::shown().terminal;
     match &entry.until {
-        Some(until) => format!("from {} until {until}", entry.from),
-        None => format!("from {}", entry.from),
+        Some(until) => fill(
+            terminal.key_until,
+            &[("from", &entry.from), ("until", until)],
+        ),
+        None => fill(terminal.key_from, &[("from", &entry.from)]),
     }
 }
 
@@ -247,13 +252,21 @@ impl FilesOfKeys {
 }
 
 fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
+    let terminal = &Words::shown().terminal;
     if list.keys.is_empty() {
-        return "no keys; `ptu key new` makes one, `ptu key trust FILE.pub` adds another's".into();
+        return terminal.no_keys.into();
     }
-    let mut table = Table::new(&["WHO", "KIND", "KEY", "FROM", "UNTIL", "TODAY"]);
+    let mut table = Table::headed(&[
+        terminal.who,
+        terminal.kind,
+        terminal.key,
+        terminal.from,
+        terminal.until,
+        terminal.today,
+    ]);
     for entry in &list.keys {
         let today = match entry.standing(now) {
-            Standing::Held => "valid".to_owned(),
+            Standing::Held => terminal.valid.to_owned(),
             standing => standing.text(),
         };
         table.row([
@@ -270,7 +283,8 @@ fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
     }
     let mut text = table.render();
     for entry in &list.keys {
-        text += &format!("\n\n{} of {}:", entry.short(), entry.who);
+        let of = [("key", &entry.short() as _), ("who", &entry.who as _)];
+        text += &format!("\n\n{}", fill(terminal.key_of, &of));
         for path in files.paths(entry) {
             text += &format!("\n  {path}");
         }
@@ -290,12 +304,14 @@ fn trust(file: &Path, keys: &KeysOption) -> Result<Exit, Failure> {
     let mut said = Vec::new();
     for entry in new.keys {
         let (entry, to) = keys.change(entry)?;
-        said.push(format!(
-            "trusted: {}, key {}, {}, in {}",
-            entry.name(),
-            entry.short(),
-            span(&entry),
-            to.display()
+        said.push(fill(
+            Words::shown().terminal.key_trusted,
+            &[
+                ("who", &entry.name()),
+                ("key", &entry.short()),
+                ("span", &span(&entry)),
+                ("file", &to.display()),
+            ],
         ));
     }
     print_out(&said.join("\n"))
@@ -324,8 +340,13 @@ fn revoke(asked: &str, note: &str, keys: &KeysOption) -> Result<Exit, Failure> {
         reason: Some(note.to_owned()).filter(|note| !note.is_empty()),
         ..entry
     })?;
-    print_out(&format!(
-        "revoked from {today}: key {key} of {who}, in {}; hand the new list to all who verify",
-        to.display()
+    print_out(&fill(
+        Words::shown().terminal.key_revoked,
+        &[
+            ("day", &today),
+            ("key", &key),
+            ("who", &who),
+            ("file", &to.display()),
+        ],
     ))
 }

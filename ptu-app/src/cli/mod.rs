@@ -3,6 +3,7 @@
 mod campaign;
 mod catalog;
 mod completions;
+mod config;
 mod db;
 mod diagnose;
 mod doctor;
@@ -31,6 +32,7 @@ mod terminal;
 mod trace;
 mod train;
 mod unit_option;
+mod usage;
 mod verify;
 #[cfg(test)]
 mod words;
@@ -44,9 +46,9 @@ use fault_db::Store;
 use output::Json;
 use serde::Serialize;
 
-use ptu_options::{Database, ScriptsOption, WindowOptions, refuse_password};
+use ptu_options::{Database, ScriptsOption, WindowOptions, presets, refuse_password};
 use ptu_report::json_text;
-use ptu_report::words::tell;
+use ptu_report::words::{Language, tell};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Unknown, did_you_mean_number};
 use ptu_runs::platform::running_program;
@@ -97,6 +99,7 @@ enum Verb {
     /// List serial ports
     Ports(ports::PortsArguments),
     Doctor(doctor::DoctorArguments),
+    Config(config::ConfigArguments),
     Campaign(Box<campaign::CampaignArguments>),
     Drive(Box<drive::DriveArguments>),
     Matrix(matrix::MatrixArguments),
@@ -130,12 +133,19 @@ impl Cli {
     /// What the command line asks; ends the program if that is help, or nothing that can be done.
     ///
     /// # Errors
-    /// It holds a server's password. Looked at first: whatever else is wrong would be shown as it stands.
+    /// The command line holds a server's password, which is looked at first: whatever else is wrong would be shown as it stands;
+    /// or a file of defaults is wrong.
     pub fn asked() -> Result<Self, Failure> {
         refuse_password()?;
         completions::answer();
-        let matches = help::sectioned(help::flowing(Self::command()))
-            .try_get_matches_from(form_last(std::env::args_os()));
+        let presets = presets::presets()?;
+        let language = presets.iter().rfind(|preset| preset.option == "lang");
+        if let Some(Ok(language)) = language.map(|preset| preset.value.parse::<Language>()) {
+            language.prefer();
+        }
+        let words = form_last(std::env::args_os());
+        let command = presets::applied(Self::command(), &presets, &words);
+        let matches = help::sectioned(help::flowing(command)).try_get_matches_from(words);
         Ok(matches
             .and_then(|matches| Self::from_arg_matches(&matches))
             .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
@@ -185,6 +195,7 @@ impl Cli {
             Verb::Signal(arguments) => arguments.run(),
             Verb::Ports(arguments) => arguments.run(),
             Verb::Doctor(arguments) => arguments.run(),
+            Verb::Config(arguments) => arguments.run(),
             Verb::New(arguments) => arguments.run(),
             Verb::Completions(arguments) => arguments.run(),
             Verb::HelpFiles(arguments) => arguments.run(),
@@ -209,7 +220,12 @@ fn form_last(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
 /// Tells help, or why a command line cannot be read.
 fn told(error: &clap::Error) -> Exit {
     if error.use_stderr() {
-        stdio::note(error.render().to_string().trim_end());
+        let korean = match Language::shown() {
+            Language::Korean => usage::korean(error),
+            Language::English => None,
+        };
+        let said = korean.unwrap_or_else(|| error.render().to_string());
+        stdio::note(said.trim_end());
         return Exit::Usage;
     }
     match error.print() {

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::Json;
+use ptu_report::words::Words;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::link::ports::found;
 
@@ -19,7 +20,7 @@ impl PortsArguments {
         let ports = found()?;
         let lines = ports.iter().map(|p| format!("{}  {}", p.path, p.kind));
         let text = || match ports.is_empty() {
-            true => "no serial ports found; name one with --unit serial:PATH".to_owned(),
+            true => Words::shown().terminal.no_ports.to_owned(),
             false => lines.collect::<Vec<_>>().join("\n"),
         };
         self.json.answer(|| &ports, text)

@@ -6,7 +6,7 @@ use fault_db::{Id, Store, StoreError};
 use super::signing::SigningOption;
 use super::{Database, ScriptsOption, print_out};
 use ptu_report::run::CaseSheet;
-use ptu_report::words::Language;
+use ptu_report::words::{Language, Words, fill};
 use ptu_report::{Target, write_case};
 use ptu_runs::failure::{Asked, Exit, Failure};
 
@@ -30,9 +30,6 @@ pub struct ReportArguments {
     /// The file: a sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
     #[arg(long, value_name = "FILE", required = true)]
     out: Vec<Target>,
-    /// Language of sheets: en or ko
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
     /// The id is that of a fault; `latest` is the fault seen last
     #[arg(long)]
     case: bool,
@@ -73,19 +70,20 @@ impl ReportArguments {
             Told::Run(id) => {
                 self.signing.sign(&store)?;
                 let run = store.run(id)?;
-                ptu_report::write(&self.out, &store, &directory, &run, self.lang)?;
+                ptu_report::write(&self.out, &store, &directory, &run, Language::shown())?;
             }
             Told::Case(id) => {
                 let (depot, annex) = (&self.depot, self.annex);
                 let case = CaseSheet::gather(&store, &directory, id, depot, annex)?;
-                write_case(&self.out, &case, self.lang)?;
+                write_case(&self.out, &case, Language::shown())?;
             }
         }
         let files = self.out.iter();
         let files: Vec<_> = files
             .map(|file| file.path().display().to_string())
             .collect();
-        print_out(&format!("written: {}", files.join(", ")))
+        let said = Words::shown().terminal.files_written;
+        print_out(&fill(said, &[("files", &files.join(", "))]))
     }
 
     /// A run, or else a fault; what fits both is refused.

@@ -1,4 +1,4 @@
-//! `--report` and `--lang`: writes the report of a run to files.
+//! `--report`: writes the report of a run to files.
 
 use clap::Args;
 use fault_db::{RunDetail, Store};
@@ -14,9 +14,6 @@ pub struct ReportOption {
     /// Write a report: a test sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
     #[arg(long, value_name = "FILE")]
     report: Vec<Target>,
-    /// Language of test sheets: en or ko
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
 }
 
 impl ReportOption {
@@ -37,6 +34,6 @@ impl ReportOption {
         directory: &ScriptsDirectory,
         run: &RunDetail,
     ) -> Result<(), Failure> {
-        ptu_report::write(&self.report, store, directory, run, self.lang)
+        ptu_report::write(&self.report, store, directory, run, Language::shown())
     }
 }

@@ -21,6 +21,7 @@ use crate::event_stream::EventStream;
 use crate::operator::Operator;
 use crate::run_recording::RunRecording;
 use ptu_report::words::tell;
+use ptu_report::words::{Words, fill};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::drive::{Setting, train::brakes_less};
 use ptu_runs::failure::{Asked, Exit, Failure};
@@ -195,7 +196,9 @@ impl RunArguments {
             if procedures.is_empty() {
                 return Err(Failure::usage(why));
             }
-            stdio::note(&format!("left out: {why}"));
+            let words = Words::shown();
+            let why = words.told(&why.into());
+            stdio::note(&fill(words.terminal.left_out, &[("why", &why)]));
         }
         let less = brakes_less(&setup.train, &setup.config.content);
         less.iter().for_each(|less| stdio::note(less));

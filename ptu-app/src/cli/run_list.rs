@@ -6,6 +6,7 @@ use btu_rig::rig::Harness;
 use serde_json::json;
 
 use super::{print_json, print_out};
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::Task;
 use ptu_runs::table::Table;
@@ -34,15 +35,19 @@ fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
 
 /// A line for each procedure.
 fn overview(tasks: &[Task], harness: Harness) -> String {
-    let mut table = Table::new(&["PROCEDURE", "STEPS", "AT MOST", "TITLE"]).right([1, 2]);
+    let words = Words::shown();
+    let terminal = &words.terminal;
+    let (procedure, title) = (words.common.procedure, terminal.title);
+    let mut table =
+        Table::headed(&[procedure, terminal.steps, terminal.at_most, title]).right([1, 2]);
     for Task { procedure, options } in tasks {
         let steps = options
             .chosen
             .as_ref()
             .map_or(procedure.steps.len(), |chosen| chosen.len());
         let title = match skipped(procedure, harness) {
-            Some(why) => format!("skipped, {why}"),
-            None => procedure.title.clone(),
+            Some(why) => fill(terminal.skipped, &[("why", &words.short_finding(&why))]),
+            None => words.title(procedure).to_owned(),
         };
         let most = format!("{:.0} s", procedure.worst_case().as_secs());
         table.row([procedure.id.clone(), steps.to_string(), most, title]);

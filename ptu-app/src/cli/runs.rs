@@ -12,7 +12,7 @@ use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
 use crate::console::verdict_table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
 use ptu_report::trace_notes::{note_text, noted_by};
-use ptu_report::words::Language;
+use ptu_report::words::{Language, Words, fill};
 use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::coverage::counts_of;
@@ -79,9 +79,6 @@ enum Verb {
         all: bool,
         #[command(flatten)]
         json: Json,
-        /// Language: en or ko
-        #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-        lang: Language,
         /// Write the comparison as .html, .pdf or .json; repeatable
         #[arg(long, value_name = "FILE")]
         report: Vec<Target>,
@@ -124,7 +121,8 @@ impl RunsArguments {
                 }
                 let run = store.resolve_run(&id)?;
                 store.add_run_note(run, who, text, clock::now_us())?;
-                print_out(&format!("noted on run {}", run.short()))
+                let said = Words::shown().terminal.noted_on_run;
+                print_out(&fill(said, &[("run", &run.short())]))
             }
             Verb::List {
                 serial_no,
@@ -157,14 +155,13 @@ impl RunsArguments {
                 after,
                 all,
                 json,
-                lang,
                 report,
             } => {
                 report.iter().try_for_each(Target::check)?;
                 let (a, b) = (store.resolve_run(&before)?, store.resolve_run(&after)?);
                 let of = RunComparison::gather(&store, a, b, all)?;
-                write_comparison(&report, &of, lang)?;
-                let text = || comparison_text(&of, lang.words());
+                write_comparison(&report, &of, Language::shown())?;
+                let text = || comparison_text(&of, Words::shown());
                 json.answer(|| comparison_json(&of), text)?;
                 Ok(match of.tally().passed_before {
                     0 => Exit::Passed,
@@ -183,7 +180,7 @@ impl RunsArguments {
                     let directory = scripts.find()?;
                     reports.write(&store, &directory, &run)?;
                 }
-                let text = || verdict_table(&run) + &signed(&run) + &notes(&run);
+                let text = || verdict_table(&run, Words::shown()) + &signed(&run) + &notes(&run);
                 json.answer(|| run_json(&run), text)
             }
         }
@@ -192,16 +189,22 @@ impl RunsArguments {
 
 /// Who signed the run, below its verdict.
 fn signed(run: &RunDetail) -> String {
+    let terminal = &Words::shown().terminal;
     match (&run.signature, &run.seal) {
-        (Some(signed), _) => format!(
-            "\nsigned by {} ({}, key {}) at {}; `ptu verify {}` verifies it",
-            signed.who,
-            signed.kind,
-            signed.short_key(),
-            clock::local(signed.at_us),
-            run.run.id.short()
-        ),
-        (None, Some(_)) => "\nunsigned".to_owned(),
+        (Some(signed), _) => {
+            let said = fill(
+                terminal.signed,
+                &[
+                    ("who", &signed.who),
+                    ("kind", &signed.kind),
+                    ("key", &signed.short_key()),
+                    ("at", &clock::local(signed.at_us)),
+                    ("run", &run.run.id.short()),
+                ],
+            );
+            format!("\n{said}")
+        }
+        (None, Some(_)) => format!("\n{}", terminal.unsigned),
         (None, None) => String::new(),
     }
 }
@@ -218,28 +221,37 @@ fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
         return Err(Failure::usage(Asked::Unsigned(run)));
     };
     data::write_text(out, format!("{signed}\n"))?;
-    print_out(&format!("written: {}", out.display()))
+    print_out(&fill(
+        Words::shown().terminal.files_written,
+        &[("files", &out.display())],
+    ))
 }
 
 fn table(runs: &[fault_db::RunSummary]) -> String {
+    let words = Words::shown();
+    let (common, terminal) = (&words.common, &words.terminal);
     if runs.is_empty() {
-        return "no runs recorded; `ptu run` makes one".into();
+        return terminal.no_runs.into();
     }
-    let mut table = Table::new(&[
-        "RUN", "STARTED", "UNIT", "SOURCE", "STATE", "STEPS", "FAULTS", "INJECTED",
+    let mut table = Table::headed(&[
+        common.run,
+        terminal.started,
+        common.unit,
+        terminal.source,
+        common.state,
+        terminal.steps,
+        terminal.faults,
+        terminal.injected,
     ])
     .verdicts(4);
     for run in runs {
-        let state = run
-            .verdict
-            .map_or(run.state.as_str(), |verdict| verdict.as_str());
         table.row([
             run.id.short(),
             clock::local(run.started_at_us),
             run.unit_serial.clone(),
             run.source.clone(),
-            state.to_owned(),
-            count_short(&counts_of(run)),
+            words.run_verdict(run).to_owned(),
+            count_short(&counts_of(run), words),
             run.faults.to_string(),
             run.injected.clone().unwrap_or_default(),
         ]);
@@ -252,8 +264,9 @@ fn notes(run: &RunDetail) -> String {
     if run.notes.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(&["NOTED", "BY", "NOTE"]);
-    let words = Language::English.words();
+    let words = Words::shown();
+    let (terminal, note) = (&words.terminal, words.common.note);
+    let mut table = Table::headed(&[terminal.noted, terminal.by, note]);
     for note in &run.notes {
         table.row([
             clock::local(note.at_us),

@@ -8,6 +8,7 @@ use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
+use ptu_report::words::Words;
 use ptu_runs::data::{self, LONGEST_FILE};
 use ptu_runs::failure::{Exit, Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
 use ptu_runs::table::Table;
@@ -119,9 +120,10 @@ pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Fai
     store(&file, &questions)
 }
 
-/// The words without those that say under which name to save it, and of which database it is asked.
+/// The words without those that say under which name to save it, of which database it is asked, and in which language it
+/// is answered.
 fn asked(words: impl Iterator<Item = String>) -> Vec<String> {
-    without(words.skip(1), &["--save", "--db"], &[])
+    without(words.skip(1), &["--save", "--db", "--lang"], &[])
 }
 
 /// The words without the options that cannot stand beside one of these: that one replaces them.
@@ -175,10 +177,11 @@ fn question<'a>(
 }
 
 fn list(questions: &Questions) -> String {
+    let terminal = &Words::shown().terminal;
     if questions.is_empty() {
-        return "no question was saved; add --save NAME to one".to_owned();
+        return terminal.no_question.to_owned();
     }
-    let mut table = Table::new(&["NAME", "QUESTION"]);
+    let mut table = Table::headed(&[terminal.name, terminal.question]);
     for (name, words) in questions {
         let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
         table.row([name.clone(), format!("ptu {}", words.join(" "))]);

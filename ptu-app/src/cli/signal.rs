@@ -12,7 +12,7 @@ use super::{Json, ScriptsOption, made_by, print_out};
 use protocol::config::UnitConfig;
 use ptu_report::run::html;
 use ptu_report::signal::{self as report, Recording};
-use ptu_report::words::Language;
+use ptu_report::words::Words;
 use ptu_runs::data::{check_writable, write};
 use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
@@ -169,9 +169,6 @@ struct ReadArguments {
     /// Write a page with spectrum, envelope and eye beside what was heard, .html; repeatable
     #[arg(long, value_name = "FILE", value_parser = page)]
     report: Vec<PathBuf>,
-    /// Language of the page: en or ko
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
     #[command(flatten)]
     scale: Scale,
 }
@@ -244,7 +241,7 @@ impl ReadArguments {
                     pictures,
                     made: made_by(),
                 };
-                let page = html(&recording, self.lang.words());
+                let page = html(&recording, Words::shown());
                 for file in &self.report {
                     write(file, kind::HTML, &page)?;
                 }
@@ -259,7 +256,7 @@ impl ReadArguments {
             let rows: Vec<Value> = rows.map(|row| row.into_iter().collect()).collect();
             return print_csv(&SOURCE_COLUMNS, &rows);
         }
-        let text = || report::text(&reading, Language::English.words());
+        let text = || report::text(&reading, Words::shown());
         self.json.answer(|| &reading, text)
     }
 }

@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use clap::{Args, ColorChoice};
 
+use ptu_report::words::Language;
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::terminal::{Terminal, wants_colour};
@@ -24,6 +25,10 @@ pub struct TerminalOption {
     #[arg(long, value_name = "WHEN", global = true, default_value = "auto", hide_default_value = true,
         hide_possible_values = true, display_order = LAST)]
     color: ColorChoice,
+    /// Language of answers and reports: en or ko [default: that of the locale]
+    #[arg(long, value_name = "LANGUAGE", global = true, display_order = LAST)]
+    // `Language::shown` reads the option before a wrong command line is told.
+    lang: Option<Language>,
     /// Never page an answer that is longer than the screen; PAGER says by which program [default: less]
     #[arg(long, global = true, display_order = LAST)]
     no_pager: bool,

@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 use super::output::Form;
 use super::{Database, at_least_one};
 use ptu_report::trace_io::Seconds;
+use ptu_report::words::Words;
 use ptu_runs::clock::{local, rfc3339};
 use ptu_runs::failure::{Exit, Failure, Unknown, did_you_mean};
 use ptu_runs::table::Table;
@@ -89,10 +90,20 @@ fn listed(trace: &TraceSummary) -> Value {
 }
 
 fn table(traces: &[TraceSummary]) -> String {
+    let words = Words::shown();
+    let terminal = &words.terminal;
     if traces.is_empty() {
-        return "no traces recorded; a run that finds a fault makes one".into();
+        return terminal.no_traces.into();
     }
-    let mut table = Table::new(&["TRACE", "BEGINS", "RUN", "LENGTH", "FAULTS"]).right([3, 4]);
+    let (run, length) = (words.common.run, terminal.length);
+    let mut table = Table::headed(&[
+        terminal.trace,
+        terminal.begins,
+        run,
+        length,
+        terminal.faults,
+    ])
+    .right([3, 4]);
     for trace in traces {
         let length_s = f64::from(trace.rows) * trace.period_us as f64 / 1e6;
         table.row([

@@ -2,6 +2,7 @@
 
 mod sheet;
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,9 +12,12 @@ use serde_json::{Value, json};
 use super::key::KeysOption;
 use super::{Database, Json, answered};
 use ptu_report::has_certificate;
+use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Why};
-use ptu_runs::keys::KeyList;
+use ptu_runs::keys::{KeyList, Standing};
+use ptu_runs::stored::from_stored;
+use ptu_runs::words::{Manner, Say as _};
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -46,9 +50,9 @@ pub struct VerifyArguments {
     database: Database,
 }
 
-/// What was found.
-#[derive(Default)]
+/// What was found, in the words of those who read it.
 struct Findings {
+    words: &'static Words,
     /// `run`, `database`, `sheet` or `certificate`.
     what: &'static str,
     id: String,
@@ -69,11 +73,16 @@ struct Findings {
 impl VerifyArguments {
     /// Verifies.
     pub fn run(self) -> Result<Exit, Failure> {
+        // Other programs read English.
+        let words = match self.json.is_asked() {
+            true => Language::English.words(),
+            false => Words::shown(),
+        };
         let keys = self.keys.read()?;
         let path = Path::new(&self.what);
         let found = match path.is_file() {
-            true => self.file(path, &keys)?,
-            false => self.of_run(&keys)?,
+            true => self.file(path, &keys, words)?,
+            false => self.of_run(&keys, words)?,
         };
         let good = found.changes.is_empty() && found.doubts.is_empty();
         let told = self.json.answer(|| found.json(), || found.text());
@@ -81,7 +90,7 @@ impl VerifyArguments {
         answered(told, exit)
     }
 
-    fn of_run(&self, keys: &KeyList) -> Result<Findings, Failure> {
+    fn of_run(&self, keys: &KeyList, words: &'static Words) -> Result<Findings, Failure> {
         if looks_like_a_file(&self.what) {
             return Err(Failure::usage(FileTrouble::Missing(self.what.clone())));
         }
@@ -97,56 +106,60 @@ impl VerifyArguments {
         let seen = store.verify_run(id)?;
         let is_same = digest.map(|digest| has_content(&seen, digest));
         let mut found = Findings {
-            what: "run",
             is_covered: true,
             id: id.to_string(),
-            ..Findings::default()
+            ..Findings::of("run", words)
         };
         found.take_run(seen, keys);
         match is_same {
-            Some(true) => {
-                (found.remarks).push("the run in the database is the one of the sheet".into())
-            }
-            Some(false) => {
-                (found.changes).push("the run in the database is not the one of the sheet".into())
-            }
+            Some(true) => (found.remarks).push(words.verify.of_sheet.into()),
+            Some(false) => (found.changes).push(words.verify.not_of_sheet.into()),
             None => {}
         }
         Ok(found)
     }
 
-    fn file(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
+    fn file(
+        &self,
+        path: &Path,
+        keys: &KeyList,
+        words: &'static Words,
+    ) -> Result<Findings, Failure> {
         let cannot = |error: std::io::Error| Failure::bench(FileTrouble::unread(path, error));
         let mut head = [0; DATABASE.len()];
         let read = std::io::Read::read(&mut std::fs::File::open(path).map_err(cannot)?, &mut head);
         if read.map_err(cannot)? == head.len() && head == *DATABASE {
-            return self.of_database(path, keys);
+            return self.of_database(path, keys, words);
         }
         let bytes = fault_db::read_regular_file(path, LONGEST).map_err(cannot)?;
         let none = |why| Failure::bench(Asked::NoSignature(path.display().to_string(), why));
         let text = String::from_utf8(bytes).map_err(|_| none(Why::NoText))?;
         if has_certificate(&text) {
-            return Ok(sheet::sheet(&text, keys));
+            return Ok(sheet::sheet(&text, keys, words));
         }
         if text.trim_start().starts_with('{') {
-            return self.certificate(&text, keys).map_err(none);
+            return self.certificate(&text, keys, words).map_err(none);
         }
         Err(none(Why::Unsigned))
     }
 
-    fn of_database(&self, path: &Path, keys: &KeyList) -> Result<Findings, Failure> {
+    fn of_database(
+        &self,
+        path: &Path,
+        keys: &KeyList,
+        words: &'static Words,
+    ) -> Result<Findings, Failure> {
         let store = Store::open_read_only(path)?;
         let report = store.check()?;
         let mut found = Findings {
-            what: "database",
             is_covered: true,
             id: path.display().to_string(),
-            ..Findings::default()
+            ..Findings::of("database", words)
         };
         found.changes = report
             .problems
             .into_iter()
-            .map(|problem| problem.detail.to_string())
+            .map(|problem| words.damage(&problem.detail))
             .collect();
         found.remarks = report.remarks;
         // What this computer's own history has seen of it, by a sync or an import.
@@ -164,46 +177,59 @@ impl VerifyArguments {
             let stood = [key.first_at_us, key.last_at_us]
                 .map(|at_us| keys.standing(&key.key, &key.who, &key.kind, at_us));
             let wrong = stood.iter().find(|standing| !standing.is_good());
-            let standing = wrong.unwrap_or(&stood[0]).text();
+            let standing = found.standing(wrong.unwrap_or(&stood[0]));
             let short = key.key.get(..16).unwrap_or_default();
-            let name = format!("{} ({}, key {short})", key.who, key.kind);
-            found.said.push(format!(
-                "{name} signed {} runs and {} notes, events and instruments, from {} to {}; the key {standing}",
-                key.runs,
-                key.others,
-                clock::local(key.first_at_us),
-                clock::local(key.last_at_us)
+            let name = found.name(&key.who, &key.kind, short);
+            found.said.push(fill(
+                words.verify.signed_many,
+                &[
+                    ("name", &name),
+                    ("runs", &key.runs),
+                    ("others", &key.others),
+                    ("from", &clock::local(key.first_at_us)),
+                    ("until", &clock::local(key.last_at_us)),
+                    ("standing", &standing),
+                ],
             ));
             if wrong.is_some() {
-                found.doubts.push(format!("the key of {name} {standing}"));
+                let of = [("name", &name as _), ("standing", &standing as _)];
+                found.doubts.push(fill(words.verify.key_of_doubted, &of));
             }
-            found.doubts.extend(dated_ahead(&name, key.last_at_us));
+            found
+                .doubts
+                .extend(dated_ahead(&name, key.last_at_us, words));
             found.signatures.push(json!({
                 "what": "database", "id": null, "who": key.who, "kind": key.kind, "key": key.key,
                 "at": rfc3339(key.last_at_us), "trusted": wrong.is_none(), "standing": standing,
             }));
         }
         if signed == 0 {
-            found.doubts.push("no run in it is signed".to_owned());
+            found.doubts.push(words.verify.no_run_signed.to_owned());
         } else if signed < report.runs {
             let unsigned = report.runs - signed;
-            found
-                .remarks
-                .push(format!("{unsigned} of {} runs are not signed", report.runs));
+            let of = [("n", &unsigned as _), ("of", &report.runs as _)];
+            found.remarks.push(fill(words.verify.some_unsigned, &of));
         }
         Ok(found)
     }
 
     /// A certificate by itself, and held against the run where the database has it.
-    fn certificate(&self, text: &str, keys: &KeyList) -> Result<Findings, Why> {
+    fn certificate(
+        &self,
+        text: &str,
+        keys: &KeyList,
+        words: &'static Words,
+    ) -> Result<Findings, Why> {
         let mut found = Findings {
-            what: "certificate",
             is_covered: true,
-            ..Findings::default()
+            ..Findings::of("certificate", words)
         };
         match Signed::read(text.strip_suffix('\n').unwrap_or(text)) {
             Err(why @ SignatureError::Unreadable(_)) => return Err(Why::of(why)),
-            Err(why) => found.changes.push(format!("the certificate: {why}")),
+            Err(why) => {
+                let said = fill(words.verify.wrong_certificate, &[("why", &why)]);
+                found.changes.push(said);
+            }
             Ok(signed) => {
                 let statement = Statement::of(&signed).ok_or(Why::NoStatement)?;
                 found.id = statement.id.clone();
@@ -219,21 +245,16 @@ impl VerifyArguments {
             let store = self.database.open_read_only().ok()?;
             store.verify_run(statement.id.parse().ok()?).ok()
         };
+        let verify = &found.words.verify;
         match look() {
-            None => found
-                .remarks
-                .push("the database here does not have this run".to_owned()),
+            None => found.remarks.push(verify.run_not_here.to_owned()),
             Some(seen) => {
                 if !has_content(&seen, &statement.digest) {
-                    found
-                        .changes
-                        .push("the run in the database is not what was signed".to_owned());
+                    found.changes.push(verify.not_signed_content.to_owned());
                 }
                 found.changes.extend(seen.changes);
                 if found.changes.is_empty() {
-                    found
-                        .remarks
-                        .push("the run in the database is what was signed".to_owned());
+                    found.remarks.push(verify.signed_content.to_owned());
                 }
             }
         }
@@ -257,44 +278,72 @@ fn looks_like_a_file(name: &str) -> bool {
 const AHEAD_US: i64 = 86_400_000_000;
 
 /// What to say of a signature that is dated in the future.
-fn dated_ahead(name: &str, at_us: i64) -> Option<String> {
+fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<String> {
     let is_ahead = at_us > clock::now_us().saturating_add(AHEAD_US);
     is_ahead.then(|| {
-        format!(
-            "a signature of {name} is dated in the future: {}",
-            clock::local(at_us)
-        )
+        let at = clock::local(at_us);
+        fill(words.verify.dated_ahead, &[("name", &name), ("at", &at)])
     })
 }
 
 impl Findings {
+    /// Nothing yet, of a `run`, `database`, `sheet` or `certificate`.
+    fn of(what: &'static str, words: &'static Words) -> Self {
+        Self {
+            words,
+            what,
+            id: String::new(),
+            is_covered: false,
+            signatures: Vec::new(),
+            said: Vec::new(),
+            changes: Vec::new(),
+            doubts: Vec::new(),
+            remarks: Vec::new(),
+        }
+    }
+
+    fn standing(&self, standing: &Standing) -> String {
+        standing.say(Manner {
+            korean: self.words.language == Language::Korean,
+            commands: true,
+        })
+    }
+
+    fn name(&self, who: &str, kind: &str, key: &str) -> String {
+        let of = [("who", &who as _), ("kind", &kind as _), ("key", &key as _)];
+        fill(self.words.verify.name, &of)
+    }
+
     fn take_run(&mut self, seen: Verification, keys: &KeyList) {
+        let verify = &self.words.verify;
         for statement in &seen.signatures {
             self.take(statement, keys);
         }
         if seen.seal.is_none() {
-            self.doubts
-                .push("the run has not ended: nothing is sealed".to_owned());
+            self.doubts.push(verify.not_ended.to_owned());
         } else if seen.of_run().next().is_none() {
-            self.doubts
-                .push("the run is not signed; what its seal says stands below".to_owned());
+            self.doubts.push(verify.run_unsigned.to_owned());
         }
         if let Some(seal) = &seen.seal {
             let as_found = match &seal.found {
-                Some(_) => ", as it was found when it came in",
+                Some(_) => verify.as_found,
                 None => "",
             };
-            self.remarks.push(format!(
-                "seal {}, entry {} of database {}{as_found}",
-                seal.short(),
-                seal.entry,
-                seal.file.short()
+            self.remarks.push(fill(
+                verify.seal,
+                &[
+                    ("seal", &seal.short()),
+                    ("entry", &seal.entry),
+                    ("file", &seal.file.short()),
+                    ("found", &as_found),
+                ],
             ));
         }
         let signers = seen.signatures.iter().map(|one| one.who.to_lowercase());
         self.take_unsigned(&seen.unsigned_notes, &signers.collect::<Vec<_>>());
         self.remarks.extend(seen.remarks);
-        let pruned = seen.pruned.iter().map(|what| format!("{what} was pruned"));
+        let pruned = seen.pruned.iter();
+        let pruned = pruned.map(|what| fill(verify.pruned, &[("what", what)]));
         self.remarks.extend(pruned);
         self.changes.extend(seen.changes);
     }
@@ -302,7 +351,8 @@ impl Findings {
     /// Notes that nobody signed: a doubt in the name of one of these signers.
     fn take_unsigned(&mut self, notes: &[(Id, String)], signers: &[String]) {
         for (id, who) in notes {
-            let said = format!("note {} in the name of \"{who}\" is not signed", id.short());
+            let of = [("id", &id.short() as _), ("who", who as _)];
+            let said = fill(self.words.verify.note_unsigned, &of);
             match signers.contains(&who.to_lowercase()) {
                 true => self.doubts.push(said),
                 false => self.remarks.push(said),
@@ -313,24 +363,29 @@ impl Findings {
     fn take(&mut self, signed: &Statement, keys: &KeyList) {
         let standing = keys.standing(&signed.key, &signed.who, &signed.kind, signed.at_us);
         let (at, short) = (clock::local(signed.at_us), signed.short_key());
-        let name = format!("{} ({}, key {short})", signed.who, signed.kind);
+        let name = self.name(&signed.who, &signed.kind, short);
+        let said = self.standing(&standing);
+        let words = self.words;
         let id = signed
             .id
             .get(signed.id.len().saturating_sub(8)..)
             .unwrap_or_default();
         let what = &signed.what;
-        let about = signed.about.as_ref().map_or_else(String::new, about);
-        self.said.push(format!(
-            "{what} {id}: signed by {name} at {at}; the key {}{about}",
-            standing.text()
-        ));
+        let about = signed.about.as_ref();
+        let about = about.map_or_else(String::new, |of| about_text(of, words));
+        let of: [(&str, &dyn Display); 6] = [
+            ("what", &words.verify.what(what)),
+            ("id", &id),
+            ("name", &name),
+            ("at", &at),
+            ("standing", &said),
+            ("about", &about),
+        ];
+        self.said.push(fill(words.verify.signed, &of));
         if !standing.is_good() {
-            self.doubts.push(format!(
-                "{what} {id}: the key of {name} {}",
-                standing.text()
-            ));
+            self.doubts.push(fill(words.verify.key_doubted, &of));
         }
-        self.doubts.extend(dated_ahead(&name, signed.at_us));
+        self.doubts.extend(dated_ahead(&name, signed.at_us, words));
         self.signatures.push(json!({
             "what": what, "id": signed.id, "who": signed.who, "kind": signed.kind, "key": signed.key,
             "at": rfc3339(signed.at_us), "trusted": standing.is_good(), "standing": standing.text(),
@@ -346,22 +401,20 @@ impl Findings {
     }
 
     fn text(&self) -> String {
+        let verify = &self.words.verify;
         let mut lines = self.said.clone();
         if !self.changes.is_empty() {
-            lines.push(format!("CHANGED, {} findings:", self.changes.len()));
+            lines.push(fill(verify.changed, &[("n", &self.changes.len())]));
             lines.extend(self.changes.iter().map(|change| format!("  {change}")));
         } else if self.is_covered {
-            lines.push(format!(
-                "unchanged: the {} is as it was {}",
-                self.what,
-                match self.signatures.is_empty() {
-                    true => "sealed",
-                    false => "signed",
-                }
-            ));
+            let said = match self.signatures.is_empty() {
+                true => verify.unchanged_sealed,
+                false => verify.unchanged_signed,
+            };
+            lines.push(fill(said, &[("what", &verify.what(self.what))]));
         }
         if !self.doubts.is_empty() {
-            lines.push("NOT VERIFIED:".to_owned());
+            lines.push(verify.not_verified.to_owned());
             lines.extend(self.doubts.iter().map(|doubt| format!("  {doubt}")));
         }
         lines.extend(self.remarks.iter().cloned());
@@ -370,23 +423,30 @@ impl Findings {
 }
 
 /// What a signed run says, in short.
-fn about(about: &About) -> String {
+fn about_text(about: &About, words: &Words) -> String {
+    let verify = &words.verify;
     let injected = match &about.injected {
-        Some(faults) => format!(", with injected faults {faults}"),
+        Some(faults) => fill(verify.injected, &[("faults", faults)]),
         None => String::new(),
     };
-    format!(
-        "\n  unit {}: {}, {} steps run, {} measured values, by {}, on {}, begun {}{injected}",
-        about.unit,
-        about.verdict,
-        about.steps,
-        about.measurements,
-        if about.operator.is_empty() {
-            "a person not named"
-        } else {
-            &about.operator
-        },
-        about.source,
-        clock::local(about.started_at_us)
-    )
+    let who = match about.operator.as_str() {
+        "" => verify.nobody,
+        who => who,
+    };
+    let verdict = about.verdict.parse().ok();
+    let verdict = verdict.map(|verdict| words.verdict_name(from_stored(verdict)));
+    let said = fill(
+        verify.about,
+        &[
+            ("unit", &about.unit),
+            ("verdict", &verdict.unwrap_or(&about.verdict)),
+            ("steps", &about.steps),
+            ("n", &about.measurements),
+            ("who", &who),
+            ("source", &about.source),
+            ("at", &clock::local(about.started_at_us)),
+            ("injected", &injected),
+        ],
+    );
+    format!("\n  {said}")
 }

@@ -21,6 +21,7 @@ mod first_steps;
 mod forged;
 mod history_files;
 mod json_promise;
+mod korean_terminal;
 mod lock_step;
 mod long_service;
 mod no_unit;

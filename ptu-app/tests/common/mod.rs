@@ -145,6 +145,7 @@ impl Place {
             .env("PTU_DB", self.path("history.db"))
             .env("HOME", self.folder.path())
             .env("XDG_DATA_HOME", self.folder.path())
+            .env("LC_ALL", "C.UTF-8")
             .env("RUST_BACKTRACE", "1");
         command
     }

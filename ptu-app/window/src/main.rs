@@ -5,9 +5,9 @@ mod embedded;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory as _, FromArgMatches as _, Parser};
 use fault_db::Store;
-use ptu_options::{WindowOptions, refuse_password};
+use ptu_options::{WindowOptions, presets, refuse_password};
 use ptu_report::words::tell;
 use ptu_runs::failure::{Asked, Exit, Failure, Trouble};
 use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
@@ -44,7 +44,9 @@ fn run() -> Result<Exit, Failure> {
         return loading::serve().map(|()| Exit::Passed);
     }
     refuse_password()?;
-    let asked = CommandLine::parse().options;
+    let command = presets::applied(CommandLine::command(), &presets::presets()?, &[]);
+    let asked = CommandLine::from_arg_matches(&command.get_matches());
+    let asked = asked.unwrap_or_else(|error| error.exit()).options;
     loading::load_apart(running_program());
     open(options(asked)?)?;
     Ok(Exit::Passed)

@@ -95,7 +95,7 @@ pub struct FaultsQuestion {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            language: Language::default(),
+            language: Language::shown(),
             dark: None,
             density: Density::default(),
             zoom: 1.0,

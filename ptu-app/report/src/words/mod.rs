@@ -8,7 +8,9 @@ mod care;
 mod case;
 mod common;
 mod content;
+mod counts;
 mod diagnosis;
+mod doctor;
 mod drive;
 mod faults;
 mod fill;
@@ -21,14 +23,18 @@ mod report;
 mod say;
 mod signals;
 mod statistics;
+mod terminal;
 mod traces;
+mod verify;
 
 pub use bench::Bench;
 pub use care::Care;
 pub use case::Case;
 pub use common::Common;
 pub use content::take_own;
+pub use counts::Counts;
 pub use diagnosis::Diagnosis;
+pub use doctor::Doctor;
 pub use drive::Drive;
 pub use faults::Faults;
 pub use fill::fill;
@@ -40,10 +46,15 @@ pub use report::Report;
 pub use say::tell;
 pub use signals::Signals;
 pub use statistics::Statistics;
+pub use terminal::Terminal;
 pub use traces::Traces;
+pub use verify::Verify;
 
 use std::borrow::Cow;
+use std::ffi::OsString;
+use std::sync::OnceLock;
 
+use btu_rig::procedure::Procedure;
 use serde::{Deserialize, Serialize};
 
 /// Declares one part of the catalogue: `key: "English", "한국어";` per wording. `{name}` in a wording
@@ -98,14 +109,20 @@ impl Language {
         }
     }
 
-    /// That of `--lang` on the command line of this process, or English.
-    pub fn asked() -> Self {
-        let all: Vec<_> = std::env::args_os().collect();
-        let korean = all.iter().any(|word| word == "--lang=ko")
-            || all
-                .windows(2)
-                .any(|pair| pair[0] == "--lang" && pair[1] == "ko");
-        if korean { Self::Korean } else { Self::English }
+    /// The language of this process: that of `--lang` on its command line, or else the one that its user prefers, or else
+    /// that of its locale, or else English.
+    pub fn shown() -> Self {
+        static SHOWN: OnceLock<Language> = OnceLock::new();
+        *SHOWN.get_or_init(|| {
+            let words = std::env::args_os().collect::<Vec<_>>();
+            let preferred = || PREFERRED.get().copied();
+            asked(&words).or_else(preferred).unwrap_or_else(of_locale)
+        })
+    }
+
+    /// Sets what the user prefers, before anything is shown.
+    pub fn prefer(self) {
+        let _ = PREFERRED.set(self);
     }
 
     /// Its wordings.
@@ -125,6 +142,31 @@ impl std::str::FromStr for Language {
             .into_iter()
             .find(|language| language.code() == text);
         known.ok_or_else(|| "a language is en or ko".into())
+    }
+}
+
+static PREFERRED: OnceLock<Language> = OnceLock::new();
+
+/// The language that the words of a command line ask for.
+fn asked(words: &[OsString]) -> Option<Language> {
+    let word = |at: usize| words.get(at).and_then(|word| word.to_str());
+    (0..words.len()).find_map(|at| {
+        let value = match word(at)? {
+            "--lang" => word(at + 1),
+            word => word.strip_prefix("--lang="),
+        };
+        value.and_then(|value| value.parse().ok())
+    })
+}
+
+/// The language of messages by the system's locale (POSIX 8.2): the first variable that says something counts.
+fn of_locale() -> Language {
+    let variables = ["LC_ALL", "LC_MESSAGES", "LANG"];
+    let mut said = variables.iter().filter_map(std::env::var_os);
+    let locale = said.find(|value| !value.is_empty()).unwrap_or_default();
+    match locale.to_string_lossy().starts_with("ko") {
+        true => Language::Korean,
+        false => Language::English,
     }
 }
 
@@ -163,6 +205,14 @@ pub struct Words {
     pub report: Report,
     /// Waveforms: read, made, recorded and played.
     pub signals: Signals,
+    /// Answers of the command line.
+    pub terminal: Terminal,
+    /// Counts, trends and records in them.
+    pub counts: Counts,
+    /// What this computer lacks for testing units.
+    pub doctor: Doctor,
+    /// What a verification says.
+    pub verify: Verify,
 }
 
 impl Words {
@@ -172,6 +222,14 @@ impl Words {
         match self.language {
             Language::English => Cow::Borrowed(text),
             Language::Korean => content::korean(text),
+        }
+    }
+
+    /// What a procedure checks, in this language if the script says it.
+    pub fn title<'a>(&self, procedure: &'a Procedure) -> &'a str {
+        match (self.language, &procedure.title_ko) {
+            (Language::Korean, Some(korean)) => korean,
+            _ => &procedure.title,
         }
     }
 
@@ -232,6 +290,10 @@ static ENGLISH: Words = Words {
     diagnosis: Diagnosis::ENGLISH,
     report: Report::ENGLISH,
     signals: Signals::ENGLISH,
+    terminal: Terminal::ENGLISH,
+    counts: Counts::ENGLISH,
+    doctor: Doctor::ENGLISH,
+    verify: Verify::ENGLISH,
 };
 
 static KOREAN: Words = Words {
@@ -251,6 +313,10 @@ static KOREAN: Words = Words {
     diagnosis: Diagnosis::KOREAN,
     report: Report::KOREAN,
     signals: Signals::KOREAN,
+    terminal: Terminal::KOREAN,
+    counts: Counts::KOREAN,
+    doctor: Doctor::KOREAN,
+    verify: Verify::KOREAN,
 };
 
 #[cfg(test)]
@@ -278,10 +344,11 @@ mod tests {
         .concat()
     }
 
-    /// With what is refused.
+    /// With what is refused, and what the command line answers.
     fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
         let refused = ptu_runs::words::all().map(|[key, english, korean]| (key, english, korean));
-        all().into_iter().chain(refused).collect()
+        let answers = [Terminal::all(), Counts::all(), Doctor::all(), Verify::all()].concat();
+        all().into_iter().chain(refused).chain(answers).collect()
     }
 
     #[test]
@@ -325,10 +392,12 @@ mod tests {
                     && word.chars().any(|c| c.is_ascii_uppercase())
             })
         };
-        // That a unit is armed is written so for its weight alone.
+        // Written so for their weight alone, or as the headings of columns.
+        let otherwise = "armed|changed|not_verified|wrong|back_is|course_is|rate_is|stand_out";
+        let is_otherwise = |key: &str| otherwise.split('|').any(|of| key.starts_with(of));
         let named = all_told()
             .into_iter()
-            .filter(|(key, ..)| !key.starts_with("armed"));
+            .filter(|(key, ..)| !is_otherwise(key));
         for (key, english, korean) in named {
             for word in technical(english) {
                 assert!(

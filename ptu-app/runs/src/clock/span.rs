@@ -2,12 +2,11 @@
 //!
 //! Dates are those of the local calendar. A year, month or day means all of it, at the end of a span, too.
 
-use std::fmt;
 use std::str::FromStr;
 
 use chrono::{DateTime, Datelike, Days, Local, Months, NaiveDate, NaiveTime, TimeZone};
 
-use super::{local_day, now_us};
+use super::now_us;
 
 /// Microseconds of an hour.
 const HOUR_US: i64 = 3_600_000_000;
@@ -58,19 +57,6 @@ impl FromStr for Span {
             }
             _ => Ok(span),
         }
-    }
-}
-
-/// The days it covers, for sentences.
-impl fmt::Display for Span {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (since, until) = match (self.since_us, self.until_us) {
-            (None, None) => return f.write_str("all of history"),
-            ends => ends,
-        };
-        let since = since.map_or_else(String::new, local_day);
-        let until = until.map_or_else(|| "now".to_owned(), |until| local_day(until - 1));
-        write!(f, "{since} .. {until}")
     }
 }
 

@@ -80,6 +80,8 @@ sentences! {
         Wrong(file: String, why: Why): "{file}: {why}", "{file}에 오류가 있습니다: {why}";
         Damaged(file: String, why: Why): "{file} is damaged ({why}); correct or delete it", "파일이 손상되었습니다: {file} ({why}). 고치거나 삭제하십시오";
         Exists(file: String): "{file} is there already; name another file" [", or say --force to replace it"], "이미 있습니다: {file}. 다른 파일을 지정하십시오" [". --force로 덮어쓸 수 있습니다"];
+        NoPreset(file: String, option: String, near: Near): "{file}: no option \"{option}\" has a default here{near}", "{file}: \"{option}\"은(는) 기본값을 정할 수 있는 옵션이 아닙니다{near}";
+        PresetNoText(file: String, option: String): "{file}: write the default of {option} in quotation marks", "{file}: {option}의 기본값은 따옴표 안에 적으십시오";
         Missing(file: String): "there is no file {file}", "파일이 없습니다: {file}";
         NoDatabase(file: String): "there is no database {file}; choose another file", "데이터베이스가 없습니다: {file}. 다른 파일을 선택하십시오";
         NoDirectory(folder: String): "{folder} is not a directory", "폴더가 아닙니다: {folder}";

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use fault_db::{Advice, CheckReport, ProblemKind, SealHead, Store, StoreError};
 
 use crate::cli::{Database, Json, answered};
+use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble};
 use ptu_runs::table::Table;
@@ -15,10 +16,10 @@ pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
         store => store?.check()?,
     };
     let found = || match report.problems.is_empty() {
-        true => format!(
-            "no damage; {} traces read, {} runs fit their seals",
-            report.traces, report.runs
-        ),
+        true => {
+            let of = [("traces", &report.traces as _), ("runs", &report.runs as _)];
+            fill(Words::shown().terminal.no_damage, &of)
+        }
         false => text(&report),
     };
     let told = json.answer(|| &report, || found() + &besides(&report));
@@ -80,18 +81,23 @@ pub(super) fn sealed(head: &SealHead) -> String {
         entries,
         seal,
     } = head;
-    format!(
-        "chain of seals: {entries} entries of database {}, the last {seal}",
-        file.short()
-    )
+    let file = file.short();
+    let of = [
+        ("n", entries as _),
+        ("file", &file as _),
+        ("seal", seal as _),
+    ];
+    fill(Words::shown().terminal.chain_of_seals, &of)
 }
 
 /// All problems, and once for each kind what to do about it.
 fn text(report: &CheckReport) -> String {
-    let mut table = Table::new(&["KIND", "WHAT"]);
+    let words = Words::shown();
+    let mut table = Table::headed(&[words.terminal.kind, words.report.what]);
     let mut advice: Vec<(ProblemKind, Advice)> = Vec::new();
     for problem in &report.problems {
-        table.row([problem.kind.to_string(), problem.detail.to_string()]);
+        let kind = words.problem_kind(problem.kind).to_owned();
+        table.row([kind, words.damage(&problem.detail)]);
         let next = (problem.kind, problem.advice);
         if !advice.contains(&next) {
             advice.push(next);
@@ -99,7 +105,14 @@ fn text(report: &CheckReport) -> String {
     }
     let lines: String = advice
         .iter()
-        .map(|(kind, next)| format!("\n{kind}: {next}"))
+        .map(|(kind, next)| {
+            let kind = words.problem_kind(*kind);
+            let next = match words.language {
+                Language::English => next.to_string(),
+                Language::Korean => words.advice(*next).to_owned(),
+            };
+            format!("\n{kind}: {next}")
+        })
         .collect();
     format!("{}\n{lines}", table.render())
 }

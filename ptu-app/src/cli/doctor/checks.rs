@@ -6,6 +6,7 @@ use fault_db::{Address, Store, StoreError};
 
 use super::Finding;
 use crate::cli::gui;
+use ptu_report::words::{Doctor, Words, fill};
 use ptu_runs::clock::{ClockState, local_minute as day, now_us};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
@@ -21,16 +22,17 @@ const NO_ROOM: u64 = 100 << 20;
 const AHEAD_US: i64 = 3_600_000_000;
 
 /// The scripts load, and own ones do not silently replace what came with the program.
-pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>) -> Vec<Finding> {
-    const SUBJECT: &str = "scripts";
-    let remedy = "correct the file, or move it away; `ptu run --check` shows all errors";
+pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>, words: &Words) -> Vec<Finding> {
+    let doctor = &words.doctor;
+    let subject = doctor.scripts;
+    let remedy = doctor.correct_script;
     let directory = match found {
         Ok(directory) => directory,
         Err(failure) => {
             return vec![Finding::wrong(
-                SUBJECT,
-                failure.to_string(),
-                "name another with --scripts",
+                subject,
+                words.told(&failure.message),
+                doctor.other_scripts,
             )];
         }
     };
@@ -41,219 +43,224 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>) -> Vec<Finding> 
         .and_then(|suite| directory.check_data().map(|data| (suite, data)));
     let first = match loaded {
         Ok((suite, data)) if suite.errors.is_empty() => Finding::ok(
-            SUBJECT,
-            format!(
-                "{} procedures and {data} data files: {}",
-                suite.procedures.len(),
-                places.join(", over ")
+            subject,
+            fill(
+                doctor.loaded,
+                &[
+                    ("n", &suite.procedures.len()),
+                    ("data", &data),
+                    ("places", &places.join(doctor.over)),
+                ],
             ),
         ),
-        Ok((suite, _)) => Finding::wrong(SUBJECT, suite.errors.join("; "), remedy),
-        Err(failure) => Finding::wrong(SUBJECT, failure.to_string(), remedy),
+        Ok((suite, _)) => Finding::wrong(subject, suite.errors.join("; "), remedy),
+        Err(failure) => Finding::wrong(subject, words.told(&failure.message), remedy),
     };
     let mut findings = vec![first];
     let replacing = directory.replacing().unwrap_or_default();
     if !replacing.is_empty() {
         findings.push(Finding::warning(
-            SUBJECT,
-            format!("in place of those of the program: {}", replacing.join(", ")),
-            "after an update of the program, compare them with its own; remove those that are no longer needed",
+            subject,
+            fill(doctor.replacing, &[("names", &replacing.join(", "))]),
+            doctor.compare_them,
         ));
     }
     findings
 }
 
 /// Serial ports can be opened.
-pub(super) fn ports() -> Vec<Finding> {
-    const SUBJECT: &str = "ports";
+pub(super) fn ports(words: &Words) -> Vec<Finding> {
+    let doctor = &words.doctor;
+    let subject = doctor.ports;
     let found = match ports::found() {
         Ok(found) => found,
         Err(failure) => {
             return vec![Finding::warning(
-                SUBJECT,
-                failure.to_string(),
-                "name a port with --unit serial:PATH",
+                subject,
+                words.told(&failure.message),
+                doctor.name_port,
             )];
         }
     };
     if found.is_empty() {
-        return vec![Finding::ok(
-            SUBJECT,
-            "none found; the simulated unit and units over TCP need none",
-        )];
+        return vec![Finding::ok(subject, doctor.no_port)];
     }
     let mut findings = Vec::new();
     for port in &found {
         findings.push(match ports::closed_to_user(&port.path) {
-            None => Finding::ok(SUBJECT, format!("{} ({})", port.path, port.kind)),
-            Some(group) => closed_port(&port.path, port.kind, group.as_deref()),
+            None => Finding::ok(subject, format!("{} ({})", port.path, port.kind)),
+            Some(group) => closed_port(&port.path, port.kind, group.as_deref(), doctor),
         });
     }
     if found.iter().any(|port| port.kind == "usb") && ports::is_probed_by_others() {
         findings.push(Finding::warning(
-            SUBJECT,
-            "ModemManager writes to serial adapters that are plugged in",
-            "install the rule of the package, 60-ptu.rules, or: sudo systemctl disable --now ModemManager",
+            subject,
+            doctor.probed,
+            doctor.stop_probing,
         ));
     }
     findings
 }
 
 /// A port that this user may not open, and the group whose members may, if there is one.
-fn closed_port(path: &str, kind: &str, group: Option<&str>) -> Finding {
+fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> Finding {
     // Who joins the group "root" may do more than open ports.
     let remedy = match group.filter(|group| *group != "root") {
-        Some(group) => format!("sudo usermod -aG {group} $USER, then log out and in again"),
-        None => {
-            "install the rule of the package, 60-ptu.rules; then: sudo usermod -aG dialout $USER, and log out and in \
-             again"
-                .into()
-        }
+        Some(group) => fill(doctor.join_group, &[("group", &group)]),
+        None => doctor.install_rule.into(),
     };
-    Finding::warning(
-        "ports",
-        format!("{path} ({kind}) may not be opened by this user"),
-        remedy,
-    )
+    let of = [("path", &path as _), ("kind", &kind as _)];
+    Finding::warning(doctor.ports, fill(doctor.port_closed, &of), remedy)
 }
 
 /// The window can open.
-pub(super) fn display() -> Finding {
-    const SUBJECT: &str = "display";
+pub(super) fn display(words: &Words) -> Finding {
+    let doctor = &words.doctor;
+    let subject = doctor.display;
     if !gui::window().is_file() {
-        return Finding::ok(SUBJECT, "the window is not installed");
+        return Finding::ok(subject, doctor.no_window);
     }
     let named = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     if cfg!(not(target_os = "linux")) {
-        return Finding::ok(SUBJECT, "the system's own");
+        return Finding::ok(subject, doctor.own_display);
     }
     match named("WAYLAND_DISPLAY").or(named("DISPLAY")) {
-        Some(display) => Finding::ok(SUBJECT, display),
-        None => Finding::warning(
-            SUBJECT,
-            "none: neither DISPLAY nor WAYLAND_DISPLAY is set",
-            "for the window, start `ptu` from a desktop; a bench without a screen needs none",
-        ),
+        Some(display) => Finding::ok(subject, display),
+        None => Finding::warning(subject, doctor.no_display, doctor.begin_at_desktop),
     }
 }
 
 /// The history can be read and written, and is not of the future.
-pub(super) fn database(file: &Path) -> Vec<Finding> {
-    const SUBJECT: &str = "database";
+pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
+    let doctor = &words.doctor;
+    let subject = doctor.database;
     let shown = file.display();
+    let of_file = |wording| fill(wording, &[("file", &shown)]);
     if !file.exists() {
         return vec![match in_writable_folder(file) {
-            true => Finding::ok(SUBJECT, format!("{shown} will be made by the first run")),
-            false => Finding::wrong(
-                SUBJECT,
-                format!("{shown} cannot be made: its folder may not be written to"),
-                "name another with --db, or ask for the right",
-            ),
+            true => Finding::ok(subject, of_file(doctor.will_be_made)),
+            false => Finding::wrong(subject, of_file(doctor.not_made), doctor.other_database),
         }];
     }
-    let remedy = "`ptu db check` says more; a backup is read with --db";
+    let remedy = doctor.check_database;
     let store = match Store::open_read_only(file) {
         Ok(store) => store,
         Err(StoreError::OlderSchema { .. }) => {
-            return vec![Finding::ok(
-                SUBJECT,
-                format!("{shown} is of an earlier version; the next run brings it up to date"),
+            return vec![Finding::ok(subject, of_file(doctor.older))];
+        }
+        Err(error) => {
+            return vec![Finding::wrong(
+                subject,
+                words.told(&Failure::from(error).message),
+                remedy,
             )];
         }
-        Err(error) => return vec![Finding::wrong(SUBJECT, error.to_string(), remedy)],
     };
     let mut findings = Vec::new();
     if std::fs::OpenOptions::new().append(true).open(file).is_err() {
         findings.push(Finding::wrong(
-            SUBJECT,
-            format!("{shown} can be read and not written: runs are not recorded"),
-            "ask for the right to write it, or name another with --db",
+            subject,
+            of_file(doctor.read_only),
+            doctor.other_database,
         ));
     }
     if let Some(told) = owner_only::told_if_shared(file) {
-        findings.push(Finding::warning(
-            SUBJECT,
-            told,
-            "keep it to yourself, or leave it if that is meant",
-        ));
+        findings.push(Finding::warning(subject, told, doctor.keep_to_yourself));
     }
     let newest = store.resolve_run("latest").and_then(|id| store.run(id));
     match newest {
         Ok(run) if run.run.started_at_us > now_us() + AHEAD_US => findings.push(Finding::warning(
-            "clock",
-            format!(
-                "the newest run is of {}, later than this computer's clock, {}",
-                day(run.run.started_at_us),
-                day(now_us())
+            doctor.clock,
+            fill(
+                doctor.later_run,
+                &[
+                    ("run", &day(run.run.started_at_us)),
+                    ("now", &day(now_us())),
+                ],
             ),
-            "set the clock: dates in the history come from it",
+            doctor.set_clock,
         )),
         Ok(run) => findings.push(Finding::ok(
-            SUBJECT,
-            format!("{shown}, newest run of {}", day(run.run.started_at_us)),
+            subject,
+            fill(
+                doctor.newest,
+                &[("file", &shown), ("run", &day(run.run.started_at_us))],
+            ),
         )),
         Err(StoreError::NotFound { .. }) => {
-            findings.push(Finding::ok(SUBJECT, format!("{shown}, without a run")));
+            findings.push(Finding::ok(subject, of_file(doctor.no_run)));
         }
-        Err(error) => findings.push(Finding::wrong(SUBJECT, error.to_string(), remedy)),
+        Err(error) => findings.push(Finding::wrong(
+            subject,
+            words.told(&Failure::from(error).message),
+            remedy,
+        )),
     }
     findings
 }
 
 /// There is room for runs.
-pub(super) fn disk(file: &Path) -> Finding {
-    const SUBJECT: &str = "disk";
+pub(super) fn disk(file: &Path, words: &Words) -> Finding {
+    let doctor = &words.doctor;
+    let subject = doctor.disk;
     let Some(folder) = nearest_folder(file) else {
-        return Finding::ok(SUBJECT, "not known yet");
+        return Finding::ok(subject, doctor.not_known);
     };
-    let remedy = "free some space, or name a database on another disk with --db";
+    let remedy = doctor.free_space;
     match fs4::available_space(folder) {
         Ok(free) => {
-            let found = format!("{} MiB free in {}", free >> 20, folder.display());
+            let found = fill(
+                doctor.room,
+                &[("n", &(free >> 20)), ("folder", &folder.display())],
+            );
             match free {
-                ..NO_ROOM => Finding::wrong(SUBJECT, found, remedy),
-                NO_ROOM..LITTLE_ROOM => Finding::warning(SUBJECT, found, remedy),
-                _ => Finding::ok(SUBJECT, found),
+                ..NO_ROOM => Finding::wrong(subject, found, remedy),
+                NO_ROOM..LITTLE_ROOM => Finding::warning(subject, found, remedy),
+                _ => Finding::ok(subject, found),
             }
         }
         Err(error) => Finding::warning(
-            SUBJECT,
-            format!("the room in {} is not told: {error}", folder.display()),
-            "look whether the disk is there",
+            subject,
+            fill(
+                doctor.room_unknown,
+                &[("folder", &folder.display()), ("why", &error)],
+            ),
+            doctor.look_for_disk,
         ),
     }
 }
 
 /// Others keep the clock right.
-pub(super) fn clock() -> Finding {
-    const SUBJECT: &str = "clock";
+pub(super) fn clock(words: &Words) -> Finding {
+    let doctor = &words.doctor;
+    let subject = doctor.clock;
     let today = day(now_us());
     match ClockState::now() {
-        ClockState::Synchronised => Finding::ok(SUBJECT, format!("{today}, set by the network")),
+        ClockState::Synchronised => {
+            Finding::ok(subject, fill(doctor.set_by_network, &[("now", &today)]))
+        }
         ClockState::NotSynchronised => Finding::warning(
-            SUBJECT,
-            format!("{today}, not set by the network since the computer was started"),
-            "connect to the network once, or compare it with a clock that is right",
+            subject,
+            fill(doctor.not_set, &[("now", &today)]),
+            doctor.connect_once,
         ),
-        ClockState::Unknown => Finding::ok(
-            SUBJECT,
-            format!("{today}; the system does not say whether it is set by the network"),
-        ),
+        ClockState::Unknown => Finding::ok(subject, fill(doctor.clock_unknown, &[("now", &today)])),
     }
 }
 
 /// The server answers, if there is one.
-pub(super) fn server(server: Option<&Address>) -> Finding {
-    const SUBJECT: &str = "server";
+pub(super) fn server(server: Option<&Address>, words: &Words) -> Finding {
+    let doctor = &words.doctor;
+    let subject = doctor.server;
     let Some(server) = server else {
-        return Finding::ok(SUBJECT, "none named; with --server it is tried");
+        return Finding::ok(subject, doctor.no_server);
     };
     match Store::connect_read_only(server) {
-        Ok(_) => Finding::ok(SUBJECT, format!("{server} answers")),
+        Ok(_) => Finding::ok(subject, fill(doctor.answers, &[("server", server)])),
         Err(error) => Finding::warning(
-            SUBJECT,
-            error.to_string(),
-            "runs are recorded here all the same; sync them when it answers",
+            subject,
+            words.told(&Failure::from(error).message),
+            doctor.recorded_here,
         ),
     }
 }
@@ -277,6 +284,7 @@ fn in_writable_folder(file: &Path) -> bool {
 mod tests {
     use super::*;
     use crate::cli::doctor::State;
+    use ptu_report::words::Language;
 
     #[test]
     fn a_closed_port_is_a_warning_that_says_how_to_open_it() {
@@ -294,7 +302,12 @@ mod tests {
                 "sudo usermod -aG dialout $USER, and log out and in again",
             ),
         ] {
-            let finding = closed_port("/dev/ttyUSB0", "usb", group);
+            let finding = closed_port(
+                "/dev/ttyUSB0",
+                "usb",
+                group,
+                &Language::English.words().doctor,
+            );
             assert_eq!(finding.state, State::Warning);
             let said = finding.remedy.unwrap_or_default();
             assert!(said.ends_with(remedy), "{group:?}: {said}");

@@ -7,7 +7,9 @@ use fault_db::Address;
 use serde::Serialize;
 
 use super::{Database, Json, ScriptsOption, answered};
+use ptu_report::words::{Doctor, Language};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::table::padded;
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
 ///
@@ -47,11 +49,11 @@ enum State {
 }
 
 impl State {
-    const fn word(self) -> &'static str {
+    fn word(self, doctor: &Doctor) -> &'static str {
         match self {
-            Self::Ok => "ok",
-            Self::Warning => "warning",
-            Self::Wrong => "WRONG",
+            Self::Ok => doctor.ok,
+            Self::Warning => doctor.warning,
+            Self::Wrong => doctor.wrong,
         }
     }
 }
@@ -92,13 +94,9 @@ impl Finding {
         }
     }
 
-    fn line(&self) -> String {
-        let mut text = format!(
-            "{:<8} {:<9} {}",
-            self.state.word(),
-            self.subject,
-            self.found
-        );
+    fn line(&self, doctor: &Doctor) -> String {
+        let state = padded(self.state.word(doctor), 8);
+        let mut text = format!("{state} {} {}", padded(self.subject, 9), self.found);
         if let Some(remedy) = &self.remedy {
             text.push_str(&format!("\n{:18} → {remedy}", ""));
         }
@@ -109,29 +107,36 @@ impl Finding {
 impl DoctorArguments {
     /// Looks at all and tells.
     pub fn run(self) -> Result<Exit, Failure> {
-        let mut findings = checks::scripts(self.scripts.find());
-        findings.extend(checks::ports());
-        findings.push(checks::display());
+        // Other programs read English.
+        let language = match self.json.is_asked() {
+            true => Language::English,
+            false => Language::shown(),
+        };
+        let words = language.words();
+        let mut findings = checks::scripts(self.scripts.find(), words);
+        findings.extend(checks::ports(words));
+        findings.push(checks::display(words));
         let file = self
             .database
             .server()?
             .is_none()
             .then(|| self.database.file());
         if let Some(file) = file.transpose()? {
-            findings.extend(checks::database(&file));
-            findings.push(checks::disk(&file));
+            findings.extend(checks::database(&file, words));
+            findings.push(checks::disk(&file, words));
         }
-        findings.push(checks::clock());
+        findings.push(checks::clock(words));
         let server = match self.server {
             Some(server) => Some(server),
             None => self.database.server()?,
         };
-        findings.push(checks::server(server.as_ref()));
+        findings.push(checks::server(server.as_ref(), words));
         let exit = match findings.iter().any(|found| found.state == State::Wrong) {
             true => Exit::Failed,
             false => Exit::Passed,
         };
-        let lines = || findings.iter().map(Finding::line).collect::<Vec<_>>();
+        let lines = findings.iter().map(|found| found.line(&words.doctor));
+        let lines = || lines.collect::<Vec<_>>();
         let told = self.json.answer(|| &findings, || lines().join("\n"));
         answered(told, exit)
     }

@@ -5,6 +5,7 @@ use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
 
 use super::part;
 use crate::cli::{ScriptsOption, print_out};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::{Asked, Exit, Failure};
 
@@ -145,10 +146,12 @@ impl CauseArguments {
             ..CauseRecord::default()
         };
         store.set_cause(id, &cause, self.who.trim(), now_us())?;
-        print_out(&match part.as_str() {
-            "" => format!("fault {} stands alone", id.short()),
-            part => format!("fault {} comes from {part}", id.short()),
-        })
+        let terminal = &Words::shown().terminal;
+        let said = match part.as_str() {
+            "" => terminal.stands_alone,
+            _ => terminal.comes_from,
+        };
+        print_out(&fill(said, &[("fault", &id.short()), ("part", &part)]))
     }
 }
 
@@ -160,20 +163,30 @@ impl NoteArguments {
         }
         let id = store.resolve_fault(&self.id)?;
         store.add_note(id, self.who.trim(), text, now_us())?;
-        print_out(&format!("noted on fault {}", id.short()))
+        let said = Words::shown().terminal.noted_on_fault;
+        print_out(&fill(said, &[("fault", &id.short())]))
     }
 }
 
 fn is_now(fault: &str, state: FaultState) -> String {
-    format!("fault {fault} is {}", state.as_str())
+    let words = Words::shown();
+    let state = words.state_name(state);
+    fill(
+        words.terminal.is_now,
+        &[("fault", &fault), ("state", &state)],
+    )
 }
 
 /// The fault that was named, and what was settled with it.
 pub fn changed((named, rest): &(ChangedFault, Vec<ChangedFault>)) -> String {
     let mut text = is_now(&named.id.short(), named.state);
     for fault in rest {
-        let (id, name) = (fault.id.short(), &fault.code_name);
-        text += &format!("\n  and {id} of the same case, {name} {}", fault.lru);
+        let of = [
+            ("fault", &fault.id.short() as _),
+            ("part", &fault.lru as _),
+            ("name", &fault.code_name as _),
+        ];
+        text += &format!("\n  {}", fill(Words::shown().terminal.of_case, &of));
     }
     text
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::cli::unit_option::UnitOption;
 use crate::cli::{Json, ScriptsOption, since_argument};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{local, rfc3339};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::field::{ImportedLog, UnitReading};
@@ -102,70 +103,59 @@ impl Outcome {
     }
 
     fn text(&self) -> String {
-        let mut lines = vec![format!(
-            "unit {} on {}, {} log entries read",
-            self.reading.source.serial,
-            self.reading.source.endpoint,
-            self.reading.read.entries.len()
-        )];
+        let words = Words::shown();
+        let counts = &words.counts;
+        let n = self.reading.read.entries.len();
+        let mut lines = vec![read_of(&self.reading, counts.log_read, n)];
         if self.reading.read.not_kept > 0 {
-            lines.push(format!(
-                "and {} more entries, not stored",
-                self.reading.read.not_kept
-            ));
+            let more = self.reading.read.not_kept;
+            lines.push(fill(counts.not_kept, &[("n", &more)]));
         }
         match self.log.imported.run {
             Some(run) => {
-                lines.push(format!(
-                    "{} faults imported as run {}; `ptu diagnose {}` says what they come to",
-                    self.log.imported.new.len(),
-                    run.short(),
-                    run.short()
-                ));
-                lines.push(format!("\n{}\n", table(&self.log.imported.new)));
+                let n = self.log.imported.new.len();
+                let of = [("n", &n as _), ("run", &run.short() as _)];
+                lines.push(fill(counts.imported, &of));
+                lines.push(format!("\n{}\n", table(&self.log.imported.new, words)));
             }
-            None => lines.push("nothing new".to_owned()),
+            None => lines.push(counts.nothing_new.to_owned()),
         }
         let left_out = self.log.judged.left_out;
         let reasons = [
-            (self.log.imported.known as u32, "known already"),
-            (left_out.information, "information only"),
-            (left_out.too_old, "before the time asked for"),
-            (
-                left_out.under_test,
-                "of runs in this history, which judged them",
-            ),
-            (
-                left_out.tester,
-                "of a tester: made while it had the unit armed, or its own line",
-            ),
-            (left_out.alone, "silence of a unit with nothing connected"),
-            (
-                left_out.line,
-                "of a bad line: frames of several partners refused at once, and their silence",
-            ),
+            (self.log.imported.known as u32, counts.known_already),
+            (left_out.information, counts.information),
+            (left_out.too_old, counts.too_old),
+            (left_out.under_test, counts.under_test),
+            (left_out.tester, counts.of_tester),
+            (left_out.alone, counts.alone),
+            (left_out.line, counts.bad_line),
         ];
         let told = reasons.iter().filter(|(count, _)| *count > 0);
-        lines.extend(told.map(|(count, reason)| format!("left out: {count} {reason}")));
-        lines.extend(
-            self.reading
-                .warnings
-                .iter()
-                .map(|warning| format!("note: {warning}")),
-        );
+        lines.extend(told.map(|(n, why)| fill(counts.left_out, &[("n", n), ("why", why)])));
+        let warnings = self.reading.warnings.iter();
+        lines.extend(warnings.map(|text| fill(counts.remark, &[("text", text)])));
         lines.join("\n")
     }
 }
 
-fn table(faults: &[FaultRecord]) -> String {
-    let mut table = Table::new(&["DATE", "CODE", "PART", "SEVERITY", "WHAT"]).parts([2]);
+/// How many entries or rows were read of which unit.
+pub fn read_of(reading: &UnitReading, wording: &str, n: usize) -> String {
+    let (unit, place) = (&reading.source.serial, &reading.source.endpoint);
+    fill(wording, &[("unit", unit), ("place", place), ("n", &n)])
+}
+
+fn table(faults: &[FaultRecord], words: &Words) -> String {
+    let common = &words.common;
+    let (date, what) = (words.report.date, words.report.what);
+    let mut table =
+        Table::headed(&[date, common.code, common.part, common.severity, what]).parts([2]);
     for fault in faults {
         table.row([
             local(fault.at_us),
             format!("{} {}", fault.code, fault.code_name),
             fault.lru.clone(),
-            fault.severity.clone(),
-            fault.message.clone(),
+            words.severity_name(&fault.severity).to_owned(),
+            words.found(&fault.findings, &fault.message).into_owned(),
         ]);
     }
     table.render()

@@ -7,7 +7,7 @@ use protocol::display_text::line;
 use crate::cli::{Json, ScriptsOption, at_least_one, print_json, print_out};
 use ptu_report::life;
 use ptu_report::naming::PartNames;
-use ptu_report::words::{Language, Words, fill};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local;
 use ptu_runs::failure::{Asked, Exit, Failure, did_you_mean_number};
 use ptu_runs::table::Table;
@@ -27,9 +27,6 @@ pub struct LifeArguments {
     limit: u32,
     #[command(flatten)]
     json: Json,
-    /// Language: en or ko
-    #[arg(long, value_name = "LANGUAGE", default_value = "en")]
-    lang: Language,
     #[command(flatten)]
     scripts: ScriptsOption,
 }
@@ -49,12 +46,12 @@ impl LifeArguments {
     }
 
     fn told(&self, told: &Life, parts: &PartNames) -> String {
-        let words = self.lang.words();
+        let words = Words::shown();
         let mut text = format!("{}\n", line(&life::title(told, words)));
         if !told.stays.is_empty() {
             let of = words.life.stays(told.of);
-            let mut stays =
-                table(&[of, words.life.from, words.life.until, words.life.runs]).right([3]);
+            let headings = [of, words.life.from, words.life.until, words.life.runs];
+            let mut stays = Table::headed(&headings).right([3]);
             for stay in &told.stays {
                 stays.row(life::stay(told.of, stay, words, parts));
             }
@@ -80,15 +77,10 @@ impl LifeArguments {
 }
 
 fn events(told: &Life, earlier: usize, words: &Words, parts: &PartNames) -> String {
-    let mut rows = table(&[words.faults.at, words.common.unit, words.life.what]);
+    let mut rows = Table::headed(&[words.faults.at, words.common.unit, words.life.what]);
     for entry in &told.events[earlier..] {
         let what = life::happened(entry, words, parts);
         rows.row([local(entry.at_us), entry.unit.clone(), what]);
     }
     rows.render()
-}
-
-fn table(headings: &[&str]) -> Table {
-    let headings: Vec<_> = headings.iter().map(|name| name.to_uppercase()).collect();
-    Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>())
 }

@@ -6,6 +6,7 @@ use fault_db::{FaultFilter, FaultSummary, Store};
 use super::filter::FilterArguments;
 use crate::cli::output::Output;
 use crate::cli::{at_least_one, print_out};
+use ptu_report::words::{Words, fill};
 use ptu_report::{FAULT_KEYS, fault_json};
 use ptu_runs::clock::local;
 use ptu_runs::failure::{Exit, Failure};
@@ -49,34 +50,36 @@ impl ListArguments {
             }
         }
         if more && !self.output.is_table() {
-            stdio::note(&format!("only the first {}; see --limit", self.limit));
+            let said = Words::shown().terminal.first_n;
+            stdio::note(&fill(said, &[("n", &self.limit)]));
         }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
         self.output.print(&FAULT_KEYS, &rows, || {
-            let more = if more {
-                "\n… and more; see --limit"
-            } else {
-                ""
-            };
-            format!("{}{more}", table(&faults))
+            let table = table(&faults);
+            match more {
+                true => format!("{table}\n{}", Words::shown().terminal.and_more),
+                false => table,
+            }
         })
     }
 }
 
 fn table(faults: &[FaultSummary]) -> String {
+    let words = Words::shown();
+    let (common, terminal) = (&words.common, &words.terminal);
     let headings = [
-        "FAULT",
-        "LAST SEEN",
-        "UNIT",
-        "CODE",
-        "PART",
-        "CAUSE",
-        "SEVERITY",
-        "STATE",
-        "SEEN",
-        "TRACE",
+        common.fault,
+        terminal.last_seen,
+        common.unit,
+        common.code,
+        common.part,
+        words.faults.cause,
+        common.severity,
+        common.state,
+        terminal.seen,
+        terminal.trace,
     ];
-    let mut table = Table::new(&headings).right([8]).parts([4, 5]);
+    let mut table = Table::headed(&headings).right([8]).parts([4, 5]);
     for fault in faults {
         table.row([
             fault.id.short(),
@@ -85,8 +88,8 @@ fn table(faults: &[FaultSummary]) -> String {
             format!("{} {}", fault.code, fault.code_name),
             fault.lru.clone(),
             fault.cause().to_owned(),
-            fault.severity.clone(),
-            fault.state.as_str().into(),
+            words.severity_name(&fault.severity).to_owned(),
+            words.state_name(fault.state).to_owned(),
             fault.occurrences.to_string(),
             fault.trace_id.map_or_else(String::new, |id| id.short()),
         ]);

@@ -3,6 +3,7 @@
 use fault_db::Store;
 
 use crate::cli::ScriptsOption;
+use ptu_report::words::{Words, fill};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Asked, Failure, did_you_mean};
 use ptu_runs::stdio;
@@ -34,9 +35,8 @@ pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     }
     let hint = did_you_mean(asked, known.iter().map(String::as_str));
     if hint.0.is_some() {
-        stdio::note(&format!(
-            "no part \"{asked}\" is known{hint}; recorded as it is"
-        ));
+        let of = [("part", &asked as _), ("near", &hint as _)];
+        stdio::note(&fill(Words::shown().terminal.other_part, &of));
     }
     Ok(asked.trim().to_owned())
 }

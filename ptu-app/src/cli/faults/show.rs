@@ -15,14 +15,9 @@ use ptu_runs::table::Table;
 
 /// Shows the fault an id stands for. Parts and signals go by their names where another language than English is wanted,
 /// and else by what they are called in commands and scripts.
-pub fn show(
-    store: &Store,
-    id: &str,
-    json: Json,
-    named: (&Words, &PartNames),
-) -> Result<Exit, Failure> {
+pub fn show(store: &Store, id: &str, json: Json, names: &PartNames) -> Result<Exit, Failure> {
     let fault = store.fault(store.resolve_fault(id)?)?;
-    json.answer(|| detail_json(&fault), || detail(&fault, named))
+    json.answer(|| detail_json(&fault), || detail(&fault, names))
 }
 
 fn detail_json(detail: &FaultDetail) -> Value {
@@ -57,15 +52,12 @@ fn event_json(event: &FaultEvent) -> Value {
     value
 }
 
-fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String {
+fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
+    let words = Words::shown();
     let (common, faults) = (&words.common, &words.faults);
     let part = |id: &str| match words.language {
         Language::English => line(id).into_owned(),
         Language::Korean => line(parts.name(id, words.language)).into_owned(),
-    };
-    let table = |headings: &[&str]| {
-        let headings: Vec<_> = headings.iter().map(|name| name.to_uppercase()).collect();
-        Table::new(&headings.iter().map(String::as_str).collect::<Vec<_>>())
     };
     let fault = &detail.fault;
     let mut text = format!(
@@ -97,7 +89,7 @@ fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String 
             common.fault_state(other.state),
         ));
     }
-    let mut seen_in = table(&[
+    let mut seen_in = Table::headed(&[
         faults.seen_at,
         common.run,
         words.report.trace,
@@ -125,7 +117,7 @@ fn detail(detail: &FaultDetail, (words, parts): (&Words, &PartNames)) -> String 
             freeze_frame(&last.freeze, words)
         ));
     }
-    let mut done = table(&[faults.at, faults.event, faults.who, common.note]);
+    let mut done = Table::headed(&[faults.at, faults.event, faults.who, common.note]);
     for event in detail.history() {
         let repair = event.repair.as_ref();
         let repair = repair.map_or_else(String::new, |repair| repair_text(repair, part));
@@ -164,8 +156,7 @@ fn times(fault: &FaultSummary, words: &Words) -> String {
 }
 
 fn freeze_frame(samples: &[FreezeSample], words: &Words) -> String {
-    let headings = [words.traces.signal, words.common.value].map(str::to_uppercase);
-    let mut table = Table::new(&headings.each_ref().map(String::as_str));
+    let mut table = Table::headed(&[words.traces.signal, words.common.value]);
     for sample in samples {
         let value = match (&sample.label, sample.value) {
             (Some(label), _) => words.state(&sample.name, label).into_owned(),

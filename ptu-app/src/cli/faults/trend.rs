@@ -11,6 +11,7 @@ use super::{trend_plot, trend_text};
 use crate::cli::output::Output;
 use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
+use ptu_report::words::Words;
 use ptu_runs::clock::{Span, rfc3339, utc_day};
 use ptu_runs::data;
 use ptu_runs::failure::{Asked, Exit, Failure, Near, OfUnit, did_you_mean};
@@ -160,7 +161,7 @@ impl TrendArguments {
                 return Ok(Asked::MeasuredFrom(
                     name,
                     unit,
-                    span.to_string(),
+                    Words::shown().span(span),
                     utc_day(first.day_us).to_string(),
                     utc_day(last.day_us).to_string(),
                 ));

@@ -6,7 +6,9 @@ use fault_db::{TrendDay, TrendPoint, TrendStep, TrendUnit};
 use crate::sparkline::sparkline_of;
 use ptu_report::limits::short;
 use ptu_report::trend::{TimeSeries, Trend};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{local, utc_month};
+use ptu_runs::stored::from_stored;
 use ptu_runs::table::Table;
 
 /// Days of a month, for slopes.
@@ -20,32 +22,33 @@ const STANDS_OUT: f64 = 3.0;
 
 /// All of it.
 pub fn text(trend: &Trend, limit: usize) -> String {
+    let counts = &Words::shown().counts;
     let unit = &trend.limits.unit;
     let mut text = match &trend.course {
         TimeSeries::Points(points) => points_table(points, unit, limit),
         TimeSeries::Days(days, _) => months_table(days, limit),
     };
     let Some(process) = &trend.process else {
-        return text + "\nno value could be measured";
+        return format!("{text}\n{}", counts.nothing_measured);
     };
     text += &format!("\n\n{}", process_text(trend, process));
     if let TimeSeries::Days(_, units) = &trend.course {
         text += &outstanding(units, limit);
     }
     if trend.procedures.len() > 1 && trend.query.procedure.is_none() {
-        text += &format!(
-            "\nmeasured by {}, each with limits of its own: choose one with --procedure",
-            trend.procedures.join(", ")
-        );
+        let names = trend.procedures.join(", ");
+        text += &format!("\n{}", fill(counts.by_several, &[("names", &names)]));
     } else if trend.limits_differ() {
-        text += "\nmeasured with several limits: choose a step with --step\n";
+        text += &format!("\n{}\n", counts.several_limits);
         text += &steps_table(&trend.steps, &trend.limits.unit);
     }
     text
 }
 
 fn steps_table(steps: &[TrendStep], unit: &str) -> String {
-    let mut table = Table::new(&["PROCEDURE", "STEP", "LOW", "HIGH"])
+    let words = Words::shown();
+    let common = &words.common;
+    let mut table = Table::headed(&[common.procedure, common.step, common.low, common.high])
         .right([2, 3])
         .limits([2, 3]);
     let limit = |value: Option<f64>| {
@@ -54,7 +57,7 @@ fn steps_table(steps: &[TrendStep], unit: &str) -> String {
     for step in steps {
         table.row([
             step.procedure.clone(),
-            step.step.clone(),
+            words.content(&step.step).into_owned(),
             limit(step.low),
             limit(step.high),
         ]);
@@ -64,7 +67,17 @@ fn steps_table(steps: &[TrendStep], unit: &str) -> String {
 
 fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
     let last = &points[points.len().saturating_sub(limit)..];
-    let mut table = Table::new(&["AT", "VALUE", "LOW", "HIGH", "VERDICT", "RUN"])
+    let words = Words::shown();
+    let common = &words.common;
+    let headings = [
+        words.faults.at,
+        common.value,
+        common.low,
+        common.high,
+        common.verdict,
+        common.run,
+    ];
+    let mut table = Table::headed(&headings)
         .right([1, 2, 3])
         .limits([2, 3])
         .verdicts(4);
@@ -75,7 +88,7 @@ fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
             format!("{} {unit}", number(point.value)),
             number(point.low),
             number(point.high),
-            point.verdict.as_str().into(),
+            words.verdict_name(from_stored(point.verdict)).to_owned(),
             point.run_id.short(),
         ]);
     }
@@ -83,7 +96,7 @@ fn points_table(points: &[TrendPoint], unit: &str, limit: usize) -> String {
     let earlier = points.len() - last.len();
     let more = match earlier {
         0 => String::new(),
-        n => format!("… {n} earlier values; see --limit\n"),
+        n => fill(words.counts.earlier_values, &[("n", &n)]) + "\n",
     };
     format!("{more}{}\n\n{}", table.render(), bars(&values))
 }
@@ -92,8 +105,17 @@ fn months_table(days: &[TrendDay], limit: usize) -> String {
     let month = |day: &TrendDay| utc_month(day.day_us);
     let months: Vec<_> = days.chunk_by(|a, b| month(a) == month(b)).collect();
     let last = &months[months.len().saturating_sub(limit)..];
-    let mut table =
-        Table::new(&["MONTH", "VALUES", "MEAN", "LEAST", "MOST", "NOT PASSED"]).right(1..6);
+    let words = Words::shown();
+    let (terminal, counts) = (&words.terminal, &words.counts);
+    let headings = [
+        counts.month,
+        terminal.values,
+        terminal.mean,
+        counts.least,
+        counts.most,
+        counts.not_passed,
+    ];
+    let mut table = Table::headed(&headings).right(1..6);
     for days in last {
         let n: u32 = days.iter().map(|day| day.n).sum();
         table.row([
@@ -142,23 +164,24 @@ fn process_text(trend: &Trend, process: &Process) -> String {
     let (limits, unit) = (&trend.limits, &trend.limits.unit);
     let day_name = trend.course.day_name();
     let value = |value: f64| format!("{} {unit}", short(value));
-    let mut lines = vec![format!(
-        "{} values, mean {}{}",
-        process.n,
-        value(process.mean),
-        process
-            .sigma
-            .map_or_else(String::new, |sigma| format!(", sigma {}", value(sigma))),
-    )];
+    let counts = &Words::shown().counts;
+    let range = |wording, low: f64, high: f64| {
+        fill(wording, &[("low", &short(low)), ("high", &value(high))])
+    };
+    let of = [("n", &process.n as _), ("mean", &value(process.mean) as _)];
+    let sigma = process.sigma.map_or_else(String::new, |sigma| {
+        fill(counts.sigma, &[("sigma", &value(sigma))])
+    });
+    let mut lines = vec![fill(counts.n_values, &of) + &sigma];
     if let Some((low, high)) = process.control {
-        lines.push(format!("control limits {} .. {}", short(low), value(high)));
+        lines.push(range(counts.control, low, high));
     }
     let allowed = match (limits.low, limits.high) {
-        (Some(low), Some(high)) => format!("allowed {} .. {}", short(low), value(high)),
-        (Some(low), None) => format!("allowed from {}", value(low)),
-        (None, Some(high)) => format!("allowed up to {}", value(high)),
-        (None, None) if trend.limits_differ() => "limits differ from step to step".to_owned(),
-        (None, None) => "no limits".to_owned(),
+        (Some(low), Some(high)) => range(counts.allowed, low, high),
+        (Some(low), None) => fill(counts.allowed_from, &[("low", &value(low))]),
+        (None, Some(high)) => fill(counts.allowed_to, &[("high", &value(high))]),
+        (None, None) if trend.limits_differ() => counts.limits_differ.to_owned(),
+        (None, None) => counts.no_limits.to_owned(),
     };
     let fit = process.capability(limits.low, limits.high).map(|fit| {
         let cp = fit
@@ -170,23 +193,30 @@ fn process_text(trend: &Trend, process: &Process) -> String {
     if let Some(line) = &process.line {
         let certain = match line.is_certain() {
             true => "",
-            false => ": no drift for certain",
+            false => counts.no_drift,
         };
-        lines.push(format!(
-            "slope {} ± {} {unit} in 30 days{certain}",
-            signed(line.slope_per_day * MONTH_DAYS),
-            two_digits(line.slope_reach() * MONTH_DAYS),
+        lines.push(fill(
+            counts.slope,
+            &[
+                ("slope", &signed(line.slope_per_day * MONTH_DAYS)),
+                ("reach", &two_digits(line.slope_reach() * MONTH_DAYS)),
+                ("unit", unit),
+                ("certain", &certain),
+            ],
         ));
     }
     if let Some(forecast) = process.forecast(limits.low, limits.high) {
         let latest = forecast
             .latest_us
-            .map_or_else(|| "never".to_owned(), day_name);
-        lines.push(format!(
-            "reaches {} about {} (95 %: {} .. {latest})",
-            value(forecast.limit),
-            day_name(forecast.at_us),
-            day_name(forecast.earliest_us),
+            .map_or_else(|| counts.never.to_owned(), day_name);
+        lines.push(fill(
+            counts.reaches,
+            &[
+                ("limit", &value(forecast.limit)),
+                ("day", &day_name(forecast.at_us)),
+                ("from", &day_name(forecast.earliest_us)),
+                ("until", &latest),
+            ],
         ));
     }
     lines.extend(process.signs.iter().map(|found| sign(found, day_name)));
@@ -194,23 +224,26 @@ fn process_text(trend: &Trend, process: &Process) -> String {
 }
 
 fn sign(sign: &Sign, day_name: fn(i64) -> String) -> String {
-    let what = match sign.kind {
-        "beyond_control" => "beyond a control limit",
-        "nine_on_one_side" => "nine in a row on one side of the mean",
-        _ => "six in a row each beyond the one before",
-    };
+    let counts = &Words::shown().counts;
+    let first = day_name(sign.first_at_us);
     let times = match sign.times {
-        1 => "once".to_owned(),
-        n => format!("{n} times, first {}", day_name(sign.first_at_us)),
+        1 => counts.once.to_owned(),
+        n => fill(counts.several, &[("n", &n), ("day", &first)]),
     };
-    format!(
-        "more than chance: {what}, {times}, last {}",
-        day_name(sign.last_at_us)
+    fill(
+        counts.more_than_chance,
+        &[
+            ("what", &counts.sign(sign.kind)),
+            ("times", &times),
+            ("day", &day_name(sign.last_at_us)),
+        ],
     )
 }
 
 /// Units that lie, or drift, otherwise than the fleet, the farthest first.
 fn outstanding(units: &[TrendUnit], limit: usize) -> String {
+    let words = Words::shown();
+    let counts = &words.counts;
     let means = units.iter().map(|unit| unit.mean).collect();
     let Some(mean) = Spread::of(means) else {
         return String::new();
@@ -227,10 +260,19 @@ fn outstanding(units: &[TrendUnit], limit: usize) -> String {
         .collect();
     far.sort_by(|a, b| off(b).total_cmp(&off(a)));
     if far.is_empty() {
-        return format!("\nno unit of {} stands out", units.len());
+        let said = fill(counts.none_stands_out, &[("n", &units.len())]);
+        return format!("\n{said}");
     }
-    let headings = ["UNIT", "VALUES", "MEAN", "OFF", "IN 30 DAYS", "OFF"];
-    let mut table = Table::new(&headings).right(1..6);
+    let (unit, terminal) = (words.common.unit, &words.terminal);
+    let headings = [
+        unit,
+        terminal.values,
+        terminal.mean,
+        counts.off,
+        counts.in_30_days,
+        counts.off,
+    ];
+    let mut table = Table::headed(&headings).right(1..6);
     for unit in far.iter().take(limit) {
         let slope = unit.slope_per_day.map(|slope| signed(slope * MONTH_DAYS));
         table.row([
@@ -242,12 +284,9 @@ fn outstanding(units: &[TrendUnit], limit: usize) -> String {
             format!("{:+.1}", drift(unit)),
         ]);
     }
-    format!(
-        "\n\n{} of {} units stand out (OFF: standard deviations from the middle of the fleet)\n{}",
-        far.len(),
-        units.len(),
-        table.render()
-    )
+    let of = [("n", &far.len() as _), ("of", &units.len() as _)];
+    let said = fill(counts.stand_out, &of);
+    format!("\n\n{said}\n{}", table.render())
 }
 
 /// How units scatter: from their middle half, so that a few bad ones do not hide themselves.

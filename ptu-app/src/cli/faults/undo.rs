@@ -6,6 +6,7 @@ use fault_db::{Store, ToWithdraw};
 use super::change::changed;
 use crate::cli::print_out;
 use protocol::display_text::line;
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{local, now_us};
 use ptu_runs::failure::{Exit, Failure};
 
@@ -37,18 +38,22 @@ impl UndoArguments {
             ..ToWithdraw::default()
         };
         let withdrawn = store.withdraw(id, what, self.who.trim(), self.note.trim(), now_us())?;
+        let words = Words::shown();
         let by = match &*withdrawn.who {
             "" => String::new(),
-            who => format!(" by {}", line(who)),
+            who => fill(words.counts.by_whom, &[("who", &line(who))]),
         };
-        let (kind, at) = (&withdrawn.kind, local(withdrawn.at_us));
+        let kind = words.faults.event_kind(&withdrawn.kind);
+        let of = [
+            ("kind", &kind as _),
+            ("at", &local(withdrawn.at_us) as _),
+            ("by", &by as _),
+        ];
+        let head = fill(words.counts.withdrawn, &of);
         let mut faults = withdrawn.faults.into_iter();
         let said = faults
             .next()
             .map(|named| changed(&(named, faults.collect())));
-        print_out(&format!(
-            "withdrawn: {kind} of {at}{by}\n{}",
-            said.unwrap_or_default()
-        ))
+        print_out(&format!("{head}\n{}", said.unwrap_or_default()))
     }
 }

@@ -8,7 +8,7 @@ use clap_mangen::Man;
 /// What a verb ends with whose help says no more.
 const EXITS: &str = "0 done or passed, 1 a check failed, 2 wrong command or script, 3 bench, link or database, 130 stopped";
 /// An option, the variable that stands for it, and what the variable holds.
-const VARIABLES: [[&str; 3]; 10] = [
+const VARIABLES: [[&str; 3]; 11] = [
     ["db", "PTU_DB", "The history, in place of --db"],
     [
         "scripts",
@@ -38,10 +38,15 @@ const VARIABLES: [[&str; 3]; 10] = [
         "CLICOLOR_FORCE",
         "Not 0: colours also where no terminal is",
     ],
+    [
+        "lang",
+        "LC_ALL, LC_MESSAGES, LANG",
+        "Locale; answers are in Korean where it begins with ko",
+    ],
     ["no-pager", "PAGER", "Pager of long answers [default: less]"],
 ];
 /// An option, the files that are used without it, and what they are.
-const FILES: [[&str; 3]; 4] = [
+const FILES: [[&str; 3]; 5] = [
     ["db", "~/.local/share/ptu/history.db", "The user's history"],
     [
         "scripts",
@@ -54,6 +59,11 @@ const FILES: [[&str; 3]; 4] = [
         "The user's keys, and the list of those that are trusted",
     ],
     ["save", "~/.config/ptu/questions.json", "Saved questions"],
+    [
+        "lang",
+        "~/.config/ptu/config.toml, /etc/ptu/config.toml",
+        "Defaults of options: of the user, of the depot; each before the next",
+    ],
 ];
 
 /// The page.

@@ -4,8 +4,10 @@ use clap::Args;
 use fault_db::Store;
 use serde_json::{Value, json};
 
+use crate::cli::faults::read_of;
 use crate::cli::unit_option::UnitOption;
 use crate::cli::{Json, ScriptsOption};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::rfc3339;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::field::UnitReading;
@@ -79,18 +81,15 @@ fn text(reading: &UnitReading, pulled: &Pulled) -> String {
         .stored
         .as_ref()
         .map_or(0, |stored| stored.rows.len());
-    let mut lines = vec![format!(
-        "unit {} on {}, {rows} rows of its run record read",
-        reading.source.serial, reading.source.endpoint
-    )];
-    match pulled.run {
-        Some(run) => lines.push(format!(
-            "{} runs pulled as traces of run {}",
-            pulled.new.len(),
-            run.short()
-        )),
-        None => lines.push("nothing new".to_owned()),
-    }
+    let counts = &Words::shown().counts;
+    let mut lines = vec![read_of(reading, counts.record_read, rows)];
+    lines.push(match pulled.run {
+        Some(run) => {
+            let n = pulled.new.len();
+            fill(counts.pulled, &[("n", &n), ("run", &run.short())])
+        }
+        None => counts.nothing_new.to_owned(),
+    });
     lines.extend(
         pulled
             .new
@@ -98,13 +97,13 @@ fn text(reading: &UnitReading, pulled: &Pulled) -> String {
             .map(|run| format!("  {}  {}: {}", run.id.short(), run.name(), run.summary())),
     );
     if pulled.known > 0 {
-        lines.push(format!("left out: {} known already", pulled.known));
+        let of = [
+            ("n", &pulled.known as _),
+            ("why", &counts.known_already as _),
+        ];
+        lines.push(fill(counts.left_out, &of));
     }
-    lines.extend(
-        reading
-            .warnings
-            .iter()
-            .map(|warning| format!("note: {warning}")),
-    );
+    let warnings = reading.warnings.iter();
+    lines.extend(warnings.map(|text| fill(counts.remark, &[("text", text)])));
     lines.join("\n")
 }

@@ -6,6 +6,7 @@ use btu_rig::procedure::{Procedure, PromptPolicy, RunOptions};
 use glob::Pattern;
 
 use super::RunArguments;
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Asked, Failure, RunTrouble, Unknown, did_you_mean};
 use ptu_runs::run::{Task, select};
 use ptu_runs::stdio;
@@ -21,7 +22,8 @@ impl RunArguments {
             procedures = run;
             let names: Vec<_> = left_out.iter().map(|p: &Arc<_>| p.id.as_str()).collect();
             if !names.is_empty() {
-                stdio::note(&format!("run only when named: {}", names.join(", ")));
+                let said = Words::shown().terminal.named_only;
+                stdio::note(&fill(said, &[("names", &names.join(", "))]));
             }
         }
         for name in &self.exclude {

@@ -6,7 +6,7 @@ use super::RunArguments;
 use crate::cli::print_out;
 use ptu_report::diagnosis::diagnosis_text;
 use ptu_report::proof_text;
-use ptu_report::words::Language;
+use ptu_report::words::{Words, fill};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::Outcome;
@@ -28,19 +28,22 @@ impl RunArguments {
     /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
     /// had from a dictionary that is not of these scripts.
     pub(super) fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
+        let words = Words::shown();
         if self.adaptive {
             let answer = answer?;
             answer
                 .warnings
                 .iter()
-                .for_each(|warning| stdio::note(&warning.to_string()));
-            print_out(&format!("\n{}", diagnosis_text(&answer, false)))?;
+                .for_each(|warning| stdio::note(&words.warning(warning)));
+            print_out(&format!("\n{}", diagnosis_text(&answer, false, words)))?;
         } else if let Ok(answer) = answer
             && answer.warnings.is_empty()
         {
-            let id = answer.run.run.id.short();
-            let conclusion = Language::English.words().concluded(&answer);
-            print_out(&format!("\n{conclusion}; `ptu diagnose {id}` says why"))?;
+            let why = fill(
+                words.terminal.after_run,
+                &[("run", &answer.run.run.id.short())],
+            );
+            print_out(&format!("\n{}{why}", words.concluded(&answer)))?;
         }
         Ok(())
     }
@@ -49,11 +52,14 @@ impl RunArguments {
 /// What a run that passed says of the repairs made before it.
 pub(super) fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
     if !proofs.is_empty() {
-        let said = proof_text(proofs, Language::English.words());
+        let words = Words::shown();
+        let said = proof_text(proofs, words);
         let proved = proofs.iter().find(|proof| proof.says.is_proven());
         let sheet = proved.map_or_else(String::new, |proof| {
-            let fault = proof.fault.short();
-            format!("`ptu report {fault} --out case.pdf` writes the sheet of the repair\n")
+            fill(
+                words.terminal.case_sheet,
+                &[("fault", &proof.fault.short())],
+            ) + "\n"
         });
         print_out(&format!("{said}\n{sheet}"))?;
     }

@@ -7,6 +7,7 @@ use clap::Args;
 use fault_db::{RunDetail, RunState};
 
 use super::RunArguments;
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
@@ -55,11 +56,12 @@ impl RunArguments {
         self.seed.get_or_insert(run.seed);
         let line = self.line.get_or_insert_with(|| run.line.clone());
         if *line != run.line {
-            stdio::note(&format!(
-                "run {} was on {}; what is left is run on {line}",
-                id.short(),
-                run.line
-            ));
+            let of = [
+                ("run", &id.short() as _),
+                ("line", &run.line as _),
+                ("now", line as _),
+            ];
+            stdio::note(&fill(Words::shown().terminal.resumed_on, &of));
         }
         self.unit_config
             .get_or_insert_with(|| run.unit_config_name.clone());
@@ -114,20 +116,17 @@ impl RunArguments {
 
 /// Tells what is not as it was in the earlier run.
 pub(super) fn tell_changes(earlier: &RunDetail, procedures: &[Arc<Procedure>], setup: &BenchSetup) {
+    let terminal = &Words::shown().terminal;
     let id = earlier.run.id.short();
     let is_changed = |procedure: &&Arc<Procedure>| {
         let mut before = earlier.scripts.iter();
         before.any(|script| script.path == procedure.path && script.sha256 != procedure.sha256)
     };
     for procedure in procedures.iter().filter(is_changed) {
-        stdio::note(&format!(
-            "{} was changed since run {id}: its verdict is not that of the procedure that was due there",
-            procedure.path
-        ));
+        let of = [("path", &procedure.path as _), ("run", &id as _)];
+        stdio::note(&fill(terminal.script_changed, &of));
     }
     if setup.config.sha256 != earlier.run.unit_config_sha256 {
-        stdio::note(&format!(
-            "the unit configuration is not that of run {id}: what both came to does not add up to one test"
-        ));
+        stdio::note(&fill(terminal.config_changed, &[("run", &id)]));
     }
 }

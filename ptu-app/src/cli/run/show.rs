@@ -7,6 +7,7 @@ use fault_db::RunDetail;
 
 use crate::console::{Detail, failures, verdict_table};
 use crate::event_stream::Place;
+use ptu_report::words::Words;
 
 /// How much is said, and in which form.
 #[derive(Debug, Args)]
@@ -48,9 +49,10 @@ impl ShowOptions {
 
     /// What the run came to.
     pub fn verdict(&self, run: &RunDetail) -> String {
+        let words = Words::shown();
         match self.quiet {
-            true => failures(run),
-            false => verdict_table(run),
+            true => failures(run, words),
+            false => verdict_table(run, words),
         }
     }
 }

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::signal_text::said;
+use ptu_report::trace_view::value;
+use ptu_report::words::{Language, Words, fill};
 use ptu_runs::replay::{Comparison, Deviation, Difference, Explanation, Link};
 use ptu_runs::table::Table;
 
@@ -13,24 +15,25 @@ const SHOWN: usize = 15;
 
 /// First deviation, chain and further deviations, as a person reads them.
 pub fn explanation_text(explanation: &Explanation) -> String {
+    let terminal = &Words::shown().terminal;
     let mut text = String::new();
     match explanation.first() {
         None => {
-            text.push_str("as expected: no signal deviates from the good twin's\n");
+            let _ = writeln!(text, "{}", terminal.as_expected);
             for link in &explanation.chain {
                 let _ = writeln!(text, "  {}", link_text(link));
             }
         }
         Some(first) => {
-            let _ = writeln!(text, "first deviation from the good twin: {}", told(first));
-            text.push_str("chain\n");
+            let _ = writeln!(text, "{}: {}", terminal.deviates, told(first));
+            let _ = writeln!(text, "{}", terminal.chain);
             for link in &explanation.chain {
                 let _ = writeln!(text, "  {}", link_text(link));
             }
             text.push_str(&deviations_text(
                 &explanation.comparison,
-                "CAME",
-                "EXPECTED",
+                terminal.came,
+                terminal.expected,
             ));
         }
     }
@@ -48,43 +51,64 @@ fn told(deviation: &Deviation) -> String {
         first,
         ..
     } = deviation;
-    format!(
-        "{signal} is {}, expected {}, {}",
-        said(channel, first.value),
-        said(channel, first.expected),
-        when(first.at_s)
+    let words = Words::shown();
+    fill(
+        words.terminal.is_expected,
+        &[
+            ("signal", &words.signal(signal)),
+            ("value", &said(channel, first.value)),
+            ("expected", &said(channel, first.expected)),
+            ("when", &when(first.at_s, words)),
+        ],
     )
 }
 
-fn when(at_s: f64) -> String {
-    match at_s {
-        0.0 => "at the trigger".into(),
-        at_s if at_s < 0.0 => format!("{:.2} s before the trigger", -at_s),
-        at_s => format!("{at_s:.2} s after the trigger"),
-    }
+fn when(at_s: f64, words: &Words) -> String {
+    let terminal = &words.terminal;
+    let said = match at_s {
+        0.0 => terminal.at_trigger,
+        at_s if at_s < 0.0 => terminal.before_trigger,
+        _ => terminal.after_trigger,
+    };
+    fill(said, &[("n", &format!("{:.2}", at_s.abs()))])
 }
 
 fn link_text(link: &Link) -> String {
-    match link {
-        Link::Signal(deviation) => format!(
-            "{:>8.2} s  {} {} instead of {}",
-            deviation.first.at_s,
-            deviation.signal,
-            said(&deviation.channel, deviation.first.value),
-            said(&deviation.channel, deviation.first.expected)
-        ),
+    let words = Words::shown();
+    let (at_s, said) = match link {
+        Link::Signal(Deviation {
+            signal,
+            channel,
+            first,
+            ..
+        }) => {
+            let of = [
+                ("signal", &words.signal(signal) as _),
+                ("value", &said(channel, first.value) as _),
+                ("expected", &said(channel, first.expected) as _),
+            ];
+            (first.at_s, fill(words.terminal.instead_of, &of))
+        }
         Link::Fault {
             at_s,
             code,
             name,
             lru,
-        } => format!("{at_s:>8.2} s  fault {code} {name}, points at {lru}"),
-    }
+        } => {
+            let of = [("code", code as _), ("name", name as _), ("part", lru as _)];
+            (*at_s, fill(words.terminal.points_at, &of))
+        }
+    };
+    format!("{at_s:>8.2} s  {said}")
 }
 
 /// A table of deviations, in their order.
 pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> String {
-    let mut table = Table::new(&["SIGNAL", "FROM", came, expected, "LARGEST", "AT", "ROWS"]);
+    let words = Words::shown();
+    let terminal = &words.terminal;
+    let signal = words.traces.signal;
+    let (from, largest, at) = (terminal.from, terminal.largest, terminal.at);
+    let mut table = Table::headed(&[signal, from, came, expected, largest, at, terminal.rows]);
     for deviation in comparison.deviations.iter().take(SHOWN) {
         let Deviation {
             channel,
@@ -100,7 +124,7 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
             )
         };
         table.row([
-            deviation.signal.clone(),
+            words.signal(&deviation.signal).into_owned(),
             format!("{:.2} s", first.at_s),
             super::signal_text::said(channel, first.value),
             super::signal_text::said(channel, first.expected),
@@ -113,7 +137,7 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
     text.push('\n');
     let more = comparison.deviations.len().saturating_sub(SHOWN);
     if more > 0 {
-        let _ = writeln!(text, "and {more} more signals, which deviate later");
+        let _ = writeln!(text, "{}", fill(terminal.deviate_later, &[("n", &more)]));
     }
     text
 }
@@ -143,10 +167,17 @@ fn deviation_json(deviation: &Deviation) -> Value {
         rows,
         ..
     } = deviation;
+    let english = |value: Option<f64>| {
+        value::named(
+            channel,
+            value.unwrap_or(f64::NAN),
+            Language::English.words(),
+        )
+    };
     json!({
         "signal": signal, "unit": channel.unit, "at_s": first.at_s,
         "value": first.value, "expected": first.expected,
-        "value_text": said(channel, first.value), "expected_text": said(channel, first.expected),
+        "value_text": english(first.value), "expected_text": english(first.expected),
         "largest": {"at_s": largest.at_s, "value": largest.value, "expected": largest.expected},
         "rows": rows,
     })

@@ -6,6 +6,7 @@ use fault_db::{Id, TraceData};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::signal_text::named;
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local;
 use ptu_runs::table::{cell, padded};
 
@@ -23,24 +24,35 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
     let rows = trace.rows();
     let seconds = |rows: usize| rows as f64 * trace.period_us as f64 / 1e6;
     let trigger = trace.trigger_row.map(|row| row as usize);
-    let long = match trigger {
-        Some(row) => format!(
-            "{:.1} s before the trigger and {:.1} s after",
-            seconds(row),
-            seconds(rows.saturating_sub(row + 1))
+    let words = Words::shown();
+    let terminal = &words.terminal;
+    let tenths = |rows: usize| format!("{:.1}", seconds(rows));
+    let mut long = match trigger {
+        Some(row) => fill(
+            terminal.of_trigger,
+            &[
+                ("before", &tenths(row)),
+                ("after", &tenths(rows.saturating_sub(row + 1))),
+            ],
         ),
         // A part of a trace.
-        None => format!("{:.1} s, without the trigger", seconds(rows)),
+        None => fill(terminal.without_trigger, &[("n", &tenths(rows))]),
     };
-    let mut text = format!(
-        "trace {id}\nbegins {}, {rows} rows, {long}{}\n",
-        local(trace.t0_us),
-        if trace.partial { ", cut short" } else { "" }
-    );
+    if trace.partial {
+        long += terminal.cut_short;
+    }
+    let begins = local(trace.t0_us);
+    let of = [
+        ("at", &begins as _),
+        ("rows", &rows as _),
+        ("long", &long as _),
+    ];
+    let begins = fill(terminal.begins_at, &of);
+    let mut text = format!("{} {id}\n{begins}\n", terminal.trace);
     let names = trace
         .channels
         .iter()
-        .map(|channel| cell(&channel.name, WIDEST_NAME));
+        .map(|channel| cell(&words.signal(&channel.name), WIDEST_NAME));
     let names: Vec<_> = names.collect();
     let width = names.iter().map(|name| name.width()).max().unwrap_or(0);
     if let Some(row) = trigger {
@@ -54,7 +66,7 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
             known().fold(f64::MIN, f64::max),
         );
         let range = if low > high {
-            "not known".into()
+            words.faults.not_known.into()
         } else if low == high {
             named(channel, low)
         } else {
@@ -89,12 +101,20 @@ fn bars(column: &[f64], low: f64, high: f64) -> String {
 
 /// Two lines a signal, what came above what was expected, on one scale and aligned at the triggers.
 pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
+    let words = Words::shown();
+    let terminal = &words.terminal;
+    let sides = [terminal.came, terminal.expected];
+    let side = sides.iter().map(|side| side.width()).max().unwrap_or(0);
     let rows = came.rows();
     let trigger = came.trigger_row.unwrap_or(0) as usize;
-    let shown = names.iter().map(|name| cell(name, WIDEST_NAME).width());
-    let width = shown.max().unwrap_or(0);
+    let shown = |name: &str| cell(&words.signal(name), WIDEST_NAME);
+    let width = names
+        .iter()
+        .map(|name| shown(name).width())
+        .max()
+        .unwrap_or(0);
     let mark = trigger * PLOT_WIDTH / rows.max(1);
-    let mut text = format!("{:width$}           {:mark$}▼\n", "", "");
+    let mut text = format!("{:width$}  {:side$} {:mark$}▼\n", "", "", "");
     for name in names.iter().take(LANES) {
         let channel = came.channels.iter().find(|channel| channel.name == **name);
         let columns = came.column(name).zip(expected.column(name));
@@ -118,18 +138,22 @@ pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
         let range = format!("{} .. {}", named(channel, low), named(channel, high));
         let _ = writeln!(
             text,
-            "{}  came     {}  {range}",
-            padded(&cell(name, WIDEST_NAME), width),
+            "{}  {} {}  {range}",
+            padded(&shown(name), width),
+            padded(sides[0], side),
             bars(ours, low, high)
         );
-        let _ = writeln!(text, "{:width$}  expected {}", "", bars(&theirs, low, high));
-    }
-    if names.len() > LANES {
+        let expected = padded(sides[1], side);
         let _ = writeln!(
             text,
-            "and {} more; choose with --signal",
-            names.len() - LANES
+            "{:width$}  {expected} {}",
+            "",
+            bars(&theirs, low, high)
         );
+    }
+    if names.len() > LANES {
+        let more = names.len() - LANES;
+        let _ = writeln!(text, "{}", fill(terminal.choose_signals, &[("n", &more)]));
     }
     text.trim_end().to_owned()
 }

@@ -9,7 +9,7 @@ use super::plot::{lanes, plot};
 use super::{PartArguments, read};
 use crate::cli::{Json, ScriptsOption, print_json, print_out};
 use ptu_report::trace_notes::TraceNote;
-use ptu_report::words::Language;
+use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock::rfc3339;
 use ptu_runs::failure::{Exit, Failure, RecordTrouble};
 use ptu_runs::replay::{Explanation, explain};
@@ -33,9 +33,10 @@ pub struct ShowArguments {
 impl ShowArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         let (id, trace) = read(store, &self.id, &self.part.signals, self.part.window)?;
-        let noted = || TraceNote::all(store, id, Language::English.words());
+        let noted = |words| TraceNote::all(store, id, words);
         if self.json.is_asked() {
-            let mut document = trace_json(id, &trace, &noted()?);
+            let notes = noted(Language::English.words())?;
+            let mut document = trace_json(id, &trace, &notes);
             if self.twin {
                 add(&mut document, explanation_json(&self.explained(store, id)?));
             }
@@ -46,11 +47,16 @@ impl ShowArguments {
             Err(failure) if self.twin => return Err(failure),
             explained => explained,
         };
+        let words = Words::shown();
         let (told, twin) = match &explained {
             Ok(explanation) => (explanation_text(explanation), Some(explanation)),
-            Err(failure) => (format!("what was expected is not known: {failure}"), None),
+            Err(failure) => {
+                let why = words.told(&failure.message);
+                let said = fill(words.terminal.not_expected, &[("why", &why)]);
+                (said, None)
+            }
         };
-        let mut text = plot(id, &trace) + &notes(&noted()?);
+        let mut text = plot(id, &trace) + &notes(&noted(words)?, words);
         if let Some(explanation) = twin.filter(|_| self.twin) {
             let came = store.trace(id)?;
             let names: Vec<_> = explanation
@@ -84,11 +90,12 @@ fn add(document: &mut Value, more: Value) {
 }
 
 /// What was noted at its places, below the trace.
-fn notes(notes: &[TraceNote]) -> String {
+fn notes(notes: &[TraceNote], words: &Words) -> String {
     if notes.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(&["TIME", "BY", "NOTE"]);
+    let common = &words.common;
+    let mut table = Table::headed(&[common.time, words.terminal.by, common.note]);
     for note in notes {
         table.row([note.time(), note.who.clone(), note.text.clone()]);
     }

@@ -1,13 +1,13 @@
-//! Values of signals as English text.
+//! Values of signals as text.
 
 use fault_db::Channel;
 
 use ptu_report::trace_view::value;
-use ptu_report::words::Language;
+use ptu_report::words::Words;
 
 /// A value as text: label, names of the set bits, or number and unit.
 pub fn named(channel: &Channel, value: f64) -> String {
-    value::named(channel, value, Language::English.words())
+    value::named(channel, value, Words::shown())
 }
 
 /// The same, where it may not be known.

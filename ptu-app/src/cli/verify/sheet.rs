@@ -5,13 +5,12 @@ use ptu_report::read_certificate;
 use ptu_runs::keys::KeyList;
 
 use super::Findings;
+use ptu_report::words::{Words, fill};
 
 /// A sheet by the certificate in it.
-pub(super) fn sheet(page: &str, keys: &KeyList) -> Findings {
-    let mut found = Findings {
-        what: "sheet",
-        ..Findings::default()
-    };
+pub(super) fn sheet(page: &str, keys: &KeyList, words: &'static Words) -> Findings {
+    let verify = &words.verify;
+    let mut found = Findings::of("sheet", words);
     let certificate = match read_certificate(page) {
         Ok(certificate) => certificate,
         Err(why) => {
@@ -21,12 +20,13 @@ pub(super) fn sheet(page: &str, keys: &KeyList) -> Findings {
     };
     let mut digest = None;
     for signed in certificate.run {
-        match signed.and_then(|signed| {
-            Statement::of(&signed).ok_or_else(|| "it is no statement about a run".to_owned())
-        }) {
-            Err(why) => found
-                .changes
-                .push(format!("a signature in its certificate: {why}")),
+        match signed
+            .and_then(|signed| Statement::of(&signed).ok_or_else(|| verify.no_statement.to_owned()))
+        {
+            Err(why) => {
+                let said = fill(verify.in_certificate, &[("why", &why)]);
+                found.changes.push(said);
+            }
             Ok(statement) => {
                 match (&statement.what[..], &digest) {
                     ("run", None) => {
@@ -34,27 +34,28 @@ pub(super) fn sheet(page: &str, keys: &KeyList) -> Findings {
                         digest = Some(statement.digest.clone());
                     }
                     ("note", _) => {}
-                    (what, _) => found.changes.push(format!(
-                        "a {what} is signed in its certificate that is not of the run"
-                    )),
+                    (what, _) => {
+                        let said = fill(verify.foreign, &[("what", &verify.what(what))]);
+                        found.changes.push(said);
+                    }
                 }
                 found.take(&statement, keys);
             }
         }
     }
     match certificate.sheet {
-        None => found.doubts.push(
-            "the text of the sheet is not signed: hold it against the database, or write it again with --key".to_owned(),
-        ),
-        Some(Err(why)) => found.changes.push(format!("the signature of the sheet: {why}")),
+        None => found.doubts.push(verify.text_unsigned.to_owned()),
+        Some(Err(why)) => found
+            .changes
+            .push(fill(verify.wrong_sheet, &[("why", &why)])),
         Some(Ok(sheet)) => {
             found.is_covered = true;
             if found.id.is_empty() {
                 found.id.clone_from(&sheet.id);
-                found.doubts.push("the run is not signed, only the sheet is".to_owned());
+                found.doubts.push(verify.only_sheet.to_owned());
             }
             if sheet.id != found.id || digest.is_some_and(|digest| digest != sheet.digest) {
-                found.changes.push("the sheet and the certificate in it are of two runs".to_owned());
+                found.changes.push(verify.two_runs.to_owned());
             }
             let of = Statement {
                 what: "sheet".to_owned(),

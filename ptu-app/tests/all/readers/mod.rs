@@ -134,8 +134,12 @@ fn every_reader_tells_the_same_of_runs_on_a_unit() {
 /// What is made of a stored run.
 fn of_run(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, is_printed: bool) {
     let run = &of.run;
-    monitor.hold(facts, "table", console(&verdict_table(run)));
-    monitor.hold(facts, "quiet table", console(&failures(run)));
+    for language in Language::ALL {
+        let words = language.words();
+        let [whole, quiet] = [verdict_table(run, words), failures(run, words)];
+        monitor.hold(facts, "table", console(&whole, language));
+        monitor.hold(facts, "quiet table", console(&quiet, language));
+    }
     monitor.hold(facts, "JSON", json(&run_json(run)));
     monitor.hold(
         facts,
@@ -161,10 +165,11 @@ fn of_run(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, is_printed:
         }
     }
     if let Ok(answer) = &of.diagnosis {
+        let english = Language::English.words();
         monitor.hold(
             facts,
             "diagnosis",
-            diagnosed(&diagnosis_text(answer, false)),
+            diagnosed(&diagnosis_text(answer, false, english)),
         );
         facts
             .known
@@ -172,7 +177,7 @@ fn of_run(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, is_printed:
         monitor.hold(
             facts,
             "whole diagnosis",
-            in_full(&diagnosis_text(answer, true)),
+            in_full(&diagnosis_text(answer, true, english)),
         );
         monitor.hold(
             facts,
@@ -278,7 +283,11 @@ fn by_command(monitor: &mut Monitor, made: &mut [Made], place: &Place) {
         told.extend([fact("verdict", &cells[4]), fact("faults", &cells[6])]);
         monitor.hold(&mut run.facts, "list of runs", told);
         let shown = place.ptu(&["runs", "show", &run.id.to_string()]).exits(0);
-        monitor.hold(&mut run.facts, "run shown", console(&shown.out));
+        monitor.hold(
+            &mut run.facts,
+            "run shown",
+            console(&shown.out, Language::English),
+        );
         let unit = format!("M-{}", run.seed);
         let of_run = list(&faults)
             .iter()

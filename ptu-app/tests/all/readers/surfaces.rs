@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::seen;
 use crate::common::told::{
     Told, candidates, conclusion, count, fact, id, marks, measured, numbers, results, sorted,
-    turn_in, turn_of, turned,
+    turn_in, turn_of, turned, verdict,
 };
 use crate::common::{list, number, text};
 
@@ -24,9 +24,10 @@ pub fn columns(row: &str) -> Vec<String> {
         .collect()
 }
 
-/// `N` or `N of M` steps.
+/// `N` or `N of M` steps, in Korean `N/M`.
 pub fn short(text: &str) -> Told {
-    let (run, planned) = text.split_once(" of ").unwrap_or((text, text));
+    let both = text.split_once(" of ").or(text.split_once('/'));
+    let (run, planned) = both.unwrap_or((text, text));
     vec![fact("run", run), fact("planned", planned)]
 }
 
@@ -53,51 +54,77 @@ fn turn_of_keys(of: &Value, kind: &str) -> String {
 const LOST: &str = "link lost at step ";
 
 /// The table at the end of a run.
-pub fn console(table: &str) -> Told {
+pub fn console(table: &str, language: Language) -> Told {
+    let words = language.words();
+    let (common, terminal) = (&words.common, &words.terminal);
+    let all = [
+        common.procedure,
+        common.verdict,
+        terminal.repeated_step,
+        terminal.skipped_steps,
+        common.fault,
+    ];
+    let all = all.map(str::to_uppercase);
+    let [procedure, verdicts, repeated, _, faults_of] = all.each_ref();
+    // In English a verdict is told by its name.
+    let label = |said: &str| match language {
+        Language::English => said.to_owned(),
+        Language::Korean => verdict(said, language).unwrap_or(said).to_owned(),
+    };
+    let of_run = format!("{} ", common.run);
     let mut recorded = 0;
-    let (mut told, mut here, mut lost) = (Vec::new(), "", String::new());
+    let (mut told, mut here, mut lost) = (Vec::new(), None, String::new());
     let (mut bad, mut parts, mut passed, mut outside) = (Vec::new(), Vec::new(), None, 0);
     let (mut turns, mut in_vain) = (Vec::new(), Vec::new());
     for line in table.lines() {
         let cells = columns(line);
-        let mut heads = "PROCEDURE|VERDICT|REPEATED STEP|SKIPPED STEPS|FAULT".split('|');
+        let mut heads = all.iter();
         if let Some(head) = heads.find(|head| line.starts_with(&format!("{head}  "))) {
-            here = head;
+            here = Some(head);
         } else if cells.is_empty() {
-            here = "";
-        } else if here == "PROCEDURE" {
+            here = None;
+        } else if here == Some(procedure) {
             let count = |place: usize| cells[place].parse::<u32>().expect("a number");
             recorded += count(2);
             *passed.get_or_insert(0) += count(3);
-        } else if here == "VERDICT" {
+        } else if here == Some(verdicts) {
             let name = cells[1].split_once(": ").map_or("", |(_, name)| name);
             turns.extend(turned(&marks(name, 's'), &turn_in(name)));
             bad.extend(marks(name, 's'));
             let mut places = Outside::ALL.iter();
-            outside += usize::from(places.any(|place| place.name() == name));
+            outside += usize::from(places.any(|place| match language {
+                Language::English => place.name() == name,
+                Language::Korean => common.outside(*place) == name,
+            }));
             let why = cells.get(2).filter(|why| why.starts_with(LOST));
             lost = why.cloned().unwrap_or(lost);
-        } else if here == "REPEATED STEP" {
+        } else if here == Some(repeated) {
             let name = cells[0].split_once(": ").map_or("", |(_, name)| name);
             in_vain.extend(turned(&marks(name, 's'), &turn_in(name)));
-        } else if here == "FAULT" {
+        } else if here == Some(faults_of) {
             parts.push(format!("{}={}", cells[2], cells[4]));
-        } else if let Some(said) = line.strip_prefix("run ") {
-            let of = columns(said);
-            let (steps, rest) = of[2].split_once(" steps, ").expect("steps");
-            let (faults, verdict) = rest.split_once(" faults: ").expect("faults");
-            told.extend(short(steps));
-            told.extend([id(&of[0]), fact("faults", faults), fact("verdict", verdict)]);
-        } else if let Some((state, said)) = line.split_once(": ")
-            && let Some(counts) = count(said, Language::English)
+        } else if let Some(said) = line.strip_prefix(&of_run)
+            && let of = columns(said)
+            && of.len() > 2
         {
-            told.push(fact("verdict", state));
+            let (counts, came) = of[2].split_once(": ").expect("a verdict");
+            let (steps, faults) = counts.split_once(", ").expect("steps and faults");
+            let number = |text: &str| text.trim_matches(|c: char| !c.is_ascii_digit()).to_owned();
+            told.extend(short(&number(steps)));
+            let [faults, came] = [number(faults), label(came)];
+            told.extend([id(&of[0]), fact("faults", faults), fact("verdict", came)]);
+        } else if let Some((state, said)) = line.split_once(": ")
+            && let Some(counts) = count(said, language)
+        {
+            told.push(fact("verdict", label(state)));
             told.extend(counts);
         }
     }
     told.extend(passed.map(|passed| fact("passed", passed)));
     told.extend(passed.map(|_| fact("with a result", recorded)));
-    told.push(fact("link en", lost));
+    if language == Language::English {
+        told.push(fact("link en", lost));
+    }
     // The quiet one names no fault.
     if passed.is_some() {
         told.push(sorted("parts", parts));

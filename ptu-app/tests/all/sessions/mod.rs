@@ -21,7 +21,7 @@ use snapbox::{Assert, Data};
 use crate::common::{Place, record_bad_unit, scripts, workspace};
 
 /// What differs from one time to the next.
-const DIFFERS: [(&str, &str); 8] = [
+const DIFFERS: [(&str, &str); 9] = [
     (
         "[ID]",
         "[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}",
@@ -36,6 +36,7 @@ const DIFFERS: [(&str, &str); 8] = [
     ("[DAY]", r"20\d\d-\d\d-\d\d"),
     ("[MONTH]", r"\b20\d\d-(0[1-9]|1[0-2])\b"),
     ("[WALL]", r"\bin \d+\.\d+ s\b"),
+    ("[WALL]", r"실제 \d+\.\d+ s\b"),
 ];
 
 /// A test for each of these files.
@@ -57,6 +58,7 @@ sessions! {
     catalogues,
     chosen_procedures,
     completions,
+    defaults,
     diagnoses,
     drive_reports,
     drives,
@@ -64,6 +66,7 @@ sessions! {
     history,
     instruments,
     keys,
+    korean,
     life_of_a_fault,
     life_of_a_part,
     matrices,

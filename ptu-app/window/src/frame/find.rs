@@ -14,7 +14,6 @@ use egui_material_icons::icons::{
 use fault_db::{FaultFilter, FaultSummary};
 
 use super::{Frame, rail};
-use crate::pages::title;
 use crate::parts::lane::cut_text;
 use crate::parts::over_page;
 use crate::request::Request;
@@ -215,7 +214,7 @@ fn steps<'a>(
 ) -> impl Iterator<Item = Row> + 'a {
     let words = context.words;
     procedures.iter().flat_map(move |procedure| {
-        let title = title(procedure, words);
+        let title = words.title(procedure);
         procedure.steps.iter().map(move |step| Row {
             kind: words.frame.steps,
             icon: ICON_CHECKLIST,

@@ -12,7 +12,6 @@ mod statistics;
 mod traces;
 
 pub use case::case_steps;
-pub use procedures::title;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;

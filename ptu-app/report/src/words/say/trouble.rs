@@ -18,11 +18,16 @@ impl Words {
     pub fn trouble(&self, trouble: &Trouble) -> String {
         said(trouble, self.language, false)
     }
+
+    /// The same for who has a command line, with the commands that help.
+    pub fn told(&self, trouble: &Trouble) -> String {
+        said(trouble, self.language, true)
+    }
 }
 
 /// Prints a failure on stderr, in the language that the command line asks for: in English with the commands that help.
 pub fn tell(failure: &Failure) {
-    let said = said(&failure.message, Language::asked(), true);
+    let said = Words::shown().told(&failure.message);
     stdio::note(&format!("ptu: {said}"));
 }
 

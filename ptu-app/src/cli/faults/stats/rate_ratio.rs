@@ -1,5 +1,7 @@
 //! Whether something is seen more often than before.
 
+use ptu_report::words::Words;
+
 /// How many times as often something was seen in the later half of a course as in the earlier half.
 pub(super) struct RateRatio {
     pub(super) ratio: f64,
@@ -33,8 +35,8 @@ impl RateRatio {
 
     pub(super) fn text(&self) -> String {
         let said = match (self.low > 1.0, self.high < 1.0) {
-            (true, _) => " worse",
-            (_, true) => " better",
+            (true, _) => Words::shown().counts.worse,
+            (_, true) => Words::shown().counts.better,
             _ => "",
         };
         format!("{:.1} ({:.1}–{:.1}){said}", self.ratio, self.low, self.high)

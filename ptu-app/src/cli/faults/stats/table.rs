@@ -8,6 +8,7 @@ use super::rate_ratio::RateRatio;
 use super::{GroupBy, StatsArguments};
 use crate::sparkline::sparkline;
 use ptu_report::fault_months::OnTheWay;
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local_minute;
 use ptu_runs::table::Table;
 
@@ -16,37 +17,40 @@ const BARS: usize = 24;
 
 impl StatsArguments {
     fn headings(&self) -> Vec<&'static str> {
+        let words = Words::shown();
+        let (common, terminal, counts) = (&words.common, &words.terminal, &words.counts);
         let heading = match self.by {
-            GroupBy::Code => "CODE",
-            GroupBy::Part => "PART",
-            GroupBy::Cause => "CAUSE",
-            GroupBy::Unit => "UNIT",
-            GroupBy::Line => "LINE",
-            GroupBy::Month => "MONTH",
+            GroupBy::Code => common.code,
+            GroupBy::Part => common.part,
+            GroupBy::Cause => words.faults.cause,
+            GroupBy::Unit => common.unit,
+            GroupBy::Line => common.line,
+            GroupBy::Month => counts.month,
         };
         let (counted, other) = match self.counts_cases() {
-            true => ("CASES", "SEEN"),
-            false => ("SEEN", "FAULTS"),
+            true => (counts.cases, terminal.seen),
+            false => (terminal.seen, terminal.faults),
         };
         let mut headings = vec![heading, counted];
         if self.by != GroupBy::Month {
-            headings.extend(["SHARE", "CUM"]);
+            headings.extend([terminal.share, terminal.cumulated]);
         }
         headings.extend([
             other,
-            "OPEN",
-            "UNITS",
-            "MTBF",
-            "MTTR",
-            "BACK",
-            "NFF",
-            "LAST SEEN",
+            common.open,
+            counts.units,
+            counts.mtbf,
+            counts.mttr,
+            terminal.back,
+            counts.not_found,
+            terminal.last_seen,
         ]);
         if self.by != GroupBy::Month {
-            headings.extend(["COURSE", "LATER/EARLIER"]);
+            headings.extend([terminal.course, terminal.later_earlier]);
         }
         if self.distances.is_some() {
-            headings.extend(["KM", "TRAINS", "THEIR FAULTS", "PER 10000 KM"]);
+            let [km, rate] = [counts.kilometres, counts.per_10000_km];
+            headings.extend([km, counts.trains, counts.their_faults, rate]);
         }
         headings
     }
@@ -57,6 +61,7 @@ impl StatsArguments {
         (together, distances): (Option<&FaultStat>, Option<&BTreeMap<String, OnTheWay>>),
         all: u64,
     ) -> String {
+        let counts = &Words::shown().counts;
         let is_course = self.by != GroupBy::Month;
         let headings = self.headings();
         let words_last = match distances {
@@ -64,7 +69,7 @@ impl StatsArguments {
             None => 1 + 2 * usize::from(is_course),
         };
         let numbers = 1..headings.len() - words_last;
-        let mut table = Table::new(&headings).right(numbers);
+        let mut table = Table::headed(&headings).right(numbers);
         let mut so_far = 0;
         let more = stats.len().saturating_sub(self.limit as usize);
         let shown = match self.by {
@@ -76,7 +81,7 @@ impl StatsArguments {
             so_far += if is_row { self.counted(stat) } else { 0 };
             let name = match is_row {
                 true => format!("{} {}", stat.key, stat.name),
-                false => "all".to_owned(),
+                false => counts.all.to_owned(),
             };
             let mut row = vec![name.trim_end().to_owned(), self.counted(stat).to_string()];
             if is_course {
@@ -118,11 +123,14 @@ impl StatsArguments {
         }
         let (earlier, more) = match (more, self.by) {
             (0, _) => Default::default(),
-            (_, GroupBy::Month) => (
-                format!("… {more} earlier months; see --limit\n"),
+            (n, GroupBy::Month) => (
+                fill(counts.earlier_months, &[("n", &n)]) + "\n",
                 String::new(),
             ),
-            _ => (String::new(), format!("\n… and {more} more; see --limit")),
+            (n, _) => {
+                let more = fill(counts.n_more, &[("n", &n)]);
+                (String::new(), format!("\n{more}"))
+            }
         };
         format!(
             "{earlier}{}{more}\n\n{}",
@@ -133,7 +141,9 @@ impl StatsArguments {
 
     /// What the numbers are of.
     fn caption(&self, stats: &[FaultStat]) -> String {
-        let span = self.filter.span();
+        let words = Words::shown();
+        let counts = &words.counts;
+        let span = words.span(self.filter.span());
         let by_day = stats
             .iter()
             .map(|stat| stat.course.len())
@@ -142,23 +152,14 @@ impl StatsArguments {
         let course = match (self.by, by_day) {
             (GroupBy::Month, _) => "",
             (_, 0..=1) => "",
-            _ => {
-                "; course by day or month, the last 24; LATER/EARLIER: occurrences of the later half of the course \
-                 over the earlier half, with what it is in 95 of 100 cases; \"worse\" or \"better\" where that is \
-                 above or below 1"
-            }
+            _ => counts.course_is,
         };
         let distances = match self.distances {
-            Some(_) => {
-                "; PER 10000 KM: faults first seen in runs in trains whose odometer readings cover the time, over what \
-                 these trains ran; between two readings a train runs evenly"
-            }
+            Some(_) => counts.rate_is,
             None => "",
         };
-        format!(
-            "{span}; BACK: within {} days of the repair{course}{distances}",
-            self.back_within
-        )
+        let back = fill(counts.back_is, &[("n", &self.back_within)]);
+        format!("{span}{back}{course}{distances}")
     }
 }
 

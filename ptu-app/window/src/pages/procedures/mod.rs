@@ -31,7 +31,6 @@ use ptu_runs::run::{BenchChoice, Suite};
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
-pub use tree::title;
 use wanted::Wanted;
 
 const TREE: FirstHalf = FirstHalf {

@@ -7,7 +7,7 @@ use eframe::egui::{Frame, Margin, RichText, Ui, vec2};
 use fault_db::StepKind;
 
 use super::results::{measurements, source};
-use super::tree::{minutes, title};
+use super::tree::minutes;
 use crate::parts::{ActionPlace, Face, Look, ground, progress, verdict_chip};
 use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
@@ -59,7 +59,7 @@ fn step(
         false => name,
     };
     ui.label(RichText::new(name).strong().size(Sizes::of(ui).lead));
-    ui.label(RichText::new(title(procedure, words)).color(Palette::of(ui).quiet));
+    ui.label(RichText::new(words.title(procedure)).color(Palette::of(ui).quiet));
     waits(ui, words, present);
     let answer = prompt(ui, words, present);
     let Some(step) = run.step() else {

@@ -10,7 +10,6 @@ use eframe::egui::{
 use egui_material_icons::icons::ICON_SHOW_CHART;
 use protocol::lru;
 
-use super::tree::title;
 use crate::parts::{
     Cell, Column, Face, Look, NoteOn, RunNoteForm, Table, limit_bar, limits_text, rows, segments,
     value_text, verdict_look,
@@ -170,7 +169,7 @@ fn group(ui: &mut Ui, procedure: &Procedure, words: &Words) {
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(size);
         ui.add_space(12.0);
-        let name = Label::new(RichText::new(title(procedure, words)).color(quiet));
+        let name = Label::new(RichText::new(words.title(procedure)).color(quiet));
         ui.add(name.truncate()).on_hover_text(&*procedure.id);
     });
 }

@@ -13,7 +13,7 @@ use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
 use crate::request::Request;
 use crate::{PageContext, Palette};
-use ptu_report::words::{Language, Words, fill};
+use ptu_report::words::{Words, fill};
 
 impl ProceduresPage {
     pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
@@ -109,7 +109,7 @@ fn show_folder(
 
 /// A procedure that this connection cannot do: why it would be skipped.
 fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
-    let said = format!("{}: {}", title(procedure, words), words.common.skipped);
+    let said = format!("{}: {}", words.title(procedure), words.common.skipped);
     let text = RichText::new(said);
     let label = ui.add_enabled(false, Label::new(text));
     label.on_disabled_hover_text(format!(
@@ -130,7 +130,7 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
                     ui.label(said.color(Palette::of(ui).quiet));
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let response = tick(ui, share, RichText::new(title(procedure, words)));
+                    let response = tick(ui, share, RichText::new(words.title(procedure)));
                     if response.on_hover_text(&procedure.id).clicked() {
                         chosen.set(procedure, share != Share::All);
                     }
@@ -157,14 +157,6 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
 fn tick(ui: &mut Ui, share: Share, text: RichText) -> Response {
     let mut on = share == Share::All;
     ui.add(Checkbox::new(&mut on, text).indeterminate(share == Share::Some))
-}
-
-/// What a procedure checks, in the language chosen if the script says it.
-pub fn title<'a>(procedure: &'a Procedure, words: &Words) -> &'a str {
-    match (words.language, &procedure.title_ko) {
-        (Language::Korean, Some(korean)) => korean,
-        _ => &procedure.title,
-    }
 }
 
 fn matches(procedure: &Procedure, find: &str) -> bool {
