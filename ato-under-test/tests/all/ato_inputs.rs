@@ -63,6 +63,7 @@ fn section() -> impl Strategy<Value = Option<Section>> {
                 curves: vec![Curve {
                     at_m: start_m,
                     radius_m,
+                    limit_kmh: None,
                 }],
                 ..printed()
             })

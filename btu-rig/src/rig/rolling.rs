@@ -105,9 +105,14 @@ impl Rig {
             self.cars = weight_shares(&self.train_data, inputs.load_kg);
         }
         if let Some(track) = self.track.as_ref().filter(|_| self.train_driven) {
-            let under = track.under(self.wheel.motion().position_m, &self.cars);
+            let head_m = self.wheel.motion().position_m;
+            let under = track.under(head_m, &self.cars);
             inputs.gradient_permille = under.gradient_permille;
             inputs.curvature_per_m = under.curvature_per_m;
+            inputs.open_air = under.open_air;
+            if track.is_neutral(head_m) {
+                inputs.without_voltage();
+            }
         }
         inputs
     }

@@ -18,16 +18,16 @@ pub fn powering(consist: &Consist, share: f64, speed_mps: f64, without: CarSet) 
     demands
 }
 
-/// TE_v: traction there is at a speed, share of the greatest; constant power beyond base speed.
+/// TE_v: traction there is at a speed, share of the greatest.
 pub fn pattern(consist: &Consist, speed_mps: f64) -> f64 {
-    let base_mps = consist.data.traction.base_speed_kmh / 3.6;
-    base_mps / speed_mps.max(base_mps)
+    consist.data.traction.share_at(speed_mps)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::tcms::consist::line6;
+    use crate::train::EffortAt;
 
     /// S3's TE_max, a quarter of it each, and half of it at twice the base speed; empty by the braking
     /// masses of each pair: TC1 and M1 76 269 of 116 269 kg, M2 and T1 71 934 of 111 934 kg.
@@ -42,6 +42,23 @@ mod tests {
         let empty = at(&line6(0.0), 0.0);
         assert!((empty[1] - 99_450.0 * 76_269.0 / 116_269.0).abs() < 2.0);
         assert!((empty[2] - 99_450.0 * 71_934.0 / 111_934.0).abs() < 2.0);
+    }
+
+    #[test]
+    fn effort_goes_by_a_table_where_there_is_one() {
+        let mut consist = line6(160_000.0);
+        let efforts = [(0.0, 397_800.0), (30.0, 300_000.0), (60.0, 150_000.0)];
+        let efforts = efforts.map(|(kmh, n)| EffortAt { kmh, n });
+        consist.data.traction.efforts = Some(efforts.to_vec());
+        for (kmh, n) in [
+            (0.0, 397_800.0),
+            (45.0, 225_000.0),
+            (60.0, 150_000.0),
+            (90.0, 100_000.0),
+        ] {
+            let found = 397_800.0 * pattern(&consist, kmh / 3.6);
+            assert!((found - n).abs() < 1e-6, "{kmh} km/h: {found} N");
+        }
     }
 
     #[test]

@@ -40,6 +40,7 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
             electric.fade_to_kmh, electric.fade_from_kmh, electric.full_to_kmh
         )));
     }
+    check_efforts(data)?;
     let count = data.cars.len();
     within("cars", count as f64, 1.0, MAX_CARS as f64)?;
     within(
@@ -59,6 +60,42 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     check_pairs(data)?;
     check_air(data)?;
     data.tcms.check()
+}
+
+/// What other programs say in place of constants.
+fn check_efforts(data: &CarsData) -> Result<(), ConfigError> {
+    let count = data.traction.efforts.as_ref().map_or(1, Vec::len);
+    within("traction.efforts", count as f64, 1.0, 1_000.0)?;
+    let mut last_kmh = -1.0;
+    for (i, effort) in data.traction.efforts.iter().flatten().enumerate() {
+        let key = format!("traction.efforts {}", i + 1);
+        within(
+            &format!("{key}: n"),
+            effort.n,
+            0.0,
+            data.traction.full_load_n,
+        )?;
+        // Beyond the last point the power is that of the last.
+        let least_kmh = if i + 1 == count { 1.0 } else { 0.0_f64 };
+        let least_kmh = least_kmh.max(last_kmh + 1.0);
+        within(&format!("{key}: kmh"), effort.kmh, least_kmh, 300.0)?;
+        last_kmh = effort.kmh;
+    }
+    let Some(davis) = &data.resistance.davis else {
+        return Ok(());
+    };
+    check_ranges! { davis, "resistance.davis.";
+        a_n: 0.0, 1e6;
+        b_n_per_kmh: 0.0, 1e4;
+        c_n_per_kmh2: 0.0, 1e3;
+    }
+    let r = &data.resistance;
+    match r.rolling_kgf_t + r.rolling_kgf_t_per_kmh + r.air_kgf_per_kmh2 == 0.0 {
+        true => Ok(()),
+        false => Err(ConfigError::Conflict(
+            "resistance.davis: rolling_kgf_t, rolling_kgf_t_per_kmh and air_kgf_per_kmh2 must be 0 beside it".to_owned(),
+        )),
+    }
 }
 
 fn check_doors(data: &DoorData) -> Result<(), ConfigError> {

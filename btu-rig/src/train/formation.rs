@@ -189,7 +189,8 @@ impl Formation {
         let gradient_n = permille * KGF_PER_T * self.weight_kg;
         let drive_n = rolling.reverser * rails.traction_n - gradient_n;
         let disturbance_n = self.conditions.disturbance.at(self.seconds + 0.5 * dt_s) * speed_mps;
-        let resistance_n = self.resistance.at(speed_mps, inputs.curvature_per_m) + disturbance_n;
+        let resistance_n = (self.resistance).at(speed_mps, inputs.curvature_per_m, inputs.open_air)
+            + disturbance_n;
         self.seconds += dt_s;
 
         let from_mps = self.velocity_mps;

@@ -26,8 +26,8 @@ use crate::conditions::{Conditions, Disturbance};
 pub(crate) use actuator::Actuators;
 pub use car_set::CarSet;
 pub use data::{
-    AirBrake, CarData, CarsData, DoorData, ElectricBrake, EmergencyBrake, IdealData, Resistance,
-    Role, Traction, TrainData, Wheels,
+    AirBrake, CarData, CarsData, Davis, DoorData, EffortAt, ElectricBrake, EmergencyBrake,
+    IdealData, Resistance, Role, Traction, TrainData, Wheels,
 };
 pub use equipment::{Equipment, EquipmentFaults};
 pub use piece::Piece;
@@ -75,6 +75,17 @@ pub struct TrainInputs {
     pub gradient_permille: f64,
     /// Curvature under the train, mean over its weight, 1/m.
     pub curvature_per_m: f64,
+    /// Share of the train in the open air, not in a tunnel.
+    pub open_air: f64,
+}
+
+impl TrainInputs {
+    /// Takes the voltage of the contact line away: nothing drives, and nothing is regenerated.
+    pub(crate) fn without_voltage(&mut self) {
+        self.regeneration_refused = true;
+        self.demand = self.demand.min(0.0);
+        self.motor_n = self.motor_n.map(|motor_n| motor_n.min(0.0));
+    }
 }
 
 /// What the train did in one step.

@@ -435,3 +435,21 @@ fn it_stays_finite_and_deterministic() {
     assert!(one.iter().all(|v| v.is_finite() && v.abs() < 40.0));
     assert_eq!(one, two);
 }
+
+/// Goal: a neutral section takes traction and electric brake, and leaves the air. Method: full effort either way, then two
+/// seconds of it without voltage.
+#[test]
+fn nothing_drives_and_nothing_is_regenerated_without_voltage() {
+    for demand in [1.0, -1.0] {
+        let mut ride = TrainRun::nominal(50.0, demand);
+        ride.run(2.0);
+        let electric_n = |state: &TrainState| state.traction_n + state.electric_brake_n;
+        assert!(electric_n(&ride.state) > 1e5, "{:?}", ride.state);
+        let mut inputs = ride.inputs;
+        inputs.without_voltage();
+        for _ in 0..400 {
+            ride.state = ride.train.step(DT, &inputs);
+        }
+        assert!(electric_n(&ride.state) < 1e3, "{:?}", ride.state);
+    }
+}

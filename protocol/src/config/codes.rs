@@ -61,8 +61,18 @@ impl SpeedCode {
     }
 }
 
-/// Place of the code that is called `name`, or is sent for one that is.
+/// What stands before a limit in km/h in place of a code's name.
+pub const AT_MOST: char = '≤';
+
+/// Place of the code that is called `name`, or is sent for one that is; of `≤60` the fastest within 60 km/h.
 pub fn find_code(codes: &[SpeedCode], name: &str) -> Option<usize> {
+    if let Some(most_kmh) = name.strip_prefix(AT_MOST) {
+        let most_kmh = most_kmh.parse().ok()?;
+        let slow = |code: &SpeedCode| code.line_kmh() > 0.0 && code.line_kmh() <= most_kmh;
+        let slow = codes.iter().enumerate().filter(|(_, code)| slow(code));
+        let fastest = slow.max_by(|a, b| a.1.line_kmh().total_cmp(&b.1.line_kmh()));
+        return Some(fastest?.0);
+    }
     let called = |code: &SpeedCode| code.name == name;
     let sent_for = |code: &SpeedCode| code.stands_for.iter().any(|other| other == name);
     (codes.iter().position(called)).or_else(|| codes.iter().position(sent_for))
@@ -92,6 +102,16 @@ mod tests {
             assert_eq!(limit(name), Some(kmh), "{name}");
         }
         assert_eq!(limit("61"), None);
+    }
+
+    #[test]
+    fn a_limit_is_sent_as_the_fastest_code_within_it() {
+        let config = UnitConfig::from_toml(SEOUL34).expect("shipped");
+        let sent = |name: &str| Some(config.codes[find_code(&config.codes, name)?].name.as_str());
+        assert_eq!(
+            [sent("≤79"), sent("≤70"), sent("≤5"), sent("≤x")],
+            [Some("70"), Some("70"), None, None]
+        );
     }
 
     /// Goal: no table lets a train run faster than a line permits, or leaves it open which code is sent.

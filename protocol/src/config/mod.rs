@@ -21,7 +21,7 @@ pub use ato::{
     AtoConfig, AtoTrainConfig, AtoWatchConfig, ControllerKind, FuzzyConfig, GainUnit, JogConfig,
     ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
-pub use codes::{CodeMeaning, SpeedCode, find_code};
+pub use codes::{AT_MOST, CodeMeaning, SpeedCode, find_code};
 pub use driverless::DriverlessConfig;
 pub use way::{MarkerConfig, TachoConfig};
 

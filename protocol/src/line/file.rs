@@ -43,12 +43,13 @@ struct File {
 /// Reads and checks a line file.
 pub(super) fn read(text: &str) -> Result<Line, LineError> {
     let file: File = toml::from_str(text).map_err(|e| LineError::Syntax(e.to_string()))?;
-    let line = Line {
+    let mut line = Line {
         name: file.name,
         loops_m: file.loops_m,
         sections: file.sections,
     };
     line.check().map_err(|broken| located(text, broken))?;
+    line.sections.iter_mut().for_each(Section::send_limits);
     match file.checksum {
         Some(given) => check_sum(text, &given).map(|()| line),
         None => Ok(line),
@@ -189,6 +190,23 @@ speed_codes = [
             assert!(said.contains(words), "{instead}: {said}");
             assert!(at == "0" || said.contains(&format!("line {at}")), "{said}");
         }
+    }
+
+    /// Goal: limits of public data are sent as codes. Method: a curve of 60 km/h between a limit of 80 and one of 50.
+    #[test]
+    fn limits_by_position_and_of_curves_become_codes() {
+        let codes = "speed_codes = [\n    { at_m = 0.0, code = \"65\" },\n    { at_m = 300.0, code = \"55\" },\n]\n";
+        let limits = "limits = [{ at_m = 0.0, kmh = 80 }, { at_m = 400.0, kmh = 50 }]\n";
+        let text =
+            section(codes, limits).replace("radius_m = 300.0", "radius_m = 300.0, limit_kmh = 60");
+        let line = read(&text).unwrap();
+        let sent = &line.sections[0].speed_codes;
+        let sent: Vec<_> = sent.iter().map(|c| (c.at_m, c.code.as_str())).collect();
+        let wanted = [(0.0, "≤80"), (100.0, "≤60"), (300.0, "≤80"), (400.0, "≤50")];
+        assert_eq!(sent, wanted);
+        line.check().unwrap();
+        let said = read(&text.replace("kmh = 80", "kmh = 300")).unwrap_err();
+        assert!(said.to_string().contains("a limit of 300 km/h"), "{said}");
     }
 
     #[test]

@@ -3,10 +3,13 @@
 mod file;
 mod rules;
 
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
+
+use crate::config::{AT_MOST, SpeedCode, find_code};
 
 pub use file::{LineError, checksum, file_schema};
 pub use rules::Broken;
@@ -29,6 +32,29 @@ pub struct Curve {
     pub at_m: f64,
     /// Its radius, m; 0 = straight from here on.
     pub radius_m: f64,
+    /// Limit in it, km/h, beside `limits` of the section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_kmh: Option<f64>,
+}
+
+/// A limit from a position on, of a line of which no speed codes are known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LimitFrom {
+    /// Where it begins, m from the section's start.
+    pub at_m: f64,
+    /// Its value, km/h.
+    pub kmh: f64,
+}
+
+/// A part of a section.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stretch {
+    /// Where it begins, m from the section's start.
+    pub from_m: f64,
+    /// Where it ends.
+    pub to_m: f64,
 }
 
 /// A speed code that the wayside sends from a position on. A unit's ATO slows for a lower one before its place;
@@ -77,6 +103,43 @@ pub struct Section {
     /// Speed codes along the section, in order.
     #[serde(default)]
     pub speed_codes: Vec<CodeFrom>,
+    /// In place of them, limits in order: the unit's fastest code within each is sent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<LimitFrom>,
+    /// Tunnels in order; `None` = a tunnel all along.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tunnels: Option<Vec<Stretch>>,
+    /// Where the contact line has no voltage, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub neutral_sections: Vec<Stretch>,
+}
+
+impl Section {
+    /// Makes speed codes of the limits by position and in curves; they go.
+    fn send_limits(&mut self) {
+        let limits = core::mem::take(&mut self.limits);
+        let Some(first) = limits.first() else {
+            return;
+        };
+        let curves: Vec<_> = (self.curves.iter_mut())
+            .map(|curve| (curve.at_m, curve.limit_kmh.take()))
+            .collect();
+        let curved = curves.iter().map(|(at_m, _)| *at_m);
+        let mut places: Vec<f64> = limits.iter().map(|l| l.at_m).chain(curved).collect();
+        places.sort_by(f64::total_cmp);
+        for at_m in places {
+            let limit = limits.iter().rev().find(|limit| limit.at_m <= at_m);
+            let curve = curves.iter().rev().find(|curve| curve.0 <= at_m);
+            let kmh = limit.unwrap_or(first).kmh;
+            let kmh = curve
+                .and_then(|curve| curve.1)
+                .map_or(kmh, |limit| kmh.min(limit));
+            let code = format!("{AT_MOST}{kmh}");
+            if self.speed_codes.last().is_none_or(|last| last.code != code) {
+                self.speed_codes.push(CodeFrom { at_m, code });
+            }
+        }
+    }
 }
 
 /// The track database of a line.
@@ -86,13 +149,23 @@ pub struct Line {
     pub name: String,
     /// How far the TWC loop of a station reaches before and behind the place where the head of a train stands there, m;
     /// `None` = loops lie all along the line.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub loops_m: Option<[f64; 2]>,
     /// Sections in running order.
     pub sections: Vec<Section>,
 }
 
 impl Line {
+    /// Calls the codes that are sent for limits as the unit's table does.
+    pub fn name_codes(&mut self, codes: &[SpeedCode]) {
+        let all = self.sections.iter_mut().flat_map(|s| &mut s.speed_codes);
+        for from in all.filter(|from| from.code.starts_with(AT_MOST)) {
+            if let Some(place) = find_code(codes, &from.code) {
+                from.code.clone_from(&codes[place].name);
+            }
+        }
+    }
+
     /// Reads and checks a line file.
     ///
     /// # Errors

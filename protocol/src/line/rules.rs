@@ -2,13 +2,16 @@
 
 use alloc::format;
 use alloc::string::String;
+use core::ops::RangeInclusive;
 
 use thiserror::Error;
 
-use super::{Line, Section};
+use super::{Line, Section, Stretch};
 
 /// Steepest gradient that can be, ‰: beyond any adhesion railway's platform track [default].
 const STEEPEST_PERMILLE: f64 = 60.0;
+/// Limits that can be, km/h [default].
+const LIMITS_KMH: RangeInclusive<f64> = 5.0..=200.0;
 /// Tightest curve that can be, m [default].
 const TIGHTEST_M: f64 = 80.0;
 
@@ -152,7 +155,52 @@ impl Rules<'_> {
                 return self.broken("curves", Some(i), &reason);
             }
         }
-        self.in_order("speed_codes", s.speed_codes.iter().map(|c| c.at_m))
+        self.in_order("speed_codes", s.speed_codes.iter().map(|c| c.at_m))?;
+        self.limits()?;
+        self.stretches("tunnels", s.tunnels.as_deref().unwrap_or_default())?;
+        self.stretches("neutral_sections", &s.neutral_sections)
+    }
+
+    fn stretches(&self, key: &'static str, all: &[Stretch]) -> Result<(), Broken> {
+        let ends = all
+            .iter()
+            .flat_map(|stretch| [stretch.from_m, stretch.to_m]);
+        self.in_order(key, ends).map_err(|mut broken| {
+            if let Some(place) = &mut broken.place {
+                place.item = place.item.map(|end| end / 2);
+            }
+            broken
+        })
+    }
+
+    fn limits(&self) -> Result<(), Broken> {
+        let s = self.section;
+        self.in_order("limits", s.limits.iter().map(|limit| limit.at_m))?;
+        if !s.limits.is_empty() && !s.speed_codes.is_empty() {
+            let reason = "limits beside speed_codes: give one of them";
+            return self.broken("limits", None, reason);
+        }
+        let of_curves = s.curves.iter().map(|curve| curve.limit_kmh);
+        if let (Some(i), true) = (
+            of_curves.clone().position(|kmh| kmh.is_some()),
+            s.limits.is_empty(),
+        ) {
+            let reason = "a limit in a curve needs limits of the section";
+            return self.broken("curves", Some(i), reason);
+        }
+        let mut all = s
+            .limits
+            .iter()
+            .map(|limit| limit.kmh)
+            .chain(of_curves.flatten());
+        match all.find(|kmh| !LIMITS_KMH.contains(kmh)) {
+            Some(kmh) => self.broken(
+                "limits",
+                None,
+                &format!("a limit of {kmh} km/h is outside {LIMITS_KMH:?}"),
+            ),
+            None => Ok(()),
+        }
     }
 
     fn in_order(&self, key: &'static str, places: impl Iterator<Item = f64>) -> Result<(), Broken> {

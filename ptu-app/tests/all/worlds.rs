@@ -55,7 +55,14 @@ fn codes(chance: &mut Chance) -> Vec<(usize, f64)> {
 /// Sections of 200 m to 15 km, whose markers lie as those of line 8 where there is room, under codes of the table.
 fn line(chance: &mut Chance, codes: &[(usize, f64)], steepest: f64) -> String {
     let sections = [1, 1, 2, 3, 4, 6, 10, 20][chance.below(8)];
-    let mut line = "name = \"drawn\"\nloops_m = [170.0, 30.0]\n".to_owned();
+    // What a line may leave out, or say as public data do.
+    let loops = match sections {
+        3 | 6 => "",
+        _ => "loops_m = [170.0, 30.0]\n",
+    };
+    let by_limits = matches!(sections, 4 | 10);
+    let mut line = format!("name = \"drawn\"\n{loops}");
+    let mut tunnels = String::new();
     for section in 1..=sections {
         let length_m = match chance.below(8) {
             0..3 => between(chance, 200.0, 900.0),
@@ -86,20 +93,28 @@ fn line(chance: &mut Chance, codes: &[(usize, f64)], steepest: f64) -> String {
         let sent: Vec<_> = (every(chance, 300.0, 2500.0).into_iter())
             .map(|at_m| {
                 let (limit, _) = codes[1 + chance.below(codes.len() - 1)];
-                format!("{{ at_m = {at_m:?}, code = \"{limit}\" }}")
+                match by_limits {
+                    true => format!("{{ at_m = {at_m:?}, kmh = {limit}.4 }}"),
+                    false => format!("{{ at_m = {at_m:?}, code = \"{limit}\" }}"),
+                }
             })
             .collect();
+        if sections == 2 {
+            let middle_m = length_m / 2.0;
+            tunnels = format!("tunnels = [{{ from_m = 50.0, to_m = {middle_m:?} }}]\n");
+        }
         let side = ["left", "right", "right", "both"][chance.below(4)];
         let (from, to) = (99 + section, 100 + section);
         line += &format!(
             "[[sections]]\nsection = {section}\nroute = 1\nlength_m = {length_m:?}\nfrom_station = {from}\nfrom_loop = {from}0\n\
              to_station = {to}\nto_loop = {to}0\nstart_m = 0.0\nstop_m = {length_m:?}\n\
-             markers_m = [{:?}, {:?}, {:?}, {:?}]\ndoor_side = \"{side}\"\ngradients = [{}]\nspeed_codes = [{}]\n",
+             markers_m = [{:?}, {:?}, {:?}, {:?}]\ndoor_side = \"{side}\"\n{tunnels}gradients = [{}]\n{} = [{}]\n",
             psm[0],
             psm[1],
             length_m - 21.0,
             length_m - 3.5,
             gradients.join(", "),
+            if by_limits { "limits" } else { "speed_codes" },
             sent.join(", ")
         );
     }

@@ -24,7 +24,8 @@ pub(super) struct Context {
 }
 
 impl Context {
-    pub(super) fn new(unit: UnitConfig, line: Line, train: TrainData) -> Self {
+    pub(super) fn new(unit: UnitConfig, mut line: Line, train: TrainData) -> Self {
+        line.name_codes(&unit.codes);
         let codes = (unit.codes.iter().enumerate())
             .map(|(index, code)| {
                 let fields = vec![

@@ -5,6 +5,9 @@ use protocol::line::Section;
 
 use super::step_profile::StepProfile;
 
+/// Further behind a section's start than any train reaches, m.
+const FAR_BEHIND_M: f64 = -1e4;
+
 /// A section laid along the track ahead of the rig.
 #[derive(Clone, Debug)]
 pub struct Track {
@@ -15,6 +18,8 @@ pub struct Track {
     gradient: StepProfile,
     /// Curvature, 1/m.
     curvature: StepProfile,
+    /// 1 in the open air; none of it where no tunnels are listed.
+    open_air: StepProfile,
 }
 
 /// What lies under the train, mean over its weight.
@@ -24,6 +29,8 @@ pub struct UnderTrain {
     pub gradient_permille: f64,
     /// Curvature, 1/m.
     pub curvature_per_m: f64,
+    /// Share in the open air.
+    pub open_air: f64,
 }
 
 impl Track {
@@ -32,7 +39,14 @@ impl Track {
         let gradients = section.gradients.iter().map(|g| (g.at_m, g.permille));
         let bent = |radius_m: f64| if radius_m > 0.0 { 1.0 / radius_m } else { 0.0 };
         let curves = section.curves.iter().map(|c| (c.at_m, bent(c.radius_m)));
+        let tunnels = section.tunnels.iter();
+        let open_air = tunnels.flat_map(|tunnels| {
+            let bounds = tunnels.iter();
+            let bounds = bounds.flat_map(|tunnel| [(tunnel.from_m, 0.0), (tunnel.to_m, 1.0)]);
+            std::iter::once((FAR_BEHIND_M, 1.0)).chain(bounds)
+        });
         Self {
+            open_air: StepProfile::new(open_air),
             gradient: StepProfile::new(gradients),
             curvature: StepProfile::new(curves),
             section,
@@ -59,17 +73,28 @@ impl Track {
     pub fn under(&self, position_m: f64, cars: &[(f64, f64)]) -> UnderTrain {
         let mut under = UnderTrain::default();
         let (mut heights, mut turns) = (self.gradient.descend(), self.curvature.descend());
+        let mut airs = self.open_air.descend();
         let mut front_m = self.in_section_m(position_m);
         let (mut height, mut turn) = (heights.integral(front_m), turns.integral(front_m));
+        let mut air = airs.integral(front_m);
         for &(length_m, weight_share) in cars {
             front_m -= length_m;
             let (lower, less) = (heights.integral(front_m), turns.integral(front_m));
             let share_per_m = weight_share / length_m;
             under.gradient_permille += (height - lower) * share_per_m;
             under.curvature_per_m += (turn - less) * share_per_m;
-            (height, turn) = (lower, less);
+            let less_air = airs.integral(front_m);
+            under.open_air += (air - less_air) * share_per_m;
+            (height, turn, air) = (lower, less, less_air);
         }
         under
+    }
+
+    /// Whether the contact line has no voltage over a head at `position_m`.
+    pub fn is_neutral(&self, position_m: f64) -> bool {
+        let at = self.in_section_m(position_m);
+        let mut neutral = self.section.neutral_sections.iter();
+        neutral.any(|stretch| (stretch.from_m..stretch.to_m).contains(&at))
     }
 
     /// Name of the speed code under a head at `position_m`; the first one before it begins.
@@ -83,7 +108,7 @@ impl Track {
 
 #[cfg(test)]
 mod tests {
-    use protocol::line::{Curve, Gradient, Line};
+    use protocol::line::{Curve, Gradient, Line, Stretch};
 
     use super::*;
 
@@ -104,10 +129,12 @@ mod tests {
             Curve {
                 at_m: 400.0,
                 radius_m: 350.0,
+                limit_kmh: None,
             },
             Curve {
                 at_m: 500.0,
                 radius_m: 0.0,
+                limit_kmh: None,
             },
         ];
         section
@@ -159,5 +186,24 @@ mod tests {
             [Some("55"), Some("55"), Some("55"), Some("45")]
         );
         assert_eq!(track.to_stop_m(950.03), 0.0);
+    }
+
+    /// Two of eight cars are in a tunnel of 100 m when the head is 40 m in; the head alone counts for the contact line.
+    #[test]
+    fn tunnels_and_neutral_sections_are_where_they_are_listed() {
+        let stretch = |from_m, to_m| Stretch { from_m, to_m };
+        let mut section = section();
+        let cars = [(20.0, 0.125); 8];
+        let all_along = Track::new(section.clone(), 0.0);
+        assert_eq!(all_along.under(340.0, &cars).open_air, 0.0);
+        section.tunnels = Some(vec![stretch(300.0, 400.0)]);
+        section.neutral_sections = vec![stretch(300.0, 320.0)];
+        let track = Track::new(section, 0.0);
+        for (head_m, open_air) in [(200.0, 1.0), (340.0, 0.75), (430.0, 0.375), (700.0, 1.0)] {
+            let found = track.under(head_m, &cars).open_air;
+            assert!((found - open_air).abs() < 1e-9, "{head_m}: {found}");
+        }
+        let neutral = [299.0, 300.0, 319.0, 320.0].map(|head_m| track.is_neutral(head_m));
+        assert_eq!(neutral, [false, true, true, false]);
     }
 }

@@ -46,12 +46,46 @@ pub struct Traction {
     pub full_load_n: f64,
     /// Speed up to which it is there, km/h; constant power beyond (S3).
     pub base_speed_kmh: f64,
+    /// Force at full load by speed, in order; in its place `base_speed_kmh` is not read. Constant power beyond the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efforts: Option<Vec<EffortAt>>,
     /// Greatest change of powering and service braking effort, m/s³ (S1).
     pub jerk_mps3: f64,
     /// Command to the inverters' first answer, s.
     pub dead_time_s: f64,
     /// Time constant of their effort, s.
     pub lag_s: f64,
+}
+
+/// Force at a speed.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct EffortAt {
+    /// Speed, km/h.
+    pub kmh: f64,
+    /// Force of the whole train, N, at most `full_load_n`.
+    pub n: f64,
+}
+
+impl Traction {
+    /// Force there is at a speed, share of the greatest (S3: TE_v).
+    pub fn share_at(&self, speed_mps: f64) -> f64 {
+        let Some(efforts) = &self.efforts else {
+            let base_mps = self.base_speed_kmh / 3.6;
+            return base_mps / speed_mps.max(base_mps);
+        };
+        let kmh = speed_mps * 3.6;
+        let after = efforts.partition_point(|effort| effort.kmh <= kmh);
+        let before = after.checked_sub(1).map(|place| efforts[place]);
+        let n = match (before, efforts.get(after)) {
+            (Some(low), Some(high)) => {
+                low.n + (high.n - low.n) * (kmh - low.kmh) / (high.kmh - low.kmh)
+            }
+            (Some(last), None) => last.n * last.kmh / kmh.max(last.kmh),
+            (None, first) => first.map_or(0.0, |first| first.n),
+        };
+        n / self.full_load_n
+    }
 }
 
 /// Electric brake of the motor cars.
@@ -120,6 +154,21 @@ pub struct Resistance {
     pub tunnel_kgf_t: f64,
     /// Curve resistance times radius, kgf·m/t.
     pub curve_kgf_m_t: f64,
+    /// In place of rolling and air resistance, which are 0 then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub davis: Option<Davis>,
+}
+
+/// Davis' formula A + B·v + C·v² for the whole train, whatever its load.
+#[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Davis {
+    /// A, N.
+    pub a_n: f64,
+    /// B, N per km/h.
+    pub b_n_per_kmh: f64,
+    /// C, N per (km/h)².
+    pub c_n_per_kmh2: f64,
 }
 
 /// Slip, slide and the protection against it.

@@ -37,7 +37,7 @@ const NOT_RUN: [(&str, &str); 20] = [
     ("apt install ", "root"),
     ("duckdb ", "a program of others"),
     ("cargo ", "the sources"),
-    ("scripts/", "the sources"),
+    (" scripts/", "the sources"),
 ];
 /// Files that a reader has before: name and content.
 const GIVEN: [(&str, &str); 2] = [("pin.txt", "739156\n"), ("noisy.toml", "noise_mv = 1.0\n")];
@@ -120,6 +120,18 @@ fn run(document: &Document, blocks: &[Block<'_>], installed: &Installed) -> Vec<
     let runs: Vec<String> = (runs.iter().rev())
         .map(|run| text(&run["id"]).to_owned())
         .collect();
+    for block in document
+        .blocks()
+        .iter()
+        .filter(|block| block.info == "toml")
+    {
+        // A file that a document shows whole, its name in the first line: the reader has it.
+        let name = (block.lines.first()).and_then(|(_, line)| line.strip_prefix("# "));
+        if let Some(name) = name.filter(|name| name.ends_with(".toml")) {
+            let lines: Vec<_> = block.lines.iter().map(|(_, line)| *line).collect();
+            (installed.place).write(&format!("work/{name}"), &lines.join("\n"));
+        }
+    }
     let lines = blocks.iter().flat_map(|block| &block.lines);
     for (number, line) in lines {
         let place = document.at(*number);
@@ -127,7 +139,8 @@ fn run(document: &Document, blocks: &[Block<'_>], installed: &Installed) -> Vec<
         if line.trim().is_empty() {
             continue;
         }
-        if let Some((_, why)) = NOT_RUN.iter().find(|(part, _)| line.contains(part)) {
+        let words = format!(" {line}");
+        if let Some((_, why)) = NOT_RUN.iter().find(|(part, _)| words.contains(part)) {
             println!("{place}: {line}: not run, {why}");
             continue;
         }
