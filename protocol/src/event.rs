@@ -185,6 +185,8 @@ events! {
     TrainWithholds = 605 "train_withholds" Minor "-" "The train gives less than it was sent, as TCMS itself says" "차량 출력 부족" "speed less what effort should have made, cm/s";
     ModeChanged = 700 "mode_changed" Info "-" "Operating mode changed" "운전 모드 변경" "mode";
     AutomaticRefused = 701 "automatic_refused" Info "-" "Automatic mode or run refused" "자동운전 불허" "refusals as bits";
+    ModeSwitchChatters = 702 "mode_switch_chatters" Minor "-" "The mode switch comes to rest at no position: mode off, emergency brake" "모드 스위치 접점 떨림: 운전 모드 차단, 비상제동" "";
+    ReverserChatters = 703 "reverser_chatters" Minor "-" "The reverser comes to rest at no position: no way is permitted" "역전기 접점 떨림: 이동 불허" "";
     InverterFailed = 800 "inverter_failed" Major "inverter" "TCMS: inverter does not answer" "추진장치 고장" "car";
     BrakeUnitFailed = 801 "brake_unit_failed" Major "brake_unit" "TCMS: brake control unit does not answer" "제동장치 고장" "car";
     BrakeCylinderFailed = 802 "brake_cylinder_failed" Major "brake_cylinder" "TCMS: brake cylinders do not follow the demand" "제동실린더 압력 이상" "car";

@@ -12,19 +12,19 @@ use crate::timer::Edge;
 pub enum Towards {
     Forward,
     Backward,
-    /// In neutral, or its contacts contradict each other: no way is permitted.
+    /// In neutral, or its contacts contradict each other or chatter: no way is permitted.
     Nowhere,
     /// Nothing is supervised: test signals in neutral, as a train in a depot is left.
     Anywhere,
 }
 
 impl Towards {
-    pub fn of(lines: TrainLines, tested: [bool; 2], supervised: bool) -> Self {
+    pub fn of(lines: TrainLines, chatters: bool, tested: [bool; 2], supervised: bool) -> Self {
         let forward = lines.contains(TrainLines::FORWARD);
         let backward = lines.contains(TrainLines::BACKWARD);
         match (forward, backward) {
-            (true, false) => Self::Forward,
-            (false, true) => Self::Backward,
+            (true, false) if !chatters => Self::Forward,
+            (false, true) if !chatters => Self::Backward,
             _ if !supervised || tested.contains(&true) => Self::Anywhere,
             _ => Self::Nowhere,
         }

@@ -5,6 +5,7 @@ mod belief;
 mod brake_proof;
 mod causes;
 mod code;
+mod contacts;
 mod direction;
 mod door_lines;
 mod door_order;
@@ -22,6 +23,7 @@ mod tachometers;
 mod yard;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
+use protocol::event::Event;
 use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, Speed};
 
@@ -30,6 +32,7 @@ use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
 use causes::Found;
+use contacts::Contacts;
 use direction::{Rollback, Towards};
 use door_order::{DoorOrders, enabled_sides};
 use interlock::{BrakePath, Interlock};
@@ -100,6 +103,8 @@ pub struct Atp {
     proof: BrakeProof,
     doors: Doors,
     door_orders: DoorOrders,
+    switch: Contacts<ModeSwitch>,
+    reverser: Contacts<TrainLines>,
     rollback: Rollback,
     jog: JogGuard,
     brake: EmergencyBrake,
@@ -127,6 +132,8 @@ impl Atp {
             proof: BrakeProof::new(),
             doors: Doors::default(),
             door_orders: DoorOrders::default(),
+            switch: Contacts::default(),
+            reverser: Contacts::default(),
             rollback: Rollback::default(),
             jog: JogGuard::default(),
             brake: EmergencyBrake::new(),
@@ -155,6 +162,11 @@ impl Atp {
         let confirmed = guards.code_confirmation;
         self.decoder
             .step(now, inputs.signal, confirmed, config, log);
+        let moves = !self.tachometers.standstill();
+        let switch = (inputs.mode_switch, moves);
+        (self.switch).step(now, switch, Event::ModeSwitchChatters, log);
+        let reverser = (inputs.lines).intersection(TrainLines::FORWARD | TrainLines::BACKWARD);
+        (self.reverser).step(now, (reverser, moves), Event::ReverserChatters, log);
         self.tachometers.correct(context.runs_farther);
         let witness = self.witness(inputs, context);
         self.tachometers.step(now, inputs, witness, config, log);
@@ -230,7 +242,8 @@ impl Atp {
         // when an automatic run begins.
         let stopped = still && (self.brake.applied() || self.jog.back_m() > 0.0);
         let from_zero = self.jog.ended() || stopped || self.sequence.begins();
-        let towards = Towards::of(inputs.lines, inputs.test_speed, guards.neutral);
+        let chatters = self.reverser.chatters();
+        let towards = Towards::of(inputs.lines, chatters, inputs.test_speed, guards.neutral);
         let rollback =
             self.rollback
                 .step(now, (moved_m, still), towards, from_zero, allowed_m, log);
@@ -349,6 +362,11 @@ impl Atp {
             tested: false,
             unguarded: !context.guards.speed,
         }
+    }
+
+    /// The mode switch comes to rest at no position: none of them counts.
+    pub fn switch_chatters(&self) -> bool {
+        self.switch.chatters()
     }
 
     /// Cab at automatic or driverless.

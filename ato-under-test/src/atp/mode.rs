@@ -16,10 +16,11 @@
 //! the train, whether the line is closed again or not, and a driverless one waits for a new departure. So it is when a
 //! door or the cab ends a run in motion, as TCMS reads it, too.
 
+use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::{Mode, ModeSwitch, Refusals};
-use protocol::{Duration, Instant};
 
+use super::contacts::CHOSEN;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -36,9 +37,6 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::TCMS_NOT_READY)
     .union(Refusals::ATO_NOT_READY)
     .union(Refusals::SELF_TEST);
-
-/// Time at driverless by which the position was chosen, and not passed on the way to another [default].
-const CHOSEN: Duration = Duration::from_ms(1_000);
 
 /// Of these, what leaves a train in motion without a driver or with a door open: it is stopped.
 const STOPS: Refusals = Refusals::DOORS_OPEN.union(Refusals::CAB_INACTIVE);

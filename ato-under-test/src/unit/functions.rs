@@ -342,7 +342,7 @@ impl Functions {
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
             cab_active: lines.contains(TrainLines::HCR) || given_up,
-            switch: if self.inputs.alive {
+            switch: if self.inputs.alive && !self.atp.switch_chatters() {
                 switch
             } else {
                 ModeSwitch::Off

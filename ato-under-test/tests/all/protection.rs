@@ -58,6 +58,49 @@ fn overspeed_goes_from_alarm_to_service_brake_to_emergency_brake() {
     assert!(!bench.braking());
 }
 
+/// Goal: contacts that come to rest at no position brake a train in three seconds, though by each of their positions none is
+/// braked, and by no sum and no delay; at rest they let it go on. Method: 40 km/h; the mode switch at manual and automatic,
+/// each for 100 ms, and the reverser forward alone and with backward, each for 20 ms.
+#[test]
+fn contacts_of_the_desk_that_never_come_to_rest_brake() {
+    type Turn = fn(&mut Bench, bool);
+    let switch: Turn = |bench, other| {
+        let positions = [ModeSwitch::Manual, ModeSwitch::Automatic];
+        bench.input.mode_switch = positions[usize::from(other)];
+    };
+    let reverser: Turn = |bench, other| bench.input.lines.set(TrainLines::BACKWARD, other);
+    for (turn, every_ms, event) in [
+        (switch, 100, "mode_switch_chatters"),
+        (reverser, 20, "reverser_chatters"),
+    ] {
+        let mut bench = Bench::new(&[]);
+        bench.code("75");
+        bench.run(0.6);
+        bench.speed_kmh(40.0);
+        let began = bench.now;
+        let braked_ms = loop {
+            let ms = bench.now.since(began).as_ms();
+            if bench.braking() || ms > 5_000 {
+                break ms;
+            }
+            turn(&mut bench, ms / every_ms % 2 == 1);
+            bench.scan();
+        };
+        assert!(
+            (2_900..3_300).contains(&braked_ms),
+            "{event}: {braked_ms} ms"
+        );
+        turn(&mut bench, false);
+        bench.run(2.0);
+        assert!(bench.braking(), "{event}: until standstill");
+        bench.stop();
+        bench.run(1.5);
+        bench.acknowledge();
+        assert!(!bench.braking() && bench.status.mode == Mode::Manual);
+        assert!(bench.events().contains(&event));
+    }
+}
+
 /// Goal: who only forgets a button does not release a brake. Method: it is held since the train moved, and
 /// pressed while the cab is not active.
 #[test]

@@ -1,5 +1,7 @@
 //! The sequence as a table, and after which ends a driverless train waits for a new departure.
 
+use protocol::Duration;
+
 use super::*;
 
 const GOOD: ModeInputs = ModeInputs {

@@ -162,20 +162,33 @@ impl Draw<'_> {
         self.at(at_ms, Stimulus::ModeSwitch(switch));
     }
 
-    /// Turned over several positions, or a contact that chatters.
+    /// Turned over several positions, or contacts that chatter without end.
     fn switch_passes(&mut self, at_ms: u32) {
         let step_ms = self.one_of(&[50, 120, 200, 400]);
-        let between = [self.any_switch(), self.any_switch()];
-        let count = self.one_of(&[2, 2, 8]);
-        for step in 0..count {
-            let switch = between[step as usize % 2];
-            self.at(at_ms + step * step_ms, Stimulus::ModeSwitch(switch));
+        let between = [self.any_switch(), self.any_switch()].map(Stimulus::ModeSwitch);
+        if self.one_of(&[false, false, true]) {
+            return self.chatter(at_ms, between, step_ms);
+        }
+        for (step, switch) in (0..).zip(between) {
+            self.at(at_ms + step * step_ms, switch);
         }
     }
 
+    fn chatter(&mut self, at_ms: u32, between: [Stimulus; 2], step_ms: u32) {
+        let stays = Duration::from_ms(u64::from(step_ms));
+        let turns = between.map(|stimulus| (stimulus, stays));
+        self.drawn.push((at_ms, Act::Alternate(turns)));
+    }
+
+    /// Turned, or contacts that chatter without end; somebody puts it right, mostly.
     fn reverser(&mut self, at_ms: u32) {
-        let position = self.one_of(&[-1, -1, 0, 0, 1]);
-        self.at(at_ms, Stimulus::Reverser { position });
+        match self.one_of(&[-1, -1, 0, 0, 1]) {
+            1 => {
+                let between = [1, 0].map(|position| Stimulus::Reverser { position });
+                self.chatter(at_ms, between, 20);
+            }
+            position => self.at(at_ms, Stimulus::Reverser { position }),
+        }
         self.back(at_ms, Stimulus::Reverser { position: 1 });
     }
 

@@ -30,6 +30,8 @@ const JOGS_FROM_M: f64 = 5.3 + 0.9;
 const ROLLED_M: f64 = 0.5 + 0.5;
 /// Time for which a line that is open applies no brake.
 const BOUNCES: Duration = Duration::from_ms(100);
+/// Time in which contacts of the desk that chatter brake a train, ms: three seconds by the slowest clock, and half a metre.
+const CHATTERS_MS: u64 = 8_000;
 /// Way with a door open, m, and time in which a train that moves is braked.
 const OPEN_WAY_M: f64 = 0.3;
 const OPEN_BRAKED_S: f64 = 0.5;
@@ -91,6 +93,8 @@ pub struct Observed<'a> {
     pub doors_open: [bool; 2],
     /// Reverser: 1, 0, -1.
     pub reverser: i8,
+    /// Contacts of the mode switch or the reverser change all the time.
+    pub chatters: bool,
     /// Section that the train is on.
     pub section: u16,
     /// Section whose data the wayside gives.
@@ -125,6 +129,7 @@ impl<'a> Observed<'a> {
             driven: true,
             doors_open: [false; 2],
             reverser: 1,
+            chatters: false,
             section: 0,
             told: 0,
             start: false,
@@ -443,6 +448,12 @@ impl Monitor {
                 "ATO drives where it may not",
                 seen.by_ato() && moves && !fit && !line && !fsb,
                 700,
+            ),
+            (
+                I10,
+                "a desk that chatters, unbraked",
+                seen.chatters && moves && !line && !fsb,
+                CHATTERS_MS,
             ),
             (
                 I10,

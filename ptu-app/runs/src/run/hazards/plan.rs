@@ -16,7 +16,7 @@ pub enum Act {
     Do(Stimulus),
     /// The unit's supply.
     Supply(bool),
-    /// Two codes by turns, each for its time, until another code is put in.
+    /// Two codes, or two positions of the mode switch or the reverser, by turns, each for its time, until another is put in.
     Alternate([(Stimulus, Duration); 2]),
 }
 

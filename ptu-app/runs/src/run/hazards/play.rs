@@ -76,8 +76,8 @@ struct Player<'a> {
     ride: Ride,
     reverser: i8,
     powered: bool,
-    flicker: Option<[(Stimulus, Duration); 2]>,
-    flicker_due: Instant,
+    turns: Option<[(Stimulus, Duration); 2]>,
+    turn_due: Instant,
     started: Option<Instant>,
     crosstalk: [f64; 2],
     wheel: Option<(f64, Instant)>,
@@ -110,8 +110,8 @@ impl<'a> Player<'a> {
             ride: Ride::Over,
             reverser: 1,
             powered: true,
-            flicker: None,
-            flicker_due: Instant::ZERO,
+            turns: None,
+            turn_due: Instant::ZERO,
             started: None,
             crosstalk: [0.0; 2],
             wheel: None,
@@ -141,7 +141,7 @@ impl<'a> Player<'a> {
             while let Some((_, act)) = acts.next_if(|(at_ms, _)| due(*at_ms)) {
                 self.act(*act);
             }
-            self.turn_code(now);
+            self.turn(now);
             self.go_on(now);
             self.bench.tick().expect("the embedded unit answers");
             // Without TCMS nothing tells of motion that no tachometer sees.
@@ -180,6 +180,7 @@ impl<'a> Player<'a> {
             driven: self.driven,
             doors_open: rig.doors_open(),
             reverser: self.reverser,
+            chatters: self.chatters(),
             section: self.section.section,
             told: self.told.section,
             start: self.started.is_some_and(|at| now.since(at) < PRESSED),
@@ -335,21 +336,29 @@ impl<'a> Player<'a> {
                 let (one, other) = (one.as_ms(), other.as_ms());
                 let text = format!("{first} for {one} ms and {second} for {other} ms by turns");
                 self.acts.push((now, text));
-                self.flicker = Some(turns);
-                self.flicker_due = now;
+                self.turns = Some(turns);
+                self.turn_due = now;
             }
         }
     }
 
-    fn turn_code(&mut self, now: Instant) {
-        let Some(turns) = self.flicker.as_mut().filter(|_| now >= self.flicker_due) else {
+    fn turn(&mut self, now: Instant) {
+        let Some(turns) = self.turns.as_mut().filter(|_| now >= self.turn_due) else {
             return;
         };
         turns.reverse();
-        let (code, stays) = turns[0];
-        self.flicker_due = now + stays;
-        let refused = self.bench.rig_mut().apply(now, &code);
-        refused.expect("any code can be put in");
+        let (stimulus, stays) = turns[0];
+        self.turn_due = now + stays;
+        let refused = self.bench.rig_mut().apply(now, &stimulus);
+        refused.expect("any code and any position can be put in");
+    }
+
+    /// Contacts of the desk change all the time.
+    fn chatters(&self) -> bool {
+        (self.turns).is_some_and(|[(one, _), (other, _)]| {
+            let of_desk = matches!(one, Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. });
+            of_desk && one != other
+        })
     }
 
     /// What cannot be done is not done, as a bench refuses it.
@@ -376,11 +385,16 @@ impl<'a> Player<'a> {
             Stimulus::TrainDriven { on } => self.driven = on,
             Stimulus::Tacho { .. } => self.tacho_made = true,
             Stimulus::Marker { .. } => self.pulsed += 1,
-            Stimulus::Code { .. } | Stimulus::CodeOff | Stimulus::CodesAlong { .. } => {
-                self.flicker = None;
-            }
             _ => {}
         }
+        let ends_turns = match stimulus {
+            Stimulus::Code { .. } | Stimulus::CodeOff | Stimulus::CodesAlong { .. } => {
+                !self.chatters()
+            }
+            Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. } => self.chatters(),
+            _ => false,
+        };
+        self.turns = self.turns.filter(|_| !ends_turns);
         self.acts.push((now, stimulus.to_string()));
     }
 
