@@ -213,7 +213,7 @@ signals! {
     IdentitySoftware "identity_software" "" COMPARED, 0 ..= 2, Rig, "The unit's software version against the one expected";
     IdentityConfig "identity_config" "" COMPARED, 0 ..= 2, Rig, "Name and checksum of the unit configuration against those of the tests";
     IdentityLine "identity_line" "" COMPARED, 0 ..= 2, Rig, "Checksum of the track database against that of the tests";
-    ArmRefusal "arm_refusal" "" Kind::Enum(ArmRefusal::LABELS), 0 ..= 11, Rig, "Why the unit refused or ended arming, as it said last";
+    ArmRefusal "arm_refusal" "" Kind::Enum(ArmRefusal::LABELS), 0 ..= 12, Rig, "Why the unit refused or ended arming, as it said last";
     TestPulses "test_pulses" "" UNITY, 0 ..= 65535, Unit, "Speed pulses that left the TEST board";
     TestMarkers "test_markers" "" UNITY, 0 ..= 255, Unit, "Marker pulses that left the TEST board";
     TestAnswers "test_answers" "" UNITY, 0 ..= 65535, Unit, "TWC answers the TEST modem heard";

@@ -1,7 +1,7 @@
 //! The tester's session: identity, arm exchange, stimuli, event log, run record, stored memory.
 //!
-//! Stimuli act only while armed. Arming needs the maintenance key, standstill and applied brakes, and ends when
-//! the tester falls silent or when test mode must end; the TEST board then removes every test signal.
+//! Stimuli act only while armed. Arming needs the maintenance key, standstill, closed doors and applied brakes, and ends
+//! when the tester falls silent or when test mode must end; the TEST board then removes every test signal.
 
 use alloc::vec::Vec;
 
@@ -36,6 +36,8 @@ pub struct ArmConditions {
     pub key_on: bool,
     /// Standing still by the train's own tachometers.
     pub standing: bool,
+    /// No door is open, by which people might be getting on.
+    pub doors_closed: bool,
     /// The train proves that its brakes are applied.
     pub brakes_applied: bool,
 }
@@ -159,6 +161,8 @@ impl Maintenance {
             ArmRefusal::KeyOff
         } else if !conditions.standing {
             ArmRefusal::Moving
+        } else if self.armed.is_none() && !conditions.doors_closed {
+            ArmRefusal::DoorsOpen
         } else if conditions.brakes_applied {
             if self.armed.is_none() {
                 log.push(now, Event::Armed, 0);
@@ -233,6 +237,8 @@ impl Maintenance {
             ArmRefusal::Busy
         } else if !conditions.standing {
             ArmRefusal::Moving
+        } else if self.armed.is_none() && !conditions.doors_closed {
+            ArmRefusal::DoorsOpen
         } else if session == 0 {
             ArmRefusal::BadAnswer
         } else {

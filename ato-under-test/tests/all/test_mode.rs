@@ -100,6 +100,11 @@ fn arming_is_refused_with_its_reason() {
     rolling.speed_kmh(2.0);
     assert_eq!(arm(&mut rolling), Some(ArmRefusal::Moving));
 
+    let mut open = keyed(&[]);
+    open.input.lines.remove(TrainLines::DOORS_CLOSED);
+    open.run(0.1);
+    assert_eq!(arm(&mut open), Some(ArmRefusal::DoorsOpen));
+
     // A relay that is welded, and a train whose TCMS does not order the service brake.
     let mut released = keyed(&[fault(Place::EbRelay, Effect::StuckOn)]);
     released.tcms_obeys = false;

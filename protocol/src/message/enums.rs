@@ -327,6 +327,8 @@ wire_enum! {
         CodeChanged = 10 "code_changed",
         /// The mode switch was turned while armed.
         ModeChanged = 11 "mode_changed",
+        /// A door is not proved closed.
+        DoorsOpen = 12 "doors_open",
     }
 }
 

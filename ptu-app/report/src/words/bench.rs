@@ -291,6 +291,7 @@ wordings! {
         arm_train_moved: "train moved", "차량 이동";
         arm_code_changed: "code changed", "속도 코드 변화";
         arm_mode_changed: "mode switch turned", "모드 스위치 변경";
+        arm_doors_open: "a door is open", "출입문 열림";
         side_left: "left", "좌측";
         side_right: "right", "우측";
         side_both: "both", "양측";

@@ -142,6 +142,7 @@ impl Bench {
                 self.arm_train_moved,
                 self.arm_code_changed,
                 self.arm_mode_changed,
+                self.arm_doors_open,
             ],
             _ => Vec::new(),
         }

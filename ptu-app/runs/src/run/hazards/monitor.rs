@@ -32,6 +32,8 @@ const ROLLED_M: f64 = 0.5 + 0.5;
 const BOUNCES: Duration = Duration::from_ms(100);
 /// Time in which contacts of the desk that chatter brake a train, ms: three seconds by the slowest clock, and half a metre.
 const CHATTERS_MS: u64 = 8_000;
+/// Time in which the unit knows of a door, and the bench of a tester who is armed.
+const TOLD: Duration = Duration::from_ms(1_000);
 /// Way with a door open, m, and time in which a train that moves is braked.
 const OPEN_WAY_M: f64 = 0.3;
 const OPEN_BRAKED_S: f64 = 0.5;
@@ -193,6 +195,10 @@ pub struct Monitor {
     open_m: f64,
     /// Greatest speed since they opened, m/s.
     open_mps: f64,
+    /// Since when a door is open.
+    opened: Option<Instant>,
+    /// Whether a door was open when the tester was armed who is.
+    armed_open: Option<bool>,
     /// Since when the brake line is open.
     line_open: Option<Instant>,
     released: Option<Instant>,
@@ -215,6 +221,8 @@ impl Monitor {
             rolled_m: 0.0,
             open_m: 0.0,
             open_mps: 0.0,
+            opened: None,
+            armed_open: None,
             line_open: Some(Instant::ZERO),
             released: None,
             since: Vec::new(),
@@ -350,6 +358,10 @@ impl Monitor {
         } else {
             0.0
         };
+        self.opened = open.then(|| self.opened.unwrap_or(seen.now));
+        let armed = seen.on(Signal::Armed);
+        let long = (self.opened).is_some_and(|since| seen.now.since(since) > TOLD);
+        self.armed_open = armed.then(|| self.armed_open.unwrap_or(long));
         let most_m = OPEN_WAY_M + self.open_mps * OPEN_BRAKED_S;
         let enabled = [
             seen.on(Signal::DoorEnableLeft),
@@ -382,8 +394,14 @@ impl Monitor {
             (I4, "ordered where nothing is enabled", unenabled, 0),
             (
                 I11,
+                "armed with a door open",
+                self.armed_open == Some(true),
+                0,
+            ),
+            (
+                I11,
                 "enabled by tests",
-                seen.on(Signal::Armed) && any && !platform.there,
+                armed && any && !platform.there,
                 1_000,
             ),
         ]
