@@ -414,6 +414,13 @@ impl Atp {
         enabled_sides(self.doors.enable())
     }
 
+    /// ATO may order doors to close: one contact is for all of them, so none may be open where none is enabled.
+    pub fn lets_close(&self) -> bool {
+        let enabled = self.enabled();
+        // Codes of sides are sets of bits.
+        enabled != DoorSide::None && self.doors_open.code() & !enabled.code() == 0
+    }
+
     /// Doors are open on a side that is not enabled.
     pub fn forced(&self) -> bool {
         self.doors.hold()

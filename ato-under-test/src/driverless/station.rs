@@ -15,7 +15,8 @@
 //! | obstructed | open | departure is withdrawn |
 //! | obstructed | closing | a person acknowledges |
 //!
-//! It orders doors to open only on sides that ATP enables; without an enable what is open is closed, and stays so.
+//! It orders doors to open only on sides that ATP enables; without an enable what is open is to be closed, and stays so.
+//! ATP lets that order through while all that is open is on sides that it enables; what is open elsewhere somebody closes.
 
 use protocol::config::DriverlessConfig;
 use protocol::event::Event;

@@ -82,7 +82,8 @@ impl Unit {
         outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
         // ATP lets an order to open go a scan after it was taken back: never both.
         let opens = outputs.intersects(Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT);
-        outputs.set(Outputs::CLOSE_DOORS, functions.station.closes() && !opens);
+        let closes = functions.station.closes() && functions.atp.lets_close();
+        outputs.set(Outputs::CLOSE_DOORS, closes && !opens);
         outputs
     }
 }

@@ -80,6 +80,29 @@ fn a_train_at_its_stop_point_begins_no_run_whatever_departure_is_given() {
     assert_eq!(journey.faults(), [""; 0]);
 }
 
+/// Goal: no door is closed on people where the unit has let nobody out. Method: at a platform on the right an obstacle keeps
+/// the doors from closing, when a door on the left is opened by hand, and closed again.
+#[test]
+fn doors_are_not_ordered_to_close_while_one_is_open_that_is_not_enabled() {
+    const LEFT: TrainLines = TrainLines::LEFT_CLOSED.union(TrainLines::LEFT_LOCKED);
+    let mut journey = arrive(Journey::new(&[]));
+    scans(&mut journey, 600);
+    let lines = &mut journey.bench.input.lines;
+    lines.remove(TrainLines::DOORS_CLOSED);
+    lines.insert(TrainLines::DOORS_BY_SIDE | LEFT);
+    let arrival = journey.bench.station.unwrap();
+    journey.bench.station = Some(TwcWayside {
+        departure: 1,
+        ..arrival
+    });
+    for (left_closed, after_s) in [(true, 2.0), (false, 0.03), (false, 0.5), (true, 0.1)] {
+        journey.bench.input.lines.set(LEFT, left_closed);
+        journey.bench.run(after_s);
+        let closes = journey.bench.has(Outputs::CLOSE_DOORS);
+        assert_eq!(closes, left_closed, "after {after_s} s");
+    }
+}
+
 #[test]
 fn an_order_to_open_on_the_other_side_does_not_leave_the_unit() {
     let wrong_side = fault(Place::DoorOrder, Effect::Offset { by: -1.0 });

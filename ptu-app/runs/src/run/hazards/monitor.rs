@@ -375,6 +375,8 @@ impl Monitor {
         let platform = self.place.platform(seen);
         let wrong = (0..2).any(|side| enabled[side] && !platform.sides[side]);
         let unenabled = (0..2).any(|side| ordered[side] && !enabled[side]);
+        let forced = (0..2).any(|side| seen.doors_open[side] && !enabled[side]);
+        let closes = seen.on(Signal::DoorOrderClose) && forced;
         let moves = seen.kmh() > MOVES_KMH && !blind;
         vec![
             (
@@ -392,6 +394,7 @@ impl Monitor {
                 0,
             ),
             (I4, "ordered where nothing is enabled", unenabled, 0),
+            (I4, "ordered to close where nothing is enabled", closes, 0),
             (
                 I11,
                 "armed with a door open",
