@@ -3,7 +3,7 @@
 //! A train that is put away is in mode off with its emergency brake applied; speed codes and departures are not acted
 //! on, TWC is answered. It wakes by the wayside's order, or by somebody at the cab, who turns the mode switch away from
 //! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released, as
-//! at power-up; with one that failed the train stays put away, until it is woken again or somebody at the cab takes it.
+//! at power-up; with one that failed in any item, nobody being there who could judge it, the train stays put away, until it is woken again or somebody at the cab takes it.
 //! An old departure counts no more.
 //!
 //! A train that is put away stays so over a power-up: the stored event log says it.
@@ -29,7 +29,7 @@ enum Stage {
 pub struct StablingInputs {
     /// The mode switch is at driverless; `None` = the inputs are lost.
     pub driverless: Option<bool>,
-    /// The last self-test is over, and what failed of what running needs.
+    /// The last self-test is over, and what failed of it.
     pub tested: Option<SelfTest>,
     /// Departure is given.
     pub departure: bool,

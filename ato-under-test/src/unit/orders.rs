@@ -190,7 +190,7 @@ impl Functions {
         let tester = around.self_tester;
         let stabling = StablingInputs {
             driverless: self.inputs.alive.then_some(self.driverless()),
-            tested: tester.finished().then_some(tester.failed_for_running()),
+            tested: tester.finished().then_some(tester.failed()),
             departure,
             running,
         };

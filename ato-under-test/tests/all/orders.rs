@@ -342,11 +342,18 @@ fn somebody_at_the_cab_wakes_the_train_too() {
     assert!(!wayside.braked() && wayside.bench.status.mode == Mode::Manual);
 }
 
+/// Goal: nobody runs after a self-test that failed, in whatever item. Method: TRA, which running needs, and the TEST board,
+/// which it does not, fail while the train is put away.
 #[test]
 fn a_self_test_that_fails_lets_nobody_run() {
+    wakes_failed(Place::Tra, SelfTest::TRA);
+    wakes_failed(Place::TestBoard, SelfTest::TEST_BOARD);
+}
+
+fn wakes_failed(place: Place, item: SelfTest) {
     let late = FaultMode {
         onset_s: 200.0,
-        ..fault(Place::Tra, Effect::Dead)
+        ..fault(place, Effect::Dead)
     };
     let mut wayside = Wayside::arrived(&[late]);
     wayside.order(TrainOrder::PutAway);
@@ -355,7 +362,7 @@ fn a_self_test_that_fails_lets_nobody_run() {
     wayside.order(TrainOrder::WakeUp);
     wayside.run(2.0);
     assert_eq!(wayside.state(), OrderState::Failed);
-    let bits = i32::from(SelfTest::TRA.bits());
+    let bits = i32::from(item.bits());
     assert_eq!(wayside.parameters(Event::WokenUp), [bits]);
     wayside.bench.station = Some(onward(true));
     for _ in 0..200 {
