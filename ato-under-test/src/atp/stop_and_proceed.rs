@@ -1,6 +1,7 @@
 //! Stop and proceed: without a code the train is stopped, and the driver may then go on slowly.
 //!
-//! The driver acknowledges it at standstill by a brake notch. From then on a low limit holds, and a warning sounds again
+//! The driver acknowledges it at standstill by a brake notch, which is a new act: one that has been held since the train ran,
+//! or since it had a code, acknowledges nothing. From then on a low limit holds, and a warning sounds again
 //! and again, until a code is there, or nobody drives by hand any more. An absolute stop is no lack of a code: nobody
 //! proceeds under one.
 
@@ -9,6 +10,7 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::EventLog;
+use crate::timer::Edge;
 
 /// What it looks at in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +28,7 @@ pub struct ProceedInputs {
 pub struct StopAndProceed {
     /// Since when, and the limit.
     proceeds: Option<(Instant, Speed)>,
+    brakes: Edge,
     warns: bool,
 }
 
@@ -37,12 +40,13 @@ impl StopAndProceed {
         config: Option<&StopAndProceedConfig>,
         log: &mut EventLog,
     ) {
+        let acknowledges = self.brakes.rises(inputs.brakes) && inputs.standstill;
         let config = config.filter(|_| inputs.without_code && inputs.by_driver);
         let Some(config) = config else {
-            *self = Self::default();
+            (self.proceeds, self.warns) = (None, false);
             return;
         };
-        if self.proceeds.is_none() && inputs.standstill && inputs.brakes {
+        if self.proceeds.is_none() && acknowledges {
             let limit = Speed::from_kmh(config.limit_kmh);
             self.proceeds = Some((now, limit));
             log.push(now, Event::StopAndProceed, i32::from(limit.to_cms()));
@@ -135,6 +139,40 @@ mod tests {
         let mut without = StopAndProceed::default();
         without.step(Instant::ZERO, ACKNOWLEDGED, None, &mut log);
         assert_eq!(without.limit(), None, "a unit without the rule");
+    }
+
+    /// Goal: a brake notch that has been held since before acknowledges nothing. Method: it is held since the train ran, since
+    /// there was a code, and since another position of the switch; then it is let go, and taken again.
+    #[test]
+    fn a_brake_notch_that_is_held_acknowledges_nothing() {
+        let inputs = |held: [bool; 3], brakes| {
+            let [standstill, without_code, by_driver] = held;
+            ProceedInputs {
+                without_code,
+                by_driver,
+                standstill,
+                brakes,
+            }
+        };
+        let all = [true; 3];
+        for before in [
+            [false, true, true],
+            [true, false, true],
+            [true, true, false],
+        ] {
+            let (mut one, mut log) = (StopAndProceed::default(), EventLog::default());
+            let acts = [(before, true), (all, true), (all, false), (all, true)];
+            let after = acts.map(|(held, brakes)| {
+                one.step(
+                    Instant::ZERO,
+                    inputs(held, brakes),
+                    Some(&config()),
+                    &mut log,
+                );
+                one.limit().is_some()
+            });
+            assert_eq!(after, [false, false, false, true], "{before:?}");
+        }
     }
 
     /// The rule: the warning comes every eight seconds.

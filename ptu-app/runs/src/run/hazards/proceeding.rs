@@ -65,6 +65,7 @@ pub(super) struct Proceeding {
     limit_kmh: Option<f64>,
     receiver: Receiver,
     granted: bool,
+    controller: f64,
     coded: Held,
 }
 
@@ -74,6 +75,7 @@ impl Proceeding {
             limit_kmh: config.stop_and_proceed.as_ref().map(|rule| rule.limit_kmh),
             receiver: Receiver::new(config),
             granted: false,
+            controller: 0.0,
             coded: Held::default(),
         }
     }
@@ -85,7 +87,10 @@ impl Proceeding {
         };
         let by_driver = matches!(seen.value(Signal::ModeSwitch) as u8, 1 | 2);
         let stands = seen.kmh() < STANDS_KMH || seen.blind;
-        self.granted |= stands && seen.value(Signal::Controller) < 0.0;
+        let controller = seen.value(Signal::Controller);
+        let before = std::mem::replace(&mut self.controller, controller);
+        // A notch that was held before the train stood is no act.
+        self.granted |= stands && controller < 0.0 && before >= 0.0;
         // An absolute stop is no lack of a code.
         let signal = code_kmh > 0.0 || seen.value(Signal::CodeRateHz) == 0.0;
         let coded = signal && alone(seen, &self.receiver);
@@ -193,6 +198,11 @@ mod tests {
             let (mut proceeding, mut ended) = (Proceeding::new(config), YardEnded::new(config));
             let found = after(&mut proceeding, &mut ended, desk, rate_hz);
             assert_eq!(found, (kmh, false), "{desk:?} {rate_hz:?}");
+        }
+        let (mut held, mut ended) = (Proceeding::new(config), YardEnded::new(config));
+        for kmh in [5.0, 0.0] {
+            let (found_kmh, _) = after(&mut held, &mut ended, [MANUAL, -4.0, kmh], None);
+            assert_eq!(found_kmh, 0.0, "a notch that is held, {kmh} km/h");
         }
         for (rate_hz, ends) in [(3.2, false), (16.8, true), (8.6, true), (24.5, false)] {
             let (mut proceeding, mut ended) = (Proceeding::new(config), YardEnded::new(config));
