@@ -23,7 +23,7 @@ pub struct Contacts<T> {
 
 impl<T: Copy + PartialEq> Contacts<T> {
     /// One scan; logs the event once no position has been chosen for too long on a train that moves. At rest a person may turn
-    /// it as often as he likes.
+    /// the switch as often as they like.
     pub fn step(
         &mut self,
         now: Instant,
