@@ -11,3 +11,4 @@ mod event_stream;
 mod operator;
 mod run_recording;
 mod sparkline;
+pub mod verdict_table;

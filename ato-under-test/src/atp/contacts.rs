@@ -9,7 +9,7 @@ use crate::timer::{Edge, OnDelay};
 
 /// Time at a position by which it was chosen, and not passed on the way to another [default].
 pub const CHOSEN: Duration = Duration::from_ms(1_000);
-/// Time in which a person has chosen a position: contacts that go on changing chatter.
+/// Time in which a person has chosen a position: contacts that go on changing chatter [default].
 const CHOOSES: Duration = Duration::from_ms(3 * CHOSEN.as_ms());
 
 /// Contacts that tell a position.

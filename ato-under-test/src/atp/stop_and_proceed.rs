@@ -142,7 +142,7 @@ mod tests {
     }
 
     /// Goal: a brake notch that has been held since before acknowledges nothing. Method: it is held since the train ran, since
-    /// there was a code, and since another position of the switch; then it is let go, and taken again.
+    /// there was a code, and since another position of the switch; then the notch is released, and taken again.
     #[test]
     fn a_brake_notch_that_is_held_acknowledges_nothing() {
         let inputs = |held: [bool; 3], brakes| {

@@ -38,7 +38,7 @@ const HOST: &str = "host";
 pub struct Preset {
     /// The option, without its hyphens.
     pub option: String,
-    /// What it is.
+    /// The value that the option has by default.
     pub value: String,
     /// The file, and the table of this computer if it stands there.
     pub from: String,

@@ -1,5 +1,7 @@
 //! Measured values and their limits as text and as the shares of a bar.
 
+use crate::words::{Words, fill};
+
 /// Share of a bar beyond each limit.
 const BEYOND: f64 = 0.25;
 
@@ -17,6 +19,17 @@ pub fn short(value: f64) -> String {
     match text.trim_end_matches('0').trim_end_matches('.') {
         "-0" => "0".into(),
         text => text.to_owned(),
+    }
+}
+
+/// Limits in words: `at most 472`; empty without any.
+pub fn limits_text(words: &Words, low: Option<f64>, high: Option<f64>) -> String {
+    let (low, high) = (low.map(short), high.map(short));
+    match (&low, &high) {
+        (Some(low), Some(high)) => fill(words.common.from_to, &[("low", low), ("high", high)]),
+        (None, Some(high)) => fill(words.common.at_most, &[("n", high)]),
+        (Some(low), None) => fill(words.common.at_least, &[("n", low)]),
+        (None, None) => String::new(),
     }
 }
 

@@ -252,7 +252,8 @@ impl FilesOfKeys {
 }
 
 fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
-    let terminal = &Words::shown().terminal;
+    let words = Words::shown();
+    let (terminal, life) = (&words.terminal, &words.life);
     if list.keys.is_empty() {
         return terminal.no_keys.into();
     }
@@ -260,8 +261,8 @@ fn table(list: &KeyList, files: &FilesOfKeys, now: i64) -> String {
         terminal.who,
         terminal.kind,
         terminal.key,
-        terminal.from,
-        terminal.until,
+        life.from,
+        life.until,
         terminal.today,
     ]);
     for entry in &list.keys {

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::{print_json, print_out};
 use ptu_report::csv::{Cell, MARK};
+use ptu_report::words::{Language, Words};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 
@@ -21,6 +22,14 @@ impl Json {
     /// JSON is asked for.
     pub fn is_asked(self) -> bool {
         self.json
+    }
+
+    /// The words of an answer: other programs read English.
+    pub fn words(self) -> &'static Words {
+        match self.json {
+            true => Language::English.words(),
+            false => Words::shown(),
+        }
     }
 
     /// Prints one JSON document, or text for people.

@@ -9,7 +9,7 @@ use super::output::Form;
 use super::reports::ReportOption;
 use super::signing::SigningOption;
 use super::{Database, Json, ScriptsOption, at_least_one, check_unit, print_out};
-use crate::console::verdict_table;
+use crate::verdict_table::verdict_table;
 use ptu_report::run::{RunComparison, comparison_json, comparison_text};
 use ptu_report::trace_notes::{note_text, noted_by};
 use ptu_report::words::{Language, Words, fill};
@@ -189,7 +189,8 @@ impl RunsArguments {
 
 /// Who signed the run, below its verdict.
 fn signed(run: &RunDetail) -> String {
-    let terminal = &Words::shown().terminal;
+    let words = Words::shown();
+    let terminal = &words.terminal;
     match (&run.signature, &run.seal) {
         (Some(signed), _) => {
             let said = fill(
@@ -204,7 +205,7 @@ fn signed(run: &RunDetail) -> String {
             );
             format!("\n{said}")
         }
-        (None, Some(_)) => format!("\n{}", terminal.unsigned),
+        (None, Some(_)) => format!("\n{}", words.report.unsigned),
         (None, None) => String::new(),
     }
 }

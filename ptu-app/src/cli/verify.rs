@@ -1,23 +1,22 @@
 //! `ptu verify`: who signed, and whether anything was changed since.
 
+mod findings;
 mod sheet;
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fault_db::{About, Id, SignatureError, Signed, Statement, Store, Verification};
-use serde_json::{Value, json};
+use fault_db::{SignatureError, Signed, Statement, Store, Verification};
+use serde_json::json;
 
 use super::key::KeysOption;
 use super::{Database, Json, answered};
+use findings::{Findings, dated_ahead};
 use ptu_report::has_certificate;
-use ptu_report::words::{Language, Words, fill};
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Why};
-use ptu_runs::keys::{KeyList, Standing};
-use ptu_runs::stored::from_stored;
-use ptu_runs::words::{Manner, Say as _};
+use ptu_runs::keys::KeyList;
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -50,34 +49,10 @@ pub struct VerifyArguments {
     database: Database,
 }
 
-/// What was found, in the words of those who read it.
-struct Findings {
-    words: &'static Words,
-    /// `run`, `database`, `sheet` or `certificate`.
-    what: &'static str,
-    id: String,
-    /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
-    is_covered: bool,
-    /// Who signed what, when, and how the key stood then.
-    signatures: Vec<Value>,
-    /// The same in words.
-    said: Vec<String>,
-    /// What was changed, and where.
-    changes: Vec<String>,
-    /// What is not signed, or not by a key that is trusted.
-    doubts: Vec<String>,
-    /// What is to be known besides.
-    remarks: Vec<String>,
-}
-
 impl VerifyArguments {
     /// Verifies.
     pub fn run(self) -> Result<Exit, Failure> {
-        // Other programs read English.
-        let words = match self.json.is_asked() {
-            true => Language::English.words(),
-            false => Words::shown(),
-        };
+        let words = self.json.words();
         let keys = self.keys.read()?;
         let path = Path::new(&self.what);
         let found = match path.is_file() {
@@ -272,181 +247,4 @@ fn looks_like_a_file(name: &str) -> bool {
     let ending = ending.extension().and_then(|ending| ending.to_str());
     let is_code = name.starts_with("ptu:");
     (!is_code && name.contains(['/', '\\'])) || matches!(ending, Some("db" | "html" | "ptucert"))
-}
-
-/// A clock may be ahead of this one by so much, µs.
-const AHEAD_US: i64 = 86_400_000_000;
-
-/// What to say of a signature that is dated in the future.
-fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<String> {
-    let is_ahead = at_us > clock::now_us().saturating_add(AHEAD_US);
-    is_ahead.then(|| {
-        let at = clock::local(at_us);
-        fill(words.verify.dated_ahead, &[("name", &name), ("at", &at)])
-    })
-}
-
-impl Findings {
-    /// Nothing yet, of a `run`, `database`, `sheet` or `certificate`.
-    fn of(what: &'static str, words: &'static Words) -> Self {
-        Self {
-            words,
-            what,
-            id: String::new(),
-            is_covered: false,
-            signatures: Vec::new(),
-            said: Vec::new(),
-            changes: Vec::new(),
-            doubts: Vec::new(),
-            remarks: Vec::new(),
-        }
-    }
-
-    fn standing(&self, standing: &Standing) -> String {
-        standing.say(Manner {
-            korean: self.words.language == Language::Korean,
-            commands: true,
-        })
-    }
-
-    fn name(&self, who: &str, kind: &str, key: &str) -> String {
-        let of = [("who", &who as _), ("kind", &kind as _), ("key", &key as _)];
-        fill(self.words.verify.name, &of)
-    }
-
-    fn take_run(&mut self, seen: Verification, keys: &KeyList) {
-        let verify = &self.words.verify;
-        for statement in &seen.signatures {
-            self.take(statement, keys);
-        }
-        if seen.seal.is_none() {
-            self.doubts.push(verify.not_ended.to_owned());
-        } else if seen.of_run().next().is_none() {
-            self.doubts.push(verify.run_unsigned.to_owned());
-        }
-        if let Some(seal) = &seen.seal {
-            let as_found = match &seal.found {
-                Some(_) => verify.as_found,
-                None => "",
-            };
-            self.remarks.push(fill(
-                verify.seal,
-                &[
-                    ("seal", &seal.short()),
-                    ("entry", &seal.entry),
-                    ("file", &seal.file.short()),
-                    ("found", &as_found),
-                ],
-            ));
-        }
-        let signers = seen.signatures.iter().map(|one| one.who.to_lowercase());
-        self.take_unsigned(&seen.unsigned_notes, &signers.collect::<Vec<_>>());
-        self.remarks.extend(seen.remarks);
-        let pruned = seen.pruned.iter();
-        let pruned = pruned.map(|what| fill(verify.pruned, &[("what", what)]));
-        self.remarks.extend(pruned);
-        self.changes.extend(seen.changes);
-    }
-
-    /// Notes that nobody signed: a doubt in the name of one of these signers.
-    fn take_unsigned(&mut self, notes: &[(Id, String)], signers: &[String]) {
-        for (id, who) in notes {
-            let of = [("id", &id.short() as _), ("who", who as _)];
-            let said = fill(self.words.verify.note_unsigned, &of);
-            match signers.contains(&who.to_lowercase()) {
-                true => self.doubts.push(said),
-                false => self.remarks.push(said),
-            }
-        }
-    }
-
-    fn take(&mut self, signed: &Statement, keys: &KeyList) {
-        let standing = keys.standing(&signed.key, &signed.who, &signed.kind, signed.at_us);
-        let (at, short) = (clock::local(signed.at_us), signed.short_key());
-        let name = self.name(&signed.who, &signed.kind, short);
-        let said = self.standing(&standing);
-        let words = self.words;
-        let id = signed
-            .id
-            .get(signed.id.len().saturating_sub(8)..)
-            .unwrap_or_default();
-        let what = &signed.what;
-        let about = signed.about.as_ref();
-        let about = about.map_or_else(String::new, |of| about_text(of, words));
-        let of: [(&str, &dyn Display); 6] = [
-            ("what", &words.verify.what(what)),
-            ("id", &id),
-            ("name", &name),
-            ("at", &at),
-            ("standing", &said),
-            ("about", &about),
-        ];
-        self.said.push(fill(words.verify.signed, &of));
-        if !standing.is_good() {
-            self.doubts.push(fill(words.verify.key_doubted, &of));
-        }
-        self.doubts.extend(dated_ahead(&name, signed.at_us, words));
-        self.signatures.push(json!({
-            "what": what, "id": signed.id, "who": signed.who, "kind": signed.kind, "key": signed.key,
-            "at": rfc3339(signed.at_us), "trusted": standing.is_good(), "standing": standing.text(),
-        }));
-    }
-
-    fn json(&self) -> Value {
-        json!({
-            "what": self.what, "id": self.id,
-            "verified": self.changes.is_empty() && self.doubts.is_empty(),
-            "changes": self.changes, "doubts": self.doubts, "signatures": self.signatures, "remarks": self.remarks,
-        })
-    }
-
-    fn text(&self) -> String {
-        let verify = &self.words.verify;
-        let mut lines = self.said.clone();
-        if !self.changes.is_empty() {
-            lines.push(fill(verify.changed, &[("n", &self.changes.len())]));
-            lines.extend(self.changes.iter().map(|change| format!("  {change}")));
-        } else if self.is_covered {
-            let said = match self.signatures.is_empty() {
-                true => verify.unchanged_sealed,
-                false => verify.unchanged_signed,
-            };
-            lines.push(fill(said, &[("what", &verify.what(self.what))]));
-        }
-        if !self.doubts.is_empty() {
-            lines.push(verify.not_verified.to_owned());
-            lines.extend(self.doubts.iter().map(|doubt| format!("  {doubt}")));
-        }
-        lines.extend(self.remarks.iter().cloned());
-        lines.join("\n")
-    }
-}
-
-/// What a signed run says, in short.
-fn about_text(about: &About, words: &Words) -> String {
-    let verify = &words.verify;
-    let injected = match &about.injected {
-        Some(faults) => fill(verify.injected, &[("faults", faults)]),
-        None => String::new(),
-    };
-    let who = match about.operator.as_str() {
-        "" => verify.nobody,
-        who => who,
-    };
-    let verdict = about.verdict.parse().ok();
-    let verdict = verdict.map(|verdict| words.verdict_name(from_stored(verdict)));
-    let said = fill(
-        verify.about,
-        &[
-            ("unit", &about.unit),
-            ("verdict", &verdict.unwrap_or(&about.verdict)),
-            ("steps", &about.steps),
-            ("n", &about.measurements),
-            ("who", &who),
-            ("source", &about.source),
-            ("at", &clock::local(about.started_at_us)),
-            ("injected", &injected),
-        ],
-    );
-    format!("\n  {said}")
 }

@@ -62,7 +62,6 @@ fn line(chance: &mut Chance, codes: &[(usize, f64)], steepest: f64) -> String {
     };
     let by_limits = matches!(sections, 4 | 10);
     let mut line = format!("name = \"drawn\"\n{loops}");
-    let mut tunnels = String::new();
     for section in 1..=sections {
         let length_m = match chance.below(8) {
             0..3 => between(chance, 200.0, 900.0),
@@ -99,10 +98,11 @@ fn line(chance: &mut Chance, codes: &[(usize, f64)], steepest: f64) -> String {
                 }
             })
             .collect();
-        if sections == 2 {
-            let middle_m = length_m / 2.0;
-            tunnels = format!("tunnels = [{{ from_m = 50.0, to_m = {middle_m:?} }}]\n");
-        }
+        let middle_m = length_m / 2.0;
+        let tunnels = match sections {
+            2 => format!("tunnels = [{{ from_m = 50.0, to_m = {middle_m:?} }}]\n"),
+            _ => String::new(),
+        };
         let side = ["left", "right", "right", "both"][chance.below(4)];
         let (from, to) = (99 + section, 100 + section);
         line += &format!(

@@ -57,7 +57,7 @@ pub struct Traction {
     pub lag_s: f64,
 }
 
-/// Force at a speed.
+/// Tractive effort of a train at a speed.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct EffortAt {

@@ -142,7 +142,7 @@ pub enum MatrixError {
     Table {
         /// Line of the file, from 1.
         line: u64,
-        /// What is wrong in this line.
+        /// The reason why the line cannot be read.
         what: String,
     },
     /// Outcomes that no state explains.

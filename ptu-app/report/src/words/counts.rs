@@ -27,7 +27,6 @@ wordings! {
         rate_is: "; PER 10000 KM: faults first seen in runs in trains whose odometer readings cover the time, over what these trains ran; between two readings a train runs evenly",
             "; 10000 KM당: 주행거리 기록이 있는 열차의 시험에서 최초 발생한 고장을 그 열차의 주행거리로 나눈 값. 두 기록 사이는 일정하게 주행한 것으로 봄";
         span_all: "all of history", "전체 기간";
-        now: "now", "현재";
         nothing_measured: "no value could be measured", "측정된 값이 없음";
         by_several: "measured by {names}, each with limits of its own: choose one with --procedure", "{names}에서 허용값을 달리하여 측정함. --procedure로 선택";
         several_limits: "measured with several limits: choose a step with --step", "단계마다 허용값이 다름. --step으로 선택";
@@ -82,7 +81,7 @@ impl Words {
     pub fn span(&self, span: Span) -> String {
         let counts = &self.counts;
         let until = |until: Option<i64>| {
-            until.map_or_else(|| counts.now.to_owned(), |until| local_day(until - 1))
+            until.map_or_else(|| self.life.now.to_owned(), |until| local_day(until - 1))
         };
         match (span.since_us, span.until_us) {
             (None, None) => counts.span_all.to_owned(),

@@ -59,7 +59,6 @@ wordings! {
         key_revoked: "revoked from {day}: key {key} of {who}, in {file}; hand the new list to all who verify", "{day}부터 폐기: {who}의 키 {key} ({file}). 새 목록을 검증하는 모든 사람에게 전달하십시오";
         key_trusted: "trusted: {who}, key {key}, {span}, in {file}", "신뢰 목록에 추가함: {who}, 키 {key}, {span} ({file})";
         kind: "kind", "종류";
-        last_seen: "last seen", "최근 발생";
         later_earlier: "later/earlier", "후반/전반";
         left_seconds: "{what}, {n} s left", "{what}, {n}초 남음";
         length: "length", "길이";
@@ -77,7 +76,6 @@ wordings! {
         cut_short: ", cut short", ", 중간에 끊김";
         deviate_later: "and {n} more signals, which deviate later", "나중에 달라진 신호 {n}개 더 있음";
         expected: "expected", "예상";
-        from: "from", "부터";
         is_expected: "{signal} is {value}, expected {expected}, {when}", "{signal}: {value} (예상 {expected}), {when}";
         instead_of: "{signal} {value} instead of {expected}", "{signal}: {value} (예상 {expected})";
         largest: "largest", "최대 차이";
@@ -98,7 +96,6 @@ wordings! {
         no_runs: "no runs recorded; `ptu run` makes one", "기록된 시험이 없음. `ptu run`으로 시험을 수행";
         no_traces: "no traces recorded; a run that finds a fault makes one", "신호 기록이 없음. 고장을 찾은 시험에서 만들어짐";
         no_steps: "{source}, no steps", "{source}, 수행된 단계 없음";
-        no_value: "no value", "값 없음";
         noted: "noted", "작성 시각";
         noted_on_fault: "noted on fault {fault}", "고장 {fault}에 메모를 기록함";
         noted_on_run: "noted on run {run}", "시험 {run}에 메모를 기록함";
@@ -106,13 +103,11 @@ wordings! {
         of_n: "{run} of {of}", "{run}/{of}";
         of_these: "of these", "이 중";
         other_faults: "other faults", "그 밖의 고장";
-        passed: "passed", "합격";
         question: "question", "조회";
         reason: "why", "이유";
         repeat: "repeat", "재시도";
         repeated_step: "repeated step", "다시 한 단계";
         resumed_on: "run {run} was on {line}; what is left is run on {now}", "시험 {run}의 노선은 {line}, 나머지는 {now}에서 수행";
-        seen: "seen", "횟수";
         share: "share", "비율";
         signed: "signed by {who} ({kind}, key {key}) at {at}; `ptu verify {run}` verifies it", "전자 서명: {who} ({kind}, 키 {key}), {at}. 검증: `ptu verify {run}`";
         skipped: "skipped, {why}", "미실행, {why}";
@@ -130,11 +125,9 @@ wordings! {
         traces_naming: "traces of faults that name {part}: {ids}", "{part} 관련 고장의 신호 기록: {ids}";
         today: "today", "오늘";
         uncertainty: "uncertainty", "불확도";
-        until: "until", "까지";
         valid: "valid", "유효";
         who: "who", "이름";
         type_yes_no: "type y for yes or n for no", "예는 y, 아니요는 n을 입력";
-        unsigned: "unsigned", "서명 없음";
         values: "values", "값의 수";
         why_not: "why not {part}; of its faults the likeliest is", "{part}이(가) 아닌 이유. 이 부품의 가장 유력한 고장:";
         left_out: "left out: {why}", "제외함: {why}";

@@ -1,6 +1,6 @@
 //! What a verification says of signatures and changes.
 
-use super::wordings;
+use super::{Words, wordings};
 
 wordings! {
     /// What a verification says of signatures and changes.
@@ -8,8 +8,6 @@ wordings! {
         about: "unit {unit}: {verdict}, {steps} steps run, {n} measured values, by {who}, on {source}, begun {at}{injected}", "장치 {unit}: {verdict}, {steps}개 단계 수행, 측정값 {n}개, 시험자 {who}, 연결 {source}, 시작 {at}{injected}";
         injected: ", with injected faults {faults}", ", 주입한 고장 {faults}";
         nobody: "a person not named", "기재 없음";
-        run: "run", "시험";
-        note: "note", "메모";
         event: "event", "고장 조치";
         sheet: "sheet", "성적서";
         database: "database", "이력 파일";
@@ -49,17 +47,17 @@ wordings! {
     }
 }
 
-impl Verify {
-    /// What is signed, by its name in statements.
-    pub fn what<'a>(&self, what: &'a str) -> &'a str {
+impl Words {
+    /// What is signed or verified, by its name in statements.
+    pub fn signed_thing<'a>(&self, what: &'a str) -> &'a str {
         match what {
-            "run" => self.run,
-            "note" => self.note,
-            "event" => self.event,
-            "sheet" => self.sheet,
-            "database" => self.database,
-            "certificate" => self.certificate,
-            "instrument" => self.instrument,
+            "run" => self.common.run,
+            "note" => self.common.note,
+            "event" => self.verify.event,
+            "sheet" => self.verify.sheet,
+            "database" => self.verify.database,
+            "certificate" => self.verify.certificate,
+            "instrument" => self.verify.instrument,
             other => other,
         }
     }

@@ -7,7 +7,7 @@ use fault_db::Address;
 use serde::Serialize;
 
 use super::{Database, Json, ScriptsOption, answered};
-use ptu_report::words::{Doctor, Language};
+use ptu_report::words::Doctor;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::table::padded;
 
@@ -107,12 +107,7 @@ impl Finding {
 impl DoctorArguments {
     /// Looks at all and tells.
     pub fn run(self) -> Result<Exit, Failure> {
-        // Other programs read English.
-        let language = match self.json.is_asked() {
-            true => Language::English,
-            false => Language::shown(),
-        };
-        let words = language.words();
+        let words = self.json.words();
         let mut findings = checks::scripts(self.scripts.find(), words);
         findings.extend(checks::ports(words));
         findings.push(checks::display(words));

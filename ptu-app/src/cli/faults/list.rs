@@ -69,14 +69,14 @@ fn table(faults: &[FaultSummary]) -> String {
     let (common, terminal) = (&words.common, &words.terminal);
     let headings = [
         common.fault,
-        terminal.last_seen,
+        words.faults.last_seen,
         common.unit,
         common.code,
         common.part,
         words.faults.cause,
         common.severity,
         common.state,
-        terminal.seen,
+        words.faults.seen,
         terminal.trace,
     ];
     let mut table = Table::headed(&headings).right([8]).parts([4, 5]);

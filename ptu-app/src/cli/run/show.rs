@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use fault_db::RunDetail;
 
-use crate::console::{Detail, failures, verdict_table};
+use crate::console::Detail;
 use crate::event_stream::Place;
+use crate::verdict_table::{failures, verdict_table};
 use ptu_report::words::Words;
 
 /// How much is said, and in which form.

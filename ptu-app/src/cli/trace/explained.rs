@@ -107,7 +107,7 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
     let words = Words::shown();
     let terminal = &words.terminal;
     let signal = words.traces.signal;
-    let (from, largest, at) = (terminal.from, terminal.largest, terminal.at);
+    let (from, largest, at) = (words.life.from, terminal.largest, terminal.at);
     let mut table = Table::headed(&[signal, from, came, expected, largest, at, terminal.rows]);
     for deviation in comparison.deviations.iter().take(SHOWN) {
         let Deviation {

@@ -4,7 +4,7 @@ use fault_db::Statement;
 use ptu_report::read_certificate;
 use ptu_runs::keys::KeyList;
 
-use super::Findings;
+use super::findings::Findings;
 use ptu_report::words::{Words, fill};
 
 /// A sheet by the certificate in it.
@@ -35,7 +35,7 @@ pub(super) fn sheet(page: &str, keys: &KeyList, words: &'static Words) -> Findin
                     }
                     ("note", _) => {}
                     (what, _) => {
-                        let said = fill(verify.foreign, &[("what", &verify.what(what))]);
+                        let said = fill(verify.foreign, &[("what", &words.signed_thing(what))]);
                         found.changes.push(said);
                     }
                 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use fault_db::{RunDetail, Signed, SqlValue, Statement, Store};
 use fuzzing::draw;
-use ptu_app::console::{failures, verdict_table};
+use ptu_app::verdict_table::{failures, verdict_table};
 use ptu_report::diagnosis::{diagnosis_json, diagnosis_text};
 use ptu_report::run::page::pages;
 use ptu_report::run::{RunComparison, Sheet, html};

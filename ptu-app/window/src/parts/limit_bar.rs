@@ -6,9 +6,9 @@ use eframe::egui::{
 };
 
 use crate::{Palette, Sizes};
-use ptu_report::limits::{places, short};
+use ptu_report::limits::{limits_text, places, short};
 use ptu_report::ticks::Ticks;
-use ptu_report::words::{Words, fill};
+use ptu_report::words::Words;
 
 /// Size of the bar, points.
 const SIZE: [f32; 2] = [100.0, 14.0];
@@ -20,17 +20,6 @@ pub fn value_text(measurement: &Measurement, words: &Words) -> String {
     match limits_text(words, measurement.low, measurement.high) {
         nothing if nothing.is_empty() => format!("{value} {unit}"),
         limits => format!("{value} {unit} ({limits})"),
-    }
-}
-
-/// Limits in words: `at most 472`.
-pub fn limits_text(words: &Words, low: Option<f64>, high: Option<f64>) -> String {
-    let (low, high) = (low.map(short), high.map(short));
-    match (&low, &high) {
-        (Some(low), Some(high)) => fill(words.common.from_to, &[("low", low), ("high", high)]),
-        (None, Some(high)) => fill(words.common.at_most, &[("n", high)]),
-        (Some(low), None) => fill(words.common.at_least, &[("n", low)]),
-        (None, None) => String::new(),
     }
 }
 

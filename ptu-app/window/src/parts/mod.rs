@@ -40,7 +40,7 @@ pub use edit::{field, go_on, name_edit, note_edit, typed};
 pub use face::{Face, Look, dashed_outline, focus_ring};
 pub use file::usual_folder;
 pub use job::{Done, Job, Told};
-pub use limit_bar::{limit_bar, limit_scale, limits_text, limits_within, value_text};
+pub use limit_bar::{limit_bar, limit_scale, limits_within, value_text};
 pub use link::link;
 pub use memory::{MemoryReader, Stored};
 pub use named::named_combo;

@@ -28,8 +28,8 @@ impl StatsArguments {
             GroupBy::Month => counts.month,
         };
         let (counted, other) = match self.counts_cases() {
-            true => (counts.cases, terminal.seen),
-            false => (terminal.seen, terminal.faults),
+            true => (counts.cases, words.faults.seen),
+            false => (words.faults.seen, terminal.faults),
         };
         let mut headings = vec![heading, counted];
         if self.by != GroupBy::Month {
@@ -43,7 +43,7 @@ impl StatsArguments {
             counts.mttr,
             terminal.back,
             counts.not_found,
-            terminal.last_seen,
+            words.faults.last_seen,
         ]);
         if self.by != GroupBy::Month {
             headings.extend([terminal.course, terminal.later_earlier]);

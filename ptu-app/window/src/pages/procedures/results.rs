@@ -11,11 +11,12 @@ use egui_material_icons::icons::ICON_SHOW_CHART;
 use protocol::lru;
 
 use crate::parts::{
-    Cell, Column, Face, Look, NoteOn, RunNoteForm, Table, limit_bar, limits_text, rows, segments,
-    value_text, verdict_look,
+    Cell, Column, Face, Look, NoteOn, RunNoteForm, Table, limit_bar, rows, segments, value_text,
+    verdict_look,
 };
 use crate::query_worker::QueryWorker;
 use crate::{Density, Destination, Palette, Sizes};
+use ptu_report::limits::limits_text;
 use ptu_report::limits::short;
 use ptu_report::naming::{self, DOT, PartNames, code, failed_turn};
 use ptu_report::run::source_in_words;
