@@ -304,7 +304,21 @@ pub enum Finding {
         /// How many.
         n: u32,
     },
-    /// Words of a script, a file, an operating system or another program.
+    /// This unit's software does not tell signals that the procedure looks at.
+    NotToldByUnit {
+        /// Version of the software, if the unit says it.
+        software: Option<String>,
+        /// Names of the signals.
+        signals: Vec<String>,
+    },
+    /// The tester could not begin or go on, in both languages, because a file, a port or a setting does not serve.
+    Prevented {
+        /// Why, in English.
+        english: String,
+        /// Why, in Korean.
+        korean: String,
+    },
+    /// Words of a script.
     Told(String),
 }
 

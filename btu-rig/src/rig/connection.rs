@@ -44,11 +44,10 @@ impl Rig {
                 names.push(signal.name());
             }
         });
-        let software = self.identity().map_or(String::new(), |identity| {
-            format!(", software {},", version(identity.software))
-        });
-        (!names.is_empty())
-            .then(|| format!("this unit{software} does not tell {}", names.join(", ")))
-            .map(Finding::Told)
+        let software = || self.identity().map(|identity| version(identity.software));
+        (!names.is_empty()).then(|| Finding::NotToldByUnit {
+            software: software(),
+            signals: names.into_iter().map(str::to_owned).collect(),
+        })
     }
 }

@@ -154,10 +154,10 @@ fn conflict(conflict: &StateConflict, words: &Words) -> String {
     let rivals: Vec<_> = (conflict.rivals.iter())
         .map(|rival| {
             let who = match &*rival.who {
-                "" => words.faults.event_kind(&rival.kind),
+                "" => words.event_kind(&rival.kind),
                 who => who,
             };
-            let state = words.common.fault_state(rival.state);
+            let state = words.fault_state(rival.state);
             fill(words.care.says, &[("who", &who), ("state", &state)])
         })
         .collect();
@@ -167,7 +167,7 @@ fn conflict(conflict: &StateConflict, words: &Words) -> String {
             ("unit", &conflict.unit),
             ("fault", &event(conflict.code, &conflict.code_name, words)),
             ("rivals", &rivals.join(", ")),
-            ("stands", &words.common.fault_state(conflict.stands)),
+            ("stands", &words.fault_state(conflict.stands)),
         ],
     )
 }

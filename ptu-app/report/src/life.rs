@@ -66,7 +66,7 @@ fn of_run(run: &LifeRun, words: &Words) -> String {
 
 fn of_fault(entry: &LifeFault, words: &Words, parts: &PartNames) -> String {
     let called = |part: &str| parts.name(part, words.language).to_owned();
-    let kind = words.faults.event_kind(&entry.kind);
+    let kind = words.event_kind(&entry.kind);
     let said = match (&entry.repair, &entry.cause) {
         (Some(repair), _) => repair_text(repair, called),
         (None, Some(cause)) => cause_text(cause, called),

@@ -4,11 +4,10 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use btu_rig::procedure::Finding;
 use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
-
-use crate::run_diagnosis::Warning;
 
 mod near;
 
@@ -43,7 +42,7 @@ impl Exit {
     }
 }
 
-/// What went wrong, as data where a window has words of its own for it. Its text is that of a command line.
+/// What went wrong, as data, with its sentences in both languages. Its text is that of a command line.
 #[derive(Clone, Debug)]
 pub enum Trouble {
     /// The history.
@@ -70,8 +69,6 @@ pub enum Trouble {
     },
     /// The link to a unit that was there.
     Link(LinkTrouble),
-    /// What of the dictionary an adaptive run must not go by.
-    Stale(Vec<Warning>),
     /// What has its sentences in the tables of words.
     Refused(Box<Refusal>),
     /// The first one because of the second.
@@ -82,49 +79,102 @@ pub enum Trouble {
     Told(String),
 }
 
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Say for Trouble {
+    fn say(&self, how: Manner) -> String {
         match self {
-            Self::Store(error) => f.write_str(&store_message(error)),
-            Self::NamedStore(error) => error.fmt(f),
+            Self::Store(error) => error.say(how),
+            Self::NamedStore(error) => how.choose([
+                error.to_string(),
+                error.say(Manner {
+                    commands: false,
+                    ..how
+                }),
+            ]),
             Self::NotStored {
                 run,
                 error,
                 left_out,
                 kept,
-            } => {
-                let (run, why) = (run.short(), store_message(error));
-                let Some(kept) = kept.as_ref().map(|kept| kept.display()) else {
-                    return write!(f, "run {run} is not in the history, and lost: {why}");
-                };
-                write!(f, "run {run} is not in the history: ")?;
-                if *left_out > 0 {
-                    write!(f, "the last {left_out} of its traces are lost: ")?;
-                }
-                let again = "bring it in with `ptu db import";
-                write!(f, "{why}; it is kept in {kept}: {again} {kept}`")
-            }
+            } => not_stored(how, *run, (&error.say(how), *left_out), kept.as_deref()),
             Self::RestKept { error, rest } => {
-                let (why, rest) = (store_message(error), rest.display());
-                write!(
-                    f,
-                    "{why}; what was measured since is kept in {rest}: bring it in with `ptu db import {rest}` when \
-                     the database is free"
-                )
+                let (why, rest) = (error.say(how), rest.display());
+                let kept = format!("{why}; what was measured since is kept in {rest}");
+                let kept_ko = format!(
+                    "{why}. 그 후의 측정은 {rest}에 보관했으니 데이터베이스를 쓸 수 있게 되면"
+                );
+                match how.commands {
+                    true => how.choose([
+                        format!("{kept}: bring it in with `ptu db import {rest}` when the database is free"),
+                        format!("{kept_ko} `ptu db import {rest}`(으)로 가져오십시오"),
+                    ]),
+                    false => how.choose([
+                        format!("{kept}: import that file when the database is free"),
+                        format!("{kept_ko} 그 파일을 가져오십시오"),
+                    ]),
+                }
             }
-            Self::Link(why) => why.fmt(f),
-            Self::Refused(what) => f.write_str(&what.say(Manner::COMMAND_LINE)),
-            Self::Stale(all) => joined(f, all, "; "),
-            Self::Because(both) => joined(f, &**both, ": "),
-            Self::All(all) => joined(f, all, "\n"),
-            Self::Told(words) => f.write_str(words),
+            Self::Link(why) => why.say(how),
+            Self::Refused(what) => what.say(how),
+            Self::Because(both) => joined(how, &**both, ": "),
+            Self::All(all) => joined(how, all, "\n"),
+            Self::Told(words) => words.clone(),
         }
     }
 }
 
-fn joined(f: &mut fmt::Formatter<'_>, all: &[impl fmt::Display], by: &str) -> fmt::Result {
-    let all: Vec<_> = all.iter().map(ToString::to_string).collect();
-    f.write_str(&all.join(by))
+/// A run that the history does not hold, for this reason and without so many of its traces, and the file that has it.
+fn not_stored(how: Manner, run: Id, (why, left_out): (&str, usize), kept: Option<&Path>) -> String {
+    let run = run.short();
+    let Some(kept) = kept.map(Path::display) else {
+        return how.choose([
+            format!("run {run} is not in the history, and lost: {why}"),
+            format!("시험 {run}이(가) 이력에 없고 보관하지도 못했습니다: {why}"),
+        ]);
+    };
+    let cut = match left_out {
+        0 => String::new(),
+        n => how.choose([
+            format!("the last {n} of its traces are lost: "),
+            format!("마지막 기록 {n}개 없음. "),
+        ]),
+    };
+    let english = format!("run {run} is not in the history: {cut}{why}; it is kept in {kept}");
+    let korean = format!("시험 {run}이(가) 이력에 없습니다: {cut}{why}. {kept}에 보관했으니");
+    match how.commands {
+        true => how.choose([
+            format!("{english}: bring it in with `ptu db import {kept}`"),
+            format!("{korean} `ptu db import {kept}`(으)로 가져오십시오"),
+        ]),
+        false => how.choose([
+            format!("{english}: import that file"),
+            format!("{korean} 그 파일을 가져오십시오"),
+        ]),
+    }
+}
+
+fn joined(how: Manner, all: &[impl Say], by: &str) -> String {
+    let all: Vec<_> = all.iter().map(|one| one.say(how)).collect();
+    all.join(by)
+}
+
+/// What is on record of a run that could not begin or go on for this reason.
+pub fn prevented_by(why: &impl Say) -> Finding {
+    let said = |korean| {
+        why.say(Manner {
+            korean,
+            ..Manner::COMMAND_LINE
+        })
+    };
+    Finding::Prevented {
+        english: said(false),
+        korean: said(true),
+    }
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.say(Manner::COMMAND_LINE))
+    }
 }
 
 /// An error for a person: what happened, to which thing, what to do next.

@@ -16,7 +16,7 @@ pub struct Stop(Arc<StopRequests>);
 struct StopRequests {
     count: AtomicU32,
     /// The reason, if the tester itself pressed first.
-    because: OnceLock<String>,
+    because: OnceLock<Finding>,
 }
 
 impl Stop {
@@ -33,7 +33,7 @@ impl Stop {
 
     /// Pressed by the tester itself, which cannot go on, unless somebody has pressed: a second press would cut
     /// clean-up short.
-    pub fn press_because(&self, reason: String) {
+    pub fn press_because(&self, reason: Finding) {
         // The reason first: who sees the press asks for it.
         if self.presses() == 0 && self.0.because.set(reason).is_ok() {
             self.press_once();
@@ -41,14 +41,14 @@ impl Stop {
     }
 
     /// Why the tester itself ended the run; `None` if the operator did.
-    pub fn reason(&self) -> Option<&str> {
-        self.0.because.get().map(String::as_str)
+    pub fn reason(&self) -> Option<&Finding> {
+        self.0.because.get()
     }
 
     /// The verdict on what was still due when stop was pressed, and why; `None` if nobody pressed.
     pub fn left_out(&self) -> Option<(Verdict, Finding)> {
         let left_out = match self.reason() {
-            Some(why) => (Verdict::Error, Finding::Told(why.to_owned())),
+            Some(why) => (Verdict::Error, why.clone()),
             None => (Verdict::Aborted, Finding::Stopped),
         };
         (self.presses() > 0).then_some(left_out)

@@ -267,7 +267,11 @@ impl<'a> Making<'a> {
             if place == ends_in && self.kind == Broken {
                 break;
             }
-            let findings = Finding::Told("the unit did not come up".to_owned()).into();
+            let findings = Finding::Prevented {
+                english: "the unit did not come up".into(),
+                korean: "장치가 기동하지 않음".into(),
+            }
+            .into();
             to.take(SessionEvent::Run(RunEvent::ProcedureFinished {
                 verdict,
                 findings,

@@ -142,7 +142,16 @@ impl Display for Finding {
                 let name = Part(Name(measurement), said);
                 write!(f, "{name}: a limit refers to a measurement without a value")
             }
-            Self::Refused { why } | Self::Told(why) => f.write_str(why),
+            Self::Refused { why } | Self::Told(why) | Self::Prevented { english: why, .. } => {
+                f.write_str(why)
+            }
+            Self::NotToldByUnit { software, signals } => {
+                f.write_str("this unit")?;
+                if let Some(software) = software {
+                    write!(f, ", software {software},")?;
+                }
+                write!(f, " does not tell {}", signals.join(", "))
+            }
             Self::StartedAgain => {
                 f.write_str("the unit was started again: its supply was interrupted")
             }

@@ -227,7 +227,7 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
             report.severity(&fault.severity).to_owned(),
             fault.occurrences.to_string(),
             local(fault.first_at_us),
-            common.fault_state(state).to_owned(),
+            words.fault_state(state).to_owned(),
             fault.trace_id.map_or_else(String::new, |id| id.short()),
         ];
         Row::words(RowKind::Head, cells)

@@ -1,7 +1,6 @@
 //! Verdicts, states, units and what every page says.
 
 use btu_rig::procedure::{Outside, Verdict};
-use fault_db::FaultState;
 
 use super::wordings;
 use ptu_runs::stored::from_stored;
@@ -31,11 +30,6 @@ wordings! {
         as_a_whole: "as a whole", "전체";
         run_again: "repeated", "반복";
         attempt: "attempt", "시도";
-        open: "open", "미조치";
-        acknowledged: "acknowledged", "확인됨";
-        repaired: "repaired", "수리됨";
-        verified: "verified", "검증됨";
-        closed: "closed", "종결";
         unit: "unit", "장치";
         run: "run", "시험";
         fault: "fault", "고장";
@@ -104,17 +98,6 @@ impl Common {
             Outside::Stop => self.stop,
             Outside::NotBegun => self.not_begun,
             Outside::Whole => self.as_a_whole,
-        }
-    }
-
-    /// A fault's state.
-    pub fn fault_state(&self, state: FaultState) -> &'static str {
-        match state {
-            FaultState::Open => self.open,
-            FaultState::Acknowledged => self.acknowledged,
-            FaultState::Repaired => self.repaired,
-            FaultState::Verified => self.verified,
-            FaultState::Closed => self.closed,
         }
     }
 }

@@ -60,44 +60,9 @@ wordings! {
         at: "at", "시각";
         event: "event", "내용";
         who: "who", "담당자";
-        kind_opened: "opened", "발생";
-        kind_recurred: "recurred", "재발생";
-        kind_acknowledged: "acknowledged", "확인";
-        kind_repair: "repair", "수리 기록";
-        kind_repaired: "repaired", "수리";
-        kind_passed: "passed", "시험 합격";
-        kind_confirmed: "confirmed", "시험으로 입증";
-        kind_verified: "verified", "검증";
-        kind_closed: "closed", "종결";
-        kind_reopened: "reopened", "다시 열림";
-        kind_note: "note", "메모";
-        kind_cause: "cause", "원인 지정";
-        kind_diagnosed: "diagnosed", "진단";
         not_known: "not known", "알 수 없음";
         to_trace: "Trace", "신호 기록";
         to_run: "Run", "시험";
         to_diagnosis: "Diagnosis", "진단";
-    }
-}
-
-impl Faults {
-    /// What happened to a fault; a kind of another program stays as it is.
-    pub fn event_kind<'a>(&self, kind: &'a str) -> &'a str {
-        match kind {
-            "opened" => self.kind_opened,
-            "recurred" => self.kind_recurred,
-            "acknowledged" => self.kind_acknowledged,
-            "repair" => self.kind_repair,
-            "repaired" => self.kind_repaired,
-            "passed" => self.kind_passed,
-            "confirmed" => self.kind_confirmed,
-            "verified" => self.kind_verified,
-            "closed" => self.kind_closed,
-            "reopened" => self.kind_reopened,
-            "note" => self.kind_note,
-            "cause" => self.kind_cause,
-            "diagnosed" => self.kind_diagnosed,
-            other => other,
-        }
     }
 }

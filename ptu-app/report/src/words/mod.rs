@@ -123,6 +123,14 @@ pub struct Words {
 }
 
 impl Words {
+    /// The text in this language, of the English and the Korean one.
+    fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
+        match self.language {
+            Language::English => english,
+            Language::Korean => korean,
+        }
+    }
+
     /// A text of scripts, catalogues or the runner, which is made and stored in English: a step's name, a fault mode, a
     /// message. A text without a translation stays as it was written.
     pub fn content<'a>(&self, text: &'a str) -> Cow<'a, str> {

@@ -9,6 +9,7 @@ use fault_db::{FaultState, RunState, RunSummary, StepRecord};
 
 use super::{Language, Words, wordings};
 use ptu_runs::stored::from_stored;
+use ptu_runs::words::{event_kind, fault_state};
 
 wordings! {
     /// Answers of the command line.
@@ -159,12 +160,14 @@ impl Words {
         }
     }
 
-    /// A state of a fault in tables of a terminal; in English by its name in filters.
-    pub fn state_name(&self, state: FaultState) -> &'static str {
-        match self.language {
-            Language::English => state.as_str(),
-            Language::Korean => self.common.fault_state(state),
-        }
+    /// A fault's state; in English by its name in filters.
+    pub fn fault_state(&self, state: FaultState) -> &'static str {
+        self.choose([state.as_str(), fault_state(state)])
+    }
+
+    /// What happened to a fault; a kind of another program stays as it is.
+    pub fn event_kind<'a>(&self, kind: &'a str) -> &'a str {
+        self.choose([kind, event_kind(kind)])
     }
 
     /// A severity in tables of a terminal; in English by its name in filters.

@@ -16,7 +16,7 @@ use fault_db::{
 };
 
 use self::beside::{keep_beside, keep_rest};
-use crate::failure::{Failure, RunTrouble, Trouble, store_message};
+use crate::failure::{Failure, RunTrouble, Trouble, prevented_by};
 use crate::stop::Stop;
 
 /// Entries that may wait for the disk; beyond that the bench waits for the writer.
@@ -193,7 +193,7 @@ fn write(
     let Err((error, at_hand)) = result else {
         return Ok(None);
     };
-    stop.press_because(store_message(&error));
+    stop.press_because(prevented_by(&error));
     if !matches!(error, StoreError::Locked { .. }) {
         kept.hold_all(at_hand.map(|entry| *entry).into_iter().chain(entries));
         return keep_beside((store, &writer), record, kept, Arc::new(error)).map(Some);
@@ -323,7 +323,7 @@ fn retry_while_locked(
     loop {
         match work(again) {
             Err(error @ StoreError::Locked { .. }) if begun.elapsed() < busy_timeout.gives_up => {
-                stop.press_because(store_message(&error));
+                stop.press_because(prevented_by(&error));
                 again = true;
             }
             done => return done,

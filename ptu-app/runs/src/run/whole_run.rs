@@ -19,7 +19,7 @@ use super::repaired::trace_repaired;
 use super::store_thread::RunStore;
 use super::workers;
 use crate::clock;
-use crate::failure::{Exit, Failure, RunTrouble};
+use crate::failure::{Exit, Failure, RunTrouble, prevented_by};
 use crate::platform;
 use crate::stop::Stop;
 use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
@@ -91,7 +91,7 @@ fn reach(
                 &OutsideStep {
                     place: Outside::Bench,
                     verdict: from_stored(verdict),
-                    finding: Finding::Told(failure.to_string()),
+                    finding: prevented_by(&failure.message),
                     at: Instant::ZERO,
                 },
                 0,

@@ -14,7 +14,6 @@ use super::attribution::with_faults;
 use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
-use super::warning::Warning;
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
@@ -23,6 +22,7 @@ use crate::run::{Adaptive, of_run};
 use crate::stdio;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
+use crate::words::Warning;
 
 /// What decides what a healthy unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,7 +137,7 @@ pub fn diagnose(
     };
     let relations = relations.unwrap_or_else(|failure| {
         let why = failure.to_string();
-        warnings.push(Warning::NoRelations { why });
+        warnings.push(Warning::NoRelations(why));
         Relations::default()
     });
     let names = catalogue.map(|all| all.lrus).unwrap_or_default();
@@ -260,7 +260,8 @@ pub fn adaptive(
     let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
         // A step that does something else now would mislead it at every turn.
-        return Err(Failure::usage(Trouble::Stale(chosen.warnings)));
+        let stale = chosen.warnings.into_iter().map(Trouble::from);
+        return Err(Failure::usage(Trouble::All(stale.collect())));
     }
     let basis = &chosen.dictionary.basis;
     let made_on = Bench {
@@ -309,13 +310,10 @@ fn comparable(
     let basis = &dictionary.basis;
     if run.run.unit_config_sha256 != basis.unit_config_sha256 {
         let name = run.run.unit_config_name.clone();
-        warnings.push(Warning::OtherConfiguration { name });
+        warnings.push(Warning::OtherConfiguration(name));
     }
     if !run.steps.is_empty() && run.run.line != basis.line {
-        warnings.push(Warning::OtherLine {
-            line: run.run.line.clone(),
-            of_dictionary: basis.line.clone(),
-        });
+        warnings.push(Warning::OtherLine(run.run.line.clone(), basis.line.clone()));
     }
     let others = run.scripts.iter().filter(|script| {
         let name = script.path.trim_end_matches(".star");
@@ -327,7 +325,7 @@ fn comparable(
         .collect();
     if !others.is_empty() {
         let scripts = others.join(", ");
-        warnings.push(Warning::OtherScripts { scripts });
+        warnings.push(Warning::OtherScripts(scripts));
         seen.steps
             .retain(|step| !others.contains(&step.check.procedure));
     }
@@ -336,7 +334,7 @@ fn comparable(
         .retain(|step| dictionary.place(&step.check).is_some());
     let steps = before - seen.steps.len();
     if steps > 0 {
-        warnings.push(Warning::UnknownSteps { steps });
+        warnings.push(Warning::UnknownSteps(steps));
     }
     seen
 }

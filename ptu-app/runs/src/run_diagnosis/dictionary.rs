@@ -6,9 +6,9 @@ use diagnosis::{Basis, Dictionary};
 use fault_db::Store;
 
 use super::basis::Contents;
-use super::warning::{Differs, Warning};
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, FileTrouble};
+use crate::words::{Differs, Warning};
 
 /// The dictionary that comes with the scripts, in their directory: of units on a bench, and of units reached by their
 /// maintenance port alone.
@@ -96,17 +96,14 @@ pub fn choose(
         Connection::Btu => "",
     };
     if !same_connection {
-        warnings.push(Warning::OtherConnection { how });
+        warnings.push(Warning::OtherConnection(how));
     } else if !current {
         let differs = differences(&dictionary.basis, &now);
-        warnings.push(Warning::Stale { differs, how });
+        warnings.push(Warning::Stale(differs, how));
     }
     let known = directory.faults()?.faults.len();
     if dictionary.modes.len() < known {
-        warnings.push(Warning::KnowsPart {
-            modes: dictionary.modes.len(),
-            of: known,
-        });
+        warnings.push(Warning::KnowsPart(dictionary.modes.len(), known));
     }
     Ok(Chosen {
         dictionary,

@@ -8,11 +8,9 @@ mod dictionary;
 mod history;
 mod proof;
 mod repairs;
-mod warning;
 
 pub use answer::{Answer, Bench, Question, adaptive, diagnose, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
 pub use dictionary::{Chosen, Origin, choose};
 pub use history::OwnHistory;
 pub use proof::{RepairProof, prove_repairs};
-pub use warning::{Differs, Warning};

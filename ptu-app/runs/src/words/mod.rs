@@ -4,17 +4,21 @@
 //! in brackets ends the sentence; without a second text a window says nothing there. `ptu_report::words` chooses the language.
 
 mod asked;
+mod damage;
 mod link;
 mod nouns;
 mod refused;
+mod store;
+mod warned;
 
 pub use asked::{Asked, DriveTrouble, KeepTrouble, SoundTrouble};
 pub use link::korean as link_korean;
-pub use nouns::noun;
+pub use nouns::{event_kind, fault_state, noun};
 pub use refused::{
     BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
     RecordTrouble, RunTrouble, Sought, Unknown, Why, WrongCell,
 };
+pub use warned::{Differs, Warning};
 
 use fault_db::Id;
 
@@ -191,12 +195,13 @@ areas!(
     RecordTrouble,
     RunTrouble,
     SoundTrouble,
-    Unknown
+    Unknown,
+    Warning
 );
 
 /// All sentences, for tests of their wording: name, English and Korean.
 pub fn all() -> impl Iterator<Item = [&'static str; 3]> {
-    [asked::ALL, refused::ALL].concat().into_iter()
+    [asked::ALL, refused::ALL, warned::ALL].concat().into_iter()
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Words of this program that sentences are about.
 
+use fault_db::FaultState;
+
 /// A thing by its name, in Korean; what has none stays, as a table or an option.
 pub fn noun(english: &str) -> &str {
     match english {
@@ -28,5 +30,36 @@ pub fn noun(english: &str) -> &str {
         "play on" => "재생",
         "record from" => "녹음",
         other => other,
+    }
+}
+
+/// What happened to a fault, in Korean; a kind of another program stays as it is.
+pub fn event_kind(kind: &str) -> &str {
+    match kind {
+        "opened" => "발생",
+        "recurred" => "재발생",
+        "acknowledged" => "확인",
+        "repair" => "수리 기록",
+        "repaired" => "수리",
+        "passed" => "시험 합격",
+        "confirmed" => "시험으로 입증",
+        "verified" => "검증",
+        "closed" => "종결",
+        "reopened" => "다시 열림",
+        "note" => "메모",
+        "cause" => "원인 지정",
+        "diagnosed" => "진단",
+        other => other,
+    }
+}
+
+/// A fault's state, in Korean.
+pub const fn fault_state(state: FaultState) -> &'static str {
+    match state {
+        FaultState::Open => "미조치",
+        FaultState::Acknowledged => "확인됨",
+        FaultState::Repaired => "수리됨",
+        FaultState::Verified => "검증됨",
+        FaultState::Closed => "종결",
     }
 }

@@ -170,7 +170,7 @@ impl NoteArguments {
 
 fn is_now(fault: &str, state: FaultState) -> String {
     let words = Words::shown();
-    let state = words.state_name(state);
+    let state = words.fault_state(state);
     fill(
         words.terminal.is_now,
         &[("fault", &fault), ("state", &state)],

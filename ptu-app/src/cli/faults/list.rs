@@ -89,7 +89,7 @@ fn table(faults: &[FaultSummary]) -> String {
             fault.lru.clone(),
             fault.cause().to_owned(),
             words.severity_name(&fault.severity).to_owned(),
-            words.state_name(fault.state).to_owned(),
+            words.fault_state(fault.state).to_owned(),
             fault.occurrences.to_string(),
             fault.trace_id.map_or_else(String::new, |id| id.short()),
         ]);

@@ -73,7 +73,7 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
         part(&fault.lru),
         faults.cause,
         part(fault.cause()),
-        common.fault_state(fault.state),
+        words.fault_state(fault.state),
         faults.seen,
         times(fault, words),
     );
@@ -86,7 +86,7 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
             line(&other.code_name),
             common.part,
             part(&other.lru),
-            common.fault_state(other.state),
+            words.fault_state(other.state),
         ));
     }
     let mut seen_in = Table::headed(&[
@@ -130,7 +130,7 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
         let note = format!("{said}{repair}{cause}{correction}");
         done.row([
             local(event.at_us),
-            faults.event_kind(&event.kind).to_owned(),
+            words.event_kind(&event.kind).to_owned(),
             event.who.clone(),
             note,
         ]);

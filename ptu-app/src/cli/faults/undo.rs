@@ -43,7 +43,7 @@ impl UndoArguments {
             "" => String::new(),
             who => fill(words.counts.by_whom, &[("who", &line(who))]),
         };
-        let kind = words.faults.event_kind(&withdrawn.kind);
+        let kind = words.event_kind(&withdrawn.kind);
         let of = [
             ("kind", &kind as _),
             ("at", &local(withdrawn.at_us) as _),

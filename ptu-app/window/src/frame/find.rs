@@ -190,7 +190,7 @@ impl Find {
                 kind: words.frame.faults,
                 icon: ICON_REPORT,
                 name: parts.fault(&fault.lru, (&fault.findings, &fault.message), words),
-                more: [&*fault.unit_serial, words.common.fault_state(fault.state)].join(DOT),
+                more: [&*fault.unit_serial, words.fault_state(fault.state)].join(DOT),
                 what: What::Open(Destination::Fault(fault.id)),
             };
             let mut serials: Vec<&str> = faults.iter().map(|of| of.unit_serial.as_str()).collect();

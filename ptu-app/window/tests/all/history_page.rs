@@ -132,7 +132,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         window.click_part(relay);
         window.write(words.common.note, "wrong unit");
         window.click(words.faults.acknowledge);
-        window.wait_for(words.common.acknowledged);
+        window.wait_for(words.fault_state(fault_db::FaultState::Acknowledged));
         // The second click of two finds nothing to undo.
         window.double_click(words.frame.undo);
         let undone = words.frame.undone.replace("{what} ", "");

@@ -58,8 +58,8 @@ fn the_window_syncs_and_names_conflicts_and_the_last_sync() {
         let conflict = unit.split("{fault}").next().unwrap_or_default();
         window.wait_for_part(conflict);
         for (who, state) in [
-            ("Lee", words.common.closed),
-            ("Kim", words.common.acknowledged),
+            ("Lee", words.fault_state(fault_db::FaultState::Closed)),
+            ("Kim", words.fault_state(fault_db::FaultState::Acknowledged)),
         ] {
             let said = fill(words.care.says, &[("who", &who), ("state", &state)]);
             assert!(window.shows_part(&said), "{said}: {:#?}", window.shown());

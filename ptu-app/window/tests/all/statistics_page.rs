@@ -155,7 +155,7 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
         );
         let told = told.split(',').next().unwrap_or_default().to_owned();
         assert!(window.shows_part(&told), "{told}: {:#?}", window.shown());
-        window.click_part(&format!("{}: ", words.faults.kind_repair));
+        window.click_part(&format!("{}: ", words.event_kind("repair")));
         window.until("the fault", |window| window.app().page() == Page::Faults);
         window.click("SN-1");
         window.wait_for_part(&fill(words.life.part, &[("serial", &"SN-1")]));

@@ -115,7 +115,7 @@ impl CaseSheet {
                 report.severity(&fault.severity).to_owned(),
                 fault.occurrences.to_string(),
                 local(fault.last_at_us),
-                common.fault_state(fault.state).to_owned(),
+                words.fault_state(fault.state).to_owned(),
             ];
             Row::words(RowKind::Head, cells)
         };
@@ -178,7 +178,7 @@ impl CaseSheet {
             (Some(_), ..) => report.event_passed,
             (_, Some(_), ..) => report.event_repair,
             (_, _, Some(_), _) => words.faults.cause,
-            (_, _, _, Some(state)) => common.fault_state(state),
+            (_, _, _, Some(state)) => words.fault_state(state),
             _ => common.note,
         };
         let note = match (event.passed_run(), &event.repair, &event.cause) {

@@ -4,23 +4,17 @@ use diagnosis::{CheckName, FaultText, NextCheck, Reason};
 use fault_db::RunDetail;
 use protocol::LruId;
 use protocol::injection::Lru;
-use ptu_runs::run_diagnosis::{Answer, Warning};
+use ptu_runs::run_diagnosis::Answer;
+use ptu_runs::words::{Say as _, Warning};
 
-use super::super::{Language, Words, content};
+use super::super::{Words, content};
 use super::conclusion::{all_called, concluded, tells};
-use super::reasons::{fault_text, logged, step_expected, step_found, told, warned};
+use super::reasons::{fault_text, logged, step_expected, step_found, told};
 
 /// The same in English and in Korean.
 pub(super) type Both = [String; 2];
 
 impl Words {
-    pub(super) fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
-        match self.language {
-            Language::English => english,
-            Language::Korean => korean,
-        }
-    }
-
     /// What a diagnosis comes to, and what to run next.
     pub fn concluded(&self, answer: &Answer) -> String {
         let diagnosis = &answer.diagnosis;
@@ -74,7 +68,7 @@ impl Words {
 
     /// What to bear in mind with an answer.
     pub fn warning(&self, warning: &Warning) -> String {
-        self.choose(warned(warning))
+        warning.say(self.manner(false))
     }
 }
 

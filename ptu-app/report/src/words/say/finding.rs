@@ -123,6 +123,18 @@ pub fn korean(finding: &Finding) -> String {
             format!("{}: 값이 없는 측정을 한계로 참조함", measured(measurement))
         }
         Finding::Refused { why } | Finding::Told(why) => told(why),
+        Finding::Prevented { korean, .. } => korean.clone(),
+        Finding::NotToldByUnit { software, signals } => {
+            let software = software
+                .iter()
+                .map(|version| format!(" (소프트웨어 {version})"));
+            let signals: Vec<_> = signals.iter().map(|name| told(name)).collect();
+            format!(
+                "이 장치{}가 알리지 않는 신호: {}",
+                software.collect::<String>(),
+                signals.join(", ")
+            )
+        }
         Finding::StartedAgain => "장치가 다시 시작됨: 전원이 차단되었음".to_owned(),
         Finding::TestModeEnded { refusal } => {
             let label = ArmRefusal::from_code(*refusal).label();

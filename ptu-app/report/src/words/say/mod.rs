@@ -6,7 +6,6 @@ mod damage;
 mod diagnosis;
 mod drive;
 mod finding;
-mod helped;
 mod reasons;
 mod trouble;
 

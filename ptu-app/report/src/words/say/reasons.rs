@@ -5,7 +5,6 @@ use diagnosis::{FaultText, Known, Repaired, Sign, StepReason};
 use fault_db::RunDetail;
 use protocol::event::Event;
 use ptu_runs::clock::local_day;
-use ptu_runs::run_diagnosis::{Differs, Warning};
 use ptu_runs::stored::findings;
 
 use super::super::{Language, content, names};
@@ -187,53 +186,4 @@ fn repaired(repair: &Repaired) -> Both {
         true => [format!("replaced on {day}"), format!("{day} 교체")],
         false => [format!("worked on on {day}"), format!("{day} 수리")],
     }
-}
-
-pub(super) fn warned(warning: &Warning) -> Both {
-    let english = warning.to_string();
-    let korean = match warning {
-        Warning::OtherConnection { how } => {
-            format!(
-                "고장 사전이 다른 연결 방식으로 만들어짐. `ptu campaign{how}`(으)로 다시 만드십시오"
-            )
-        }
-        Warning::Stale { differs, how } => {
-            let differs = match differs {
-                Differs::Configuration => {
-                    "장치 구성, 노선, 열차, 산포 또는 고장 목록이 다름".to_owned()
-                }
-                Differs::Gone(count) => format!("스크립트 {count}개가 없어짐"),
-                Differs::Changed(names) => format!("변경된 스크립트: {names}"),
-                Differs::ManyChanged(names, more) => {
-                    format!("변경된 스크립트: {names} 외 {more}개")
-                }
-            };
-            format!(
-                "고장 사전이 현재와 맞지 않음 ({differs}). `ptu campaign{how}`(으)로 다시 만드십시오"
-            )
-        }
-        Warning::KnowsPart { modes, of } => {
-            format!("고장 사전은 고장 모드 {of}개 중 {modes}개만 알고 있음")
-        }
-        Warning::NothingToDiagnose => "진단할 수 있는 단계와 고장이 이 시험에 없음".to_owned(),
-        Warning::NoRelations { why } => {
-            format!("구별하기 어려운 부품의 정보를 읽지 못함: {why}")
-        }
-        Warning::OtherConfiguration { name } => {
-            format!("시험한 장치 구성 {name}이(가) 고장 사전의 구성과 다름")
-        }
-        Warning::OtherLine {
-            line,
-            of_dictionary,
-        } => {
-            format!("시험은 {line} 노선, 고장 사전은 {of_dictionary} 노선")
-        }
-        Warning::OtherScripts { scripts } => {
-            format!("시험 스크립트가 고장 사전과 달라 다음 절차의 단계는 제외됨: {scripts}")
-        }
-        Warning::UnknownSteps { steps } => {
-            format!("고장 사전에 없는 단계 {steps}개는 판단에 쓰지 않음")
-        }
-    };
-    [english, korean]
 }

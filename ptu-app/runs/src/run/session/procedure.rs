@@ -147,7 +147,7 @@ impl<L: UnitLink> Session<L> {
         let pressed = self.stop.presses();
         for press in *presses..pressed {
             match self.stop.reason().filter(|_| press == 0) {
-                Some(reason) => runner.interrupted(Finding::Told(reason.to_owned())),
+                Some(reason) => runner.interrupted(reason.clone()),
                 None => runner.stop(),
             }
         }

@@ -109,7 +109,7 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     while stop.presses() == 0 {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let reason = stop.reason().expect("a reason");
+    let reason = stop.reason().expect("a reason").to_string();
     assert!(
         reason.starts_with("database busy: ") && reason.contains("history.db is locked"),
         "{reason}"

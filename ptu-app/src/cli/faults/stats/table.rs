@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fault_db::FaultStat;
+use fault_db::{FaultStat, FaultState};
 
 use super::rate_ratio::RateRatio;
 use super::{GroupBy, StatsArguments};
@@ -37,7 +37,7 @@ impl StatsArguments {
         }
         headings.extend([
             other,
-            common.open,
+            words.fault_state(FaultState::Open),
             counts.units,
             counts.mtbf,
             counts.mttr,

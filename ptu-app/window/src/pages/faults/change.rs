@@ -157,7 +157,7 @@ impl Change {
     ) {
         let words = context.words;
         self.what = match state {
-            FaultState::Closed | FaultState::Repaired => words.common.fault_state(state),
+            FaultState::Closed | FaultState::Repaired => words.fault_state(state),
             _ => name(state, words),
         };
         let was_closed = fault.state == FaultState::Closed;

@@ -23,7 +23,7 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &Histor
     let faults_of = || history.faults.iter();
     let as_it_is = |name: &String| name.clone();
     let part = |part: &String| history.parts.name(part, words.language).to_owned();
-    let name = |state: &FaultState| words.common.fault_state(*state).to_owned();
+    let name = |state: &FaultState| words.fault_state(*state).to_owned();
     let find = TextEdit::singleline(&mut filter.text).hint_text(words.faults.find);
     let label = words.faults.find;
     let field = ui.add(find.desired_width(1.5 * FIELD));
@@ -119,7 +119,7 @@ pub fn table(
             let seen = seen_in_short((&fault.findings, &fault.message), words);
             let when = of_today(&clock::local_minute(fault.last_at_us), &today).to_owned();
             let cells = [
-                Cell::State(icon, common.fault_state(fault.state), colour),
+                Cell::State(icon, words.fault_state(fault.state), colour),
                 Cell::Text(part.into(), palette.ink),
                 Cell::Text(seen.into(), palette.second),
                 Cell::Text((&*fault.unit_serial).into(), palette.second),
@@ -172,5 +172,5 @@ fn state_look(state: FaultState, palette: &Palette) -> (MaterialIcon, Color32) {
 /// A fault's state.
 pub fn state_chip(ui: &mut Ui, words: &Words, state: FaultState) {
     let (icon, colour) = state_look(state, &Palette::of(ui));
-    chip(ui, (icon, words.common.fault_state(state)), colour);
+    chip(ui, (icon, words.fault_state(state)), colour);
 }

@@ -2,12 +2,28 @@
 
 use std::sync::Arc;
 
-use super::super::super::Language;
 use super::*;
-use ptu_runs::failure::{Near, RunTrouble, Unknown};
+use crate::failure::{Failure, Near, RunTrouble, Trouble, Unknown};
 
-const SOURCE: &str = include_str!("../trouble.rs");
-const ERRORS: &str = include_str!("../../../../../../fault-db/src/error/mod.rs");
+const SOURCE: &str = include_str!("../store.rs");
+const ERRORS: &str = include_str!("../../../../../fault-db/src/error/mod.rs");
+/// English and Korean, as a window says them.
+const WINDOW: [Manner; 2] = [
+    Manner {
+        korean: false,
+        commands: false,
+    },
+    Manner {
+        korean: true,
+        commands: false,
+    },
+];
+
+/// The sentences of a window: what helps at a command line stands before them.
+fn told() -> &'static str {
+    let begin = SOURCE.find("/// What the store says").expect("there");
+    &SOURCE[begin..]
+}
 
 fn names_a_command(text: &str) -> bool {
     ["`", "--", "ptu ", "db ", "createdb"]
@@ -18,9 +34,9 @@ fn names_a_command(text: &str) -> bool {
 /// Goal: words with a command, or with English in the Korean, fail. Method: all texts of the sources.
 #[test]
 fn no_text_names_a_command_and_the_korean_is_korean() {
-    let sources = [SOURCE, include_str!("../damage.rs")];
-    let told = sources.map(|source| source.split("#[cfg(test)]").next().unwrap_or(source));
-    let lines = told.iter().flat_map(|source| source.lines());
+    let sources = [told(), include_str!("../damage.rs")];
+    let all = sources.map(|source| source.split("#[cfg(test)]").next().unwrap_or(source));
+    let lines = all.iter().flat_map(|source| source.lines());
     for text in lines.flat_map(|line| line.split('"').skip(1).step_by(2)) {
         assert!(!names_a_command(text), "{text}");
         if !text.contains(|letter: char| ('가'..='힣').contains(&letter)) {
@@ -61,7 +77,7 @@ fn what_is_said_with_a_command_is_said_without_one_in_a_window() {
         }
         let name = variant.split([' ', '(', ',']).next().expect("a name");
         let mut ends = ["(", " "].iter();
-        let arm = ends.find_map(|end| SOURCE.split_once(&format!("::{name}{end}")));
+        let arm = ends.find_map(|end| told().split_once(&format!("::{name}{end}")));
         let told = arm.and_then(|arm| arm.1.split_once("=> ")).expect(name).1;
         assert!(!told.starts_with("same("), "{name}");
         all += 1;
@@ -71,11 +87,11 @@ fn what_is_said_with_a_command_is_said_without_one_in_a_window() {
 
 #[test]
 fn an_error_keeps_its_file_and_loses_its_option() {
-    let failure = ptu_runs::failure::Failure::from(StoreError::Missing {
+    let failure = Failure::from(StoreError::Missing {
         path: "/data/history.db".into(),
     });
     assert_eq!(
-        Language::English.words().trouble(&failure.message),
+        failure.message.say(WINDOW[0]),
         "there is no database /data/history.db; a first run creates it, or choose another file"
     );
 }
@@ -135,7 +151,7 @@ fn what_is_known_is_told_without_commands_and_in_korean() {
             "what another program said",
         ),
     ] {
-        let told = Language::ALL.map(|language| language.words().trouble(&trouble));
+        let told = WINDOW.map(|how| trouble.say(how));
         assert!(
             told[0].contains(english) && told[1].contains(korean),
             "{told:?}"
