@@ -278,7 +278,7 @@ fn letters_that_the_font_lacks_stand_on_paper_as_codes() {
         let said = pages.concat();
         let lacking: BTreeSet<char> = "田中門開🚪電車".chars().collect();
         for letter in &lacking {
-            let code = format!("[U+{:04X}]", u32::from(*letter));
+            let code = format!("[U+{:04x}]", u32::from(*letter));
             assert!(said.contains(&code), "no {letter} in {said}");
         }
         assert_eq!(pdf(&sheet, words).expect("a document").1, lacking);

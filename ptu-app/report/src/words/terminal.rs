@@ -49,7 +49,7 @@ wordings! {
         script_changed: "{path} was changed since run {run}: its verdict is not that of the procedure that was due there", "시험 {run} 이후 {path}이(가) 바뀜: 판정이 당시 절차의 판정과 다를 수 있음";
         config_changed: "the unit configuration is not that of run {run}: what both came to does not add up to one test", "장치 구성이 시험 {run}과(와) 다름: 두 결과를 한 시험으로 합칠 수 없음";
         other_part: "no part \"{part}\" is known{near}; recorded as it is", "부품 \"{part}\"은(는) 목록에 없음{near}. 적은 대로 기록함";
-        letters_coded: "{file}: the font of sheets lacks \"{letters}\", so codes such as [U+4E2D] stand there; pages (.html) have the letters", "{file}: 성적서 글꼴에 없는 글자 \"{letters}\"은(는) [U+4E2D]와 같은 코드로 표시함. .html에는 그대로 표시됨";
+        letters_coded: "{file}: the font of sheets lacks \"{letters}\", so codes such as [U+4e2d] stand there; pages (.html) have the letters", "{file}: 성적서 글꼴에 없는 글자 \"{letters}\"은(는) [U+4e2d]와 같은 코드로 표시함. .html에는 그대로 표시됨";
         instrument_new: "registered: {kind} {serial}; until `ptu instrument calibrate {serial}` runs on a port do not begin", "등록함: {kind} {serial}. `ptu instrument calibrate {serial}`로 교정을 기록할 때까지 포트 시험을 시작할 수 없음";
         instrument_calibrated: "calibrated: {serial} on {on}, due {due}", "교정 기록함: {serial}, 교정 {on}, 기한 {due}";
         instrument_retired: "retired: {serial}", "등록 해제함: {serial}";

@@ -119,7 +119,7 @@ impl FontMetrics {
 
 /// What is written for a letter that the font lacks: Chinese, Japanese, pictures.
 fn code(letter: char) -> String {
-    format!("[U+{:04X}]", u32::from(letter))
+    format!("[U+{:04x}]", u32::from(letter))
 }
 
 #[cfg(test)]
@@ -131,7 +131,7 @@ mod tests {
         let letters = FontMetrics::new().expect("the font");
         assert_eq!(letters.coded("가 A\n–"), None);
         let coded = letters.coded("가中b").expect("a code");
-        assert_eq!(coded, "가[U+4E2D]b");
+        assert_eq!(coded, "가[U+4e2d]b");
         assert!((letters.width("가中b", 8.0) - letters.width(&coded, 8.0)).abs() < 1e-3);
         assert_eq!(letters.coded(&coded), None);
     }
