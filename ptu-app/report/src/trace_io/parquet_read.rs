@@ -11,6 +11,7 @@ use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescPtr;
 
 use super::about::{NAME, TraceInfo};
 use super::known::{Known, KnownSignals};
@@ -37,6 +38,7 @@ struct Signal {
 /// The column of times.
 struct Times {
     place: usize,
+    values: Values,
     unit: TimeUnit,
     is_utc: bool,
 }
@@ -113,12 +115,14 @@ fn columns(
     let schema = metadata.file_metadata().schema_descr();
     let all = schema.columns();
     let is_signal = |name: &str| known.named(name).is_some();
+    let holds_times =
+        |column: &ColumnDescPtr| matches!(Values::of(column), Ok(Values::Times { .. }));
     let headings = all.iter().map(|column| column.name());
     let place = asked.time(headings.clone(), |name| name == UTC || is_signal(name));
     let place = match (place, &asked.time) {
         (Some(place), _) => place,
         (None, Some(time)) => return Err(wrong(file, &Columns::no_time(time, headings))),
-        (None, None) => 0,
+        (None, None) => all.iter().position(holds_times).unwrap_or(0),
     };
     let Some(time) = all.get(place).filter(|_| all.len() > 1) else {
         return Err(wrong(
@@ -165,6 +169,7 @@ fn columns(
     Ok((
         Times {
             place,
+            values,
             unit,
             is_utc,
         },
@@ -179,7 +184,7 @@ fn read_group(
     table: &mut Table,
 ) -> Result<(), String> {
     let reader = |place: usize| group.get_column_reader(place).map_err(|e| e.to_string());
-    for (row, number) in samples(reader(times.place)?, rows.clone(), Values::PLAIN, None)?
+    for (row, number) in samples(reader(times.place)?, rows.clone(), times.values, None)?
         .into_iter()
         .enumerate()
     {
@@ -277,113 +282,4 @@ fn numbers<T: DataType>(
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use parquet::basic::Compression;
-    use parquet::data_type::{DoubleType, Int32Type, Int64Type};
-    use parquet::file::properties::WriterProperties;
-    use parquet::file::writer::SerializedFileWriter;
-    use parquet::schema::parser::parse_message_type;
-
-    use super::super::series::plain;
-    use super::*;
-
-    /// Goal: a table of another program is right or refused. Method: two rows in each compression, with a time in milliseconds
-    /// behind, a decimal speed, an unsigned count, and dates, which no trace has.
-    #[test]
-    fn tables_of_other_programs_are_read() {
-        let schema = "message t {
-            required int32 speed (DECIMAL(8,2));
-            required int32 count (INTEGER(32,false));
-            required int64 seen (TIMESTAMP(MILLIS,true));
-            required double time_ms;
-        }";
-        let schema = Arc::new(parse_message_type(schema).expect("a schema"));
-        let folder = tempfile::tempdir().expect("a folder");
-        for compression in [
-            Compression::UNCOMPRESSED,
-            Compression::SNAPPY,
-            Compression::GZIP(Default::default()),
-            Compression::BROTLI(Default::default()),
-            Compression::LZ4_RAW,
-            Compression::ZSTD(Default::default()),
-        ] {
-            let path = folder.path().join("t.parquet");
-            let file = File::create(&path).expect("a file");
-            let properties = WriterProperties::builder().set_compression(compression);
-            let mut writer =
-                SerializedFileWriter::new(file, schema.clone(), Arc::new(properties.build()))
-                    .expect("a writer");
-            let mut group = writer.next_row_group().expect("a group");
-            let mut place = 0;
-            while let Some(mut column) = group.next_column().expect("a column") {
-                let written = match place {
-                    0 => column
-                        .typed::<Int32Type>()
-                        .write_batch(&[3_294, -200], None, None),
-                    1 => column
-                        .typed::<Int32Type>()
-                        .write_batch(&[-1_294_967_296, 1], None, None),
-                    2 => column.typed::<Int64Type>().write_batch(&[1, 2], None, None),
-                    _ => column
-                        .typed::<DoubleType>()
-                        .write_batch(&[1_000.0, -500.0], None, None),
-                };
-                written.expect("written");
-                column.close().expect("closed");
-                place += 1;
-            }
-            group.close().expect("closed");
-            writer.close().expect("closed");
-            let read = read(
-                &path,
-                &[plain("speed"), plain("count")],
-                &Columns::default(),
-            );
-            let read = read.expect("read");
-            let table = &read.tables[0];
-            assert!(!read.is_utc);
-            // In the order of their times.
-            assert_eq!(table.times_us, [-500_000, 1_000_000], "{compression:?}");
-            assert_eq!(table.columns[0], [-2.0, 32.94]);
-            assert_eq!(table.columns[1], [1.0, 3e9]);
-            let asked = Columns {
-                time: Some("seen".to_owned()),
-                ..Columns::default()
-            };
-            let dated = super::read(&path, &[plain("speed")], &asked).expect("dates");
-            assert!(dated.is_utc && dated.tables[0].times_us == [1_000, 2_000]);
-            let wrong = super::read(&path, &[plain("seen")], &Columns::default());
-            let wrong = wrong.expect_err("no signal").to_string();
-            assert!(wrong.contains("column \"seen\""), "{wrong}");
-        }
-    }
-
-    /// Goal: a row is named by its number in the file. Method: the second row of the second group has no time.
-    #[test]
-    fn a_wrong_row_is_counted_from_the_beginning_of_the_file() {
-        let schema = "message t { required double time_s; required double speed; }";
-        let schema = Arc::new(parse_message_type(schema).expect("a schema"));
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("t.parquet");
-        let file = File::create(&path).expect("a file");
-        let mut writer = SerializedFileWriter::new(file, schema, Default::default());
-        let writer = writer.as_mut().expect("a writer");
-        for numbers in [[0.0, 1.0], [2.0, f64::NAN]] {
-            let mut group = writer.next_row_group().expect("a group");
-            while let Some(mut column) = group.next_column().expect("a column") {
-                let written = column
-                    .typed::<DoubleType>()
-                    .write_batch(&numbers, None, None);
-                written.expect("written");
-                column.close().expect("closed");
-            }
-            group.close().expect("closed");
-        }
-        writer.finish().expect("closed");
-        let wrong = read(&path, &[plain("speed")], &Columns::default());
-        let wrong = wrong.expect_err("no time").to_string();
-        assert!(wrong.ends_with("row 4: NaN is no time"), "{wrong}");
-    }
-}
+mod tests;
