@@ -149,3 +149,6 @@ pub fn write(
     file.finish()?;
     Ok(clipped)
 }
+
+#[cfg(test)]
+mod tests;
