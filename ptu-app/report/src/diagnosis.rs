@@ -52,7 +52,7 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "parts": d.parts.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
         "two_faults": d.two_faults,
         "no_fault": d.no_fault,
-        "warnings": answer.warnings.iter().map(|warning| words.told(&warning.clone().into())).collect::<Vec<_>>(),
+        "warnings": answer.warnings.iter().map(|warning| words.told(warning)).collect::<Vec<_>>(),
         "dictionary": words.report.origin(answer.dictionary_from),
         "run": answer.run.run.id.to_string(),
     })

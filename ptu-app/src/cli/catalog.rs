@@ -7,6 +7,7 @@ use btu_rig::train::{CarSet, MAX_CARS, Role, TrainData};
 use clap::{Args, ValueEnum};
 use protocol::injection::OutOfReach;
 use protocol::signal::{Kind, Origin, Signal};
+use ptu_report::words::Words;
 use serde_json::{Value, json};
 
 use super::output::Form;
@@ -265,7 +266,7 @@ fn bits(signal: Signal) -> Option<Vec<String>> {
 /// One row an entry, one column a key in the order of the first entry.
 fn as_table(entries: &[Value]) -> String {
     let Some(keys) = entries.first().and_then(Value::as_object).map(|o| o.keys()) else {
-        return "nothing there".into();
+        return Words::shown().terminal.nothing_there.into();
     };
     let keys: Vec<_> = keys.map(String::as_str).collect();
     let parts = keys

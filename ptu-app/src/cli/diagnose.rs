@@ -58,7 +58,7 @@ impl DiagnoseArguments {
         };
         let answer = diagnose(&store, &directory, &question)?;
         for warning in &answer.warnings {
-            stdio::note(&Words::shown().told(&warning.clone().into()));
+            stdio::note(&Words::shown().told(warning));
         }
         let text = || diagnosis_text(&answer, self.all, Words::shown());
         self.json.answer(|| diagnosis_json(&answer), text)

@@ -16,7 +16,7 @@ mod undo;
 use clap::{Args, Subcommand};
 pub use import::read_of;
 
-use super::signing::SigningOption;
+use super::signing::Signed;
 use super::{Database, Json, ScriptsOption};
 use ptu_report::naming::PartNames;
 use ptu_runs::failure::{Exit, Failure};
@@ -26,8 +26,6 @@ use ptu_runs::failure::{Exit, Failure};
 pub struct FaultsArguments {
     #[command(subcommand)]
     verb: Verb,
-    #[command(flatten)]
-    signing: SigningOption,
     #[command(flatten)]
     database: Database,
 }
@@ -47,12 +45,12 @@ enum Verb {
     Life(life::LifeArguments),
     Stats(Box<stats::StatsArguments>),
     Trend(trend::TrendArguments),
-    State(change::StateArguments),
-    Repair(change::RepairArguments),
-    Cause(change::CauseArguments),
-    Note(change::NoteArguments),
-    Undo(undo::UndoArguments),
-    Import(import::ImportArguments),
+    State(Signed<change::StateArguments>),
+    Repair(Signed<change::RepairArguments>),
+    Cause(Signed<change::CauseArguments>),
+    Note(Signed<change::NoteArguments>),
+    Undo(Signed<undo::UndoArguments>),
+    Import(Signed<import::ImportArguments>),
 }
 
 impl FaultsArguments {
@@ -68,9 +66,6 @@ impl FaultsArguments {
             false if matches!(self.verb, Verb::Import(_)) => self.database.open_file()?,
             false => self.database.open()?,
         };
-        if !reads {
-            self.signing.sign(&store)?;
-        }
         match self.verb {
             Verb::List(arguments) => arguments.list(&store),
             Verb::Show { id, json, scripts } => {
@@ -79,12 +74,12 @@ impl FaultsArguments {
             Verb::Life(arguments) => arguments.tell(&store),
             Verb::Stats(arguments) => arguments.stats(&store),
             Verb::Trend(arguments) => arguments.trend(&store),
-            Verb::State(arguments) => arguments.change(&store),
-            Verb::Repair(arguments) => arguments.record(&store),
-            Verb::Cause(arguments) => arguments.attribute(&store),
-            Verb::Note(arguments) => arguments.note(&store),
-            Verb::Undo(arguments) => arguments.undo(&store),
-            Verb::Import(arguments) => arguments.import(store),
+            Verb::State(arguments) => arguments.by_its_key(&store)?.change(&store),
+            Verb::Repair(arguments) => arguments.by_its_key(&store)?.record(&store),
+            Verb::Cause(arguments) => arguments.by_its_key(&store)?.attribute(&store),
+            Verb::Note(arguments) => arguments.by_its_key(&store)?.note(&store),
+            Verb::Undo(arguments) => arguments.by_its_key(&store)?.undo(&store),
+            Verb::Import(arguments) => arguments.by_its_key(&store)?.import(store),
         }
     }
 }

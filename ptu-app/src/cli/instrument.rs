@@ -32,8 +32,6 @@ pub struct InstrumentArguments {
     #[command(subcommand)]
     verb: Verb,
     #[command(flatten)]
-    signing: SigningOption,
-    #[command(flatten)]
     database: Database,
 }
 
@@ -50,6 +48,8 @@ enum Verb {
         /// Who registers it
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
+        #[command(flatten)]
+        signing: SigningOption,
     },
     /// State a calibration
     Calibrate {
@@ -71,6 +71,8 @@ enum Verb {
         /// Who states it
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
+        #[command(flatten)]
+        signing: SigningOption,
     },
     /// Take an instrument off the bench; what runs said of it stays
     Retire {
@@ -80,6 +82,8 @@ enum Verb {
         /// Who does it
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
+        #[command(flatten)]
+        signing: SigningOption,
     },
     /// List the instruments, and how each stands today
     List {
@@ -105,7 +109,6 @@ impl InstrumentArguments {
             return list(&self.database.open_read_only()?, json);
         }
         let store = self.database.open_file()?;
-        self.signing.sign(&store)?;
         let at_us = clock::now_us();
         let terminal = &Words::shown().terminal;
         match self.verb {
@@ -114,7 +117,9 @@ impl InstrumentArguments {
                 serial_no,
                 kind,
                 who,
+                signing,
             } => {
+                signing.sign(&store)?;
                 let (serial_no, kind) = (serial_no.trim().to_owned(), kind.trim().to_owned());
                 if serial_no.is_empty() || kind.is_empty() {
                     return Err(Failure::usage(Asked::InstrumentUnnamed));
@@ -145,7 +150,9 @@ impl InstrumentArguments {
                 due,
                 uncertainty,
                 who,
+                signing,
             } => {
+                signing.sign(&store)?;
                 let known = find(&store, &serial_no)?;
                 let on = on.unwrap_or_else(|| clock::local_day(at_us));
                 if due <= on {
@@ -175,7 +182,12 @@ impl InstrumentArguments {
                 ];
                 print_out(&fill(terminal.instrument_calibrated, &of))
             }
-            Verb::Retire { serial_no, who } => {
+            Verb::Retire {
+                serial_no,
+                who,
+                signing,
+            } => {
+                signing.sign(&store)?;
                 let known = find(&store, &serial_no)?;
                 store.register_instrument(&Instrument {
                     retired: true,

@@ -197,11 +197,12 @@ impl RunArguments {
                 return Err(Failure::usage(why));
             }
             let words = Words::shown();
-            let why = words.told(&why.into());
+            let why = words.told(&why);
             stdio::note(&fill(words.terminal.left_out, &[("why", &why)]));
         }
         let less = brakes_less(&setup.train, &setup.config.content);
-        less.iter().for_each(|less| stdio::note(less));
+        let words = Words::shown();
+        less.iter().for_each(|less| stdio::note(&words.told(less)));
         if let Some(earlier) = &earlier {
             resume::tell_changes(earlier, &procedures, &setup);
         }
@@ -318,7 +319,11 @@ impl RunArguments {
                         connection,
                         practice,
                     };
-                    adaptive(store, directory, (serial, symptom.as_ref()), &bench)
+                    let made = adaptive(store, directory, (serial, symptom.as_ref()), &bench)?;
+                    let words = Words::shown();
+                    let warnings = made.warnings.iter();
+                    warnings.for_each(|warning| stdio::note(&words.told(warning)));
+                    Ok(made)
                 };
                 run::search(plan, setup, store, &stop, &mut console, prepare)
             }

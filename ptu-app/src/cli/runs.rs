@@ -26,8 +26,6 @@ pub struct RunsArguments {
     #[command(subcommand)]
     verb: Verb,
     #[command(flatten)]
-    signing: SigningOption,
-    #[command(flatten)]
     database: Database,
 }
 
@@ -92,6 +90,8 @@ enum Verb {
         /// Who says it
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
+        #[command(flatten)]
+        signing: SigningOption,
     },
     /// Write the certificate of a signed run: what was signed, by whom, and the signature, for `ptu verify`
     Certificate {
@@ -113,8 +113,13 @@ impl RunsArguments {
         };
         match self.verb {
             Verb::Certificate { id, out } => certificate(&store, &id, &out),
-            Verb::Note { id, text, who } => {
-                self.signing.sign(&store)?;
+            Verb::Note {
+                id,
+                text,
+                who,
+                signing,
+            } => {
+                signing.sign(&store)?;
                 let (text, who) = (text.trim(), who.trim());
                 if text.is_empty() {
                     return Err(Failure::usage(Asked::EmptyNote));

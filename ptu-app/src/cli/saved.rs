@@ -8,7 +8,7 @@ use clap::{Args, CommandFactory, FromArgMatches};
 use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
-use ptu_report::words::Words;
+use ptu_report::words::{Words, fill};
 use ptu_runs::data::{self, LONGEST_FILE};
 use ptu_runs::failure::{Exit, Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
 use ptu_runs::table::Table;
@@ -55,7 +55,8 @@ impl SavedArguments {
                 let known = question(&questions, &name)?.0.to_owned();
                 questions.remove(&known);
                 store(&file, &questions)?;
-                return print_out(&format!("\"{name}\" is forgotten"));
+                let said = Words::shown().terminal.forgotten;
+                return print_out(&fill(said, &[("name", &name)]));
             }
             let Some(name) = self.name.take() else {
                 return print_out(&list(&questions));

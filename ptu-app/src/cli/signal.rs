@@ -12,7 +12,7 @@ use super::{Json, ScriptsOption, made_by, print_out};
 use protocol::config::UnitConfig;
 use ptu_report::run::html;
 use ptu_report::signal::{self as report, Recording};
-use ptu_report::words::Words;
+use ptu_report::words::{Words, fill};
 use ptu_runs::data::{check_writable, write};
 use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
@@ -206,12 +206,10 @@ impl MakeArguments {
         let unit = scale.unit.find()?;
         let to = (file.as_path(), scale.full_scale);
         let made = signal::make(&wave, &unit, noisy.strength(), to)?;
+        let words = &Words::shown().signals;
         let clipped = match made.clipped {
             0 => String::new(),
-            clipped => format!(
-                "; {clipped} samples are beyond {} mV and were cut off there: raise --full-scale or lower --level",
-                scale.full_scale
-            ),
+            clipped => format!("; {}", fill(words.cut_off, &[("n", &clipped)])),
         };
         print_out(&format!(
             "{}: {:.2} s{clipped}",

@@ -19,17 +19,37 @@ const PIN: &str = "PTU_PIN";
 #[derive(Debug, Default, Args)]
 pub struct SigningOption {
     /// Sign with this key file of `ptu key new`; its PIN is asked for, or read from --pin-file or PTU_PIN
-    #[arg(long, value_name = "FILE", env = "PTU_KEY", global = true)]
+    #[arg(long, value_name = "FILE", env = "PTU_KEY")]
     key: Option<PathBuf>,
     #[command(flatten)]
     pin: PinOption,
+}
+
+/// What is recorded, and with which key it is signed.
+#[derive(Debug, Args)]
+pub struct Signed<T: Args> {
+    #[command(flatten)]
+    what: T,
+    #[command(flatten)]
+    signing: SigningOption,
+}
+
+impl<T: Args> Signed<T> {
+    /// What is to be recorded, in a history that signs from now on.
+    ///
+    /// # Errors
+    /// As [`SigningOption::sign`].
+    pub fn by_its_key(self, store: &Store) -> Result<T, Failure> {
+        self.signing.sign(store)?;
+        Ok(self.what)
+    }
 }
 
 /// Where the PIN of a key comes from.
 #[derive(Debug, Default, Args)]
 pub struct PinOption {
     /// File with the PIN of the key, for what runs without a terminal
-    #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE", global = true)]
+    #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE")]
     pin_file: Option<PathBuf>,
 }
 

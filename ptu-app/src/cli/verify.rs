@@ -134,7 +134,7 @@ impl VerifyArguments {
         found.changes = report
             .problems
             .into_iter()
-            .map(|problem| words.damage(&problem.detail))
+            .map(|problem| words.trouble(&problem.detail))
             .collect();
         found.remarks = report.remarks;
         // What this computer's own history has seen of it, by a sync or an import.

@@ -111,7 +111,7 @@ fn what_is_played_comes_back_by_sound() {
     let said = server.recorded("6", || {
         let play = "signal play code 55 --seconds 2";
         let said = server.ptu(&format!("{play} --device coil"));
-        let said = said.exits(0).prints(&["played 2.00 s"]);
+        let said = said.exits(0).prints(&["Played: 2.00 s"]);
         assert!(said.err.contains("no calibration"), "{}", said.all());
         assert!(!said.out.contains("cut off"), "{}", said.all());
         let play = ["signal", "play", "twc", "01 fe 3c", "--device", "coil"];

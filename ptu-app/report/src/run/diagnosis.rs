@@ -45,7 +45,7 @@ fn concluded(answer: &Answer, words: &Words) -> Vec<(String, String)> {
     let dictionary = format!("{}, {age}", report.origin(answer.dictionary_from));
     facts.push((report.dictionary.to_owned(), dictionary));
     let warnings = answer.warnings.iter();
-    facts.extend(warnings.map(|warning| (sentence(words.common.note), words.warning(warning))));
+    facts.extend(warnings.map(|warning| (sentence(words.common.note), words.trouble(warning))));
     facts
 }
 

@@ -124,7 +124,7 @@ pub struct Words {
 
 impl Words {
     /// The text in this language, of the English and the Korean one.
-    fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
+    pub(crate) fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
         match self.language {
             Language::English => english,
             Language::Korean => korean,

@@ -71,6 +71,14 @@ wordings! {
         play: "Play", "재생";
         playing: "playing …", "재생 중 …";
         played: "Played: {time} s", "재생 완료: {time} s";
+        stopped: "stopped", "중지됨";
+        no_device: "no device for sound", "사운드 장치 없음";
+        device: "device", "장치";
+        direction: "direction", "방향";
+        calibrated: "calibrated", "교정";
+        play_reference: "a carrier of {mv} mV rms is played: type what the instrument at the coil shows, mV rms, and Enter", "{mv} mV rms 반송파를 재생합니다. 코일의 계측기 값(mV rms)을 입력하고 Enter를 누르십시오";
+        not_stored: "stopped: nothing was stored", "중지됨: 저장하지 않았습니다";
+        scale_of: "{device}, channel {channel}: full scale is {mv} mV ± {percent} %, by {by}", "{device}, {channel} 채널: 최대 눈금 {mv} mV ± {percent} %, 계측기 {by}";
         save: "Save", "저장";
         save_hint: "Saved to the file named above, never over one that is there, but beside it as -2, -3 …", "위에 적은 파일에 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
         cut_off: "{n} samples were too strong and were cut off: lower the level.", "표본 {n}개가 범위를 넘어 잘렸습니다. 레벨을 낮추십시오.";

@@ -15,6 +15,17 @@ wordings! {
     /// Answers of the command line.
     Terminal {
         after_run: "; `ptu diagnose {run}` says why", "; 이유: `ptu diagnose {run}`";
+        forgotten: "\"{name}\" is forgotten", "\"{name}\" 삭제함";
+        nothing_there: "nothing there", "없음";
+        first_rows: "only the first {n} rows; allow more with --max-rows N, or ask for less", "처음 {n}행만 표시함. 더 보려면 --max-rows N";
+        change_it: "change it, then `{check}`; `{next}`", "내용을 고친 뒤 `{check}`, `{next}`";
+        each_sourced: "each limit names its source", "모든 한계에 출처 있음";
+        unsourced: "{n} limits name no source", "출처 없는 한계 {n}개";
+        no_korean: "no Korean in korean.toml: \"{text}\"", "korean.toml에 한국어 없음: \"{text}\"";
+        each_korean: "each text has its Korean", "모든 문장에 한국어 있음";
+        without_korean: "{n} texts have no Korean", "한국어 없는 문장 {n}개";
+        checked: "{procedures} procedures, {steps} steps, {files} data files, no errors", "절차 {procedures}개, 단계 {steps}개, 데이터 파일 {files}개, 오류 없음";
+        other_time: "{file} is of another time: its beginning is laid at that of the trace; --shift SECONDS lays it elsewhere", "{file}은(는) 다른 시각의 기록이라 시작을 신호 기록의 시작에 맞췄습니다. 옮기려면 --shift SECONDS";
         allowed: ", allowed {limit}", ", 허용 {limit}";
         asks: "asks", "확인 요청";
         at_most: "at most", "최대 시간";
@@ -44,8 +55,6 @@ wordings! {
         program: "program", "프로그램";
         option: "option", "옵션";
         not_there: "not there", "없음";
-        chain_of_seals: "chain of seals: {n} entries of database {file}, the last {seal}", "봉인 사슬: 이력 파일 {file}의 {n}개 항목, 마지막 {seal}";
-        no_damage: "no damage; {traces} traces read, {runs} runs fit their seals", "손상 없음. 신호 기록 {traces}건 읽음, 봉인과 맞는 시험 {runs}건";
         script_changed: "{path} was changed since run {run}: its verdict is not that of the procedure that was due there", "시험 {run} 이후 {path}이(가) 바뀜: 판정이 당시 절차의 판정과 다를 수 있음";
         config_changed: "the unit configuration is not that of run {run}: what both came to does not add up to one test", "장치 구성이 시험 {run}과(와) 다름: 두 결과를 한 시험으로 합칠 수 없음";
         other_part: "no part \"{part}\" is known{near}; recorded as it is", "부품 \"{part}\"은(는) 목록에 없음{near}. 적은 대로 기록함";

@@ -95,12 +95,24 @@ wordings! {
         cannot_compare: "Where they differ cannot be told", "차이를 판단할 수 없습니다";
         offset: "offset", "이동";
         offset_hint: "how much later the other one is laid, s", "비교 대상을 뒤로 옮기는 시간, s";
-        no_deviation: "no signal deviates", "벗어난 신호 없음";
+        no_deviation: "no signal differs", "다른 신호 없음";
         deviations: "{count} signals deviate, first {signal} at {place}", "신호 {count}개가 벗어남, 처음은 {place}의 {signal}";
         show_deviating: "Show them", "표시";
         deviates: "deviates", "벗어남";
 
+        compared: "compared from {from} s to {to} s of the trigger", "트리거 기준 {from} s ~ {to} s 비교";
+        not_in: "not in {of}: {names}", "{of}에 없음: {names}";
+        of_trace: "trace {trace} of {procedure}, {source}", "신호 기록 {trace}: {procedure}, {source}";
+        replayed: "replay: trace {trace}, run {run}, unit {unit}", "재현: 신호 기록 {trace}, 시험 {run}, 장치 {unit}";
+        again: "{signal}, which deviated first in the trace, deviates again", "신호 기록에서 처음 벗어난 {signal}: 다시 벗어남";
+        not_again: "{signal}, which deviated first in the trace, does not deviate", "신호 기록에서 처음 벗어난 {signal}: 벗어나지 않음";
+        broken_off: "cut short: {why}", "중단됨: {why}";
+        refused: "refused by the bench: {what}", "시험대가 거부함: {what}";
+        of_replay: "replay", "재현";
+        of_original: "trace", "신호 기록";
+
         // Export.
+        exported: "trace {trace}: {rows} rows of {signals} signals to {file}", "신호 기록 {trace}: 신호 {signals}개, 행 {rows}개를 {file}에 저장함";
         file_name: "file name, without its ending", "파일 이름 (확장자 제외)";
         save: "Save", "저장";
         save_png: "Save PNG", "PNG 저장";

@@ -92,7 +92,7 @@ impl Request {
         let sections = sections.numbers(&line.content)?;
         let benches = self.benches(directory, &train, &line)?;
         let told = (benches.iter()).find_map(|b| train::brakes_less(&train, &b.config.content));
-        told.iter().for_each(|told| stdio::note(told));
+        told.iter().for_each(|told| stdio::note(&told.to_string()));
         let mut cases = Vec::new();
         for section in sections {
             for bench in &benches {

@@ -109,15 +109,10 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
 }
 
 /// What is to be said of a train whose service brake gives less than ATO counts on.
-pub fn brakes_less(train: &TrainData, config: &UnitConfig) -> Option<String> {
+pub fn brakes_less(train: &TrainData, config: &UnitConfig) -> Option<DriveTrouble> {
     let (brakes, counts_on) = (train.service_kmh_per_s(), config.ato.decel_kmh_per_s);
-    (brakes < counts_on).then(|| {
-        format!(
-            "the train \"{}\" brakes at {brakes} km/h/s, and ATO counts on {counts_on} (ato.decel_kmh_per_s): it may \
-             overrun its stop points; --set ato.decel_kmh_per_s={brakes} tells ATO",
-            train.name()
-        )
-    })
+    (brakes < counts_on)
+        .then(|| DriveTrouble::BrakesLess(train.name().to_owned(), brakes, counts_on))
 }
 
 /// Refuses conditions that would not act on this train.

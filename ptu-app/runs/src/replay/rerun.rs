@@ -16,6 +16,7 @@ use crate::link::Endpoint;
 use crate::platform;
 use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
+use crate::words::{Manner, Say};
 
 /// What a replay is to be.
 #[derive(Clone, Debug)]
@@ -41,17 +42,28 @@ pub enum ReplayMatch {
     Otherwise,
 }
 
-impl ReplayMatch {
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Sound => "reproduced, and as the good twin: the trace shows no fault",
-            Self::Reproduced => "reproduced",
-            Self::AsTwin => "not reproduced: as the good twin",
-            Self::Otherwise => "not reproduced: neither as the trace nor as the good twin",
-        }
+impl Say for ReplayMatch {
+    fn say(&self, how: Manner) -> String {
+        let both = match self {
+            Self::Sound => [
+                "reproduced, and as the good twin: the trace shows no fault",
+                "재현됨. 정상 비교 장치와 같음: 신호 기록에 고장이 없음",
+            ],
+            Self::Reproduced => ["reproduced", "재현됨"],
+            Self::AsTwin => [
+                "not reproduced: as the good twin",
+                "재현되지 않음: 정상 비교 장치와 같음",
+            ],
+            Self::Otherwise => [
+                "not reproduced: neither as the trace nor as the good twin",
+                "재현되지 않음: 신호 기록과도 정상 비교 장치와도 다름",
+            ],
+        };
+        how.choose(both).to_owned()
     }
+}
 
+impl ReplayMatch {
     /// For machines.
     pub fn key(self) -> &'static str {
         match self {
@@ -274,7 +286,7 @@ fn write(
         verdict,
         started_bench_us: began_us,
         bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
-        message: likeness.words().to_owned(),
+        message: likeness.say(Manner::COMMAND_LINE),
         ..StepRecord::passed(0, &original.procedure, name)
     })?;
     let id = writer.trace(&[], &trace)?;

@@ -43,6 +43,7 @@ fn run_adaptively(
         dictionary,
         settings,
         lru_factors,
+        ..
     } = adaptive;
     let model = Model::new(dictionary, settings, lru_factors);
     isolate(&model, &plan.tasks, &mut |task, saw, go_on| {

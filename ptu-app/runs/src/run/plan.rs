@@ -9,6 +9,7 @@ use diagnosis::{Dictionary, Settings};
 use protocol::LruId;
 
 use super::event::SessionEvent;
+use crate::words::Warning;
 
 /// Events of one procedure that may wait for the collector.
 const QUEUE: usize = 4096;
@@ -93,6 +94,8 @@ pub struct Adaptive {
     pub settings: Settings,
     /// What the unit's history says of its parts.
     pub lru_factors: BTreeMap<LruId, f64>,
+    /// What to bear in mind with what it finds.
+    pub warnings: Vec<Warning>,
 }
 
 /// A stream's two ends.

@@ -19,7 +19,6 @@ use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
 use crate::run::{Adaptive, of_run};
-use crate::stdio;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
@@ -277,9 +276,6 @@ pub fn adaptive(
             basis.train.clone(),
         )));
     }
-    for warning in &chosen.warnings {
-        stdio::note(&warning.to_string());
-    }
     let settings = settings(directory)?;
     let mut history = OwnHistory::up_to_now(serial, store, &settings)?;
     let mut dictionary = chosen.dictionary;
@@ -296,6 +292,7 @@ pub fn adaptive(
         dictionary,
         settings,
         lru_factors: history.factors,
+        warnings: chosen.warnings,
     })
 }
 

@@ -101,6 +101,7 @@ sentences! {
     /// Automatic runs, trains and test matrices.
     DriveTrouble {
         Outside(option: String, value: String, low: String, high: String): "{option} {value} is outside {low} .. {high}", "{option} {value}이(가) 범위 {low} .. {high}를 벗어납니다";
+        BrakesLess(train: String, brakes: f64, counts_on: f64): "the train \"{train}\" brakes at {brakes} km/h/s, and ATO counts on {counts_on} (ato.decel_kmh_per_s): it may overrun its stop points" ["; --set ato.decel_kmh_per_s={brakes} tells ATO"], "열차 \"{train}\"의 제동 감속도는 {brakes} km/h/s이고 ATO는 {counts_on}(ato.decel_kmh_per_s)을 기준으로 하므로 정차 위치를 지나칠 수 있습니다" [". ATO에 알리려면 --set ato.decel_kmh_per_s={brakes}"];
         NoEffect(option: &'static str, train: String): "{option} does not act on train {train}; use --train line6", "{option}: 열차 {train}에는 작용하지 않습니다. --train line6을 쓰십시오";
         ControllerTwice(setting: String): "--set {setting} beside --controller or --compare: give one of them", "--set {setting}은(는) --controller나 --compare와 함께 쓸 수 없습니다. 하나만 쓰십시오";
         Twice(name: &'static str): "--compare names {name} twice", "--compare에 {name}이(가) 두 번 있습니다";

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use fault_db::{Advice, CheckReport, ProblemKind, SealHead, Store, StoreError};
+use fault_db::{Advice, CheckReport, ProblemKind, Store, StoreError};
 
 use crate::cli::{Database, Json, answered};
+use ptu_report::care;
 use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble};
@@ -18,7 +19,7 @@ pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
     let found = || match report.problems.is_empty() {
         true => {
             let of = [("traces", &report.traces as _), ("runs", &report.runs as _)];
-            fill(Words::shown().terminal.no_damage, &of)
+            fill(Words::shown().care.sound, &of)
         }
         false => text(&report),
     };
@@ -58,9 +59,9 @@ fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckRepo
     let store = Store::open(&copy, clock::open_options())?;
     let mut report = store.check()?;
     store.close()?;
-    report.remarks.push(format!(
-        "{} is of an earlier version of this program: a copy that was brought up to date was checked",
-        path.display()
+    report.remarks.push(fill(
+        Words::shown().care.older_version,
+        &[("file", &path.display())],
     ));
     Ok(report)
 }
@@ -68,26 +69,13 @@ fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckRepo
 /// What is to be known besides, and where the chain of seals ends.
 fn besides(report: &CheckReport) -> String {
     let remarks = report.remarks.iter().map(|remark| format!("\n{remark}"));
-    let head = report.head.as_ref().map(sealed);
+    let head = report
+        .head
+        .as_ref()
+        .map(|head| care::chain(head, Words::shown()));
     remarks
         .chain(head.map(|head| format!("\n{head}")))
         .collect()
-}
-
-/// Where a chain of seals ends, to be written down and compared.
-pub(super) fn sealed(head: &SealHead) -> String {
-    let SealHead {
-        file,
-        entries,
-        seal,
-    } = head;
-    let file = file.short();
-    let of = [
-        ("n", entries as _),
-        ("file", &file as _),
-        ("seal", seal as _),
-    ];
-    fill(Words::shown().terminal.chain_of_seals, &of)
 }
 
 /// All problems, and once for each kind what to do about it.
@@ -97,7 +85,7 @@ fn text(report: &CheckReport) -> String {
     let mut advice: Vec<(ProblemKind, Advice)> = Vec::new();
     for problem in &report.problems {
         let kind = words.problem_kind(problem.kind).to_owned();
-        table.row([kind, words.damage(&problem.detail)]);
+        table.row([kind, words.trouble(&problem.detail)]);
         let next = (problem.kind, problem.advice);
         if !advice.contains(&next) {
             advice.push(next);

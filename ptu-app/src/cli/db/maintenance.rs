@@ -1,18 +1,18 @@
 //! `ptu db backup`, `import`, `export`, `prune` and `rebuild`.
 
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
 use clap::Args;
-use fault_db::{
-    CopyOf, Difference, MergeCounts, PruneCounts, PruneRule, Refusals, StateConflict, StoreError,
-};
+use fault_db::{MergeCounts, PruneRule, StateConflict, StoreError};
 use serde_json::{json, to_value};
 
-use super::check::sealed;
 use crate::cli::{Database, Json, answered, print_json, print_out, since_argument};
 use ptu_options::only_file;
-use ptu_report::history_files::{Exported, export_history};
+use ptu_report::care::{self, Said};
+use ptu_report::history_files::export_history;
+use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble, Why, in_place_of};
 use ptu_runs::stdio;
@@ -42,12 +42,12 @@ pub(super) fn backup(database: &Database, to: &Path) -> Result<Exit, Failure> {
     database.open_read_only()?.backup(only_file(to)?)?;
     // Of the copy: another process may have recorded more into the file meanwhile.
     let head = fault_db::Store::open_read_only(to)?.head()?;
-    let head = head.map(|head| format!("\n{}", sealed(&head)));
-    print_out(&format!(
-        "copied to {}{}",
-        to.display(),
-        head.unwrap_or_default()
-    ))
+    let words = Words::shown();
+    let mut said = fill(words.care.backed_up, &[("file", &to.display())]);
+    if let Some(head) = head {
+        said += &format!("\n{}", care::chain(&head, words));
+    }
+    print_out(&said)
 }
 
 pub(super) fn import(database: &Database, from: &Path, json: Json) -> Result<Exit, Failure> {
@@ -74,15 +74,13 @@ pub(super) fn export(database: &Database, to: &Path, json: Json) -> Result<Exit,
 pub(super) fn export_parquet(database: &Database, to: &Path, json: Json) -> Result<Exit, Failure> {
     let done = export_history(&database.open_read_only()?, to)?;
     let text = || {
-        let Exported {
-            written,
-            unchanged,
-            removed,
-        } = &done;
-        format!(
-            "{written} files written below {}, {unchanged} unchanged, {removed} removed; for DuckDB: views.sql there",
-            to.display()
-        )
+        let of: [(_, &dyn Display); 4] = [
+            ("written", &done.written),
+            ("folder", &to.display()),
+            ("unchanged", &done.unchanged),
+            ("removed", &done.removed),
+        ];
+        fill(Words::shown().care.tables, &of)
     };
     json.answer(|| &done, text)
 }
@@ -96,17 +94,16 @@ pub(super) fn prune(database: &Database, arguments: &PruneArguments) -> Result<E
         dry_run: arguments.dry_run,
         at_us: clock::now_us(),
     };
-    print_out(&pruned(&database.open()?.prune(&rule)?, arguments.dry_run))
+    let counts = database.open()?.prune(&rule)?;
+    print_out(&care::pruned(&counts, arguments.dry_run, Words::shown()))
 }
 
 pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
     let differed = database.open()?.rebuild(clock::now_us())?;
-    let mut said =
-        "counts by day and month, repairs, sums of measured values and search words made again; \
-         runs, faults, traces and seals are as they were"
-            .to_owned();
+    let care = &Words::shown().care;
+    let mut said = care.rebuilt.to_owned();
     if !differed.is_empty() {
-        said += "\nuntil now, and on record from now on:";
+        said += &format!("\n{}", care.differed);
     }
     for what in differed {
         said += &format!("\n  {what}");
@@ -133,122 +130,21 @@ fn tell_merged(
     conflicts: &[StateConflict],
     json: Json,
 ) -> Result<Exit, Failure> {
+    let Said { text, notes } = care::imported(counts, conflicts, Words::shown());
     let told = if json.is_asked() {
         let mut all = to_value(counts)
             .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;
         all["conflicts"] = json!(conflicts);
         print_json(&all)
     } else {
-        let rivals: String = conflicts.iter().map(rivals).collect();
-        print_out(&(merged(counts) + &rivals))
+        print_out(&text)
     };
-    if let Some(copy) = &counts.copy {
-        stdio::note(&copied(copy));
-    }
-    for Difference { what, id } in &counts.different {
-        stdio::note(&format!(
-            "{what} {id} does not say the same in both files; each keeps its own: look with `ptu db check`"
-        ));
-    }
-    for refused in told_refused(&counts.refused) {
-        stdio::note(&refused);
-    }
+    notes.iter().for_each(|note| stdio::note(note));
     let exit = match counts.different.is_empty() && counts.refused.is_empty() {
         true => Exit::Passed,
         false => Exit::Bench,
     };
     answered(told, exit)
-}
-
-fn copied(copy: &CopyOf) -> String {
-    let file = copy.file.short();
-    match copy.went_on {
-        true => format!(
-            "it is a copy of database {file} that went on by itself after entry {} of its chain of seals; what is new \
-             in it is sealed here as it was found",
-            copy.after
-        ),
-        false => format!(
-            "it is a copy of database {file} from before: more of its chain of seals is known here than the {} entries \
-             in it",
-            copy.after
-        ),
-    }
-}
-
-fn merged(counts: &MergeCounts) -> String {
-    let mut text = format!(
-        "added {} runs, {} steps, {} faults, {} occurrences, {} traces",
-        counts.runs, counts.steps, counts.faults, counts.occurrences, counts.traces
-    );
-    if !counts.refused.is_empty() {
-        text += &format!("; refused {}", counts.refused.count);
-    }
-    text
-}
-
-/// What was not taken, each with its reason; no more than are read.
-pub(super) fn told_refused(refused: &Refusals) -> Vec<String> {
-    let named = refused.named.iter();
-    let mut all: Vec<_> = named
-        .map(|one| format!("refused {}: {}", one.what, one.reason))
-        .collect();
-    let more = refused.count - refused.named.len() as u64;
-    if more > 0 {
-        all.push(format!("refused {more} more"));
-    }
-    all
-}
-
-/// One line of a fault about which two people disagree.
-pub(super) fn rivals(conflict: &StateConflict) -> String {
-    let said: Vec<_> = conflict
-        .rivals
-        .iter()
-        .map(|rival| match &rival.who[..] {
-            "" => rival.state.to_string(),
-            who => format!("{who} says {}", rival.state),
-        })
-        .collect();
-    format!(
-        "\nfault {} ({}, {}): {}; it stays {} until somebody looks again",
-        conflict.fault.short(),
-        conflict.unit,
-        conflict.code_name,
-        said.join(", "),
-        conflict.stands
-    )
-}
-
-fn pruned(counts: &PruneCounts, dry_run: bool) -> String {
-    let mut text = format!(
-        "{} traces ({} bytes){}, {} kept for faults that are not closed",
-        counts.traces,
-        counts.trace_bytes,
-        if dry_run { " would go" } else { " deleted" },
-        counts.kept_for_faults,
-    );
-    if counts.kept_unsent > 0 {
-        text += &format!(
-            ", {} kept until `db sync` has sent them",
-            counts.kept_unsent
-        );
-    }
-    if !dry_run {
-        text += &format!(", file {} bytes smaller", counts.freed_bytes);
-    }
-    if counts.over_bytes > 0 {
-        text += &format!(
-            "\nit {} {} bytes larger than it may be: the rest is runs, faults and traces that are kept",
-            if dry_run {
-                "would still be"
-            } else {
-                "is still"
-            },
-            counts.over_bytes
-        );
-    }
-    text
 }
 
 /// A size such as `2GB`, `500MB`, `64kB` or a number of bytes.

@@ -1,5 +1,6 @@
 //! `ptu db query`: runs one SQL query.
 
+use ptu_report::words::{Words, fill};
 use std::time::Duration;
 
 use clap::Args;
@@ -63,9 +64,7 @@ impl QueryArguments {
         self.output.save()?;
         if answer.truncated {
             let most = self.max_rows;
-            stdio::note(&format!(
-                "only the first {most} rows; allow more with --max-rows N, or ask for less"
-            ));
+            stdio::note(&fill(Words::shown().terminal.first_rows, &[("n", &most)]));
         }
         if self.output.is_json() {
             return print_json(&answer);

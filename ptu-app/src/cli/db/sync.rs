@@ -7,8 +7,9 @@ use fault_db::{Address, Store, StoreError, SyncOptions, SyncOutcome, SyncPhase, 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use super::maintenance::{rivals, told_refused};
 use crate::cli::{Database, Json, answered};
+use ptu_report::care::{self, Said};
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::platform::computer_name;
 use ptu_runs::stop::Stop;
@@ -72,11 +73,17 @@ impl SyncArguments {
         let outcome = outcome?;
         file.close()?;
         let took_s = begun.elapsed().as_secs_f64();
+        let words = Words::shown();
+        let Said { text, notes } = care::synced(&outcome, words);
         let document = || as_json(&outcome, &server, took_s);
-        let told = (self.json).answer(document, || text(&outcome, &server, took_s));
-        for warning in warnings(&outcome) {
-            stdio::note(&warning);
-        }
+        let text = || {
+            let mb = format!("{:.1}", outcome.bytes as f64 / 1e6);
+            let s = format!("{took_s:.1}");
+            let took = fill(words.care.took, &[("mb", &mb), ("s", &s)]);
+            format!("{}\n{text}\n{took}", server.path().display())
+        };
+        let told = self.json.answer(document, text);
+        notes.iter().for_each(|note| stdio::note(note));
         let exit = if outcome.stopped {
             Exit::Aborted
         } else if outcome.different.is_empty()
@@ -88,85 +95,6 @@ impl SyncArguments {
             Exit::Bench
         };
         answered(told, exit)
-    }
-}
-
-fn text(outcome: &SyncOutcome, server: &Store, took_s: f64) -> String {
-    let mut text = format!(
-        "{}\nsent      {} runs, {} occurrences, {} events, {} notes, {} traces\nreceived  {} events on {} faults",
-        server.path().display(),
-        outcome.runs,
-        outcome.occurrences,
-        outcome.events,
-        outcome.notes,
-        outcome.traces,
-        outcome.events_received,
-        outcome.faults_changed,
-    );
-    if outcome.already_there > 0 {
-        text += &format!(
-            "\nknown     {} entries were there already",
-            outcome.already_there
-        );
-    }
-    if outcome.waiting > 0 {
-        text += &format!("\nwaiting   {} entries for the next sync", outcome.waiting);
-    }
-    text + &format!("\n{:.1} MB in {took_s:.1} s", outcome.bytes as f64 / 1e6)
-}
-
-/// What a person should know, with the next move.
-fn warnings(outcome: &SyncOutcome) -> Vec<String> {
-    let mut all = Vec::new();
-    if outcome.stopped {
-        all.push("stopped; the next sync goes on from here".to_owned());
-    }
-    if outcome.clocks_differ() {
-        let way = if outcome.clock_offset_us > 0 {
-            "ahead of"
-        } else {
-            "behind"
-        };
-        all.push(format!(
-            "this computer's clock is {} {way} the server's; set it, or its times will puzzle people",
-            span(outcome.clock_offset_us.unsigned_abs())
-        ));
-    }
-    for different in &outcome.different {
-        all.push(match different.what {
-            "chain" => format!(
-                "of database {}, whose runs came here, the server knows another history: one of them is a copy that went on by itself; look with `ptu db check`",
-                different.id.short()
-            ),
-            what => format!(
-                "{what} {} does not say the same here and on the server; both were left as they are: look with `ptu db check`",
-                different.id
-            ),
-        });
-    }
-    for trace in &outcome.damaged_traces {
-        all.push(format!(
-            "trace {trace} is damaged and was not sent; look with `ptu db check`"
-        ));
-    }
-    all.extend(told_refused(&outcome.refused));
-    all.extend(
-        outcome
-            .conflicts
-            .iter()
-            .map(|conflict| rivals(conflict).trim().to_owned()),
-    );
-    all
-}
-
-/// A length of time in the words of a person.
-fn span(us: u64) -> String {
-    let s = us / 1_000_000;
-    match s {
-        0..120 => format!("{s} s"),
-        120..7_200 => format!("{} min", s / 60),
-        7_200..172_800 => format!("{} h", s / 3_600),
-        _ => format!("{} days", s / 86_400),
     }
 }
 
@@ -216,11 +144,7 @@ impl ProgressLine {
     }
 
     fn begin(&mut self, progress: SyncProgress) {
-        let what = match progress.phase {
-            SyncPhase::Sending => "sending runs and events",
-            SyncPhase::SendingTraces => "sending traces",
-            SyncPhase::Receiving => "receiving events",
-        };
+        let what = Words::shown().care.phase(progress.phase);
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
@@ -230,7 +154,7 @@ impl ProgressLine {
         }
         let style = match progress.total {
             0 => "{pos}  {elapsed}  {msg}",
-            _ => "{bar:30} {pos}/{len}  {elapsed} (left {eta})  {msg}",
+            _ => "{bar:30} {pos}/{len}  {elapsed}  {msg}",
         };
         let style =
             ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -245,32 +169,6 @@ impl Drop for ProgressLine {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_clock_difference_is_given_as_text() {
-        let off_by = |clock_offset_us| {
-            let outcome = SyncOutcome {
-                clock_offset_us,
-                ..SyncOutcome::default()
-            };
-            warnings(&outcome).concat()
-        };
-        assert_eq!(off_by(-2_900_000), "");
-        for (us, words) in [
-            (4_000_000, "4 s ahead of"),
-            (-600_000_000, "10 min behind"),
-            (10_800_000_000, "3 h ahead of"),
-            (-31_536_000_000_000, "365 days behind"),
-        ] {
-            let said = off_by(us);
-            assert!(said.contains(words), "{said}");
         }
     }
 }

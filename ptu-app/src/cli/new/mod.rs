@@ -1,5 +1,6 @@
 //! `ptu new`: commented files to begin with, in the user's own scripts.
 
+use ptu_report::words::{Words, fill};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -89,11 +90,11 @@ impl NewArguments {
             Some(folder) => format!("ptu run --check --scripts {}", folder.display()),
             None => "ptu run --check".to_owned(),
         };
-        print_out(&format!(
-            "written: {}\nchange it, then `{check}`; `{}`",
-            file.display(),
-            self.next(name)
-        ))
+        let next = self.next(name);
+        let terminal = &Words::shown().terminal;
+        let written = fill(terminal.files_written, &[("files", &file.display())]);
+        let of = [("check", &check as _), ("next", &next as _)];
+        print_out(&format!("{written}\n{}", fill(terminal.change_it, &of)))
     }
 
     /// Letters, digits and `_`, as in the names that are shipped; a procedure stands in folders.

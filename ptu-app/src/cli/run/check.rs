@@ -7,6 +7,7 @@ use btu_rig::procedure::Procedure;
 
 use crate::cli::print_out;
 use ptu_report::without_korean;
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 
@@ -17,20 +18,24 @@ pub(super) fn show(procedures: &[Arc<Procedure>], data_files: usize) -> Result<E
         .sum();
     let found: Vec<_> = procedures.iter().flat_map(|p| p.without_source()).collect();
     found.iter().for_each(|finding| stdio::note(finding));
-    let found = match found.len() {
-        0 => "each limit names its source".to_owned(),
-        n => format!("{n} limits name no source"),
+    let terminal = &Words::shown().terminal;
+    let counted = |none: &str, some, n: usize| match n {
+        0 => none.to_owned(),
+        n => fill(some, &[("n", &n)]),
     };
+    let found = counted(terminal.each_sourced, terminal.unsourced, found.len());
     let english: BTreeSet<_> = procedures.iter().flat_map(|p| without_korean(p)).collect();
-    let note = |text: &String| stdio::note(&format!("no Korean in korean.toml: \"{text}\""));
+    let note = |text: &String| stdio::note(&fill(terminal.no_korean, &[("text", text)]));
     english.iter().for_each(note);
-    let english = match english.len() {
-        0 => "each text has its Korean".to_owned(),
-        1 => "1 text has no Korean".to_owned(),
-        n => format!("{n} texts have no Korean"),
-    };
-    print_out(&format!(
-        "{} procedures, {steps} steps, {data_files} data files, no errors; {found}; {english}",
-        procedures.len()
-    ))
+    let (each, some) = (terminal.each_korean, terminal.without_korean);
+    let english = counted(each, some, english.len());
+    let checked = fill(
+        terminal.checked,
+        &[
+            ("procedures", &procedures.len()),
+            ("steps", &steps),
+            ("files", &data_files),
+        ],
+    );
+    print_out(&format!("{checked}; {found}; {english}"))
 }

@@ -34,7 +34,7 @@ impl RunArguments {
             answer
                 .warnings
                 .iter()
-                .for_each(|warning| stdio::note(&words.told(&warning.clone().into())));
+                .for_each(|warning| stdio::note(&words.told(warning)));
             print_out(&format!("\n{}", diagnosis_text(&answer, false, words)))?;
         } else if let Ok(answer) = answer
             && answer.warnings.is_empty()

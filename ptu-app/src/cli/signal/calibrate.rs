@@ -2,6 +2,8 @@
 
 use clap::Args;
 use protocol::config::UnitConfig;
+use ptu_report::words::{Words, fill};
+use std::fmt::Display;
 
 use super::positive;
 use super::sound::{Channel, Device};
@@ -79,7 +81,7 @@ impl CalibrateArguments {
             false => self.heard((device, now), &unit, &stop)?,
         };
         if stop.presses() > 0 {
-            stdio::note("stopped: nothing was stored");
+            stdio::note(Words::shown().signals.not_stored);
             return Ok(Exit::Aborted);
         }
         let mut lines = Vec::new();
@@ -111,12 +113,14 @@ impl CalibrateArguments {
                 },
                 &file,
             )?;
-            lines.push(format!(
-                "{device}, channel {}: full scale is {full_scale_mv:.1} mV ± {} %, by {}",
-                side.name(),
-                self.uncertainty,
-                self.instrument
-            ));
+            let of: [(_, &dyn Display); 5] = [
+                ("device", &device),
+                ("channel", &side.name()),
+                ("mv", &format!("{full_scale_mv:.1}")),
+                ("percent", &self.uncertainty),
+                ("by", &self.instrument),
+            ];
+            lines.push(fill(Words::shown().signals.scale_of, &of));
         }
         print_out(&lines.join("\n"))
     }
@@ -137,10 +141,8 @@ impl CalibrateArguments {
         };
         let typed = self.measured.is_none().then(Typed::listen);
         if typed.is_some() {
-            stdio::note(&format!(
-                "a carrier of {} mV rms is played: type what the instrument at the coil shows, mV rms, and Enter",
-                self.level
-            ));
+            let said = Words::shown().signals.play_reference;
+            stdio::note(&fill(said, &[("mv", &self.level)]));
         }
         let mut answer = self.measured;
         let tones = signal::reference_hz(unit);

@@ -1,5 +1,6 @@
 //! `ptu signal play`, `record` and `devices`: waveforms to and from a sound card.
 
+use ptu_report::words::{Words, fill};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -97,6 +98,7 @@ impl Channel {
 impl PlayArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let unit = self.scale.unit.find()?;
+        let words = &Words::shown().signals;
         let device = self.device.device.as_str();
         let full_scale_mv = full_scale(device, Direction::Output)?;
         let stop = Stop::default();
@@ -139,22 +141,20 @@ impl PlayArguments {
                 let samples = of_file(of, channel, self.scale.full_scale, &mut broken)?;
                 let played = sound::play(samples, Lead::Within, device, &stop)?;
                 if let Some(why) = broken {
-                    stdio::note(&format!("the file is cut off or damaged: {why}"));
+                    stdio::note(&fill(words.broken, &[("why", &why)]));
                 }
                 played
             }
         };
-        let mut said = vec![format!("played {:.2} s", played.seconds)];
+        let time = format!("{:.2}", played.seconds);
+        let mut said = vec![fill(words.played, &[("time", &time)])];
         if played.stopped {
-            said.push("stopped".to_owned());
+            said.push(words.stopped.to_owned());
         }
         if played.clipped > 0 {
-            said.push(format!(
-                "{} samples were beyond what the device can make and were cut off: lower --level",
-                played.clipped
-            ));
+            said.push(fill(words.cut_off, &[("n", &played.clipped)]));
         }
-        said.extend(gaps("underruns", played.underruns));
+        said.extend(gaps(played.underruns));
         print_out(&said.join("; "))
     }
 }
@@ -212,32 +212,32 @@ impl RecordArguments {
         stop.listen();
         let device = (device, full_scale_mv);
         let recorded = sound::record_to_file(&self.out, device, self.seconds, &stop, &mut |_| {})?;
+        let words = &Words::shown().signals;
         let mut said = vec![format!("{}: {:.2} s", self.out.display(), recorded.seconds)];
         for (side, clipped) in Side::ALL.into_iter().zip(recorded.clipped) {
             if clipped > 0 {
-                said.push(format!(
-                    "{clipped} samples of the channel {} are at the end of the device's range: it was too loud",
-                    side.name()
-                ));
+                let of = [("n", &clipped as _), ("channel", &side.name() as _)];
+                said.push(fill(words.too_loud, &of));
             }
         }
-        said.extend(gaps("overruns", recorded.overruns));
+        said.extend(gaps(recorded.overruns));
         print_out(&said.join("; "))
     }
 }
 
-fn gaps(what: &str, count: u64) -> Option<String> {
-    (count > 0).then(|| format!("{what}: {count}; the waveform has gaps there"))
+fn gaps(count: u64) -> Option<String> {
+    (count > 0).then(|| fill(Words::shown().signals.gaps, &[("n", &count)]))
 }
 
 /// Prints the devices there are, and how each is calibrated.
 pub fn list_devices() -> Result<Exit, Failure> {
     let known = Calibrations::load(&sound_file::usual()?)?;
     let devices = sound::devices()?;
+    let words = &Words::shown().signals;
     if devices.is_empty() {
-        return print_out("no device for sound");
+        return print_out(words.no_device);
     }
-    let mut table = Table::new(&["DEVICE", "DIRECTION", "CALIBRATED"]);
+    let mut table = Table::headed(&[words.device, words.direction, words.calibrated]);
     for device in devices {
         let calibrated = Side::ALL.into_iter().filter_map(|side| {
             let of = known.of(&device.name, device.direction, side)?;
@@ -246,8 +246,8 @@ pub fn list_devices() -> Result<Exit, Failure> {
         table.row([
             device.name.clone(),
             match device.direction {
-                Direction::Output => "output".to_owned(),
-                Direction::Input => "input".to_owned(),
+                Direction::Output => words.output.to_owned(),
+                Direction::Input => words.input.to_owned(),
             },
             calibrated.collect::<Vec<_>>().join("; "),
         ]);
@@ -273,10 +273,9 @@ fn full_scale(device: &str, direction: Direction) -> Result<[f64; CHANNELS], Fai
         .filter(|side| known.of(device, direction, *side).is_none());
     let without: Vec<_> = without.map(Side::name).collect();
     if !without.is_empty() {
-        stdio::note(&format!(
-            "{device}: no calibration of the channel {}: levels are nominal, see `ptu signal calibrate`",
-            without.join(" and ")
-        ));
+        let channels = without.join(", ");
+        let of = [("device", &device as _), ("channels", &channels as _)];
+        stdio::note(&fill(Words::shown().signals.uncalibrated, &of));
     }
     Ok(known.full_scale_mv(device, direction))
 }

@@ -1,5 +1,6 @@
 //! `ptu trace diff`: two traces side by side.
 
+use ptu_report::words::{Words, fill};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use clap::Args;
 use fault_db::{Id, Store, TraceData};
 use serde_json::json;
 
-use super::explained::{deviations_json, deviations_text};
+use super::explained::{compared, deviations_json, deviations_text};
 use super::plot::lanes;
 use crate::cli::{Json, ScriptsOption, answered};
 use ptu_report::trace_io::{Columns, TimeUnit, beside, is_importable};
@@ -123,10 +124,8 @@ impl DiffArguments {
         };
         let (aligned, rule) = beside(store, (a, came), file, shift_us, &asked)?;
         if aligned.laid_at_begin {
-            stdio::note(&format!(
-                "{} is of another time: its beginning is laid at that of the trace; --shift SECONDS lays it elsewhere",
-                self.expected
-            ));
+            let said = Words::shown().terminal.other_time;
+            stdio::note(&fill(said, &[("file", &self.expected)]));
         }
         Ok(ComparedTraces {
             name: self.expected.clone(),
@@ -180,22 +179,22 @@ fn shift_argument(text: &str) -> Result<f64, String> {
 }
 
 fn text(a: Id, sides: &ComparedTraces, found: &Comparison) -> String {
-    let (from_s, to_s) = found.window_s;
+    let words = Words::shown();
     let ComparedTraces {
         name: b,
         came,
         expected,
         ..
     } = sides;
-    let mut text =
-        format!("A {a}\nB {b}\ncompared from {from_s:.2} s to {to_s:.2} s of the triggers\n");
+    let mut text = format!("A {a}\nB {b}\n{}\n", compared(found.window_s, words));
     for (missing, of) in [(&found.missing, "A"), (&found.missing_expected, "B")] {
         if !missing.is_empty() {
-            let _ = writeln!(text, "not in {of}: {}", missing.join(", "));
+            let of = [("of", &of as _), ("names", &missing.join(", ") as _)];
+            let _ = writeln!(text, "{}", fill(words.traces.not_in, &of));
         }
     }
     if found.deviations.is_empty() {
-        text.push_str("no signal differs");
+        text.push_str(words.traces.no_deviation);
         return text;
     }
     text.push_str(&deviations_text(found, "A", "B"));

@@ -142,6 +142,12 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
     text
 }
 
+/// From when to when two traces were compared, seconds from the trigger.
+pub fn compared((from_s, to_s): (f64, f64), words: &Words) -> String {
+    let [from, to] = [from_s, to_s].map(|at_s| format!("{at_s:.2}"));
+    fill(words.traces.compared, &[("from", &from), ("to", &to)])
+}
+
 /// `first_deviation`, `deviations`, `chain` and `notes`.
 pub fn explanation_json(explanation: &Explanation) -> Value {
     json!({

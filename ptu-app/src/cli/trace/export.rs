@@ -1,5 +1,6 @@
 //! `ptu trace export`: a trace, or a part of it, for other programs.
 
+use ptu_report::words::{Words, fill};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -44,12 +45,14 @@ impl ExportArguments {
         let id = store.resolve_trace(&self.id)?;
         let chosen = TracePart::new(store, id, &self.part.signals, self.part.window)?;
         export(&chosen, &self.out, self.force)?;
-        print_out(&format!(
-            "trace {}: {} rows of {} signals to {}",
-            id.short(),
-            chosen.about.rows,
-            chosen.about.channels.len(),
-            self.out.display()
+        print_out(&fill(
+            Words::shown().traces.exported,
+            &[
+                ("trace", &id.short()),
+                ("rows", &chosen.about.rows),
+                ("signals", &chosen.about.channels.len()),
+                ("file", &self.out.display()),
+            ],
         ))
     }
 }

@@ -1,13 +1,12 @@
 //! `ptu trace replay`: repeats the recorded stimuli of a trace on a unit.
 
-use std::fmt::Write as _;
-
 use btu_rig::rig::check_places;
 use clap::Args;
 use fault_db::limits;
+use ptu_report::words::{Words, fill};
 use serde_json::json;
 
-use super::explained::{deviations_json, deviations_text};
+use super::explained::{compared, deviations_json, deviations_text};
 use crate::cli::reports::ReportOption;
 use crate::cli::{Database, Json, ScriptsOption, answered};
 use ptu_runs::failure::{Exit, Failure, RunTrouble};
@@ -82,45 +81,54 @@ impl ReplayArguments {
 }
 
 fn text(original: &Original, rerun: &Rerun) -> String {
-    let mut text = format!(
-        "trace {} of {}, {}\nreplay: trace {}, run {}, unit {}\n{}\n",
-        original.id.short(),
-        original.procedure,
-        original.made.source,
-        rerun.trace_id.short(),
-        rerun.run_id.short(),
-        rerun.serial,
-        rerun.likeness.words()
-    );
-    let (from_s, to_s) = rerun.from_original.window_s;
-    let _ = writeln!(
-        text,
-        "compared from {from_s:.2} s to {to_s:.2} s of the trigger"
-    );
+    let words = Words::shown();
+    let traces = &words.traces;
+    let mut lines = vec![
+        fill(
+            traces.of_trace,
+            &[
+                ("trace", &original.id.short()),
+                ("procedure", &original.procedure),
+                ("source", &original.made.source),
+            ],
+        ),
+        fill(
+            traces.replayed,
+            &[
+                ("trace", &rerun.trace_id.short()),
+                ("run", &rerun.run_id.short()),
+                ("unit", &rerun.serial),
+            ],
+        ),
+        words.told(&rerun.likeness),
+        compared(rerun.from_original.window_s, words),
+    ];
     if let (ReplayMatch::Otherwise, Some((signal, again))) = (rerun.likeness, &rerun.first_again) {
-        let again = if *again {
-            "deviates again"
+        let said = if *again {
+            traces.again
         } else {
-            "does not deviate"
+            traces.not_again
         };
-        let _ = writeln!(text, "{signal}, which deviated first in the trace, {again}");
+        lines.push(fill(said, &[("signal", &words.signal(signal))]));
     }
     if let Some(why) = &rerun.cut_short {
-        let _ = writeln!(text, "cut short: {why}");
+        lines.push(fill(traces.broken_off, &[("why", why)]));
     }
     if !rerun.refused.is_empty() {
-        let _ = writeln!(text, "refused by the bench: {}", rerun.refused.join("; "));
+        lines.push(fill(traces.refused, &[("what", &rerun.refused.join("; "))]));
     }
     if matches!(rerun.likeness, ReplayMatch::AsTwin | ReplayMatch::Otherwise) {
-        text.push_str(&deviations_text(&rerun.from_original, "REPLAY", "TRACE"));
+        let of = (traces.of_replay, traces.of_original);
+        lines.push(deviations_text(&rerun.from_original, of.0, of.1));
     }
     if matches!(
         rerun.likeness,
         ReplayMatch::Reproduced | ReplayMatch::Otherwise
     ) {
-        text.push_str(&deviations_text(&rerun.from_twin, "REPLAY", "GOOD TWIN"));
+        let of = (traces.of_replay, traces.good_twin);
+        lines.push(deviations_text(&rerun.from_twin, of.0, of.1));
     }
-    text.trim_end().to_owned()
+    lines.join("\n").trim_end().to_owned()
 }
 
 fn rerun_json(original: &Original, rerun: &Rerun) -> serde_json::Value {

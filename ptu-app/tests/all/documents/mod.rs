@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use command_line::{CommandLine, words};
+use fault_db::FaultState;
 use ptu_report::words::Language;
 
 /// Longest README, lines, and its longest line, characters.
@@ -291,7 +292,11 @@ fn what_the_manuals_have_in_bold_is_in_the_window() {
         ("manual.ko.md", Language::Korean),
     ] {
         let document = Document::read(root().join("docs").join(file));
-        let texts = format!("{:?}", language.words());
+        let catalogue = language.words();
+        let states = FaultState::ALL
+            .iter()
+            .map(|state| catalogue.fault_state(*state));
+        let texts = format!("{catalogue:?}{:?}", states.collect::<Vec<_>>());
         let (mut wrong, mut found) = (Vec::new(), 0);
         for (number, line) in document.prose() {
             for bold in line.split("**").skip(1).step_by(2) {

@@ -1,7 +1,7 @@
 //! What a check of the history found and what to do about it, in the words of a window: without commands, and in Korean.
 
-use fault_db::{Advice, Damage, ProblemKind};
-use ptu_runs::words::{Say as _, noun};
+use fault_db::{Advice, ProblemKind};
+use ptu_runs::words::noun;
 
 use super::super::{Language, Words};
 
@@ -20,11 +20,6 @@ impl Words {
             K::Seal => ["seal", "봉인"],
             K::Derived => ["derived", "집계"],
         })
-    }
-
-    /// Where a check found damage, and which.
-    pub fn damage(&self, damage: &Damage) -> String {
-        damage.say(self.manner(false))
     }
 
     /// The next move after a problem.
@@ -54,7 +49,7 @@ impl Words {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fault_db::Derived;
+    use fault_db::{Damage, Derived};
 
     /// Goal: advice that names a command of the terminal, or stays English, fails.
     #[test]
@@ -68,7 +63,7 @@ mod tests {
             assert!(!is_english(korean.problem_kind(*kind)), "{kind}");
         }
         for derived in Derived::ALL {
-            let damage = korean.damage(&Damage::Miscounted(7, *derived));
+            let damage = korean.trouble(&Damage::Miscounted(7, *derived));
             assert!(!is_english(&damage), "{damage}");
         }
     }

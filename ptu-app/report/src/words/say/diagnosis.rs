@@ -5,7 +5,6 @@ use fault_db::RunDetail;
 use protocol::LruId;
 use protocol::injection::Lru;
 use ptu_runs::run_diagnosis::Answer;
-use ptu_runs::words::{Say as _, Warning};
 
 use super::super::{Words, content};
 use super::conclusion::{all_called, concluded, tells};
@@ -64,11 +63,6 @@ impl Words {
             Reason::Step(step) => Some(self.choose(step_expected(step))),
             Reason::Logged(_) | Reason::Known(_) => None,
         }
-    }
-
-    /// What to bear in mind with an answer.
-    pub fn warning(&self, warning: &Warning) -> String {
-        warning.say(self.manner(false))
     }
 }
 

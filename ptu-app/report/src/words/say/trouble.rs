@@ -1,23 +1,23 @@
 //! What went wrong, as a window says it, without commands, or as the command line does.
 
-use ptu_runs::failure::{Failure, Trouble};
+use ptu_runs::failure::Failure;
 use ptu_runs::stdio;
-use ptu_runs::words::{Manner, Say as _};
+use ptu_runs::words::{Manner, Say};
 
 use super::super::{Language, Words};
 
 impl Words {
     /// Why something could not be done, and the next move.
-    pub fn trouble(&self, trouble: &Trouble) -> String {
-        trouble.say(self.manner(false))
+    pub fn trouble(&self, what: &impl Say) -> String {
+        what.say(self.manner(false))
     }
 
     /// The same for who has a command line, with the commands that help.
-    pub fn told(&self, trouble: &Trouble) -> String {
-        trouble.say(self.manner(true))
+    pub fn told(&self, what: &impl Say) -> String {
+        what.say(self.manner(true))
     }
 
-    pub(super) fn manner(&self, commands: bool) -> Manner {
+    fn manner(&self, commands: bool) -> Manner {
         let korean = self.language == Language::Korean;
         Manner { korean, commands }
     }

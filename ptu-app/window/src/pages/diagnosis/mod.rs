@@ -137,7 +137,7 @@ impl DiagnosisPage {
         self.head(ui, context, answer);
         for warning in &answer.warnings {
             ui.label(
-                RichText::new(format!("⚠ {}", context.words.warning(warning))).color(palette.warn),
+                RichText::new(format!("⚠ {}", context.words.trouble(warning))).color(palette.warn),
             );
         }
         ui.add_space(8.0);
