@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fault_db::{Address, Store, StoreError};
 
+use ptu_report::words::Words;
 use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Failure, FileTrouble};
 use ptu_runs::{owner_only, stdio};
@@ -123,7 +124,7 @@ impl Database {
             owner_only::folder_of(&path)?;
         }
         if let Some(told) = owner_only::told_if_shared(&path) {
-            stdio::note(&told);
+            stdio::note(&Words::shown().told(&told));
         }
         Ok(Store::open(&path, clock::open_options())?)
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use diagnosis::{Candidate, Diagnosis, PartProbability, Reason, TwoFaults};
+use diagnosis::{Candidate, Conclusion, Diagnosis, PartProbability, Reason, TwoFaults};
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
@@ -157,6 +157,10 @@ const LEAST_TOLD: f64 = 0.0005;
 /// What may be the cause, `most` parts and `most` pairs of faults, each with its probability, the likeliest first. The
 /// probability of a part is the one that the conclusion tells.
 pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
+    if matches!(of.conclusion, Conclusion::NothingSeen { made: 0, .. }) {
+        // What is known beforehand of each part is no finding.
+        return Vec::new();
+    }
     let mut parts = BTreeSet::new();
     let first = of.candidates.iter().filter(|c| parts.insert(&c.lru));
     let parts = first

@@ -31,12 +31,10 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
 
 /// What to say of a file that others can read or write, if they can. Its rights stay as they are: somebody may
 /// have given them on purpose.
-pub fn told_if_shared(file: &Path) -> Option<String> {
+pub fn told_if_shared(file: &Path) -> Option<FileTrouble> {
     let (rights, command) = platform::readable_by_others(file)?;
-    let shown = file.display();
-    Some(format!(
-        "{shown} is open to others ({rights}); to keep it to yourself: {command}"
-    ))
+    let shown = file.display().to_string();
+    Some(FileTrouble::OpenToOthers(shown, rights, command))
 }
 
 /// Refuses a secret that others can read.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use clap::Args;
 use fault_db::{Signer, Store};
 
+use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Asked, Failure, FileTrouble, KeyTrouble};
 use ptu_runs::{keys, owner_only};
 
@@ -83,9 +84,10 @@ impl SigningOption {
             return Ok(None);
         };
         let file = keys::usable(path)?;
-        let pin = self
-            .pin
-            .ask(&format!("PIN of {}'s key: ", file.entry().who))?;
+        let pin = self.pin.ask(&fill(
+            Words::shown().terminal.pin_of,
+            &[("who", &file.entry().who)],
+        ))?;
         Ok(Some(Arc::new(file.open(&pin)?)))
     }
 }
@@ -120,9 +122,9 @@ impl PinOption {
     /// # Errors
     /// As [`Self::ask`], or the two differ.
     pub fn choose(&self) -> Result<String, Failure> {
-        let first = self.ask("PIN for the new key: ")?;
+        let first = self.ask(Words::shown().terminal.new_pin)?;
         let typed = self.pin_file.is_none() && std::env::var_os(PIN).is_none();
-        if typed && self.ask("the same again: ")? != first {
+        if typed && self.ask(Words::shown().terminal.same_again)? != first {
             return Err(Failure::usage(KeyTrouble::PinsDiffer));
         }
         Ok(first)

@@ -34,6 +34,7 @@ use std::sync::Arc;
 use protocol::config::UnitConfig;
 use protocol::line::Line;
 use serde::{Deserialize, Serialize};
+use starlark::ErrorKind;
 use starlark::codemap::FileSpan;
 use thiserror::Error;
 
@@ -219,7 +220,12 @@ fn cut(text: &str) -> String {
 }
 
 fn error_from(path: &str, error: &starlark::Error) -> LoadError {
-    let words = plain_words(&error.without_diagnostic().to_string());
+    let words = match error.kind() {
+        ErrorKind::StackOverflow(_) => {
+            "functions call each other too deeply; does one call itself?".to_owned()
+        }
+        _ => plain_words(&error.without_diagnostic().to_string()),
+    };
     let caller = caller(path, error).unwrap_or_default();
     let message = cut(&format!("{words}{caller}"));
     match error.span() {
@@ -250,15 +256,13 @@ fn caller(path: &str, error: &starlark::Error) -> Option<String> {
     })
 }
 
-/// Starlark's messages are for programmers; the two that need it are said in plain words.
+/// Starlark's messages are for programmers; those of limits, which have no kind of their own, are said in plain words.
 fn plain_words(message: &str) -> String {
     let first = message.lines().next().unwrap_or_default();
     if first.starts_with("Heap memory limit") {
         "needs too much memory while it is loaded; does a loop go too far?".into()
     } else if first.contains("tick") && first.contains("limit") {
         "does too much while it is loaded; does a loop go too far?".into()
-    } else if first.starts_with("Starlark call stack overflow") {
-        "functions call each other too deeply; does one call itself?".into()
     } else {
         first.to_owned()
     }

@@ -26,6 +26,9 @@ wordings! {
         without_korean: "{n} texts have no Korean", "한국어 없는 문장 {n}개";
         checked: "{procedures} procedures, {steps} steps, {files} data files, no errors", "절차 {procedures}개, 단계 {steps}개, 데이터 파일 {files}개, 오류 없음";
         other_time: "{file} is of another time: its beginning is laid at that of the trace; --shift SECONDS lays it elsewhere", "{file}은(는) 다른 시각의 기록이라 시작을 신호 기록의 시작에 맞췄습니다. 옮기려면 --shift SECONDS";
+        pin_of: "PIN of {who}'s key: ", "{who} 키의 PIN: ";
+        new_pin: "PIN for the new key: ", "새 키의 PIN: ";
+        same_again: "the same again: ", "한 번 더: ";
         allowed: ", allowed {limit}", ", 허용 {limit}";
         asks: "asks", "확인 요청";
         at_most: "at most", "최대 시간";

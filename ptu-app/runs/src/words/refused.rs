@@ -89,6 +89,7 @@ sentences! {
         NoSettingsFolder: "no user configuration directory to save it in", "저장할 사용자 설정 폴더가 없습니다";
         ScriptsTooLong(folder: String, most: usize): "the scripts in {folder} are longer than {most} bytes together", "스크립트가 모두 합하여 {most}바이트를 넘습니다: {folder}";
         Shared(file: String, rights: String, command: String): "a secret that is shared protects nothing: {file} is open to others ({rights}); " ["to keep it to yourself: {command}" "keep it to yourself"], "비밀은 공유되면 보호되지 않습니다: 다른 사용자가 읽을 수 있는 파일입니다: {file} ({rights}). 본인만 읽을 수 있게 하십시오" [": {command}"];
+        OpenToOthers(file: String, rights: String, command: String): "{file} is open to others ({rights}); to keep it to yourself: {command}", "{file}을(를) 다른 사용자도 열 수 있습니다 ({rights}). 막으려면: {command}";
         Unanswered(why: String): "cannot write the answer: {why}; make room on standard output or send it elsewhere", "결과를 출력할 수 없습니다: {why}. 공간을 확보하거나 다른 곳으로 출력하십시오";
         FontUnread(why: Why): "the shipped font cannot be read: {why}", "내장 글꼴을 읽을 수 없습니다 ({why})";
         LongRow(view: String): "a row of {view} is too long to be exported", "내보내기에는 행이 너무 깁니다: {view}";
