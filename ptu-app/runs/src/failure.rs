@@ -83,13 +83,11 @@ impl Say for Trouble {
     fn say(&self, how: Manner) -> String {
         match self {
             Self::Store(error) => error.say(how),
-            Self::NamedStore(error) => how.choose([
-                error.to_string(),
-                error.say(Manner {
-                    commands: false,
-                    ..how
-                }),
-            ]),
+            Self::NamedStore(error) if how == Manner::COMMAND_LINE => error.to_string(),
+            Self::NamedStore(error) => error.say(Manner {
+                commands: false,
+                ..how
+            }),
             Self::NotStored {
                 run,
                 error,

@@ -25,7 +25,7 @@ use fault_db::Id;
 use crate::failure::{Near, Trouble};
 
 /// How something is said.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manner {
     /// In Korean, not in English.
     pub korean: bool,

@@ -22,7 +22,7 @@ impl Say for StoreError {
 }
 
 /// A sentence, and behind it the command or option that helps, if there is one.
-pub(super) fn with_help(said: String, help: &str) -> String {
+fn with_help(said: String, help: &str) -> String {
     match help {
         "" => said,
         help => format!("{said} ({help})"),
