@@ -91,11 +91,10 @@ impl Conclusion {
             Self::TwoFound { .. } => Finding::TwoFound,
             Self::OneOf { .. } | Self::Common { .. } | Self::OneOrCommon { .. } => Finding::OneOf,
             Self::NoFault { .. } => Finding::NoFault,
-            Self::NothingSeen { .. } => Finding::NotEnough,
-            Self::NotAlone { .. }
-            | Self::CannotTell { .. }
-            | Self::BrokenOff
-            | Self::NotWeighed => Finding::CannotTell,
+            Self::NothingSeen { .. } | Self::BrokenOff => Finding::NotEnough,
+            Self::NotAlone { .. } | Self::CannotTell { .. } | Self::NotWeighed => {
+                Finding::CannotTell
+            }
         }
     }
 

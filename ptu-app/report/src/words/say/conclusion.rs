@@ -86,12 +86,10 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
             ]
         }
         Conclusion::OneOrCommon {
-            cause,
-            part,
-            probability,
-            other,
+            cause, part, other, ..
         } => {
-            let [found, found_ko] = named(part, Some(*probability), names);
+            // The probability is that of the part alone, and so none of this sentence.
+            let [found, found_ko] = named(part, None, names);
             let [of, of_ko] = named(&cause.part, None, names);
             let [one, one_ko] = called(part, names);
             let [other, other_ko] = named(other, None, names);
@@ -166,6 +164,7 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
 fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     let [more, more_ko] = match more {
         0 => [String::new(), String::new()],
+        1 => [" or 1 more".to_owned(), " 외 1개".to_owned()],
         n => [format!(" or one of {n} more"), format!(" 외 {n}개")],
     };
     let [all, all_ko] = one_or_other(shown);

@@ -92,8 +92,8 @@ fn parts_that_are_not_told_apart_are_named_with_the_measurement() {
                 probability,
                 other: id("sensor"),
             },
-            "relay (90.0 %), or one cause at relay and sensor: link or its wiring; to tell which, record the frames",
-            "relay (90.0 %) 또는 relay, sensor에 공통된 원인: link 또는 배선; 판별 방법: 전문을 기록합니다",
+            "relay, or one cause at relay and sensor: link or its wiring; to tell which, record the frames",
+            "relay 또는 relay, sensor에 공통된 원인: link 또는 배선; 판별 방법: 전문을 기록합니다",
         ),
         (
             Conclusion::NotAlone {
