@@ -55,7 +55,8 @@ fn the_window_syncs_and_names_conflicts_and_the_last_sync() {
         });
         assert!(window.shows_part(synced), "{:#?}", window.shown());
         let unit = fill(words.care.conflict, &[("unit", &"BAD-1")]);
-        let conflict = unit.split("{fault}").next().unwrap_or_default();
+        let conflict = unit.split("{id}").last().unwrap_or_default();
+        let conflict = conflict.split("{fault}").next().unwrap_or_default();
         window.wait_for_part(conflict);
         for (who, state) in [
             ("Lee", words.fault_state(fault_db::FaultState::Closed)),

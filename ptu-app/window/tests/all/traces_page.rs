@@ -327,7 +327,7 @@ fn a_dropped_file_is_laid_behind_the_trace() {
         let export = [&["trace", "export", &open, "--out", &to][..], part].concat();
         window.place.ptu(&export).exits(0);
         drop(&mut window, &file);
-        window.wait_for("no signal deviates");
+        window.wait_for("no signal differs");
     }
     let file = window.place.path("other.csv");
     let text = std::fs::read_to_string(&file).expect("exported");
