@@ -8,8 +8,11 @@ use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
 
-/// Level below the strongest that is shown, dB.
-const SHOWN_DB: f32 = 70.0;
+/// Level below the strongest that is shown at most and at least, dB.
+const MOST_DB: f32 = 70.0;
+const LEAST_DB: f32 = 20.0;
+/// What stands less above the middle of all levels is noise, dB: it has the darkest shades.
+const NOISE_DB: f32 = 6.0;
 /// Most signals that are named above the spectrum over time.
 const MOST_NAMED: usize = 200;
 /// Columns of a sketch.
@@ -197,12 +200,15 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
     let points = levels.iter().enumerate();
     let points = points.map(|(place, level)| (place as f64 * row_hz, f64::from(*level)));
     let ends = (said.frequency, said.decibels, row_hz * levels.len() as f64);
-    let mut plots = vec![
-        over_time(said.waveform, said.millivolts, picture.wave()),
-        spectrogram(picture, of, words),
+    let mut plots = vec![over_time(said.waveform, said.millivolts, picture.wave())];
+    // A short recording has no spectrum over time.
+    if !picture.spectra().0.is_empty() {
+        plots.push(spectrogram(picture, of, words));
+    }
+    plots.extend([
         over_time(said.envelope, said.millivolts_rms, picture.envelope()),
         curve(said.spectrum, ends, points.collect()),
-    ];
+    ]);
     plots.extend(eye(picture, words));
     plots
 }
@@ -259,10 +265,14 @@ fn spans(columns: &[Span], each_s: f64) -> Vec<(f64, f64)> {
 fn shades(picture: &Picture) -> (usize, Vec<u8>, (f32, f32)) {
     let (spectra, _) = picture.spectra();
     let rows = spectra.first().map_or(0, Vec::len);
-    let high = (spectra.iter().flatten()).fold(f32::MIN, |high, level| high.max(*level));
-    let high = if spectra.is_empty() { 0.0 } else { high };
-    let low = high - SHOWN_DB;
-    let shade = |level: f32| (255.0 * ((level - low) / SHOWN_DB).clamp(0.0, 1.0)) as u8;
+    let mut levels: Vec<f32> = spectra.iter().flatten().copied().collect();
+    levels.sort_unstable_by(f32::total_cmp);
+    let middle = levels.get(levels.len() / 2).copied().unwrap_or_default();
+    let low = middle + NOISE_DB;
+    let high = levels.last().copied().unwrap_or_default();
+    let high = high.max(low + LEAST_DB);
+    let low = low.max(high - MOST_DB);
+    let shade = |level: f32| (255.0 * ((level - low) / (high - low)).clamp(0.0, 1.0)) as u8;
     let from_top = (0..rows).rev();
     let shades = from_top.flat_map(|row| spectra.iter().map(move |levels| shade(levels[row])));
     (spectra.len(), shades.collect(), (low, high))

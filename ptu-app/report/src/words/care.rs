@@ -13,6 +13,7 @@ wordings! {
         address_hint: "postgres://USER@HOST/DATABASE; a password is kept in the password file of PostgreSQL", "postgres://USER@HOST/DATABASE. 비밀번호는 PostgreSQL 비밀번호 파일에 둡니다";
         never_synced: "not synced with a server yet", "서버와 동기화한 적 없음";
         last_synced: "last synced {at} with {server}; entries that wait: {n}", "최근 동기화 {at}, 서버 {server}. 대기 중인 기록 {n}건";
+        under_way: "work is under way", "작업이 진행 중입니다";
         sync: "Sync", "동기화";
         with_traces: "with traces", "신호 기록 포함";
         sending: "sending runs and events", "시험과 이벤트 보내는 중";

@@ -54,7 +54,8 @@ wordings! {
         only_unit: "only unit {unit}", "장치 {unit}만";
         limit_is: "limit {limit}", "허용 {limit}";
         nothing: "nothing here yet", "아직 아무것도 없음";
-        refresh: "refresh", "새로 고침";
+        runs: "Recorded runs", "시험 기록";
+        refresh: "Try again", "다시 시도";
         save: "save", "저장";
         cancel: "cancel", "취소";
         at_most: "at most {n}", "{n} 이하";

@@ -7,6 +7,8 @@ wordings! {
     Drive {
         title: "Drive", "자동 주행";
         explained: "A simulated unit drives a whole train from station to station in virtual time. A connected unit takes no part in it, and nothing is recorded.", "내장된 모의 장치가 가상 시간으로 열차를 역에서 역까지 운전합니다. 연결된 장치는 관여하지 않으며, 기록도 남지 않습니다.";
+        nothing: "Nothing has been driven yet", "아직 주행한 결과가 없습니다";
+        under_way: "a run is under way", "주행 중입니다";
 
         // What is asked for.
         line: "line", "노선";

@@ -146,6 +146,8 @@ wordings! {
         not_opened: "The file cannot be opened", "파일을 열 수 없습니다";
         name_file: "name a file", "파일 이름을 적으십시오";
         to_diagnosis: "Diagnosis", "진단";
+        all_right: "nothing failed in it", "미합격 항목 없음";
+        strip: "Compare, note, files", "비교, 메모, 파일";
         to_trace: "Trace", "신호 기록";
         to_traces: "Traces ({n})", "신호 기록 ({n})";
         case_sheet: "Repair sheet", "수리 성적서";

@@ -50,10 +50,13 @@ wordings! {
         decibels: "dB over 1 mV", "1 mV 기준 dB";
         bits: "bits from a decision on", "판정 시점 기준 비트";
         // The page.
+        none_open: "No recording is open", "열린 녹음이 없습니다";
+        recording_of: "Recording", "녹음 파일";
+        under_way: "work on a signal is under way", "작업이 진행 중입니다";
         explained: "Open a WAV file, or record from a sound card: codes and bytes are shown as the unit's receivers hear them.", "WAV 파일을 열거나 사운드 카드에서 녹음하십시오. 장치의 수신기가 해석한 속도 코드와 바이트를 표시합니다.";
         open: "Open", "열기";
         record: "Record", "녹음";
-        record_hint: "Recorded to the file named above, never over one that is there, but beside it as -2, -3 …", "위에 적은 파일에 녹음합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        record_hint: "Recorded to the named file, never over one that is there, but beside it as -2, -3 …", "적은 파일에 녹음합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
         recording: "recording: {time}", "녹음 중: {time}";
         recorded: "Recorded: {file}, {time} s", "녹음 완료: {file}, {time} s";
         input: "input", "입력 장치";
@@ -80,7 +83,7 @@ wordings! {
         not_stored: "stopped: nothing was stored", "중지됨: 저장하지 않았습니다";
         scale_of: "{device}, channel {channel}: full scale is {mv} mV ± {percent} %, by {by}", "{device}, {channel} 채널: 최대 눈금 {mv} mV ± {percent} %, 계측기 {by}";
         save: "Save", "저장";
-        save_hint: "Saved to the file named above, never over one that is there, but beside it as -2, -3 …", "위에 적은 파일에 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
+        save_hint: "Saved to the named file, never over one that is there, but beside it as -2, -3 …", "적은 파일에 저장합니다. 같은 파일이 있으면 덮어쓰지 않고 -2, -3 …을 붙입니다";
         cut_off: "{n} samples were too strong and were cut off: lower the level.", "표본 {n}개가 범위를 넘어 잘렸습니다. 레벨을 낮추십시오.";
         too_loud: "{n} samples of the channel {channel} are at the end of the device's range: it was too loud.", "{channel} 채널 표본 {n}개가 장치 범위 끝에 있습니다. 입력이 너무 큽니다.";
         gaps: "The device had no samples in time, or lost some: {n} times.", "장치가 표본을 제때 받지 못했거나 잃었습니다: {n}회.";

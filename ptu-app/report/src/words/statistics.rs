@@ -10,18 +10,18 @@ wordings! {
         nothing: "No fault is recorded in this span.", "이 기간에 기록된 고장이 없습니다.";
         all_units: "all units", "모든 장치";
         of_unit: "unit {unit}", "장치 {unit}";
-        cases: "cases", "고장 건";
-        cases_are: "first seen in the span; what one part explains is one case. Not closed: {n}", "기간 내 최초 발생. 한 부품으로 설명되는 고장은 1건. 미종결 {n}건";
+        cases: "Cases", "고장 건";
+        cases_are: "{n} not closed", "미종결 {n}건";
         mtbf: "MTBF", "평균 고장 간격(MTBF)";
-        mtbf_is: "days of the calendar since the first run of each unit, by cases", "장치별 첫 시험 이후의 달력 일수를 고장 건수로 나눈 값";
+        mtbf_is: "since the first run of each unit", "장치별 첫 시험 이후";
         mttr: "MTTR", "평균 수리 시간(MTTR)";
-        mttr_is: "from the opening of a fault to its repair; repairs: {n}", "고장 발생부터 수리까지, 수리 {n}회의 평균";
-        back: "repairs that came back", "재발한 수리";
-        back_is: "the same fault again within {days} days; repairs that are old enough to tell: {n}", "{days}일 안에 같은 고장 재발. 판단할 수 있는 수리 {n}회 중";
-        not_found: "no fault found", "고장 미발견";
-        not_found_is: "closed without a repair; closed: {n}", "수리 없이 종결. 종결 {n}건 중";
-        by_cause: "cases by cause, share and running total", "원인 부품별 고장 건, 비율과 누계";
-        by_month: "faults first seen, by month", "월별 최초 발생 고장";
+        mttr_is: "repairs: {n}", "수리 {n}회";
+        back: "Repairs that came back", "재발한 수리";
+        back_is: "same fault within {days} days", "{days}일 안에 같은 고장";
+        not_found: "No fault found", "고장 미발견";
+        not_found_is: "closed without a repair", "수리 없이 종결";
+        by_cause: "Cases by cause, share and running total", "원인 부품별 고장 건, 비율과 누계";
+        by_month: "Faults first seen", "최초 발생 고장";
         per_10000_km: "faults first seen for each 10 000 km, by month", "월별 10 000 km당 최초 발생 고장";
         rate_is: "faults {n}, {km} km, trains {trains}", "고장 {n}건, {km} km, 열차 {trains}편성";
         rate_of: "computed of the faults of runs in trains whose odometer readings cover the time, and of what these trains ran; between two readings a train runs evenly", "주행거리 기록이 있는 기간의 해당 열차 고장과 주행거리로 계산. 두 기록 사이의 주행거리는 균등한 것으로 봄";
@@ -36,10 +36,8 @@ wordings! {
         days: "{n} days", "{n}일";
         hours: "{n} h", "{n}시간";
         minutes: "{n} min", "{n}분";
-        percent: "{n} %", "{n} %";
         unknown: "–", "–";
-        control: "measured values with control limits", "측정값과 관리 한계";
-        measured: "measured value", "측정값";
+        measured: "Measured value", "측정값";
         all_steps: "all steps", "모든 단계";
         nothing_measured: "Nothing has been measured yet.", "아직 측정한 값이 없습니다.";
         not_measured: "It was not measured so in this span.", "이 기간에 이 조건으로 측정한 값이 없습니다.";
@@ -56,6 +54,12 @@ wordings! {
         question_name: "name", "이름";
         save_question: "Save this question", "이 조건 저장";
         forget_question: "Forget it", "저장한 조건 삭제";
+        of_these: "{n} of {of}", "{of}건 중 {n}건";
+        a_month: "a month", "월별";
+        each_10000_km: "for each 10 000 km", "10 000 km당";
+        mean_line: "mean {n}", "평균 {n}";
+        control_line: "control limit {n}", "관리 한계 {n}";
+        limit_line: "limit {n}", "허용값 {n}";
         chart_of: "values over time: {n}", "시간에 따른 값 {n}개";
     }
 }

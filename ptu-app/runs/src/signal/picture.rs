@@ -12,12 +12,10 @@ use rustfft::{Fft, FftPlanner};
 const MOST_COLUMNS: usize = 1_024;
 /// Columns of the spectrum over time at most.
 const MOST_SPECTRA: usize = 512;
-/// Highest frequency that is shown, Hz: above the tones of TWC.
-const HIGHEST_HZ: f64 = 12_000.0;
 /// Resolution of the spectrum, Hz, at least: the sidebands of the slowest code rates stand apart.
 const RESOLUTION_HZ: f64 = 12.0;
 /// Rows of the spectrum over time.
-const ROWS: usize = 256;
+const ROWS: usize = 512;
 /// Rate of the envelope, Hz.
 const ENVELOPE_HZ: f64 = 600.0;
 /// Least level that is shown, dB over 1 mV.
@@ -248,8 +246,8 @@ impl Spectrum {
             .collect();
         // A sine of 1 mV rms has 1 mV² at its frequency: half of its amplitude is at the negative one.
         let sum: f64 = window.iter().map(|w| f64::from(*w)).sum();
-        let shown = (HIGHEST_HZ / sample_hz * length as f64) as usize;
-        let shown = shown.clamp(1, length / 2);
+        // Up to half of the sample rate there is something to see.
+        let shown = length / 2;
         Self {
             scratch: vec![Complex::default(); fft.get_inplace_scratch_len()],
             fft,

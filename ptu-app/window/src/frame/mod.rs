@@ -23,7 +23,7 @@ use eframe::egui::{
 
 use super::{Page, PageContext, Palette, Sizes};
 use crate::pages::case_steps;
-use crate::parts::dialog_is_open;
+use crate::parts::{FORM, dialog_is_open};
 use about::About;
 use care::Care;
 use find::Find;
@@ -104,10 +104,11 @@ impl Frame {
     /// What stands over the page: what was told, and the dialogs that are open.
     pub fn over(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         self.undo.poll(context);
-        // Not over the steps and the foot of a case.
+        // Not over the steps and the foot of a case, nor over the foot of a form.
         let wide = ui.ctx().content_rect().width();
         let (left, below) = match context.settings.page {
             Page::Case => (case_steps(wide), Sizes::of(ui).footer),
+            Page::Drive | Page::Signals => (FORM, 0.0),
             _ => (0.0, 0.0),
         };
         let rail = if self.is_wide { 0.0 } else { rail::wide(ui) };

@@ -1,11 +1,11 @@
 //! The form of the bench choice: endpoint, line, unit configuration, train and injected faults.
 
 use btu_rig::rig::Harness;
-use eframe::egui::{
-    ComboBox, DragValue, Grid, Label, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo,
-};
+use eframe::egui::{DragValue, Grid, Label, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::parts::{Face, Look, dialog, field, go_on, last_row, name_edit, named_combo, segments};
+use crate::parts::{
+    Face, Look, dialog, field, find_edit, go_on, last_row, name_edit, pick, segments,
+};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::Words;
@@ -13,10 +13,10 @@ use ptu_runs::bench_worker::Phase;
 use ptu_runs::link::ports;
 use ptu_runs::run::BenchChoice;
 
-/// Width of the field that finds a fault, points.
-const FIND: f32 = 220.0;
+/// Width of a field, points.
+const FIELD: f32 = 220.0;
 /// Of what the list of faults leaves to the rest of the dialog, and its least height.
-const AROUND: f32 = 60.0;
+const AROUND: f32 = 120.0;
 const LOWEST: f32 = 120.0;
 
 struct Names {
@@ -137,35 +137,19 @@ impl Setup {
             ];
             segments(ui, &mut choice.harness, ways);
             ui.end_row();
-            pick(ui, frame.line, &mut choice.line, of(|names| &names.lines));
+            row(ui, frame.line, &mut choice.line, of(|names| &names.lines));
             let configs = of(|names| &names.configs);
-            pick(ui, frame.unit_config, &mut choice.unit_config, configs);
-            pick(
-                ui,
-                frame.train,
-                &mut choice.train,
-                of(|names| &names.trains),
-            );
-            let serial = field(ui, frame.serial, name_edit(&mut choice.serial, 140.0));
-            let train_no = name_edit(&mut choice.train_no, 140.0);
+            row(ui, frame.unit_config, &mut choice.unit_config, configs);
+            let trains = of(|names| &names.trains);
+            row(ui, frame.train, &mut choice.train, trains);
+            let serial = field(ui, frame.serial, name_edit(&mut choice.serial, FIELD));
+            let train_no = name_edit(&mut choice.train_no, FIELD);
             let train_no = field(ui, words.common.train_no, train_no);
             go_on(ui, &[serial, train_no]);
-            if choice.is_simulated() {
-                let label = ui.label(frame.seed);
-                ui.horizontal(|ui| {
-                    ui.add(DragValue::new(&mut choice.seed))
-                        .labelled_by(label.id);
-                    ui.checkbox(&mut choice.scatter, frame.scatter);
-                });
-                ui.end_row();
-            }
         });
-        if choice.is_simulated() {
-            ui.checkbox(&mut choice.realtime, frame.realtime);
-        }
     }
 
-    /// The injected faults, each with a button that takes it out, and all there are.
+    /// The injected faults, each with a button that takes it out, all there are, and how the simulated unit behaves.
     fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let frame = &words.frame;
         ui.label(RichText::new(frame.inject).strong());
@@ -183,18 +167,24 @@ impl Setup {
             !taken_out.inner
         });
         ui.horizontal(|ui| {
-            let label = ui.label(frame.find);
-            let find = ui.add(TextEdit::singleline(&mut self.find).desired_width(FIND));
+            let find = find_edit(ui, &mut self.find, frame.find, FIELD);
             // What is mostly wanted can be typed at once.
             if std::mem::take(&mut self.opened) {
                 find.request_focus();
             }
-            find.labelled_by(label.id);
         });
         let high = (ui.ctx().content_rect().height() / 2.0 - AROUND).max(LOWEST);
         let area = ScrollArea::vertical().max_height(high).auto_shrink(false);
         let area = area.min_scrolled_height(high);
         area.show(ui, |ui| self.all_faults(ui, words, choice));
+        ui.separator();
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(frame.seed);
+            ui.add(DragValue::new(&mut choice.seed))
+                .labelled_by(label.id);
+            ui.checkbox(&mut choice.scatter, frame.scatter);
+            ui.checkbox(&mut choice.realtime, frame.realtime);
+        });
     }
 
     fn all_faults(&self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
@@ -222,15 +212,10 @@ impl Setup {
     }
 }
 
-fn pick(ui: &mut Ui, label: &str, chosen: &mut String, names: &[String]) {
-    ui.label(label);
-    let before = chosen.clone();
-    let combo = ComboBox::from_id_salt(label).selected_text(&before);
-    let shown = combo.show_ui(ui, |ui| {
-        for name in names {
-            ui.selectable_value(chosen, name.clone(), name);
-        }
-    });
-    named_combo(&shown.response, label, &before);
+/// A list with its name before it.
+fn row(ui: &mut Ui, name: &str, chosen: &mut String, names: &[String]) {
+    ui.label(name);
+    let names = names.iter().map(|name| (name.clone(), name.clone()));
+    pick(ui, (name, FIELD), chosen, names);
     ui.end_row();
 }

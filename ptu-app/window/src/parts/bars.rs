@@ -4,21 +4,25 @@ use eframe::egui::{
     Align2, FontId, Rect, Role, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::lane::cut_text;
+use super::focus_ring;
+use super::lane::{cut_text, y_at, y_axis};
 use crate::Palette;
 use ptu_report::limits::short;
+use ptu_report::naming::DOT;
 
-const HEIGHT: f32 = 86.0;
-/// Rows of a low chart by name.
-const ROWS: f32 = 7.0;
-/// Height of a row that leads somewhere, points.
-const TARGET: f32 = 30.0;
-/// Room a name takes in a low chart by name.
-const NAME: f32 = 120.0;
-/// Between a bar and what is said behind it.
-const BESIDE: f32 = 3.0;
-/// Room for what is said behind the count of a bar.
-const MORE: f32 = 210.0;
+/// Height of a chart in time, and of a row of one by name, points.
+const HEIGHT: f32 = 180.0;
+const ROW: f32 = 30.0;
+/// Share of the width that names take at most, and between a bar and what is said beside it.
+const NAMES: f32 = 0.35;
+const BESIDE: f32 = 8.0;
+/// Room for the values at the axis, and for the names below it.
+const GUTTER: f32 = 40.0;
+const BELOW: f32 = 20.0;
+/// Of the room above the highest bar, for its value.
+const ABOVE: f64 = 1.15;
+/// Counts have an axis that reaches so far: there are no halves on it.
+const LEAST: f64 = 5.0;
 
 /// A bar.
 pub struct Bar {
@@ -29,12 +33,9 @@ pub struct Bar {
     pub more: String,
 }
 
-/// A chart.
+/// A chart, each bar of which can be clicked.
 pub struct Chart<'a> {
     pub title: &'a str,
-    pub width: f32,
-    /// Each bar can be clicked.
-    pub leads: bool,
     /// Its bars are counts, whose sum says something.
     pub sums: bool,
 }
@@ -49,89 +50,98 @@ impl Bar {
     }
 
     fn said(&self) -> String {
-        let more = if self.more.is_empty() { "" } else { " · " };
+        let more = if self.more.is_empty() { "" } else { DOT };
         format!("{}{more}{}", short(self.value), self.more)
     }
 }
 
 impl Chart<'_> {
-    /// Bars beside each other, the first and the last with their names; the place of the one that was clicked.
+    /// Bars beside each other, with their names where there is room; the place of the one that was clicked.
     pub fn in_time(&self, ui: &mut Ui, bars: &[Bar]) -> Option<usize> {
         let rect = self.frame(ui, HEIGHT, bars)?;
         let palette = Palette::of(ui);
         let small = TextStyle::Small.resolve(ui.style());
-        let most = most(bars);
-        let plot = Rect::from_min_max(rect.min, rect.max - vec2(0.0, 14.0));
+        let plot = Rect::from_min_max(rect.min + vec2(GUTTER, 0.0), rect.max - vec2(0.0, BELOW));
+        let gutter = Rect::from_min_max(rect.min, plot.left_bottom());
+        let least = if self.sums { LEAST } else { 0.0 };
+        let range = (0.0, (ABOVE * f64::from(most(bars))).max(least));
+        y_axis(ui.painter(), gutter, plot, range, &palette);
         let step = plot.width() / bars.len() as f32;
+        let named = |name: &str| {
+            let laid = |name| {
+                ui.painter()
+                    .layout_no_wrap(name, small.clone(), palette.quiet)
+            };
+            laid(name.to_owned()).size().x
+        };
+        let widest = bars.iter().map(|bar| named(&bar.name)).fold(1.0, f32::max);
+        let each = ((widest + BESIDE) / step).ceil().max(1.0) as usize;
         let mut clicked = None;
         for (place, bar) in bars.iter().enumerate() {
             let left = plot.left() + step * place as f32;
-            let right = left + (step - 1.0).clamp(1.0, 40.0);
-            let column = Rect::from_x_y_ranges(left..=right, plot.y_range());
-            let top = plot.bottom() - plot.height() * bar.value as f32 / most;
-            let filled = Rect::from_x_y_ranges(left..=right, top..=plot.bottom());
-            ui.painter().rect_filled(filled, 0.0, palette.accent);
+            let column = Rect::from_x_y_ranges(left..=left + step, plot.y_range());
+            let inner = column.shrink2(vec2((step * 0.15).max((step - 50.0) / 2.0), 0.0));
+            let top = y_at(plot, range, bar.value);
+            ui.painter()
+                .rect_filled(inner.with_min_y(top), 2.0, palette.accent);
+            let text = |y, align, text: &str, ink| {
+                let at = pos2(column.center().x, y);
+                ui.painter().text(at, align, text, small.clone(), ink);
+            };
+            if step > named("0000") {
+                let value = short(bar.value);
+                text(top, Align2::CENTER_BOTTOM, &value, palette.ink);
+            }
+            if place % each == 0 {
+                let name = (rect.bottom(), Align2::CENTER_BOTTOM);
+                text(name.0, name.1, &bar.name, palette.quiet);
+            }
             if self.is_clicked(ui, column, (place, bar)) {
                 clicked = Some(place);
             }
         }
-        let text = |at, align, text: &str| {
-            ui.painter()
-                .text(at, align, text, small.clone(), palette.quiet);
-        };
-        let name = |bar: Option<&Bar>| bar.map_or_else(String::new, |bar| bar.name.clone());
-        text(rect.left_bottom(), Align2::LEFT_BOTTOM, &name(bars.first()));
-        if bars.len() > 1 {
-            text(
-                rect.right_bottom(),
-                Align2::RIGHT_BOTTOM,
-                &name(bars.last()),
-            );
-        }
-        text(plot.right_top(), Align2::RIGHT_TOP, &short(most.into()));
         clicked
     }
 
     /// Bars below each other, each with its name and count; the place of the one that was clicked.
     pub fn by_name(&self, ui: &mut Ui, bars: &[Bar]) -> Option<usize> {
-        let (high, row) = match self.leads {
-            true => (TARGET * bars.len() as f32, TARGET),
-            false => (HEIGHT, HEIGHT / ROWS),
+        let rect = self.frame(ui, ROW * bars.len() as f32, bars)?;
+        let (palette, most) = (Palette::of(ui), most(bars));
+        let [body, small] =
+            [TextStyle::Body, TextStyle::Small].map(|style| style.resolve(ui.style()));
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        let wide = |text: String, font: &FontId| {
+            let laid = painter.layout_no_wrap(text, font.clone(), palette.ink);
+            laid.size().x + BESIDE
         };
-        let rect = self.frame(ui, high, bars)?;
-        let palette = Palette::of(ui);
-        let ink = ui.visuals().text_color();
-        let font = self.font(ui);
-        let most = most(bars);
-        let name = if self.leads { rect.width() / 3.0 } else { NAME };
-        let left = rect.left() + name.min(rect.width() / 2.0);
-        let says_more = bars.iter().any(|bar| !bar.more.is_empty());
-        let said = |bar: &Bar| {
-            let painter = ui.painter();
-            let laid = painter.layout_no_wrap(bar.said(), font.clone(), palette.quiet);
-            laid.size().x
-        };
-        let widest = bars.iter().map(said).fold(0.0, f32::max) + 2.0 * BESIDE;
-        let room = rect.right() - left - if says_more { MORE.max(widest) } else { widest };
+        let widest = |of: &dyn Fn(&Bar) -> f32| bars.iter().map(of).fold(0.0, f32::max);
+        let names = widest(&|bar| wide(bar.name.clone(), &body)).min(NAMES * rect.width());
+        let counts = widest(&|bar| wide(short(bar.value), &body));
+        let more = widest(&|bar| wide(bar.more.clone(), &small));
+        let left = rect.left() + names;
+        let room = (rect.right() - more - counts - left).max(1.0);
         let mut clicked = None;
         for (place, bar) in bars.iter().enumerate() {
-            let top = rect.top() + row * place as f32;
-            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + row);
-            let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-            let of_name = Rect::from_x_y_ranges(rect.left()..=left - 4.0, line.y_range());
-            cut_text(&painter, of_name, bar.name.clone(), font.clone(), ink);
-            let length = room.max(1.0) * (bar.value as f32 / most).min(1.0);
-            let size = vec2(length, row - 3.0);
-            let filled = Rect::from_min_size(pos2(left, line.center().y - size.y / 2.0), size);
-            painter.rect_filled(filled, 0.0, palette.accent);
-            let end = pos2(filled.right() + BESIDE, line.center().y);
-            painter.text(
-                end,
-                Align2::LEFT_CENTER,
-                bar.said(),
-                font.clone(),
-                palette.quiet,
+            let top = rect.top() + ROW * place as f32;
+            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + ROW);
+            let of_name = line.with_max_x(left - BESIDE);
+            cut_text(
+                &painter,
+                of_name,
+                bar.name.clone(),
+                body.clone(),
+                palette.ink,
             );
+            let end = left + room * (bar.value as f32 / most).min(1.0);
+            let filled = Rect::from_x_y_ranges(left..=end, line.shrink(5.0).y_range());
+            painter.rect_filled(filled, 2.0, palette.accent);
+            let text = |x, align, text: String, font: &FontId, ink| {
+                painter.text(pos2(x, line.center().y), align, text, font.clone(), ink);
+            };
+            let count = (end + BESIDE, Align2::LEFT_CENTER);
+            text(count.0, count.1, short(bar.value), &body, palette.ink);
+            let right = (line.right(), Align2::RIGHT_CENTER);
+            text(right.0, right.1, bar.more.clone(), &small, palette.quiet);
             if self.is_clicked(ui, line.shrink2(vec2(0.0, 1.0)), (place, bar)) {
                 clicked = Some(place);
             }
@@ -139,16 +149,9 @@ impl Chart<'_> {
         clicked
     }
 
-    fn font(&self, ui: &Ui) -> FontId {
-        match self.leads {
-            true => TextStyle::Body.resolve(ui.style()),
-            false => TextStyle::Small.resolve(ui.style()),
-        }
-    }
-
-    /// Title and room of a chart.
+    /// Room of a chart, by its name.
     fn frame(&self, ui: &mut Ui, height: f32, bars: &[Bar]) -> Option<Rect> {
-        let size = vec2(self.width, height + 18.0);
+        let size = vec2(ui.available_width(), height);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let sum: f64 = bars.iter().map(|bar| bar.value).sum();
         let name = match self.sums {
@@ -156,29 +159,20 @@ impl Chart<'_> {
             false => self.title.to_owned(),
         };
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-        if !ui.is_rect_visible(rect) || bars.is_empty() {
-            return None;
-        }
-        let small = TextStyle::Small.resolve(ui.style());
-        let quiet = Palette::of(ui).quiet;
-        ui.painter()
-            .text(rect.min, Align2::LEFT_TOP, self.title, small, quiet);
-        Some(Rect::from_min_max(rect.min + vec2(0.0, 18.0), rect.max))
+        (ui.is_rect_visible(rect) && !bars.is_empty()).then_some(rect)
     }
 
     fn is_clicked(&self, ui: &Ui, rect: Rect, (place, bar): (usize, &Bar)) -> bool {
-        if !self.leads {
-            return false;
-        }
         let id = ui.scope_id().with((self.title, place));
         let name = format!("{}: {}", bar.name, bar.said());
         let response = ui.interact(rect, id, Sense::click()).on_hover_text(&name);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        if response.hovered() || response.has_focus() {
+        if response.hovered() {
             let stroke = ui.visuals().widgets.hovered.bg_stroke;
             ui.painter()
                 .rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);
         }
+        focus_ring(ui, rect.shrink(3.0), &response);
         response.clicked()
     }
 }
@@ -199,12 +193,11 @@ mod tests {
     fn no_digit_of_a_count_is_cut() {
         let chart = Chart {
             title: "faults",
-            width: 300.0,
-            leads: false,
             sums: true,
         };
         let bars = [Bar::new("EB relay", 4347), Bar::new("other", 1)];
         let harness = Harness::new_ui(|ui| {
+            ui.set_width(300.0);
             chart.by_name(ui, &bars);
         });
         let counted = |seen: &&ClippedShape| matches!(&seen.shape, Shape::Text(text) if text.galley.text() == "4347");

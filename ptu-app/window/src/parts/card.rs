@@ -6,11 +6,14 @@ use eframe::egui::{
 };
 use egui_material_icons::MaterialIcon;
 
+use super::{Face, Look};
 use crate::{Palette, Sizes};
 
 /// Width of the stripe of a card, and between its edge and what is in it, points.
 const STRIPE: f32 = 6.0;
 const INNER: i8 = 16;
+/// Width of what says what is missing.
+const EMPTY: f32 = 420.0;
 
 /// What a run comes to: an icon and a word in its colour, a headline, and what belongs to it.
 pub struct Card<'a> {
@@ -49,6 +52,29 @@ pub fn ground(palette: &Palette) -> Frame {
     let line = Stroke::new(1.0, palette.grid);
     let frame = Frame::new().fill(palette.panel).stroke(line);
     frame.corner_radius(8).inner_margin(Margin::same(INNER))
+}
+
+/// What is missing, and a button that leads to it if there is one; true when it was clicked.
+pub fn empty(
+    ui: &mut Ui,
+    icon: MaterialIcon,
+    (missing, below): (&str, &str),
+    button: Option<&str>,
+) -> bool {
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    ui.vertical_centered(|ui| {
+        ui.add_space((ui.available_height() / 4.0).max(0.0));
+        ui.set_max_width(EMPTY);
+        let icon = RichText::new(icon.codepoint).family(icon.font_family());
+        let icon = ui.label(icon.size(2.0 * sizes.icon).color(palette.quiet));
+        icon.widget_info(|| WidgetInfo::labeled(Role::Image, true, ""));
+        ui.label(RichText::new(missing).size(sizes.lead).color(palette.ink));
+        if !below.is_empty() {
+            ui.label(RichText::new(below).color(palette.quiet));
+        }
+        button.is_some_and(|name| Face::new(Look::Secondary, name).show(ui).clicked())
+    })
+    .inner
 }
 
 /// A large choice with a line below its name.

@@ -1,22 +1,41 @@
 //! Text fields that accept no more than the database stores.
 
-use eframe::egui::{Align2, Key, Response, TextEdit, Ui, WidgetText};
+use crate::Palette;
+use eframe::egui::{Align2, Key, Response, RichText, Role, TextEdit, Ui, WidgetInfo, WidgetText};
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 
 /// A field for a name or a serial number, this many points wide.
 pub fn name_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
+    path_edit(text, wide).char_limit(MOST_NAME)
+}
+
+/// A field for a file or an address, this many points wide.
+pub fn path_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     TextEdit::singleline(text)
-        .char_limit(MOST_NAME)
         .align(Align2::LEFT_CENTER)
         .desired_width(wide)
 }
 
 /// A field for a note, this many points wide.
 pub fn note_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
-    TextEdit::singleline(text)
-        .char_limit(MOST_TEXT)
-        .align(Align2::LEFT_CENTER)
-        .desired_width(wide)
+    path_edit(text, wide).char_limit(MOST_TEXT)
+}
+
+/// A field without a name beside it for something that is looked for, this many points wide.
+pub fn find_edit(ui: &mut Ui, text: &mut String, name: &str, wide: f32) -> Response {
+    let field = ui.add(path_edit(text, wide).hint_text(name));
+    name_input(&field, name);
+    field
+}
+
+/// The name of what stands below it.
+pub fn caption(ui: &mut Ui, name: &str) -> Response {
+    ui.label(RichText::new(name).small().color(Palette::of(ui).quiet))
+}
+
+/// The name of a text field that has no label beside it.
+pub fn name_input(response: &Response, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
 }
 
 /// A field with its name before it, as one row of a grid of two columns.

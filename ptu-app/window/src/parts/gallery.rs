@@ -178,11 +178,11 @@ fn some_cards(ui: &mut Ui, words: &ptu_report::words::Words) {
     );
     let chart = Chart {
         title: words.statistics.by_cause,
-        width: ui.available_width(),
-        leads: false,
         sums: true,
     };
     chart.by_name(ui, &[Bar::new("EB relay", 4347), Bar::new("FSK", 1200)]);
+    let missing = (words.drive.nothing, words.drive.explained);
+    empty(ui, ICON_LINK, missing, Some(words.case.back));
 }
 
 fn kept(file: &std::path::Path) -> Picture {

@@ -1,8 +1,8 @@
 //! A button that reads what the chosen unit has stored: its log into the fault history, or its run record into traces.
 
-use eframe::egui::{Button, Ui};
+use eframe::egui::Ui;
 
-use super::{Done, Job};
+use super::{Done, Face, Job, Look};
 use crate::{DataPaths, PageContext};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
@@ -51,13 +51,9 @@ impl MemoryReader {
             Stored::Log => words.memory.import,
             Stored::Runs => words.memory.pull,
         };
-        let button = ui.add_enabled(asked.is_ok(), Button::new(text));
-        match asked {
-            Ok(asked) if button.clicked() => self.begin(asked, context),
-            Ok(_) => {}
-            Err(why) => {
-                button.on_disabled_hover_text(why);
-            }
+        let face = Face::new(Look::Secondary, text).off(asked.as_ref().err().copied());
+        if let (true, Ok(asked)) = (face.show(ui).clicked(), asked) {
+            self.begin(asked, context);
         }
         self.job.result(ui);
         stored

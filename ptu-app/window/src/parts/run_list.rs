@@ -1,13 +1,14 @@
 //! A list of runs to choose from, the latest first.
 
-use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use eframe::egui::{FontId, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use egui_material_icons::icons::{ICON_DO_NOT_DISTURB_ON, ICON_PLAY_CIRCLE};
 use fault_db::{Id, RunFilter, RunState, RunSummary};
 
-use super::{chip, verdict_chip};
+use super::lane::cut_text;
+use super::{Side, find_edit, focus_ring, verdict_look};
 use crate::request::CachedResponse;
 use crate::request::Request;
-use crate::{PageContext, Palette};
+use crate::{PageContext, Palette, Sizes};
 use ptu_report::count_text;
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
@@ -40,10 +41,15 @@ struct Followed {
 }
 
 impl RunList {
-    /// Shows it; the run to show: the one chosen, or the latest of the connected unit that ended.
+    /// Shows it at the side of a page; the run to show: the one chosen, or the latest of the connected unit that ended.
     pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
         self.keep_up(context);
-        if let Some(clicked) = self.list(ui, context) {
+        let side = Side {
+            name: context.words.common.runs,
+            wide: [268.0, 320.0],
+            at_right: false,
+        };
+        if let Some(clicked) = side.show(ui, |ui| self.list(ui, context)) {
             self.choose(clicked, context);
         }
         self.shown
@@ -91,11 +97,7 @@ impl RunList {
     fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
         let chosen = self.shown;
         let words = context.words;
-        ui.horizontal(|ui| {
-            let label = ui.label(words.procedures.find);
-            ui.add(TextEdit::singleline(&mut self.find).desired_width(110.0))
-                .labelled_by(label.id);
-        });
+        find_edit(ui, &mut self.find, words.procedures.find, f32::INFINITY);
         let runs = match self.runs.get() {
             Request::Ready(runs) => runs,
             Request::Failed(why) => {
@@ -112,21 +114,17 @@ impl RunList {
         if shown.is_empty() {
             ui.label(words.common.nothing);
         }
-        let height = 2.0 * ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
-        ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+        let height = row_high(ui);
+        ui.spacing_mut().item_spacing.y = 0.0;
         let mut clicked = None;
-        ScrollArea::vertical().auto_shrink(false).show_rows(
-            ui,
-            height,
-            shown.len(),
-            |ui, range| {
-                for run in shown.get(range).into_iter().flatten() {
-                    if row(ui, words, run, chosen == Some(run.id)) {
-                        clicked = Some(run.id);
-                    }
+        let area = ScrollArea::vertical().auto_shrink(false);
+        area.show_rows(ui, height, shown.len(), |ui, range| {
+            for run in shown.get(range).into_iter().flatten() {
+                if row(ui, words, run, chosen == Some(run.id)) {
+                    clicked = Some(run.id);
                 }
-            },
-        );
+            }
+        });
         clicked
     }
 
@@ -175,32 +173,57 @@ impl RunList {
     }
 }
 
+/// Height of a row: time and unit, verdict and counts.
+fn row_high(ui: &Ui) -> f32 {
+    let sizes = Sizes::of(ui);
+    (2.2 * (sizes.body + sizes.caption)).max(sizes.target)
+}
+
 fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
-    let mut clicked = false;
-    ui.horizontal(|ui| {
-        let name = [&*clock::local(run.started_at_us), &*run.unit_serial].join(DOT);
-        let row = ui.selectable_label(chosen, name);
-        clicked = row.on_hover_text(run.id.to_string()).clicked();
-    });
-    ui.horizontal(|ui| {
-        ui.set_min_height(ui.spacing().interact_size.y);
-        ui.add_space(14.0);
-        let palette = Palette::of(ui);
-        let common = &words.common;
-        match (run.verdict, run.state) {
-            (Some(verdict), _) => verdict_chip(ui, from_stored(verdict), words),
-            (None, RunState::Running) => {
-                chip(ui, (ICON_PLAY_CIRCLE, common.running), palette.accent)
-            }
-            (None, _) => {
-                let broken = (ICON_DO_NOT_DISTURB_ON, common.interrupted);
-                chip(ui, broken, palette.warn)
-            }
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    let name = [&*clock::local(run.started_at_us), &*run.unit_serial].join(DOT);
+    let common = &words.common;
+    let ((icon, colour), verdict) = match (run.verdict, run.state) {
+        (Some(verdict), _) => {
+            let verdict = from_stored(verdict);
+            (verdict_look(verdict, &palette), common.verdict(verdict))
+        }
+        (None, RunState::Running) => ((ICON_PLAY_CIRCLE, palette.accent), common.running),
+        (None, _) => ((ICON_DO_NOT_DISTURB_ON, palette.warn), common.interrupted),
+    };
+    let size = vec2(ui.available_width(), row_high(ui));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let enabled = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, chosen, &name));
+    if chosen || response.hovered() {
+        let ground = if chosen {
+            palette.chosen
+        } else {
+            palette.hover
         };
-        let counts = count_text(&counts_of(run), words);
-        ui.label(RichText::new(counts).color(palette.quiet));
-    });
-    clicked
+        ui.painter().rect_filled(rect, 4.0, ground);
+    }
+    focus_ring(ui, rect.shrink(3.0), &response);
+    let (first, second) = rect
+        .shrink2(vec2(8.0, 4.0))
+        .split_top_bottom_at_fraction(0.5);
+    let painter = ui.painter();
+    let body = FontId::proportional(sizes.body);
+    cut_text(painter, first, name, body, palette.ink);
+    let sign = FontId::new(sizes.icon, icon.font_family());
+    let x = cut_text(painter, second, icon.codepoint.into(), sign, colour) + 6.0;
+    let caption = FontId::proportional(sizes.caption);
+    let second = second.with_min_x(second.left() + x);
+    let x = cut_text(painter, second, verdict.into(), caption.clone(), colour) + 8.0;
+    let counts = count_text(&counts_of(run), words);
+    let second = second.with_min_x(second.left() + x);
+    cut_text(painter, second, counts.clone(), caption, palette.quiet);
+    // What is painted is read, too.
+    for said in [verdict, &*counts] {
+        let read = ui.interact(second, response.id.with(said), Sense::hover());
+        read.widget_info(|| WidgetInfo::labeled(Role::Label, true, said));
+    }
+    response.on_hover_text(run.id.to_string()).clicked()
 }
 
 fn matches(run: &RunSummary, find: &str) -> bool {

@@ -1,10 +1,10 @@
 //! A form for a note on a run, or at a place in a trace of it.
 
-use eframe::egui::{Button, Ui};
+use eframe::egui::Ui;
 use fault_db::{Id, TracePlace};
 
 use crate::messages::Messages;
-use crate::parts::note_edit;
+use crate::parts::{Face, Look, note_edit};
 use crate::query_worker::QueryWorker;
 use crate::request::Request;
 use ptu_report::words::Words;
@@ -81,8 +81,13 @@ impl RunNoteForm {
             NoteOn::Run(_) => words.report.note_field,
             NoteOn::Place(_) => words.traces.note_field,
         });
+        let is_row = ui.layout().is_horizontal();
         let left = ui.available_size_before_wrap().x;
-        let wide = (left - BUTTON).max(BUTTON);
+        let wide = if is_row {
+            (left - BUTTON).max(BUTTON)
+        } else {
+            left
+        };
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
@@ -92,8 +97,13 @@ impl RunNoteForm {
             true => words.report.note_hint,
             false => words.care.is_server,
         };
-        let save = ui.add_enabled(may, Button::new(words.report.note_save));
-        if save.on_disabled_hover_text(why).clicked() {
+        let why_not = (!may).then_some(why);
+        let save = Face::new(Look::Secondary, words.report.note_save);
+        let save = match is_row {
+            true => save.because(why_not),
+            false => save.off(why_not),
+        };
+        if save.show(ui).clicked() {
             self.under_way = Request::Pending(queries.run(move |paths| {
                 let store = paths.open()?;
                 match on {

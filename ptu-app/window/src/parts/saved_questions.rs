@@ -1,13 +1,14 @@
 //! Questions that were given a name: what a page was asked, to be asked again; and layouts of lanes likewise.
 
-use eframe::egui::{Button, ComboBox, Ui};
+use eframe::egui::{Button, Popup, PopupCloseBehavior, Ui};
+use egui_material_icons::icons::{ICON_BOOKMARK, ICON_KEYBOARD_ARROW_DOWN};
 use serde::{Deserialize, Serialize};
 
-use super::{name_edit, named_combo, typed};
+use super::{Face, Look, caption, name_edit, typed};
 use ptu_report::words::Words;
 
 /// Width of the field for a name, points.
-const FIELD: f32 = 110.0;
+const FIELD: f32 = 200.0;
 
 /// A question and its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,8 +52,8 @@ impl SavedSaid {
     }
 }
 
-/// The list of saved questions, and the field for the name of another one; the question that was chosen. `now` is what is
-/// asked at present.
+/// The menu of saved questions, with the field for the name of another one; the question that was chosen. `now` is what is asked
+/// at present.
 pub fn saved_questions<T: Clone + PartialEq>(
     ui: &mut Ui,
     said: &SavedSaid,
@@ -61,41 +62,42 @@ pub fn saved_questions<T: Clone + PartialEq>(
 ) -> Option<T> {
     let at = saved.iter().position(|question| question.asked == *now);
     let mut chosen = None;
-    let shown = at.map_or(said.none, |at| saved[at].name.as_str());
-    ui.label(said.list);
-    let combo = ComboBox::from_id_salt(said.list)
-        .selected_text(shown)
-        .width(FIELD)
-        .truncate();
-    let combo = combo.show_ui(ui, |ui| {
+    let menu = Face::new(Look::Quiet, said.list).icon(ICON_BOOKMARK);
+    let menu = menu.end(ICON_KEYBOARD_ARROW_DOWN).show(ui);
+    let menu = Popup::menu(&menu).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| {
+        if saved.is_empty() {
+            ui.label(said.none);
+        }
         for (place, question) in saved.iter().enumerate() {
             let one = ui.selectable_label(at == Some(place), &question.name);
             if one.clicked() {
                 chosen = Some(question.asked.clone());
+                ui.close();
+            }
+        }
+        ui.separator();
+        match at {
+            Some(at) => {
+                if ui.button(said.forget).clicked() {
+                    saved.remove(at);
+                }
+            }
+            None => {
+                let label = caption(ui, said.name);
+                ui.add(name_edit(name, FIELD)).labelled_by(label.id);
+                let named = typed(name);
+                let save = ui.add_enabled(named.is_some(), Button::new(said.save));
+                if let (true, Some(named)) = (save.clicked(), named) {
+                    saved.retain(|question| question.name != named);
+                    saved.push(SavedQuestion {
+                        name: named,
+                        asked: now.clone(),
+                    });
+                    name.clear();
+                }
             }
         }
     });
-    named_combo(&combo.response, said.list, shown);
-    match at {
-        Some(at) => {
-            if ui.button(said.forget).clicked() {
-                saved.remove(at);
-            }
-        }
-        None => {
-            let label = ui.label(said.name);
-            ui.add(name_edit(name, FIELD)).labelled_by(label.id);
-            let named = typed(name);
-            let save = ui.add_enabled(named.is_some(), Button::new(said.save));
-            if let (true, Some(named)) = (save.clicked(), named) {
-                saved.retain(|question| question.name != named);
-                saved.push(SavedQuestion {
-                    name: named,
-                    asked: now.clone(),
-                });
-                name.clear();
-            }
-        }
-    }
     chosen
 }

@@ -12,17 +12,28 @@ pub fn segments<'a, T: PartialEq>(
     all: impl IntoIterator<Item = (T, &'a str)>,
 ) {
     let palette = Palette::of(ui);
+    let all: Vec<(T, Face<'_>)> = all
+        .into_iter()
+        .map(|(value, name)| {
+            let look = match *chosen == value {
+                true => Look::Chosen,
+                false => Look::Quiet,
+            };
+            (value, Face::new(look, name))
+        })
+        .collect();
+    // They stay together.
+    let wide: f32 = all.iter().map(|(_, face)| face.wide(ui)).sum();
+    if ui.layout().main_wrap() && wide > ui.available_size_before_wrap().x {
+        ui.end_row();
+    }
     let line = Stroke::new(1.0, palette.grid);
     let frame = Frame::new().fill(palette.well).stroke(line);
     frame.corner_radius(6).show(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         ui.horizontal(|ui| {
-            for (value, name) in all {
-                let look = match *chosen == value {
-                    true => Look::Chosen,
-                    false => Look::Quiet,
-                };
-                if Face::new(look, name).show(ui).clicked() {
+            for (value, face) in all {
+                if face.show(ui).clicked() {
                     *chosen = value;
                 }
             }

@@ -30,7 +30,7 @@ fn a_sheet_is_white_in_a_dark_window_and_can_be_opened_once_written() {
     window.wait_for_part("Unit BAD-1, run");
     let shapes = &window.harness().output().shapes;
     let paper = shapes.iter().filter_map(|clipped| match &clipped.shape {
-        Shape::Rect(rect) if rect.rect.width() > 800.0 => Some(rect.fill),
+        Shape::Rect(rect) if rect.rect.width() > 600.0 => Some(rect.fill),
         _ => None,
     });
     assert!(paper.into_iter().any(|fill| fill == Color32::WHITE));

@@ -13,8 +13,13 @@ use ptu_options::Page;
 use ptu_report::words::{Language, Words};
 use ptu_window::Density;
 
-/// The usual window, the smallest, and the usual one at 150 %, points.
-const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [900.0, 600.0], [853.0, 533.0]];
+/// The usual window, the smallest, the usual one at 150 %, and a wide one, points.
+const SIZES: [[f32; 2]; 4] = [
+    [1280.0, 800.0],
+    [900.0, 600.0],
+    [853.0, 533.0],
+    [1920.0, 1080.0],
+];
 /// What can be clicked is so high at least, points.
 const LOWEST: f32 = 28.0;
 /// Lines and roundings, points.
@@ -22,25 +27,34 @@ const SLACK: f32 = 1.5;
 /// A part of a page that scrolls is higher than this; what is lower was made for one text.
 const SCROLLS: f32 = 60.0;
 
-/// Goal: everything on every page can be read and clicked in every window. Method: a unit with a slow relay is tested; each
-/// page, the setup and the form of a repair are laid out at three sizes in both languages, of which the check draws half, and what lies wrong is listed.
+/// Goal: everything on every page can be read and clicked in every window. Method: a unit with a slow relay is tested; each page, the
+/// setup and the form of a repair are laid out at four sizes in both languages and densities, of which the check draws a quarter, half of
+/// them in a dark window, and what lies wrong is listed.
 #[test]
 fn every_page_can_be_read_and_clicked_at_every_size() {
     let mut wrong = Vec::new();
+    let densities = [Density::Operator, Density::Engineer];
+    let looks = Language::ALL.map(|language| densities.map(|density| (language, density)));
     let all = SIZES
         .into_iter()
-        .flat_map(|size| Language::ALL.map(|language| (size, language)));
-    for (size, language) in draw::drawn(all, 2) {
-        laid_out(size, language, &mut |window, what| {
+        .flat_map(|size| looks.as_flattened().iter().map(move |look| (size, *look)));
+    for (size, (language, density)) in draw::drawn(all, 4) {
+        let dark = (density == Density::Engineer) == (language == Language::English);
+        let said = format!("{} {language:?} {density:?} dark {dark}", size[0]);
+        laid_out(size, (language, density, dark), &mut |window, what| {
             let found = complaints(window).into_iter();
-            wrong.extend(found.map(|said| format!("{size:?} {language:?} {what}: {said}")));
-            window.keep_picture(&format!("{what} {} {language:?}", size[0]));
+            wrong.extend(found.map(|found| format!("{said} {what}: {found}")));
+            window.keep_picture(&format!("{what} {said}"));
         });
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window, &str)) {
+fn laid_out(
+    size: [f32; 2],
+    (language, density, dark): (Language, Density, bool),
+    look: &mut dyn FnMut(&mut Window, &str),
+) {
     let place = Place::new();
     // In a train whose distance is known.
     let in_train = "run tcms/link --serial-no OLD-1 --train-no 612";
@@ -48,7 +62,8 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     record_bad_unit(&place);
     let words = language.words();
     let mut settings = settings(Page::Faults);
-    settings.language = language;
+    (settings.language, settings.density) = (language, density);
+    settings.dark = Some(dark);
     settings.operator = "kim".into();
     settings.unit.faults = vec!["eb_relay.slow".into()];
     let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
@@ -70,7 +85,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     for (page, said) in [
         (Page::Traces, words.traces.events),
         (Page::Diagnosis, words.diagnosis.reasons),
-        (Page::Report, words.report.write_pdf),
+        (Page::Report, words.report.sheet),
         (Page::Statistics, words.statistics.mtbf_is),
     ] {
         window.page(page);
@@ -78,7 +93,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         look(&mut window, page.name(words));
         if page == Page::Traces {
             window.click_last(words.traces.signals);
-            window.wait_for(words.traces.save_layout);
+            window.wait_for(words.traces.layouts);
             look(&mut window, "signals of a trace");
             window.click_last(words.traces.signals);
             window.click(words.traces.cursor_a);
@@ -99,8 +114,10 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     window.wait_for(words.drive.report);
     look(&mut window, "drive");
     window.page(Page::Signals);
-    window.wait_for(words.signals.generator);
-    look(&mut window, "signals");
+    window.click(words.signals.generator);
+    window.wait_for(words.signals.made);
+    look(&mut window, "generator");
+    window.click(words.signals.recording_of);
     for make in [
         ["code", "55", "signal.wav"],
         ["twc", "01 fe 3c 01 fe 3c 01 fe 3c", "twc.wav"],
@@ -110,7 +127,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
         let file = window.place.text_path(make[2]);
         window.write_over(words.common.file, &file);
         window.click(words.signals.open);
-        window.wait_for(make[1]);
+        window.wait_for_part(make[1]);
         look(&mut window, make[2]);
     }
     window.page(Page::Statistics);
@@ -127,7 +144,7 @@ fn laid_out(size: [f32; 2], language: Language, look: &mut dyn FnMut(&mut Window
     look(&mut window, "care");
     window.key(Key::Escape);
     window.set_up();
-    window.wait_for(words.frame.seed);
+    window.wait_for(words.frame.serial);
     look(&mut window, "setup");
     window.click(words.frame.practice);
     window.wait_for("eb_relay.slow");

@@ -208,8 +208,6 @@ fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {
     window.wait_for("시험 성적서");
     window.wait_for("불합격");
     window.wait_for("미합격 항목");
-    // It stands beside its name.
-    window.click_last("성적서 언어");
     window.click("English");
     window.wait_for("What did not pass");
     let file = window.place.text_path("english");

@@ -21,7 +21,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         let file = place.text_path("made.wav");
         place.write("text.wav", "a text");
         let mut window = Window::with(place, scripts(), settings);
-        window.wait_for(said.generator);
+        window.click(said.generator);
         window.write_over(words.common.file, &file);
         window.click(said.twc);
         window.write_over(said.bytes, "01 fe 3x");
@@ -34,15 +34,18 @@ fn what_the_generator_saves_is_opened_and_heard() {
         let saved = |path: &str| fill(words.common.saved, &[("file", &path)]);
         window.wait_for_part(&saved(&file));
         assert!(window.place.path("made.wav").is_file());
+        window.click(said.recording_of);
         window.click(said.open);
-        window.wait_for("5a c3");
+        window.wait_for_part("5a c3");
         window.wait_for(said.spectrum);
         window.keep_picture(&format!("waves {language:?}"));
         // Never over one that is there.
+        window.click(said.generator);
         window.click(said.save);
         let another = window.place.text_path("made-2.wav");
         window.wait_for_part(&saved(&another));
         assert!(window.place.path("made-2.wav").is_file());
+        window.click(said.recording_of);
         let text = window.place.text_path("text.wav");
         window.write_over(words.common.file, &text);
         window.click(said.open);
@@ -50,6 +53,6 @@ fn what_the_generator_saves_is_opened_and_heard() {
             Language::English => "text.wav is no WAV file",
             Language::Korean => "읽을 수 있는 WAV 파일이 아닙니다",
         });
-        assert!(window.shows("5a c3"), "what was shown stays");
+        assert!(window.shows_part("5a c3"), "what was shown stays");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::common::window::{Window, settings};
 use crate::common::{Place, list, record_bad_unit, scripts, text};
+use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::limits::short;
 use ptu_report::words::{Language, Words, fill};
@@ -180,13 +181,16 @@ fn a_question_is_saved_by_name_and_asked_again() {
     window.until("only the relay", |window| {
         !window.shows_part("TWC antenna · ")
     });
+    window.click(said.questions);
+    window.wait_for(said.save_question);
     assert!(!window.enabled(said.save_question));
     window.write(said.question_name, "relays");
     window.click(said.save_question);
     window.wait_for(said.forget_question);
+    window.key(Key::Escape);
     window.write_over(words.faults.find, "antenna");
     window.wait_for_part("TWC antenna · ");
-    window.click_last(said.questions);
+    window.click(said.questions);
     window.click("relays");
     window.until("only the relay", |window| {
         !window.shows_part("TWC antenna · ")
@@ -194,6 +198,7 @@ fn a_question_is_saved_by_name_and_asked_again() {
     let text = serde_json::to_string(window.app().settings()).expect("text");
     let kept: Settings = serde_json::from_str(&text).expect("settings");
     assert_eq!(kept.faults.len(), 1);
+    window.click(said.questions);
     window.click(said.forget_question);
     window.wait_for(said.question_name);
     assert!(window.app().settings().faults.is_empty());
@@ -227,6 +232,7 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
         let file = place.write("odometers.csv", readings);
         let stats = format!("faults stats --by month --distances {file} --json");
         let mut window = window(place, language);
+        window.click(said.each_10000_km);
         window.wait_for(said.no_distances);
         window.write(said.odometers, &file);
         window.click(said.read_odometers);

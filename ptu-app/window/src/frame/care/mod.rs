@@ -4,10 +4,10 @@ mod work;
 
 use std::path::PathBuf;
 
-use eframe::egui::{Button, RichText, TextEdit, Ui};
+use eframe::egui::{Button, RichText, Ui};
 use fault_db::{Address, LastSync};
 
-use crate::parts::{Face, Job, Look, dialog, last_row, typed};
+use crate::parts::{Face, Job, Look, caption, dialog, last_row, path_edit, typed};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::words::fill;
@@ -139,18 +139,21 @@ impl Care {
         let address = &mut self.address;
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(words.server);
-            ui.add(TextEdit::singleline(address).desired_width(FIELD))
+            ui.add(path_edit(address, FIELD))
                 .labelled_by(label.id)
                 .on_hover_text(words.address_hint);
         });
         let parsed = address.trim().parse::<Address>();
         let mut with_traces = !self.without_traces;
+        let why_not = match (self.job.is_under_way(), &parsed) {
+            (true, _) => Some(words.under_way),
+            (false, Err(_)) => Some(words.address_hint),
+            (false, Ok(_)) => None,
+        };
         let clicked = ui.horizontal_wrapped(|ui| {
             ui.checkbox(&mut with_traces, words.with_traces);
-            let may = parsed.is_ok() && !self.job.is_under_way();
-            ui.add_enabled(may, Button::new(words.sync))
-                .on_disabled_hover_text(words.address_hint)
-                .clicked()
+            let sync = Face::new(Look::Secondary, words.sync).off(why_not);
+            sync.show(ui).clicked()
         });
         self.without_traces = !with_traces;
         if let (true, Ok(parsed)) = (clicked.inner, parsed) {
@@ -167,16 +170,21 @@ impl Care {
         let words = &context.words.care;
         ui.horizontal_wrapped(|ui| {
             let label = ui.label(words.other_file);
-            ui.add(TextEdit::singleline(&mut self.file).desired_width(FIELD))
+            ui.add(path_edit(&mut self.file, FIELD))
                 .labelled_by(label.id);
         });
         let file = typed(&self.file).map(PathBuf::from);
-        let free = !self.job.is_under_way();
+        let (free, unnamed) = (!self.job.is_under_way(), context.words.report.name_file);
         ui.horizontal_wrapped(|ui| {
-            let named = free && file.is_some();
-            let import = ui.add_enabled(named, Button::new(words.import));
-            let backup = ui.add_enabled(named, Button::new(words.backup));
-            let check = ui.add_enabled(free, Button::new(words.check));
+            let busy = (!free).then_some(words.under_way);
+            let why_not = busy.or_else(|| file.is_none().then_some(unnamed));
+            let button = |name, why_not| Face::new(Look::Secondary, name).because(why_not);
+            let import = button(words.import, why_not).show(ui);
+            let backup = button(words.backup, why_not).show(ui);
+            let check = button(words.check, busy).show(ui);
+            if let Some(why) = why_not {
+                caption(ui, why);
+            }
             if check.clicked() {
                 work::check(&mut self.job, context);
             }

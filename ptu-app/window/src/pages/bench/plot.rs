@@ -3,7 +3,7 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
     Align2, Checkbox, Color32, FontId, Painter, PopupCloseBehavior, Rect, Role, ScrollArea, Sense,
-    TextEdit, Ui, WidgetInfo, pos2, vec2,
+    Ui, WidgetInfo, pos2, vec2,
 };
 use protocol::signal::Signal;
 
@@ -12,7 +12,7 @@ use super::live_copy::BenchSnapshot;
 use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
 use super::text;
 use crate::Palette;
-use crate::parts::lane;
+use crate::parts::{find_edit, lane};
 use ptu_report::naming;
 use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Span, Window, columns, spans};
@@ -122,11 +122,7 @@ impl Plot {
     }
 
     fn signals(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Words) {
-        ui.horizontal(|ui| {
-            let label = ui.label(words.bench.plot_find).id;
-            ui.add(TextEdit::singleline(&mut self.find).desired_width(180.0))
-                .labelled_by(label);
-        });
+        find_edit(ui, &mut self.find, words.bench.plot_find, 180.0);
         let find = self.find.trim().to_lowercase();
         let full = chosen(plotted).len() >= MOST;
         let scroll = ScrollArea::vertical().max_height(360.0);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use btu_rig::procedure::Verdict;
-use eframe::egui::{ComboBox, Grid, RichText, Ui};
+use eframe::egui::{Grid, RichText, Ui};
 use egui_material_icons::icons::ICON_DRAW;
 use fault_db::Id;
 
@@ -14,7 +14,7 @@ use super::result::headline;
 use super::verdict::Told;
 use super::{CasePage, Stage, title};
 use crate::pages::procedures::{Concluded, why_not};
-use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, named_combo};
+use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, pick};
 use crate::request::Request;
 use crate::{Destination, Page, PageContext, Palette, Sizes};
 use ptu_report::naming::DOT;
@@ -214,17 +214,9 @@ impl Sign {
                 Some(name) => name.to_string_lossy().into_owned(),
                 None => words.case.no_key.to_owned(),
             };
-            let shown = name(&self.chosen);
-            let combo = ComboBox::from_id_salt("key")
-                .selected_text(&shown)
-                .width(FIELD);
-            let combo = combo.show_ui(ui, |ui| {
-                for key in std::iter::once(None).chain(keys.iter().cloned().map(Some)) {
-                    let name = name(&key);
-                    ui.selectable_value(&mut self.chosen, key, name);
-                }
-            });
-            named_combo(&combo.response, words.case.key, &shown);
+            let all = std::iter::once(None).chain(keys.iter().cloned().map(Some));
+            let all = all.map(|key| (key.clone(), name(&key)));
+            pick(ui, (words.case.key, FIELD), &mut self.chosen, all);
             ui.end_row();
             let (named, edit) = match self.chosen {
                 Some(_) => (

@@ -2,16 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{ComboBox, Grid, Ui};
+use eframe::egui::{Grid, Ui};
 use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
 use super::{CasePage, title};
 use crate::messages::Written;
-use crate::parts::{
-    ActionPlace, Face, Look, field, go_on, name_edit, named_combo, note_edit, typed,
-};
+use crate::parts::{ActionPlace, Face, Look, field, go_on, name_edit, note_edit, pick, typed};
 use crate::request::Request;
 use crate::{DataPaths, PageContext};
 use ptu_report::words::fill;
@@ -135,16 +133,9 @@ impl CasePage {
         ui.add_space(8.0);
         Grid::new("repair").num_columns(2).show(ui, |ui| {
             ui.label(words.part);
-            let before = form.part.clone();
             let name = |part: &str| known.part_name(part, context.words).to_owned();
-            let combo = ComboBox::from_id_salt("repaired part").selected_text(name(&form.part));
-            let combo = combo.width(FIELD).show_ui(ui, |ui| {
-                for part in &form.parts {
-                    ui.selectable_value(&mut form.part, part.clone(), name(part));
-                }
-            });
-            named_combo(&combo.response, words.part, &name(&form.part));
-            if form.part != before {
+            let parts = form.parts.iter().map(|part| (part.clone(), name(part)));
+            if pick(ui, (words.part, FIELD), &mut form.part, parts) {
                 form.serial_old = known.serial_of(&form.part).unwrap_or_default();
             }
             ui.end_row();

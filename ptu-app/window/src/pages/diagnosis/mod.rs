@@ -5,11 +5,11 @@ mod candidates;
 use btu_rig::procedure::{Findings, Verdict};
 use diagnosis::Reason;
 use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
-use egui_material_icons::icons::ICON_DESCRIPTION;
+use egui_material_icons::icons::{ICON_DESCRIPTION, ICON_TROUBLESHOOT};
 use fault_db::{Id, RunOccurrence};
 
 use super::case::{Told, named};
-use crate::parts::{Card, Face, FirstHalf, Look, RunList};
+use crate::parts::{Card, Face, Look, RunList, empty};
 use crate::request::Request;
 use crate::{DataPaths, Destination, PageContext, Palette};
 use ptu_report::naming::{PartNames, failed_turn};
@@ -19,12 +19,6 @@ use ptu_runs::coverage::counts_of;
 use ptu_runs::failure::Failure;
 use ptu_runs::run_diagnosis::{Answer, diagnose_run};
 use ptu_runs::stored::{findings, from_stored};
-
-const RUNS: FirstHalf = FirstHalf {
-    name: "diagnosed runs",
-    width: 270.0,
-    share: 0.3,
-};
 
 #[derive(Default)]
 pub struct DiagnosisPage {
@@ -85,7 +79,7 @@ impl NamedAnswer {
 impl DiagnosisPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.answer.poll();
-        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
+        let run = self.runs.show(ui, context);
         if run != self.run {
             self.ask(run, context);
         }
@@ -120,7 +114,7 @@ impl DiagnosisPage {
         let named = match &self.answer {
             Request::Ready(named) => named,
             Request::Idle => {
-                ui.label(words.choose_run);
+                empty(ui, ICON_TROUBLESHOOT, (words.choose_run, ""), None);
                 return;
             }
             Request::Pending(_) => {

@@ -1,19 +1,15 @@
 //! What is to be driven: line, section, controller, train and day.
 
-use std::fmt::Display;
-
 use btu_rig::drive::Load;
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::Ui;
 use protocol::config::ControllerKind;
 
 use crate::DataPaths;
-use crate::parts::named_combo;
+use crate::parts::{caption, pick};
 use ptu_report::words::Words;
 use ptu_runs::drive::{Fixed, Request, S1, SectionChoice};
 use ptu_runs::failure::Failure;
 
-/// Width of a list, points.
-const WIDE: f32 = 110.0;
 /// What the command line begins with, too.
 const LINE: &str = "line8";
 const SECTION: u16 = 61;
@@ -123,28 +119,14 @@ impl Form {
     }
 }
 
-/// A list with its name before it.
+/// A list with its name above it.
 fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     name: &str,
     chosen: &mut T,
-    offered: impl IntoIterator<Item = (T, impl Display)>,
+    offered: impl IntoIterator<Item = (T, impl Into<String>)>,
 ) {
-    let offered = offered
-        .into_iter()
-        .map(|(value, said)| (value, said.to_string()));
-    let offered: Vec<(T, String)> = offered.collect();
-    let shown = offered.iter().find(|(value, _)| value == chosen);
-    let shown = shown.map_or_else(String::new, |(_, said)| said.clone());
-    ui.label(name);
-    let combo = ComboBox::from_id_salt(name)
-        .selected_text(&shown)
-        .width(WIDE)
-        .truncate();
-    let combo = combo.show_ui(ui, |ui| {
-        for (value, said) in offered {
-            ui.selectable_value(chosen, value, said);
-        }
-    });
-    named_combo(&combo.response, name, &shown);
+    caption(ui, name);
+    let wide = ui.available_width();
+    pick(ui, (name, wide), chosen, offered);
 }

@@ -5,9 +5,10 @@ mod form;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use egui_material_icons::icons::ICON_TRAIN;
 
-use crate::parts::{Done, Job, show_sheet};
+use crate::parts::{Done, Face, Job, Look, empty, foot, form, show_sheet};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use form::{Form, Offered};
@@ -38,21 +39,41 @@ impl DrivePage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         self.poll(context);
-        ui.label(words.drive.explained);
+        if form(ui, "drive", |ui| self.form(ui, context)) {
+            self.begin(context);
+        }
+        CentralPanel::default().show(ui, |ui| {
+            if self.job.is_under_way() {
+                self.job.progress(ui, words, true);
+                return;
+            }
+            self.job.result(ui);
+            match &self.pages {
+                Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
+                Request::Failed(why) => {
+                    ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
+                }
+                Request::Pending(_) => drop(ui.label(words.common.loading)),
+                Request::Idle => {
+                    let missing = (words.drive.nothing, words.drive.explained);
+                    empty(ui, ICON_TRAIN, missing, None);
+                }
+            }
+        });
+    }
+
+    /// What is to be driven, and the button that begins; true when it was clicked.
+    fn form(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
+        let words = context.words;
+        let why_not = self.job.is_under_way().then_some(words.drive.under_way);
         match &self.offered {
             Request::Ready(offered) => {
-                let free = !self.job.is_under_way();
-                let mut asked = false;
-                ui.horizontal_wrapped(|ui| {
-                    if !free {
-                        ui.disable();
-                    }
-                    self.form.show(ui, words, offered);
-                    asked = ui.button(words.drive.drive).clicked();
+                let begin = Face::new(Look::Primary, words.drive.drive).off(why_not);
+                let asked = foot(ui, "begin to drive", |ui| begin.show(ui).clicked());
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    ui.add_enabled_ui(why_not.is_none(), |ui| self.form.show(ui, words, offered));
                 });
-                if asked {
-                    self.begin(context);
-                }
+                return asked;
             }
             Request::Failed(why) => {
                 let said = RichText::new(words.drive.cannot_list).color(Palette::of(ui).bad);
@@ -62,25 +83,9 @@ impl DrivePage {
                     self.offered = Request::Idle;
                 }
             }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-            }
+            Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
         }
-        if self.job.is_under_way() {
-            self.job.progress(ui, words, true);
-            return;
-        }
-        self.job.result(ui);
-        match &self.pages {
-            Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
-            Request::Failed(why) => {
-                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-            }
-            Request::Pending(_) => {
-                ui.label(words.common.loading);
-            }
-            Request::Idle => {}
-        }
+        false
     }
 
     /// Takes what has come, and has it laid out in the window's language.

@@ -1,6 +1,6 @@
 //! The filters, and the table of the faults that match.
 
-use eframe::egui::{Color32, ComboBox, Role, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Color32, Ui};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_BUILD, ICON_CHECK, ICON_ERROR, ICON_VERIFIED, ICON_VISIBILITY,
@@ -11,7 +11,7 @@ use super::History;
 use super::filter::{Filter, names};
 use crate::Palette;
 use crate::page_context::FaultsOf;
-use crate::parts::{Cell, Column, Table, chip, look_back, named_combo};
+use crate::parts::{Cell, Column, Table, chip, find_edit, look_back, pick};
 use ptu_report::naming::{DOT, PartNames, seen_in_short};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
@@ -24,10 +24,7 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &Histor
     let as_it_is = |name: &String| name.clone();
     let part = |part: &String| history.parts.name(part, words.language).to_owned();
     let name = |state: &FaultState| words.fault_state(*state).to_owned();
-    let find = TextEdit::singleline(&mut filter.text).hint_text(words.faults.find);
-    let label = words.faults.find;
-    let field = ui.add(find.desired_width(1.5 * FIELD));
-    field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, label));
+    find_edit(ui, &mut filter.text, words.faults.find, 1.5 * FIELD);
     choose(
         ui,
         words,
@@ -56,20 +53,10 @@ fn choose<T: Clone + PartialEq>(
     called: impl Fn(&T) -> String,
     chosen: &mut Option<T>,
 ) {
-    let any = || words.faults.any.to_owned();
-    let shown = chosen.as_ref().map_or_else(any, &called);
     ui.label(what);
-    let combo = ComboBox::from_id_salt(what)
-        .selected_text(&shown)
-        .width(FIELD);
-    let response = combo.show_ui(ui, |ui| {
-        ui.selectable_value(chosen, None, words.faults.any);
-        for one in all {
-            let name = called(&one);
-            ui.selectable_value(chosen, Some(one), name);
-        }
-    });
-    named_combo(&response.response, what, &shown);
+    let any = (None, words.faults.any.to_owned());
+    let all = all.into_iter().map(|one| (Some(one.clone()), called(&one)));
+    pick(ui, (what, FIELD), chosen, std::iter::once(any).chain(all));
 }
 
 /// What a bar of the statistics stands for, with a button that clears it.

@@ -18,7 +18,7 @@ use eframe::egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 use super::bench::{BenchSnapshot, Plot, chosen};
 use crate::messages::{About, told};
-use crate::parts::{FirstHalf, RunNoteForm};
+use crate::parts::{RunNoteForm, Side};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 pub use conclusion::Concluded;
@@ -32,12 +32,6 @@ use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
 use wanted::Wanted;
-
-const TREE: FirstHalf = FirstHalf {
-    name: "procedures",
-    width: 320.0,
-    share: 0.35,
-};
 
 /// Least height of the live signals, what their heading takes of it, and what is left to the run above, points.
 const LIVE_LEAST: f32 = 140.0;
@@ -107,7 +101,16 @@ impl Default for ProceduresPage {
 impl ProceduresPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_loaded(context);
-        TREE.show(ui, |ui| self.tree(ui, context));
+        let tree = Side {
+            name: context.words.procedures.title,
+            wide: [300.0, 320.0],
+            at_right: false,
+        };
+        // Several are chosen in it.
+        let _: Option<()> = tree.show(ui, |ui| {
+            self.tree(ui, context);
+            None
+        });
         CentralPanel::default().show(ui, |ui| {
             self.controls(ui, context);
             overview::overview(ui, context);

@@ -5,23 +5,25 @@ use std::sync::Arc;
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::Connection;
 use eframe::egui::{
-    Align, Checkbox, Label, Layout, Response, RichText, ScrollArea, TextEdit, TextWrapMode, Ui,
+    Align, Checkbox, Label, Layout, Response, RichText, ScrollArea, TextWrapMode, Ui,
     collapsing_header,
 };
 
 use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
+use crate::parts::find_edit;
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
+
+/// Width of the field, points.
+const FIND: f32 = 150.0;
 
 impl ProceduresPage {
     pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         ui.horizontal(|ui| {
-            let label = ui.label(words.procedures.find);
-            ui.add(TextEdit::singleline(&mut self.find).desired_width(130.0))
-                .labelled_by(label.id);
+            find_edit(ui, &mut self.find, words.procedures.find, FIND);
             if ui.button(words.procedures.reload).clicked() {
                 self.load(context);
             }

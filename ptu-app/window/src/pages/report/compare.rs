@@ -1,10 +1,10 @@
 //! The run that the shown one is compared with, chosen among those of its unit.
 
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::Ui;
 use fault_db::{Id, RunSummary};
 
 use super::SheetOf;
-use crate::parts::{RunList, named_combo};
+use crate::parts::{RunList, caption, pick};
 use ptu_report::naming::DOT;
 use ptu_report::words::Words;
 use ptu_runs::clock;
@@ -53,23 +53,15 @@ impl ComparedWith {
             let verdict = verdict.unwrap_or(words.common.interrupted);
             [&*clock::local(other.started_at_us), verdict].join(DOT)
         };
-        let shown = chosen.map_or_else(|| report.no_comparison.to_owned(), name);
-        ui.label(report.compare_with);
-        let combo = ComboBox::from_id_salt("compare with").selected_text(&shown);
-        let combo = combo.show_ui(ui, |ui| {
-            let none = ui.selectable_label(chosen.is_none(), report.no_comparison);
-            if none.clicked() {
-                self.chosen = None;
-            }
-            for other in &others {
-                let on = chosen.is_some_and(|chosen| chosen.id == other.id);
-                let one = ui.selectable_label(on, name(other));
-                if one.on_hover_text(other.id.to_string()).clicked() {
-                    self.chosen = Some((run, runs.in_time([run, other.id])));
-                }
-            }
-        });
-        named_combo(&combo.response, report.compare_with, &shown);
+        let mut with = chosen.map(|chosen| chosen.id);
+        let offered = others.iter().map(|other| (Some(other.id), name(other)));
+        let none = (None, report.no_comparison.to_owned());
+        caption(ui, report.compare_with);
+        let wide = ui.available_width();
+        let offered = std::iter::once(none).chain(offered);
+        if pick(ui, (report.compare_with, wide), &mut with, offered) {
+            self.chosen = with.map(|other| (run, runs.in_time([run, other])));
+        }
         if chosen.is_some() {
             ui.checkbox(&mut self.all, report.all_steps);
         }

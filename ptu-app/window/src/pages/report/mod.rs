@@ -1,28 +1,23 @@
 //! The test sheet of a run: shown as it will be printed, and written to a file.
 
-mod bar;
 mod compare;
 mod file;
+mod strip;
 
 use std::path::PathBuf;
 
 use eframe::egui::{CentralPanel, RichText, Ui};
+use egui_material_icons::icons::ICON_DESCRIPTION;
 use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
 
-use crate::parts::{FirstHalf, NoteOn, RunList, RunNoteForm, show_sheet};
+use crate::parts::{NoteOn, RunList, RunNoteForm, Side, empty, show_sheet};
 use crate::request::Request;
-use crate::{Density, PageContext, Palette, Sizes};
+use crate::{PageContext, Palette};
 use compare::ComparedWith;
 use ptu_report::naming::PartNames;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::run::{CaseSheet, RunComparison, Sheet, SheetTrace};
 use ptu_report::words::{Language, Words, fill};
-
-const RUNS: FirstHalf = FirstHalf {
-    name: "reported runs",
-    width: 270.0,
-    share: 0.25,
-};
 
 #[derive(Default)]
 pub struct ReportPage {
@@ -90,12 +85,23 @@ struct Shown {
 
 impl ReportPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let run = RUNS.show(ui, |ui| self.runs.show(ui, context));
+        let run = self.runs.show(ui, context);
         let of = run.map(|run| self.with.sheet_of(run));
         self.keep_up(ui, context, of);
+        if self.shown.is_some() {
+            let strip = Side {
+                name: context.words.report.strip,
+                wide: [232.0, 280.0],
+                at_right: true,
+            };
+            let _: Option<()> = strip.show(ui, |ui| {
+                self.strip(ui, context);
+                None
+            });
+        }
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
-            self.sheet(ui, false, context);
+            self.sheet(ui, context);
         });
     }
 
@@ -108,8 +114,10 @@ impl ReportPage {
     /// This sheet, without the list of runs.
     pub fn show_one(&mut self, of: SheetOf, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(ui, context, Some(of));
-        let brief = Sizes::of(ui).density == Density::Operator;
-        self.sheet(ui, brief, context);
+        if self.shown.is_some() {
+            self.files(ui, context);
+        }
+        self.sheet(ui, context);
     }
 
     /// Asks when another run is to be shown, and again when something may have been added to this one:
@@ -222,8 +230,7 @@ impl ReportPage {
         }
     }
 
-    /// The sheet below its bar; `brief` = only with what writes and prints it, which leaves more room for it.
-    fn sheet(&mut self, ui: &mut Ui, brief: bool, context: &mut PageContext<'_>) {
+    fn sheet(&self, ui: &mut Ui, context: &PageContext<'_>) {
         let words = context.words;
         if let Request::Failed(why) = &self.asked {
             let said = RichText::new(words.report.not_read).color(Palette::of(ui).bad);
@@ -231,17 +238,13 @@ impl ReportPage {
             ui.label(&*context.words.trouble(why));
             return;
         }
-        if self.shown.is_none() {
-            ui.label(match self.asked {
-                Request::Pending(_) => words.common.loading,
-                _ => words.report.choose_run,
-            });
-            return;
-        }
-        self.bar(ui, brief, context);
-        ui.separator();
-        if let Some(shown) = &self.shown {
-            show_sheet(ui, shown.of.run(), &shown.pages);
+        match (&self.shown, &self.asked) {
+            (Some(shown), _) => show_sheet(ui, shown.of.run(), &shown.pages),
+            (None, Request::Pending(_)) => drop(ui.label(words.common.loading)),
+            (None, _) => {
+                let missing = (words.report.choose_run, "");
+                empty(ui, ICON_DESCRIPTION, missing, None);
+            }
         }
     }
 }

@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Button, Checkbox, ComboBox, Slider, TextEdit, Ui, vec2};
+use eframe::egui::{Checkbox, Slider, Ui, vec2};
 use protocol::config::UnitConfig;
 
 use crate::PageContext;
-use crate::parts::{drawings, named_combo, show_drawings};
+use crate::parts::{Face, Look, caption, drawings, path_edit, pick, segments, show_drawings};
 use crate::request::CachedResponse;
 use ptu_report::signal::sketch;
 use ptu_report::words::Words;
 use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
-/// Width of a slider, points.
-const WIDE: f32 = 150.0;
+/// Room for the value beside a slider, points.
+const VALUE: f32 = 72.0;
 /// How much of a waveform is sketched, s.
 const SKETCHED_S: f64 = 0.5;
 /// Height of the sketch, points.
-const SKETCH: f32 = 180.0;
+const SKETCH: f32 = 320.0;
 /// Longest code, s, and most bytes.
 const LONGEST_S: f64 = 600.0;
 const MOST_BYTES: usize = 200;
@@ -72,80 +72,54 @@ pub struct Made {
 }
 
 impl Generator {
-    /// Sliders, sketch and buttons; what is ordered.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        unit: &Arc<UnitConfig>,
-        free: bool,
-        context: &PageContext<'_>,
-    ) -> Option<Made> {
-        let words = context.words;
-        ui.strong(words.signals.generator);
-        self.fields(ui, unit, words);
+    /// The orders, of which playing comes first; what is ordered.
+    pub fn orders(&self, ui: &mut Ui, why_not: Option<&str>, words: &Words) -> Option<Made> {
+        let said = &words.signals;
         let wave = self.wave();
-        let strength = Strength {
-            level_mv: self.level_mv,
-            snr_db: self.noisy.then_some(self.snr_db),
-            seed: SEED,
-        };
+        let why_not = why_not.or_else(|| wave.is_none().then_some(said.bytes_hint));
         let mut order = None;
         ui.horizontal(|ui| {
-            let may = free && wave.is_some();
-            if ui
-                .add_enabled(may, Button::new(words.signals.play))
-                .clicked()
-            {
+            let play = Face::new(Look::Primary, said.play).because(why_not);
+            if play.show(ui).clicked() {
                 order = Some(Order::Play);
             }
-            let save = ui.add_enabled(may, Button::new(words.signals.save));
-            if save.on_hover_text(words.signals.save_hint).clicked() {
+            let save = Face::new(Look::Secondary, said.save).hint(said.save_hint);
+            if save.because(why_not).show(ui).clicked() {
                 order = Some(Order::Save);
             }
         });
-        let Some(wave) = wave else {
-            ui.label(words.signals.bytes_hint);
-            return None;
-        };
-        self.sketch.show(ui, (&wave, strength), unit, context);
-        order.map(|order| Made {
-            wave,
-            strength,
-            order,
+        if let Some(why) = why_not {
+            caption(ui, why);
+        }
+        Some(Made {
+            wave: wave?,
+            strength: self.strength(),
+            order: order?,
         })
     }
 
-    fn fields(&mut self, ui: &mut Ui, unit: &UnitConfig, words: &Words) {
+    pub fn fields(&mut self, ui: &mut Ui, unit: &UnitConfig, words: &Words) {
         let said = &words.signals;
-        ui.spacing_mut().slider_width = WIDE;
+        let first = unit.codes.first();
         if !unit.codes.iter().any(|code| code.name == self.code) {
-            self.code = unit
-                .codes
-                .first()
-                .map_or_else(String::new, |code| code.name.clone());
+            self.code = first.map_or_else(String::new, |code| code.name.clone());
         }
-        ui.horizontal_wrapped(|ui| {
-            ui.selectable_value(&mut self.is_twc, false, said.code);
-            ui.selectable_value(&mut self.is_twc, true, said.twc);
-            if self.is_twc {
-                let label = ui.label(said.bytes);
-                let edit = TextEdit::singleline(&mut self.bytes).char_limit(3 * MOST_BYTES);
-                ui.add(edit.desired_width(WIDE)).labelled_by(label.id);
-                return;
-            }
-            let combo = ComboBox::from_id_salt("speed code").selected_text(&self.code);
-            let combo = combo.show_ui(ui, |ui| {
-                for code in &unit.codes {
-                    ui.selectable_value(&mut self.code, code.name.clone(), &code.name);
-                }
-            });
-            named_combo(&combo.response, said.code_name, &self.code);
-        });
+        segments(ui, &mut self.is_twc, [(false, said.code), (true, said.twc)]);
+        let wide = ui.available_width();
+        if self.is_twc {
+            let label = caption(ui, said.bytes);
+            let edit = path_edit(&mut self.bytes, wide).char_limit(3 * MOST_BYTES);
+            ui.add(edit).labelled_by(label.id);
+        } else {
+            caption(ui, said.code_name);
+            let codes = unit.codes.iter();
+            let codes = codes.map(|code| (code.name.clone(), code.name.clone()));
+            pick(ui, (said.code_name, wide), &mut self.code, codes);
+        }
+        ui.spacing_mut().slider_width = wide - VALUE;
         let slider = |ui: &mut Ui, name: &str, slider: Slider<'_>| {
-            ui.horizontal_wrapped(|ui| {
-                let label = ui.label(name);
-                ui.add(slider).labelled_by(label.id);
-            });
+            let label = caption(ui, name);
+            ui.add(slider).labelled_by(label.id);
         };
         let level = Slider::new(&mut self.level_mv, 1.0..=4_000.0).logarithmic(true);
         slider(ui, said.level, level.fixed_decimals(0));
@@ -153,12 +127,27 @@ impl Generator {
             let seconds = Slider::new(&mut self.seconds, 0.5..=LONGEST_S).logarithmic(true);
             slider(ui, said.seconds, seconds.fixed_decimals(1));
         }
-        ui.horizontal_wrapped(|ui| {
-            ui.add(Checkbox::new(&mut self.noisy, said.noise));
+        ui.add(Checkbox::new(&mut self.noisy, said.noise));
+        if self.noisy {
             let snr = Slider::new(&mut self.snr_db, -10.0..=40.0).fixed_decimals(0);
-            let label = ui.label(said.snr);
-            ui.add_enabled(self.noisy, snr).labelled_by(label.id);
-        });
+            slider(ui, said.snr, snr);
+        }
+    }
+
+    /// How it looks.
+    pub fn sketch(&mut self, ui: &mut Ui, unit: &Arc<UnitConfig>, context: &PageContext<'_>) {
+        let (wave, strength) = (self.wave(), self.strength());
+        if let Some(wave) = wave {
+            self.sketch.show(ui, (&wave, strength), unit, context);
+        }
+    }
+
+    fn strength(&self) -> Strength {
+        Strength {
+            level_mv: self.level_mv,
+            snr_db: self.noisy.then_some(self.snr_db),
+            seed: SEED,
+        }
     }
 
     /// What is filled in; none if the bytes are none.

@@ -11,7 +11,7 @@ use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
 use crate::pages::signals::generator::Generator;
 use crate::pages::signals::seen::{Seen, View};
 use crate::pages::signals::source::Source;
-use crate::parts::{FirstHalf, Job};
+use crate::parts::{Job, foot, form, segments};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use protocol::config::UnitConfig;
@@ -31,6 +31,8 @@ struct Offered {
 #[derive(Default)]
 pub struct SignalsPage {
     offered: Request<Offered>,
+    /// A waveform is made, and none read.
+    makes: bool,
     source: Source,
     generator: Generator,
     job: Job,
@@ -41,20 +43,19 @@ pub struct SignalsPage {
 impl SignalsPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
-        let first = FirstHalf {
-            name: "signals",
-            width: 590.0,
-            share: 0.5,
-        };
-        first.show(ui, |ui| {
-            let area = ScrollArea::vertical().id_salt("signals of a file");
-            area.auto_shrink(false)
-                .show(ui, |ui| self.controls(ui, context));
-        });
+        form(ui, "signals", |ui| self.form(ui, context));
+        let words = context.words;
         CentralPanel::default().show(ui, |ui| {
-            let area = ScrollArea::vertical().id_salt("signals drawn");
-            area.auto_shrink(false)
-                .show(ui, |ui| self.view.draw(ui, context.words));
+            match self.job.is_under_way() {
+                true => self.job.progress(ui, words, true),
+                false => self.job.result(ui),
+            }
+            match (&self.offered, self.makes) {
+                (Request::Ready(offered), true) => {
+                    self.generator.sketch(ui, &offered.unit, context);
+                }
+                _ => self.view.show(ui, words),
+            }
         });
     }
 
@@ -70,17 +71,14 @@ impl SignalsPage {
         }
         self.offered.poll();
         self.job.poll(context, context.words.signals.not_done);
-        let seen = self
-            .seen
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
-        if let Some(seen) = seen {
+        let seen = self.seen.lock();
+        if let Some(seen) = seen.unwrap_or_else(PoisonError::into_inner).take() {
             self.view.take(seen);
         }
     }
 
-    fn controls(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    /// What is read or made, the file and the devices; what is pressed first at the foot.
+    fn form(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let offered = match &self.offered {
             Request::Ready(offered) => offered,
@@ -96,33 +94,35 @@ impl SignalsPage {
                 return;
             }
         };
-        let free = !self.job.is_under_way();
-        let mut asked = None;
-        ui.scope(|ui| {
-            if !free || context.settings.locked {
+        let unit = offered.unit.clone();
+        let why_not = match (self.job.is_under_way(), context.settings.locked) {
+            (true, _) => Some(words.signals.under_way),
+            (_, true) => Some(words.frame.locked),
+            (false, false) => None,
+        };
+        let (asked, made) = foot(ui, "orders for signals", |ui| match self.makes {
+            true => (None, self.generator.orders(ui, why_not, words)),
+            false => (Source::orders(ui, why_not, words), None),
+        });
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            if why_not.is_some() {
                 ui.disable();
             }
-            self.source.show(ui, &offered.devices, words);
-            asked = self.source.buttons(ui, words);
+            let both = [
+                (false, words.signals.recording_of),
+                (true, words.signals.generator),
+            ];
+            segments(ui, &mut self.makes, both);
+            if self.makes {
+                self.generator.fields(ui, &unit, words);
+            }
+            self.source.fields(ui, &offered.devices, self.makes, words);
         });
-        let unit = offered.unit.clone();
         if let Some(asked) = asked {
             self.seen = Slot::default();
             let slot = self.seen.clone();
-            self.source
-                .begin(asked, (&mut self.job, slot), unit.clone(), context);
-        }
-        if self.job.is_under_way() {
-            self.job.progress(ui, words, true);
-        } else {
-            self.job.result(ui);
-        }
-        self.view.heard(ui, words);
-        ui.separator();
-        let made = self
-            .generator
-            .show(ui, &unit, free && !context.settings.locked, context);
-        if let Some(made) = made {
+            (self.source).begin(asked, (&mut self.job, slot), unit, context);
+        } else if let Some(made) = made {
             self.source.begin_made(made, &mut self.job, unit, context);
         }
     }

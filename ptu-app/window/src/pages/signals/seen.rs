@@ -1,12 +1,14 @@
-//! How a recording looks: what was heard as a list, and beside it the drawings of a channel, as in its report.
+//! How a recording looks: what was heard as a list, and below it the drawings of a channel, as in its report.
 
 use eframe::egui::{
-    Color32, ColorImage, Context, Grid, RichText, ScrollArea, TextureHandle, TextureOptions, Ui,
-    Vec2, vec2,
+    Color32, ColorImage, Context, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, Vec2,
+    vec2,
 };
+use egui_material_icons::icons::ICON_GRAPHIC_EQ;
 
-use crate::Palette;
-use crate::parts::{drawings, show_drawings};
+use crate::parts::{Cell, Column, Table, drawings, empty, segments, show_drawings};
+use crate::{Palette, Sizes};
+use ptu_report::naming::DOT;
 use ptu_report::plot::colour;
 use ptu_report::run::page::{Item, Page};
 use ptu_report::signal as report;
@@ -16,7 +18,9 @@ use ptu_runs::signal::{Picture, Reading};
 /// Most rows of what was heard.
 const MOST: usize = 200;
 /// So many drawings are in view at once.
-const IN_VIEW: f32 = 4.0;
+const IN_VIEW: f32 = 3.0;
+/// The bar by which they are scrolled, points.
+const BAR: f32 = 16.0;
 
 /// What was read or recorded, a picture of each channel.
 pub struct Seen {
@@ -77,61 +81,77 @@ impl View {
         self.drawn = None;
     }
 
-    /// The list of what was heard, and what was not understood.
-    pub fn heard(&self, ui: &mut Ui, words: &Words) {
-        let Some(Seen { reading, .. }) = &self.seen else {
-            ui.label(words.signals.explained);
+    /// What was heard, and below it the drawings of a channel.
+    pub fn show(&mut self, ui: &mut Ui, words: &Words) {
+        let said = &words.signals;
+        let Some(seen) = &self.seen else {
+            empty(ui, ICON_GRAPHIC_EQ, (said.none_open, said.explained), None);
             return;
         };
-        let length = format!("{:.2} s", reading.duration_s);
-        ui.label(RichText::new(fill(words.signals.heard_in, &[("time", &length)])).strong());
-        if reading.sources.is_empty() {
-            ui.label(words.signals.nothing);
-        } else {
-            let area = ScrollArea::horizontal().id_salt("heard");
-            area.show(ui, |ui| {
-                Grid::new("heard").striped(true).show(ui, |ui| {
-                    for head in report::heads(words) {
-                        ui.label(RichText::new(head).color(Palette::of(ui).quiet));
-                    }
-                    ui.end_row();
-                    for source in reading.sources.iter().take(MOST) {
-                        for cell in report::row(source, words) {
-                            ui.label(cell);
-                        }
-                        ui.end_row();
-                    }
-                });
-            });
-        }
-        let more = reading.sources.len().saturating_sub(MOST);
-        if more > 0 {
-            ui.label(fill(words.signals.more, &[("n", &more)]));
-        }
-        for of in reading.not_understood.iter().take(MOST) {
-            let said = report::not_understood(of, words);
-            ui.label(RichText::new(said).color(Palette::of(ui).warn));
-        }
+        let Seen { reading, pictures } = seen;
+        let room = vec2(ui.available_width() - BAR, ui.available_height() / IN_VIEW);
+        let area = ScrollArea::vertical().id_salt("signals drawn");
+        area.auto_shrink(false).show(ui, |ui| {
+            let length = format!("{:.2} s", reading.duration_s);
+            let heading = RichText::new(fill(said.heard_in, &[("time", &length)]));
+            ui.label(heading.size(Sizes::of(ui).lead));
+            match reading.sources.is_empty() {
+                true => drop(ui.label(said.nothing)),
+                false => heard(ui, reading, words),
+            }
+            let more = reading.sources.len().saturating_sub(MOST);
+            if more > 0 {
+                ui.label(fill(said.more, &[("n", &more)]));
+            }
+            for of in reading.not_understood.iter().take(MOST) {
+                let said = report::not_understood(of, words);
+                ui.label(RichText::new(said).color(Palette::of(ui).warn));
+            }
+            ui.add_space(8.0);
+            if pictures.len() > 1 {
+                let name = |place: usize| fill(said.of_channel, &[("n", &(place + 1))]);
+                let names: Vec<_> = (0..pictures.len()).map(name).collect();
+                let names = names.iter().enumerate();
+                let names = names.map(|(place, name)| (place, &**name));
+                segments(ui, &mut self.channel, names);
+            }
+            let now = (self.channel, words.language, room);
+            let drawn = self.drawn.take().filter(|drawn| drawn.of == now);
+            self.drawn = drawn.or_else(|| Drawn::new(seen, (self.channel, room), words, ui.ctx()));
+            if let Some(drawn) = &self.drawn {
+                let cells = drawn.cells.as_ref().map(TextureHandle::id);
+                show_drawings(ui, &drawn.drawings, cells);
+            }
+        });
     }
+}
 
-    /// The drawings of a channel.
-    pub fn draw(&mut self, ui: &mut Ui, words: &Words) {
-        let Some(seen) = &self.seen else { return };
-        if seen.pictures.len() > 1 {
-            ui.horizontal_wrapped(|ui| {
-                for place in 0..seen.pictures.len() {
-                    let name = fill(words.signals.of_channel, &[("n", &(place + 1))]);
-                    ui.selectable_value(&mut self.channel, place, name);
-                }
-            });
-        }
-        let room = vec2(ui.available_width(), ui.available_height() / IN_VIEW);
-        let now = (self.channel, words.language, room);
-        let drawn = self.drawn.take().filter(|drawn| drawn.of == now);
-        self.drawn = drawn.or_else(|| Drawn::new(seen, (self.channel, room), words, ui.ctx()));
-        if let Some(drawn) = &self.drawn {
-            let cells = drawn.cells.as_ref().map(TextureHandle::id);
-            show_drawings(ui, &drawn.drawings, cells);
-        }
+/// What was heard, a row each; a narrow table goes without what is seldom looked at.
+fn heard(ui: &mut Ui, reading: &Reading, words: &Words) {
+    let [channel, from, to, kind, what, carrier, rate, level, snr] = report::heads(words);
+    let number = |name, wide| Column::new(name, wide).right();
+    let columns = [
+        number(channel, 60.0).from(680.0),
+        number(from, 56.0),
+        number(to, 56.0),
+        Column::new(kind, 72.0),
+        Column::new(what, 0.0),
+        number(carrier, 84.0).from(600.0),
+        number(rate, 72.0).from(760.0),
+        number(level, 72.0),
+        number(snr, 56.0),
+    ];
+    let table = Table {
+        columns: &columns,
+        end: 0.0,
+    };
+    table.head(ui, 0.0);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let ink = Palette::of(ui).ink;
+    for source in reading.sources.iter().take(MOST) {
+        let cells = report::row(source, words);
+        let name = cells.join(DOT);
+        let cells = cells.map(|cell| Cell::Text(cell.into(), ink));
+        table.row(ui, (&name, false), &cells).on_hover_text(name);
     }
 }

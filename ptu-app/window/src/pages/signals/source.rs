@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError};
 
-use eframe::egui::{ComboBox, RichText, TextEdit, Ui};
+use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
 
 use super::Slot;
 use super::generator::{Made, Order};
 use super::seen::Seen;
-use crate::parts::{Done, Job, Told, named_combo, usual_folder};
+use crate::parts::{Done, Face, Job, Look, Told, caption, path_edit, pick, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
 use ptu_report::words::{Words, fill};
@@ -20,8 +20,6 @@ use ptu_runs::sound::{
     self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
 };
 
-/// Width of a list, points.
-const WIDE: f32 = 200.0;
 /// While it is recorded the picture is made again after so many samples: twice a second.
 const AGAIN: usize = SAMPLE_HZ as usize / 2;
 
@@ -52,49 +50,55 @@ pub enum Asked {
 }
 
 impl Source {
-    pub fn show(
+    /// The file, and the device that plays or is recorded.
+    pub fn fields(
         &mut self,
         ui: &mut Ui,
         devices: &Result<Vec<DeviceFound>, Trouble>,
+        plays: bool,
         words: &Words,
     ) {
         let said = &words.signals;
-        ui.horizontal(|ui| {
-            let label = ui.label(words.common.file);
-            let wide = ui.available_width() - 12.0;
-            ui.add(TextEdit::singleline(&mut self.file).desired_width(wide))
-                .labelled_by(label.id);
-        });
-        match devices {
+        let wide = ui.available_width();
+        let label = caption(ui, words.common.file);
+        ui.add(path_edit(&mut self.file, wide))
+            .labelled_by(label.id);
+        let devices = match devices {
+            Ok(devices) => devices,
             Err(why) => {
-                ui.label(RichText::new(said.no_sound).color(Palette::of(ui).warn))
-                    .on_hover_text(words.trouble(why));
+                let none = RichText::new(said.no_sound).color(Palette::of(ui).warn);
+                ui.label(none).on_hover_text(words.trouble(why));
+                return;
             }
-            Ok(devices) => {
-                ui.horizontal_wrapped(|ui| {
-                    let of = |direction| {
-                        let of = devices.iter().filter(move |of| of.direction == direction);
-                        of.map(|of| of.name.as_str())
-                    };
-                    choose(ui, said.input, &mut self.input, of(Direction::Input));
-                    choose(ui, said.output, &mut self.output, of(Direction::Output));
-                });
-            }
-        }
+        };
+        let (name, chosen, direction) = match plays {
+            true => (said.output, &mut self.output, Direction::Output),
+            false => (said.input, &mut self.input, Direction::Input),
+        };
+        let of = devices.iter().filter(|of| of.direction == direction);
+        let offered = std::iter::once(sound::DEFAULT).chain(of.map(|of| of.name.as_str()));
+        caption(ui, name);
+        let offered = offered.map(|device| (device.to_owned(), device));
+        pick(ui, (name, wide), chosen, offered);
     }
 
     /// What is asked for.
-    pub fn buttons(&self, ui: &mut Ui, words: &Words) -> Option<Asked> {
+    pub fn orders(ui: &mut Ui, why_not: Option<&str>, words: &Words) -> Option<Asked> {
         let mut asked = None;
         ui.horizontal(|ui| {
-            if ui.button(words.signals.open).clicked() {
+            let open = Face::new(Look::Primary, words.signals.open).because(why_not);
+            if open.show(ui).clicked() {
                 asked = Some(Asked::Open);
             }
-            let record = ui.button(words.signals.record);
-            if record.on_hover_text(words.signals.record_hint).clicked() {
+            let record = Face::new(Look::Secondary, words.signals.record);
+            let record = record.hint(words.signals.record_hint).because(why_not);
+            if record.show(ui).clicked() {
                 asked = Some(Asked::Record);
             }
         });
+        if let Some(why) = why_not {
+            caption(ui, why);
+        }
         asked
     }
 
@@ -263,25 +267,4 @@ fn uncalibrated(
             &[("device", &device), ("channels", &without.join(", "))],
         )],
     }
-}
-
-/// A device, with the name of what it is for before it.
-fn choose<'a>(
-    ui: &mut Ui,
-    said: &str,
-    chosen: &mut String,
-    offered: impl Iterator<Item = &'a str>,
-) {
-    ui.label(said);
-    let shown = chosen.clone();
-    let combo = ComboBox::from_id_salt(said)
-        .selected_text(&shown)
-        .width(WIDE)
-        .truncate();
-    let combo = combo.show_ui(ui, |ui| {
-        for device in std::iter::once(sound::DEFAULT).chain(offered) {
-            ui.selectable_value(chosen, device.to_owned(), device);
-        }
-    });
-    named_combo(&combo.response, said, &shown);
 }

@@ -1,16 +1,17 @@
 //! A measured value over time with its control limits: of one unit value by value, of all units day by day.
 
 use eframe::egui::{
-    Align2, ComboBox, FontId, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Align2, FontId, Rect, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
+use egui_material_icons::icons::ICON_WARNING;
 use fault_db::{TrendQuery, TrendStep};
 
 use super::counted::{Asked, is_known};
 use crate::parts::lane::{TEXT, y_at, y_axis};
 use crate::parts::look_back::since_us;
-use crate::parts::named_combo;
+use crate::parts::{caption, chip, ground, pick};
 use crate::request::{CachedResponse, Request};
-use crate::{DataPaths, PageContext, Palette};
+use crate::{DataPaths, PageContext, Palette, Sizes};
 use ptu_report::limits::short;
 use ptu_report::naming::{DOT, measurement};
 use ptu_report::trend::Trend;
@@ -21,9 +22,12 @@ use ptu_runs::failure::Failure;
 /// Height of the chart, and room for the values beside it, points.
 const HIGH: f32 = 170.0;
 const GUTTER: f32 = 56.0;
+/// Room for what is said of the lines.
+const BESIDE: f32 = 130.0;
 const DOT_RADIUS: f32 = 2.5;
-/// Room of a list of names, points.
-const NAMES: f32 = 170.0;
+/// Widths of the lists of measurements and of steps, points.
+const NAMES: f32 = 160.0;
+const STEPS: f32 = 240.0;
 
 /// What is measured: a measurement, and of it one step or all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -72,26 +76,33 @@ impl ControlChart {
 
     pub fn show(&mut self, ui: &mut Ui, words: &Words) {
         let said = &words.statistics;
-        ui.label(RichText::new(said.control).strong());
-        match self.known.get() {
-            Request::Ready(known) if known.names.is_empty() => {
-                ui.label(said.nothing_measured);
-            }
-            Request::Ready(known) => {
-                ui.horizontal_wrapped(|ui| {
+        ground(&Palette::of(ui)).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(said.measured).size(Sizes::of(ui).lead));
+                if let Some(known) = self.known.get().value() {
                     choose(ui, words, &mut self.of, known);
-                });
-                match &known.trend {
+                }
+            });
+            match self.known.get() {
+                Request::Ready(known) if known.names.is_empty() => {
+                    ui.label(said.nothing_measured);
+                }
+                Request::Ready(known) => match &known.trend {
                     Some(trend) => {
-                        ui.label(summary(words, trend));
+                        let warn = Palette::of(ui).warn;
+                        for sign in signs(words, trend) {
+                            chip(ui, (ICON_WARNING, &sign), warn);
+                        }
+                        caption(ui, &summary(words, trend));
                         chart(ui, words, trend);
                     }
                     None => drop(ui.label(said.not_measured)),
-                }
+                },
+                Request::Failed(why) => drop(ui.label(&*words.trouble(why))),
+                Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
             }
-            Request::Failed(why) => drop(ui.label(&*words.trouble(why))),
-            Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
-        }
+        });
     }
 }
 
@@ -129,44 +140,25 @@ fn read(paths: &DataPaths, of: Measured, asked: &Asked) -> Result<Known, Failure
 /// The measurement, and the step that measures it.
 fn choose(ui: &mut Ui, words: &Words, of: &mut Measured, known: &Known) {
     let said = &words.statistics;
-    let shown = of.measurement.as_ref().or(known.names.first());
-    let shown = shown.map_or_else(String::new, |name| measurement(name, words));
-    ui.label(said.measured);
-    let combo = ComboBox::from_id_salt("measurement")
-        .selected_text(&shown)
-        .width(NAMES)
-        .truncate();
-    let combo = combo.show_ui(ui, |ui| {
-        for name in &known.names {
-            let on = of.measurement.as_ref() == Some(name);
-            if ui.selectable_label(on, measurement(name, words)).clicked() {
-                (of.measurement, of.step) = (Some(name.clone()), None);
-            }
-        }
+    let mut name = of.measurement.clone();
+    if name.is_none() {
+        name = known.names.first().cloned();
+    }
+    let names = known.names.iter();
+    let names = names.map(|name| (Some(name.clone()), measurement(name, words)));
+    if pick(ui, (said.measured, NAMES), &mut name, names) {
+        (of.measurement, of.step) = (name, None);
+    }
+    let steps = known.steps.iter().map(|step| {
+        let name = [&*step.procedure, &*words.content(&step.step)].join(DOT);
+        (Some((step.procedure.clone(), step.step.clone())), name)
     });
-    named_combo(&combo.response, said.measured, &shown);
-    let name = |procedure: &str, step: &str| [procedure, &words.content(step)].join(DOT);
-    let shown = of.step.as_ref();
-    let shown = shown.map_or_else(
-        || said.all_steps.to_owned(),
-        |(procedure, step)| name(procedure, step),
-    );
-    ui.label(words.common.step);
-    let combo = ComboBox::from_id_salt("measured step")
-        .selected_text(&shown)
-        .width(NAMES)
-        .truncate();
-    let combo = combo.show_ui(ui, |ui| {
-        ui.selectable_value(&mut of.step, None, said.all_steps);
-        for step in &known.steps {
-            let one = Some((step.procedure.clone(), step.step.clone()));
-            ui.selectable_value(&mut of.step, one, name(&step.procedure, &step.step));
-        }
-    });
-    named_combo(&combo.response, words.common.step, &shown);
+    let all = (None, said.all_steps.to_owned());
+    let steps = std::iter::once(all).chain(steps);
+    pick(ui, (words.common.step, STEPS), &mut of.step, steps);
 }
 
-/// Mean and control limits, capability, what chance does not explain, and when a limit will be crossed.
+/// Mean and control limits, and capability.
 fn summary(words: &Words, trend: &Trend) -> String {
     let said = &words.statistics;
     let Some(process) = &trend.process else {
@@ -184,25 +176,32 @@ fn summary(words: &Words, trend: &Trend) -> String {
             &[("low", &short(low)), ("high", &short(high)), ("unit", unit)],
         )
     }));
-    let (low, high) = (trend.limits.low, trend.limits.high);
     if trend.limits_differ() {
         text.push(said.limits_differ.to_owned());
     }
-    let capability = process.capability(low, high);
+    let capability = process.capability(trend.limits.low, trend.limits.high);
     text.extend(capability.map(|is| fill(said.cpk, &[("n", &format!("{:.2}", is.cpk))])));
-    text.extend(process.signs.iter().map(|sign| {
-        let what = said.sign(sign.kind);
-        fill(what, &[("n", &sign.times)])
-    }));
-    let forecast = process.forecast(low, high);
-    text.extend(forecast.map(|at| {
-        let day = clock::local_day(at.at_us);
-        fill(
-            said.forecast,
-            &[("limit", &short(at.limit)), ("unit", unit), ("day", &day)],
-        )
-    }));
     text.join(". ")
+}
+
+/// What chance does not explain, and when a limit will be crossed.
+fn signs(words: &Words, trend: &Trend) -> Vec<String> {
+    let said = &words.statistics;
+    let Some(process) = &trend.process else {
+        return Vec::new();
+    };
+    let signs = process.signs.iter();
+    let signs = signs.map(|sign| fill(said.sign(sign.kind), &[("n", &sign.times)]));
+    let mut text: Vec<_> = signs.collect();
+    let forecast = process.forecast(trend.limits.low, trend.limits.high);
+    text.extend(forecast.map(|at| {
+        let (limit, day) = (short(at.limit), clock::local_day(at.at_us));
+        let unit = &trend.limits.unit;
+        let said_of: [(&str, &dyn std::fmt::Display); 3] =
+            [("limit", &limit), ("unit", unit), ("day", &day)];
+        fill(said.forecast, &said_of)
+    }));
+    text
 }
 
 /// The values as dots, those beyond control marked; mean, control limits and limits as lines.
@@ -218,14 +217,23 @@ fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
     let palette = Palette::of(ui);
     let mean = trend.process.as_ref().map(|process| process.mean);
     let control = trend.process.as_ref().and_then(|process| process.control);
+    let said = &words.statistics;
     let lines = [
-        (mean, palette.quiet),
-        (control.map(|(low, _)| low), palette.warn),
-        (control.map(|(_, high)| high), palette.warn),
-        (trend.limits.low, palette.bad),
-        (trend.limits.high, palette.bad),
+        (mean, said.mean_line, palette.quiet),
+        (
+            control.map(|(low, _)| low),
+            said.control_line,
+            palette.quiet,
+        ),
+        (
+            control.map(|(_, high)| high),
+            said.control_line,
+            palette.quiet,
+        ),
+        (trend.limits.low, said.limit_line, palette.ink),
+        (trend.limits.high, said.limit_line, palette.ink),
     ];
-    let levels = lines.iter().filter_map(|(level, _)| *level);
+    let levels = lines.iter().filter_map(|(level, ..)| *level);
     let all = samples.iter().map(|sample| sample.value).chain(levels);
     let (least, most) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
@@ -236,13 +244,27 @@ fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
         whole.min,
         pos2(whole.left() + GUTTER, whole.bottom() - 16.0),
     );
-    let plot = Rect::from_min_max(gutter.right_top(), pos2(whole.right(), gutter.bottom()));
+    let right = whole.right() - BESIDE;
+    let plot = Rect::from_min_max(gutter.right_top(), pos2(right, gutter.bottom()));
     let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
     y_axis(&painter, gutter, plot, range, &palette);
-    for (level, colour) in lines {
-        if let Some(level) = level {
-            let y = y_at(plot, range, level);
-            painter.hline(plot.x_range(), y, Stroke::new(1.0, colour));
+    let font = FontId::proportional(TEXT);
+    let mut named: Vec<f32> = Vec::new();
+    for (level, name, colour) in lines {
+        let Some(level) = level else { continue };
+        let y = y_at(plot, range, level);
+        let (from, to) = (pos2(plot.left(), y), pos2(plot.right(), y));
+        let stroke = Stroke::new(1.0, colour);
+        match name == said.control_line {
+            true => painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 4.0)),
+            false => drop(painter.line_segment([from, to], stroke)),
+        }
+        // One beside another would be written over it.
+        if named.iter().all(|other| (other - y).abs() > TEXT) {
+            let text = fill(name, &[("n", &short(level))]);
+            let at = to + vec2(8.0, 0.0);
+            painter.text(at, Align2::LEFT_CENTER, text, font.clone(), colour);
+            named.push(y);
         }
     }
     let long_us = (last.at_us - first.at_us).max(1) as f64;
@@ -252,15 +274,14 @@ fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
         let x = inner.left() + share as f32 * inner.width();
         let is_beyond = control
             .is_some_and(|(low, high)| sample.n == 1 && !(low..=high).contains(&sample.value));
-        let colour = if is_beyond {
-            palette.bad
-        } else {
-            palette.accent
+        let (radius, colour) = match is_beyond {
+            true => (1.6 * DOT_RADIUS, palette.warn),
+            false => (DOT_RADIUS, palette.accent),
         };
-        painter.circle_filled(pos2(x, y_at(plot, range, sample.value)), DOT_RADIUS, colour);
+        let at = pos2(x, y_at(plot, range, sample.value));
+        painter.circle_filled(at, radius, colour);
     }
     let day = trend.course.day_name();
-    let font = FontId::proportional(TEXT);
     for (at, align, at_us) in [
         (plot.left(), Align2::LEFT_BOTTOM, first.at_us),
         (plot.right(), Align2::RIGHT_BOTTOM, last.at_us),

@@ -2,19 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use eframe::egui::{RichText, TextEdit, Ui};
+use eframe::egui::{RichText, Ui};
 
 use super::counted::Counted;
 use super::{of_month, shown_months};
 use crate::page_context::Destination;
-use crate::parts::UnitFilter;
 use crate::parts::bars::{Bar, Chart};
+use crate::parts::{Face, Look, UnitFilter, caption, path_edit};
 use crate::{PageContext, Palette};
 use ptu_report::fault_months::{Month, OnTheWay};
 use ptu_report::words::{Words, fill};
-
-/// Width of the field for the file, points.
-const FIELD: f32 = 320.0;
 
 /// The file, as it is typed.
 #[derive(Default)]
@@ -32,8 +29,6 @@ impl DistancesFile {
     ) -> bool {
         let words = context.words;
         let said = &words.statistics;
-        let quiet = Palette::of(ui).quiet;
-        ui.separator();
         match &counted.on_the_way {
             Some(Ok(months)) => {
                 let month = chart(ui, words, counted, months);
@@ -44,22 +39,18 @@ impl DistancesFile {
                 let why = words.trouble(why);
                 ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
             }
-            None if counted.asked.unit.is_some() => {
-                ui.label(RichText::new(said.distances_of_all).color(quiet));
-            }
-            None => {
-                ui.label(RichText::new(said.no_distances).color(quiet));
-            }
+            None if counted.asked.unit.is_some() => drop(caption(ui, said.distances_of_all)),
+            None => drop(caption(ui, said.no_distances)),
         }
         let kept = &mut context.settings.distances;
         let typed = self.typed.get_or_insert_with(|| kept.clone());
         let mut again = false;
+        let label = caption(ui, said.odometers).on_hover_text(said.odometers_hint);
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label(said.odometers);
-            ui.add(TextEdit::singleline(typed).desired_width(FIELD))
-                .labelled_by(label.id)
-                .on_hover_text(said.odometers_hint);
-            again = ui.button(said.read_odometers).clicked();
+            let read = Face::new(Look::Secondary, said.read_odometers);
+            let left = ui.available_width() - read.wide(ui) - ui.spacing().item_spacing.x;
+            ui.add(path_edit(typed, left)).labelled_by(label.id);
+            again = read.show(ui).clicked();
         });
         if again {
             typed.trim().clone_into(kept);
@@ -76,7 +67,6 @@ fn chart<'a>(
     known: &BTreeMap<String, OnTheWay>,
 ) -> Option<&'a Month> {
     let said = &words.statistics;
-    let quiet = Palette::of(ui).quiet;
     let with_rate = shown_months(counted).iter().filter_map(|month| {
         let of = known.get(&month.name)?;
         let rate = of.per_10000_km()?;
@@ -95,16 +85,14 @@ fn chart<'a>(
     });
     let (months, bars): (Vec<_>, Vec<_>) = with_rate.unzip();
     if bars.is_empty() {
-        ui.label(RichText::new(said.no_distance_known).color(quiet));
+        caption(ui, said.no_distance_known);
         return None;
     }
     let chart = Chart {
         title: said.per_10000_km,
-        width: ui.available_width(),
-        leads: true,
         sums: false,
     };
     let clicked = chart.in_time(ui, &bars);
-    ui.label(RichText::new(said.rate_of).color(quiet));
+    caption(ui, said.rate_of);
     months.get(clicked?).copied()
 }

@@ -4,52 +4,63 @@ use eframe::egui::{RichText, Ui};
 use fault_db::FaultStat;
 
 use super::counted::BACK_WITHIN_DAYS;
-use crate::Palette;
+use crate::parts::{caption, ground};
+use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
 
 /// Of fewer days there is no mean time between faults.
 const LEAST_DAYS: f64 = 7.0;
+/// Least width of a card in an engineer's window, points.
+const LEAST_WIDE: f32 = 175.0;
 
+/// A card each: as many in a row as there is room for.
 pub fn figures(ui: &mut Ui, words: &Words, all: &FaultStat) {
     let said = &words.statistics;
     let n = |number: u32, text: &str| fill(text, &[("n", &number)]);
-    let back_is = fill(
-        said.back_is,
-        &[("days", &BACK_WITHIN_DAYS), ("n", &all.repairs_judged)],
-    );
-    for (name, value, of) in [
+    let mtbf = all.mtbf_days.filter(|mean| observed(all, *mean));
+    let mttr = all.mttr_hours.map(|hours| hours / 24.0);
+    let cards = [
         (
             said.cases,
             all.faults.to_string(),
             n(all.not_closed, said.cases_are),
         ),
-        (
-            said.mtbf,
-            length(words, all.mtbf_days.filter(|mean| observed(all, *mean))),
-            said.mtbf_is.to_owned(),
-        ),
-        (
-            said.mttr,
-            length(words, all.mttr_hours.map(|hours| hours / 24.0)),
-            n(all.repairs, said.mttr_is),
-        ),
+        (said.mtbf, length(words, mtbf), said.mtbf_is.to_owned()),
+        (said.mttr, length(words, mttr), n(all.repairs, said.mttr_is)),
         (
             said.back,
             share(words, all.repairs_back, all.repairs_judged),
-            back_is,
+            fill(said.back_is, &[("days", &BACK_WITHIN_DAYS)]),
         ),
         (
             said.not_found,
             share(words, all.no_fault_found, all.closed),
-            n(all.closed, said.not_found_is),
+            said.not_found_is.to_owned(),
         ),
-    ] {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(name);
-            ui.label(RichText::new(value).strong().size(16.0));
-            ui.label(RichText::new(of).color(Palette::of(ui).quiet));
+    ];
+    let least = LEAST_WIDE * Sizes::of(ui).body / 14.0;
+    let fits = |columns: &usize| *columns as f32 * least <= ui.available_width();
+    let columns = [5, 3].into_iter().find(fits).unwrap_or(2);
+    for row in cards.chunks(columns) {
+        ui.columns(columns, |columns| {
+            for (ui, (name, value, of)) in columns.iter_mut().zip(row) {
+                figure(ui, name, value, of);
+            }
         });
     }
+}
+
+fn figure(ui: &mut Ui, name: &str, value: &str, of: &str) {
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    ground(&palette).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.spacing_mut().item_spacing.y = 2.0;
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.label(RichText::new(name).color(palette.second));
+        let value = RichText::new(value).size(sizes.headline);
+        ui.label(value.color(palette.ink));
+        caption(ui, of);
+    });
 }
 
 /// The units were there for so many days that their faults tell how often they come.
@@ -73,11 +84,10 @@ fn length(words: &Words, days: Option<f64>) -> String {
 }
 
 fn share(words: &Words, part: u32, all: u32) -> String {
-    if all == 0 {
-        return words.statistics.unknown.to_owned();
+    match all {
+        0 => words.statistics.unknown.to_owned(),
+        _ => fill(words.statistics.of_these, &[("n", &part), ("of", &all)]),
     }
-    let share = format!("{:.0}", 100.0 * f64::from(part) / f64::from(all));
-    fill(words.statistics.percent, &[("n", &share)])
 }
 
 #[cfg(test)]

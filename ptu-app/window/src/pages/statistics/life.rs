@@ -1,12 +1,13 @@
 //! The life of a unit, a train or a part, by its serial number.
 
 use eframe::egui::{Grid, Key, RichText, ScrollArea, TextWrapMode, Ui};
+use egui_material_icons::icons::{ICON_ARROW_BACK, ICON_SEARCH};
 use fault_db::{Life, LifeEvent, LifeOf, LifeWhat};
 
 use crate::page_context::Destination;
-use crate::parts::{link, name_edit, rows, typed};
+use crate::parts::{Face, Look, find_edit, link, rows, typed};
 use crate::request::{CachedResponse, Request};
-use crate::{DataPaths, PageContext, Palette};
+use crate::{DataPaths, PageContext, Palette, Sizes};
 use ptu_report::life;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
@@ -14,7 +15,7 @@ use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 
 /// Width of the field, points.
-const FIELD: f32 = 120.0;
+const FIELD: f32 = 190.0;
 
 /// The search field, and the lives that were found.
 #[derive(Default)]
@@ -36,11 +37,11 @@ impl LifeView {
 
     /// The field, and the button.
     pub fn search(&mut self, ui: &mut Ui, words: &Words) {
-        let label = ui.label(words.life.search);
-        let field = ui.add(name_edit(&mut self.typed, FIELD));
-        let field = field.labelled_by(label.id);
+        let field = find_edit(ui, &mut self.typed, words.life.search, FIELD);
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        if ui.button(words.life.show).clicked() || entered {
+        let show = Face::new(Look::Quiet, "").icon(ICON_SEARCH);
+        let show = show.named(words.life.show).hint(words.life.show);
+        if show.show(ui).clicked() || entered {
             self.of = typed(&self.typed);
         }
     }
@@ -52,7 +53,8 @@ impl LifeView {
         };
         let words = context.words;
         self.keep_up(&serial, context);
-        if ui.button(words.life.back).clicked() {
+        let back = Face::new(Look::Quiet, words.life.back).icon(ICON_ARROW_BACK);
+        if back.show(ui).clicked() {
             self.of = None;
         }
         match self.found.get() {
@@ -106,7 +108,7 @@ fn show(
     life: &Life,
     go_to: &mut Vec<Destination>,
 ) {
-    ui.label(RichText::new(life::title(life, words)).strong().size(19.0));
+    ui.label(RichText::new(life::title(life, words)).size(Sizes::of(ui).title));
     if !life.stays.is_empty() {
         stays(ui, (words, parts), life, go_to);
     }

@@ -8,13 +8,17 @@ mod figures;
 mod life;
 
 use eframe::egui::{RichText, ScrollArea, Ui};
+use egui_material_icons::icons::ICON_BAR_CHART;
+use fault_db::FaultStat;
 
 use crate::page_context::{Destination, FaultsOf};
 use crate::parts::bars::{Bar, Chart};
-use crate::parts::{SavedSaid, UnitFilter, look_back, saved_questions};
+use crate::parts::{
+    SavedSaid, UnitFilter, caption, empty, ground, look_back, saved_questions, segments,
+};
 use crate::request::{CachedResponse, Request};
 use crate::settings::StatisticsQuestion;
-use crate::{PageContext, Palette};
+use crate::{PageContext, Palette, Sizes};
 use counted::{Asked, Counted};
 use ptu_report::fault_months::Month;
 use ptu_report::words::{Words, fill};
@@ -23,6 +27,8 @@ use ptu_report::words::{Words, fill};
 const MOST_CAUSES: usize = 10;
 /// As many months are shown, the last ones.
 const MOST_MONTHS: usize = 24;
+/// A page narrower than this has the charts one above the other, points.
+const BESIDE: f32 = 900.0;
 
 #[derive(Default)]
 pub struct StatisticsPage {
@@ -35,6 +41,8 @@ pub struct StatisticsPage {
     life: life::LifeView,
     control: control::ControlChart,
     distances: distances::DistancesFile,
+    /// Months are compared by what the trains ran in them.
+    by_distance: bool,
     /// Name for a question, as it is typed.
     question: String,
 }
@@ -46,24 +54,28 @@ impl StatisticsPage {
             look_back::look_back(ui, words, &mut self.days);
             self.units.show(ui, context);
             self.life.search(ui, words);
+            self.questions(ui, context);
         });
-        ui.horizontal_wrapped(|ui| self.questions(ui, context));
+        ui.separator();
         if self.life.show(ui, context) {
             return;
         }
         self.keep_up(context);
         match self.counted.get() {
-            Request::Ready(counted) => {
-                let mut to = None;
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    to = content(ui, words, counted, &self.units);
-                    if self.distances.show(ui, (counted, &self.units), context) {
-                        self.asked = None;
-                    }
-                    ui.separator();
+            Request::Ready(counted) if counted.causes.is_empty() => {
+                empty(
+                    ui,
+                    ICON_BAR_CHART,
+                    (words.statistics.nothing, &of(words, counted)),
+                    None,
+                );
+            }
+            Request::Ready(_) => {
+                let area = ScrollArea::vertical().auto_shrink(false);
+                area.show(ui, |ui| {
+                    self.charts(ui, context);
                     self.control.show(ui, words);
                 });
-                context.go_to.extend(to.map(Destination::Faults));
             }
             Request::Failed(why) => {
                 let said = RichText::new(words.statistics.not_read).color(Palette::of(ui).bad);
@@ -76,6 +88,67 @@ impl StatisticsPage {
             Request::Idle | Request::Pending(_) => {
                 ui.label(words.common.loading);
             }
+        }
+    }
+
+    /// Figures, causes, and beside them months.
+    fn charts(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let said = &words.statistics;
+        let Some(counted) = self.counted.get().value() else {
+            return;
+        };
+        figures::figures(ui, words, &counted.all);
+        let columns = if ui.available_width() < BESIDE { 1 } else { 2 };
+        let mut again = false;
+        ui.columns(columns, |columns| {
+            let chart = Chart {
+                title: said.by_cause,
+                sums: true,
+            };
+            let heading = RichText::new(said.by_cause).size(Sizes::of(&columns[0]).lead);
+            let cause = ground(&Palette::of(&columns[0])).show(&mut columns[0], |ui| {
+                ui.set_width(ui.available_width());
+                ui.label(heading);
+                caption(ui, &of(words, counted));
+                let clicked = chart.by_name(ui, &cause_bars(words, counted))?;
+                counted.causes.iter().take(MOST_CAUSES).nth(clicked)
+            });
+            let of_cause = |cause: &FaultStat| FaultsOf {
+                cause: Some(cause.key.clone()),
+                days: counted.asked.days,
+                units: self.units.clone(),
+                ..FaultsOf::default()
+            };
+            let to = cause.inner.map(of_cause).map(Destination::Faults);
+            context.go_to.extend(to);
+            let last = columns.len() - 1;
+            let ui = &mut columns[last];
+            ground(&Palette::of(ui)).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                let ways = [(false, said.a_month), (true, said.each_10000_km)];
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(RichText::new(said.by_month).size(Sizes::of(ui).lead));
+                    segments(ui, &mut self.by_distance, ways);
+                });
+                if self.by_distance {
+                    again = self.distances.show(ui, (counted, &self.units), context);
+                    return;
+                }
+                let chart = Chart {
+                    title: said.by_month,
+                    sums: true,
+                };
+                let months = shown_months(counted);
+                let bar = |month: &Month| Bar::new(&month.name, u64::from(month.stat.faults));
+                let bars: Vec<_> = months.iter().map(bar).collect();
+                let month = chart.in_time(ui, &bars).and_then(|place| months.get(place));
+                let to = month.map(|month| Destination::Faults(of_month(month, &self.units)));
+                context.go_to.extend(to);
+            });
+        });
+        if again {
+            self.asked = None;
         }
     }
 
@@ -126,48 +199,12 @@ impl StatisticsPage {
     }
 }
 
-/// Figures and charts; the faults of the bar that was clicked.
-fn content(ui: &mut Ui, words: &Words, counted: &Counted, units: &UnitFilter) -> Option<FaultsOf> {
-    let of = match &counted.asked.unit {
+/// Whose faults they are.
+fn of(words: &Words, counted: &Counted) -> String {
+    match &counted.asked.unit {
         Some(unit) => fill(words.statistics.of_unit, &[("unit", unit)]),
         None => words.statistics.all_units.to_owned(),
-    };
-    ui.label(RichText::new(of).strong().size(19.0));
-    if counted.causes.is_empty() {
-        ui.label(words.statistics.nothing);
-        return None;
     }
-    figures::figures(ui, words, &counted.all);
-    ui.separator();
-    let chart = |title| Chart {
-        title,
-        width: ui.available_width(),
-        leads: true,
-        sums: true,
-    };
-    let (by_cause, by_month) = (
-        chart(words.statistics.by_cause),
-        chart(words.statistics.by_month),
-    );
-    let cause = by_cause.by_name(ui, &cause_bars(words, counted));
-    ui.separator();
-    let months = shown_months(counted);
-    let bars = months
-        .iter()
-        .map(|month| Bar::new(&month.name, u64::from(month.stat.faults)));
-    let month = by_month.in_time(ui, &bars.collect::<Vec<_>>());
-    let cause = cause
-        .and_then(|place| counted.causes.iter().take(MOST_CAUSES).nth(place))
-        .map(|cause| FaultsOf {
-            cause: Some(cause.key.clone()),
-            days: counted.asked.days,
-            units: units.clone(),
-            ..FaultsOf::default()
-        });
-    let month = month
-        .and_then(|place| months.get(place))
-        .map(|month| of_month(month, units));
-    cause.or(month)
 }
 
 fn shown_months(counted: &Counted) -> &[Month] {

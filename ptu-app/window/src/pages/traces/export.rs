@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
-use eframe::egui::{Button, ColorImage, Popup, PopupCloseBehavior, Rect, TextEdit, Ui};
+use eframe::egui::{Button, ColorImage, Popup, PopupCloseBehavior, Rect, Ui};
 use egui_material_icons::icons::ICON_DOWNLOAD;
 use fault_db::Id;
 
-use super::signals::name_input;
 use crate::PageContext;
-use crate::parts::{Face, Look, usual_folder};
+use crate::parts::{Face, Look, name_input, path_edit, usual_folder};
 use crate::query_worker::Pending;
 use ptu_report::trace_view::csv::csv;
 use ptu_report::trace_view::{Kind, TracePlot};
@@ -45,7 +44,7 @@ impl Export {
     fn menu(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
         let words = &context.words.traces;
         ui.label(context.words.common.file);
-        let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(260.0));
+        let edit = ui.add(path_edit(&mut self.name, 260.0));
         name_input(&edit, words.file_name);
         let edit = edit.on_hover_text(words.file_name);
         let named = !self.name.trim().is_empty();

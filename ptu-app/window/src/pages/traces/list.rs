@@ -1,10 +1,10 @@
 //! The list of recorded traces by run, latest first.
 
-use eframe::egui::{RichText, ScrollArea, TextEdit, TextWrapMode, Ui};
+use eframe::egui::{RichText, ScrollArea, TextWrapMode, Ui};
 use egui_material_icons::icons::ICON_DO_NOT_DISTURB_ON;
 use fault_db::Id;
 
-use crate::parts::{MemoryReader, Stored, UnitFilter, chip, verdict_chip};
+use crate::parts::{MemoryReader, Stored, UnitFilter, chip, find_edit, verdict_chip};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::naming::PartNames;
@@ -44,21 +44,11 @@ impl TraceList {
         chosen: Option<Id>,
     ) -> Option<(Id, Id)> {
         let words = context.words;
-        self.keep_up(context);
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(words.traces.recorded).strong());
-            if ui.button(words.common.refresh).clicked() {
-                self.runs = CachedResponse::default();
-            }
-        });
         if self.unit_record.0.show(ui, context) {
             self.runs = CachedResponse::default();
         }
-        let edit = TextEdit::singleline(&mut self.filter)
-            .hint_text(words.traces.filter)
-            .desired_width(f32::INFINITY);
-        let edit = ui.add(edit);
-        super::signals::name_input(&edit, words.traces.filter);
+        let wide = f32::INFINITY;
+        let edit = find_edit(ui, &mut self.filter, words.traces.filter, wide);
         if self.units.show(ui, context) | edit.changed() {
             self.apply();
         }

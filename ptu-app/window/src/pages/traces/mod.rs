@@ -20,7 +20,7 @@ use std::sync::Arc;
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::parts::{FirstHalf, link};
+use crate::parts::{Side, link};
 use crate::query_worker::Pending;
 use crate::{Destination, PageContext, Palette};
 use compared_trace::OverlayRequest;
@@ -38,11 +38,6 @@ pub use small::SmallTrace;
 
 /// Height of a row of controls.
 const ROW: f32 = 28.0;
-const LIST: FirstHalf = FirstHalf {
-    name: "recorded traces",
-    width: 300.0,
-    share: 0.3,
-};
 
 #[derive(Default)]
 pub struct TracesPage {
@@ -60,8 +55,6 @@ pub struct TracesPage {
     layout_name: String,
     choosing: bool,
     told: bool,
-    /// The list of traces was asked for.
-    listed: bool,
 }
 
 impl TracesPage {
@@ -70,16 +63,13 @@ impl TracesPage {
         self.poll(context);
         let words = &context.words.traces;
         let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
-        // In a narrow window the curves have all of the page, and the list comes when it is asked for.
-        let is_listed = self.listed || !FirstHalf::is_narrow(ui) || chosen.is_none();
-        let clicked = match is_listed {
-            true => LIST.show(ui, |ui| self.list.show(ui, context, chosen)),
-            false => {
-                self.list.keep_up(context);
-                None
-            }
+        let list = Side {
+            name: words.recorded,
+            wide: [268.0, 320.0],
+            at_right: false,
         };
-        self.listed &= clicked.is_none();
+        self.list.keep_up(context);
+        let clicked = list.show(ui, |ui| self.list.show(ui, context, chosen));
         // The latest trace is what most people come for.
         let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
@@ -150,8 +140,7 @@ impl TracesPage {
         };
         // Words stand on one line with what they name.
         ui.spacing_mut().interact_size.y = ROW;
-        let listed = FirstHalf::is_narrow(ui).then_some(&mut self.listed);
-        heading(ui, scene, (&self.list, listed), context);
+        heading(ui, scene, &self.list, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
             bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
@@ -184,18 +173,10 @@ impl TracesPage {
 }
 
 /// Whose trace it is, what is amiss with it, and ways on from here.
-fn heading(
-    ui: &mut Ui,
-    scene: &TracePlot,
-    (list, listed): (&TraceList, Option<&mut bool>),
-    context: &mut PageContext<'_>,
-) {
+fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
     let opened = scene.opened();
     ui.horizontal_wrapped(|ui| {
-        if let Some(listed) = listed {
-            ui.toggle_value(listed, words.traces.recorded);
-        }
         let (unit, when) = list.whose(opened.run);
         let known = |text| match text {
             "" => words.traces.not_known,

@@ -1,8 +1,8 @@
 //! Selects the shown signals, their order and their heights.
 
-use eframe::egui::{Label, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Label, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::parts::{SavedSaid, saved_questions};
+use crate::parts::{SavedSaid, find_edit, saved_questions};
 use crate::{PageContext, Palette};
 use ptu_report::trace_view::{Summary, TracePlot, bare, toggled};
 use ptu_report::words::fill;
@@ -41,10 +41,7 @@ pub fn choose(
             context.settings.lanes = signals;
         }
     });
-    let edit = TextEdit::singleline(find)
-        .hint_text(words.find_signal)
-        .desired_width(f32::INFINITY);
-    name_input(&ui.add(edit), words.find_signal);
+    find_edit(ui, find, words.find_signal, f32::INFINITY);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let before = scene.signals();
         let mut signals = before.clone();
@@ -79,11 +76,6 @@ pub fn choose(
             context.settings.lanes = signals;
         }
     });
-}
-
-/// The name of a text field that has no label beside it.
-pub fn name_input(response: &Response, name: &str) {
-    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, response.enabled(), name));
 }
 
 fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<LaneAction> {

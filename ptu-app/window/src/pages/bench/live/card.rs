@@ -29,7 +29,7 @@ pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
 /// A frame around what belongs together.
 pub fn framed(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     Frame::new()
-        .fill(ground(&Palette::of(ui)))
+        .fill(Palette::of(ui).panel)
         .corner_radius(4)
         .inner_margin(Margin::symmetric(8, 4))
         .show(ui, |ui| {
@@ -43,15 +43,6 @@ pub fn framed(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 pub fn heading(ui: &mut Ui, title: &str) {
     let quiet = Palette::of(ui).quiet;
     ui.label(RichText::new(title).size(NAME).color(quiet).strong());
-}
-
-/// Behind what belongs together.
-pub fn ground(palette: &Palette) -> Color32 {
-    if palette.dark {
-        Color32::from_gray(20)
-    } else {
-        Color32::from_gray(240)
-    }
 }
 
 pub struct Fact {

@@ -8,7 +8,7 @@ use eframe::egui::{
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{ground, named, put};
+use super::card::{named, put};
 use crate::Palette;
 use crate::pages::bench::scale::Dial;
 use crate::pages::bench::text::UNKNOWN;
@@ -60,7 +60,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let words = &view.words.bench;
     let painter = ui.painter_at(area);
-    painter.rect_filled(area, 4.0, ground(palette));
+    painter.rect_filled(area, 4.0, palette.panel);
     let speeds = [
         Signal::Speed,
         Signal::TrainSpeed,

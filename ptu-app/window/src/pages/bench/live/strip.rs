@@ -6,7 +6,7 @@ use eframe::egui::{
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{ground, named, put, write};
+use super::card::{named, put, write};
 use crate::Palette;
 use crate::pages::bench::text;
 use crate::pages::bench::track::Strip;
@@ -21,7 +21,7 @@ pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Pale
     let size = vec2(ui.available_width(), HEIGHT);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let painter = ui.painter_at(area);
-    painter.rect_filled(area, 4.0, ground(palette));
+    painter.rect_filled(area, 4.0, palette.panel);
     let said = said(strip, view, words);
     let head = pos2(area.left() + 8.0, area.top() + 11.0);
     let text = RichText::new(&said).size(13.0).color(palette.quiet);
@@ -128,7 +128,7 @@ fn paint_markers(
             pos2(at, rail + height),
             pos2(at - 5.0, rail),
         ];
-        let fill = if hit { colour } else { ground(palette) };
+        let fill = if hit { colour } else { palette.panel };
         painter.add(Shape::convex_polygon(
             diamond,
             fill,

@@ -13,11 +13,12 @@ mod test_board;
 mod twc;
 
 use btu_rig::procedure::plan::Connection;
-use eframe::egui::{CollapsingHeader, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 pub use buttons::{StimuliGiven, StimulusPanel};
 
 use super::forms::Forms;
+use crate::parts::find_edit;
 use buttons::seek;
 use ptu_report::words::Bench;
 use ptu_runs::run::BenchSetup;
@@ -77,9 +78,7 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
         groups.rotate_right(1);
     }
     let words = &hand.words().bench;
-    let find = TextEdit::singleline(&mut forms.find).hint_text(words.find);
-    let find = ui.add(find.desired_width(f32::INFINITY));
-    find.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, words.find));
+    find_edit(ui, &mut forms.find, words.find, f32::INFINITY);
     seek(ui, "");
     acting::acting(ui, forms, hand);
     let sought = forms.find.trim().to_lowercase();

@@ -1,0 +1,159 @@
+//! The strip beside the sheet: its language, what it is compared with, ways on, a note, and files.
+
+use eframe::egui::{Label, Popup, RichText, ScrollArea, Ui};
+use egui_material_icons::icons::{
+    ICON_KEYBOARD_ARROW_DOWN, ICON_PRINT, ICON_SHOW_CHART, ICON_TROUBLESHOOT,
+};
+
+use super::{ReportPage, SheetOf, Shown, file};
+use crate::data_paths::DataPaths;
+use crate::messages::told;
+use crate::parts::{Face, Look, NoteOn, caption, find_edit, foot, open_file, segments};
+use crate::request::Request;
+use crate::{Destination, PageContext, Palette};
+use ptu_report::words::{Language, Words, fill};
+
+/// Least width of the field for a file beside its buttons, points.
+const FIELD: f32 = 120.0;
+/// What is written, and which of it is pressed first.
+const ENDINGS: [(Look, &str); 3] = [
+    (Look::Primary, ".pdf"),
+    (Look::Secondary, ".html"),
+    (Look::Secondary, ".csv"),
+];
+
+impl ReportPage {
+    pub(super) fn strip(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let before = self.language(context);
+        let mut language = before;
+        foot(ui, "files of a sheet", |ui| {
+            caption(ui, words.report.file);
+            self.file_field(ui, words, ui.available_width());
+            ui.horizontal_wrapped(|ui| self.buttons(ui, context));
+            self.open_written(ui, context);
+        });
+        let Some(shown) = &self.shown else { return };
+        let of = shown.of;
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            caption(ui, words.report.language);
+            segments(ui, &mut language, Language::ALL.map(|of| (of, of.name())));
+            if language != before {
+                self.language = Some(language);
+            }
+            if !matches!(of, SheetOf::Case { .. }) {
+                self.with.show(ui, words, of, &self.runs);
+            }
+            ui.separator();
+            ways_on(ui, words, shown, context.go_to);
+            ui.separator();
+            let who = &context.settings.operator;
+            let on = NoteOn::Run(of.run());
+            self.note.show(ui, words, context.queries, who, on);
+        });
+    }
+
+    /// Writes and prints it, in one row.
+    pub(super) fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        ui.horizontal(|ui| {
+            ui.label(words.report.file);
+            let names = ENDINGS.map(|(look, ending)| Face::new(look, name_of(words, ending)));
+            let wide = |face: &Face<'_>| face.wide(ui) + ui.spacing().item_spacing.x;
+            let buttons: f32 = names.iter().map(wide).sum();
+            let left = ui.available_width() - buttons - ui.spacing().item_spacing.x;
+            self.file_field(ui, words, left.max(FIELD));
+            self.buttons(ui, context);
+        });
+        self.open_written(ui, context);
+    }
+
+    fn file_field(&mut self, ui: &mut Ui, words: &Words, wide: f32) {
+        let field = find_edit(ui, &mut self.file, words.report.file, wide);
+        field.on_hover_text(words.report.write_hint);
+    }
+
+    fn buttons(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = context.words;
+        let busy = (!self.writing.is_idle()).then_some(words.report.writing);
+        for (look, ending) in ENDINGS {
+            let face = Face::new(look, name_of(words, ending)).because(busy);
+            if face.show(ui).clicked() {
+                self.write(context, ending);
+            }
+        }
+    }
+
+    /// What was written, with the way to see and to print it.
+    fn open_written(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
+        let words = &context.words.report;
+        let Some(path) = &self.written else { return };
+        ui.horizontal_wrapped(|ui| {
+            let open = Face::new(Look::Secondary, words.open_file).icon(ICON_PRINT);
+            if open.show(ui).clicked()
+                && let Err(failure) = open_file(path)
+            {
+                context.messages.trouble(words.not_opened, failure.message);
+            }
+            let file = RichText::new(path.display().to_string());
+            ui.add(Label::new(file.color(Palette::of(ui).quiet)).truncate());
+        });
+    }
+
+    fn write(&mut self, context: &mut PageContext<'_>, ending: &str) {
+        let words = &context.words.report;
+        let Some(asked) = self.asked_for.clone() else {
+            return;
+        };
+        let Some(path) = file::with_ending(&self.file, ending) else {
+            context
+                .messages
+                .trouble(words.not_written, told(words.name_file));
+            return;
+        };
+        let write = move |paths: &DataPaths| file::write(paths, &asked, &path);
+        self.writing = Request::Pending(context.queries.run(write));
+    }
+}
+
+fn name_of(words: &Words, ending: &str) -> &'static str {
+    match ending {
+        ".html" => words.report.write_html,
+        ".pdf" => words.report.write_pdf,
+        _ => words.report.write_csv,
+    }
+}
+
+/// To the diagnosis and to the traces.
+fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destination>) {
+    let words = &words.report;
+    let diagnosis = Face::new(Look::Quiet, words.to_diagnosis).icon(ICON_TROUBLESHOOT);
+    let why_not = (!shown.faulty).then_some(words.all_right);
+    if diagnosis.off(why_not).show(ui).clicked() {
+        go_to.push(Destination::Diagnosis(shown.of.run()));
+    }
+    let trace = |name| Face::new(Look::Quiet, name).icon(ICON_SHOW_CHART);
+    match &shown.traces[..] {
+        [] => {}
+        [(only, faults)] => {
+            if trace(words.to_trace.to_owned())
+                .hint(faults)
+                .show(ui)
+                .clicked()
+            {
+                go_to.push(Destination::Trace(*only));
+            }
+        }
+        all => {
+            let title = fill(words.to_traces, &[("n", &all.len())]);
+            let menu = trace(title).end(ICON_KEYBOARD_ARROW_DOWN).show(ui);
+            Popup::menu(&menu).show(|ui| {
+                for (id, faults) in all {
+                    if ui.button(faults).on_hover_text(id.to_string()).clicked() {
+                        go_to.push(Destination::Trace(*id));
+                    }
+                }
+            });
+        }
+    }
+}
