@@ -20,7 +20,7 @@ use super::bench::{BenchSnapshot, Plot, chosen};
 use crate::messages::{About, told};
 use crate::parts::{RunNoteForm, Side};
 use crate::request::Request;
-use crate::{PageContext, Palette};
+use crate::{PageContext, Palette, Sizes};
 pub use conclusion::Concluded;
 pub use controls::why_not;
 use prepare::{Prepared, RunSettings, ShownSuite};
@@ -33,9 +33,11 @@ pub use results::measurements;
 use selection::Selection;
 use wanted::Wanted;
 
-/// Least height of the live signals, what their heading takes of it, and what is left to the run above, points.
+/// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
-const LIVE_HEADING: f32 = 48.0;
+/// What stands above the live signals beside their buttons: margins and a space, points.
+const LIVE_HEADING: f32 = 24.0;
+/// Least height that is left to the run above them, points.
 const RUN_LEAST: f32 = 120.0;
 /// Share of the page that they take until the divider is dragged.
 const LIVE_SHARE: f32 = 0.3;
@@ -354,7 +356,9 @@ fn live_signals(ui: &mut Ui, plot: &mut Plot, height: f32, context: &mut PageCon
     let plotted = &mut context.settings.plotted;
     let signals = chosen(plotted);
     plot.take(&unit.bench, &signals);
-    let height = height.max(LIVE_LEAST) - LIVE_HEADING;
+    // The panel grows without end if this is less than what is there.
+    let heading = Sizes::of(ui).target + LIVE_HEADING;
+    let height = height.max(LIVE_LEAST) - heading;
     plot.show(ui, height, &signals, plotted, (context.words, &seen));
 }
 

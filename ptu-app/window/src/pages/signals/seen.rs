@@ -139,7 +139,7 @@ fn heard(ui: &mut Ui, reading: &Reading, words: &Words) {
         number(carrier, 84.0).from(600.0),
         number(rate, 72.0).from(760.0),
         number(level, 72.0),
-        number(snr, 56.0),
+        number(snr, 56.0).from(560.0),
     ];
     let table = Table {
         columns: &columns,
