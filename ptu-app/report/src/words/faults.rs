@@ -50,7 +50,7 @@ wordings! {
         withdrawn: "withdrawn {at} by {who}:", "{at} {who} 되돌림:";
         what_was_done: "what was done", "조치 이력";
         occurrences: "occurrences", "발생 기록";
-        freeze_frame: "freeze frame: every signal at the moment", "프리즈 프레임: 발생 순간의 모든 신호";
+        freeze_frame: "freeze frame: every signal", "프리즈 프레임: 발생 순간의 모든 신호";
         freeze: "freeze frame", "프리즈 프레임";
         same_case: "same case", "같은 건";
         seen_at: "seen at", "발생 시각";
