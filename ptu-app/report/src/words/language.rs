@@ -25,7 +25,7 @@ impl Language {
     /// All there are.
     pub const ALL: [Self; 2] = [Self::English, Self::Korean];
 
-    /// Its name in itself.
+    /// Name of the language, in the language.
     pub fn name(self) -> &'static str {
         match self {
             Self::English => "English",
@@ -57,7 +57,7 @@ impl Language {
         let _ = PREFERRED.set(self);
     }
 
-    /// Its wordings.
+    /// The catalogue of wordings in this language.
     pub fn words(self) -> &'static Words {
         match self {
             Self::English => &ENGLISH,

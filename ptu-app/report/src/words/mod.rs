@@ -124,11 +124,8 @@ pub struct Words {
 
 impl Words {
     /// The text in this language, of the English and the Korean one.
-    pub(crate) fn choose<T>(&self, [english, korean]: [T; 2]) -> T {
-        match self.language {
-            Language::English => english,
-            Language::Korean => korean,
-        }
+    pub(crate) fn choose<T>(&self, both: [T; 2]) -> T {
+        self.manner(false).choose(both)
     }
 
     /// A text of scripts, catalogues or the runner, which is made and stored in English: a step's name, a fault mode, a

@@ -185,8 +185,7 @@ impl Picture {
 
     /// Frequencies of a spectrum's row, Hz.
     pub fn row_hz(&self) -> f64 {
-        let Spectrum { shown, window, .. } = &self.spectrum;
-        *shown as f64 / window.len() as f64 * self.sample_hz / ROWS as f64
+        self.sample_hz / 2.0 / ROWS as f64
     }
 
     /// Mean spectrum of the whole, dB over 1 mV rms, and Hz between its values.
@@ -226,8 +225,7 @@ struct Spectrum {
     /// Samples between spectra.
     hop: usize,
     columns: Columns<Levels>,
-    /// Frequencies that are shown, and the sum of powers, mV², of each.
-    shown: usize,
+    /// Sum of powers, mV², of each frequency that is shown: up to half of the sample rate.
     powers: Vec<f64>,
     count: u64,
     /// Factor from a squared value to mV².
@@ -246,8 +244,6 @@ impl Spectrum {
             .collect();
         // A sine of 1 mV rms has 1 mV² at its frequency: half of its amplitude is at the negative one.
         let sum: f64 = window.iter().map(|w| f64::from(*w)).sum();
-        // Up to half of the sample rate there is something to see.
-        let shown = length / 2;
         Self {
             scratch: vec![Complex::default(); fft.get_inplace_scratch_len()],
             fft,
@@ -255,8 +251,7 @@ impl Spectrum {
             work: Vec::with_capacity(length),
             hop: length / 4,
             columns: Columns::new(MOST_SPECTRA),
-            powers: vec![0.0; shown],
-            shown,
+            powers: vec![0.0; length / 2],
             count: 0,
             scale: 2.0 / (sum * sum),
             window,
@@ -275,10 +270,10 @@ impl Spectrum {
         self.fft
             .process_with_scratch(&mut self.work, &mut self.scratch);
         let powers = (self.work.iter()).map(|value| f64::from(value.norm_sqr()) * self.scale);
-        let mut levels = vec![f64::MIN; ROWS];
+        let (mut levels, shown) = (vec![f64::MIN; ROWS], self.powers.len());
         for (place, (sum, power)) in self.powers.iter_mut().zip(powers).enumerate() {
             *sum += power;
-            let level = &mut levels[place * ROWS / self.shown];
+            let level = &mut levels[place * ROWS / shown];
             *level = level.max(power);
         }
         self.count += 1;

@@ -8,10 +8,7 @@ use crate::clock;
 
 impl Say for Damage {
     fn say(&self, how: Manner) -> String {
-        match how.korean {
-            true => korean(self),
-            false => self.to_string(),
-        }
+        how.choose([self.to_string(), korean(self)])
     }
 }
 

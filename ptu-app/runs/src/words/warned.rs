@@ -13,7 +13,7 @@ sentences! {
 
     /// Why an answer is worth less than others.
     Warning {
-        OtherConnection(how: &'static str): "the fault dictionary was made on another connection" [": make one with `ptu campaign{how}`" ": make one anew"], "고장 사전이 다른 연결 방식으로 만들어짐" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];
+        OtherConnection(how: &'static str): "the fault dictionary was made on another connection" [": make one with `ptu campaign{how}`" ": make one"], "고장 사전이 다른 연결 방식으로 만들어짐" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];
         Stale(differs: Differs, how: &'static str): "the fault dictionary is stale, {differs}" [": make a new one with `ptu campaign{how}`" ": make a new one"], "고장 사전이 현재와 맞지 않음 ({differs})" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];
         KnowsPart(modes: usize, of: usize): "the fault dictionary knows {modes} of {of} fault modes only", "고장 사전은 고장 모드 {of}개 중 {modes}개만 알고 있음";
         NothingToDiagnose: "the run has no step and no fault that could be diagnosed", "진단할 수 있는 단계와 고장이 이 시험에 없음";

@@ -66,7 +66,7 @@ fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckRepo
     Ok(report)
 }
 
-/// What is to be known besides, and where the chain of seals ends.
+/// Remarks of the check, and where the chain of seals ends.
 fn besides(report: &CheckReport) -> String {
     let remarks = report.remarks.iter().map(|remark| format!("\n{remark}"));
     let head = report

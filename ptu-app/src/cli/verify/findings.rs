@@ -21,13 +21,13 @@ pub(super) struct Findings {
     pub(super) is_covered: bool,
     /// Who signed what, when, and how the key stood then.
     pub(super) signatures: Vec<Value>,
-    /// The same in words.
+    /// The signatures, a sentence each.
     pub(super) said: Vec<String>,
     /// What was changed, and where.
     pub(super) changes: Vec<String>,
     /// What is not signed, or not by a key that is trusted.
     pub(super) doubts: Vec<String>,
-    /// What is to be known besides.
+    /// What is neither a change nor a doubt, as samples that were pruned.
     pub(super) remarks: Vec<String>,
 }
 

@@ -68,11 +68,11 @@ impl Chart<'_> {
         y_axis(ui.painter(), gutter, plot, range, &palette);
         let step = plot.width() / bars.len() as f32;
         let named = |name: &str| {
-            let laid = |name| {
-                ui.painter()
-                    .layout_no_wrap(name, small.clone(), palette.quiet)
-            };
-            laid(name.to_owned()).size().x
+            let font = small.clone();
+            let laid = ui
+                .painter()
+                .layout_no_wrap(name.to_owned(), font, palette.quiet);
+            laid.size().x
         };
         let widest = bars.iter().map(|bar| named(&bar.name)).fold(1.0, f32::max);
         let each = ((widest + BESIDE) / step).ceil().max(1.0) as usize;

@@ -19,7 +19,7 @@ const BELOW: f32 = 24.0;
 
 /// What stands at a side of a page; its divider can be dragged.
 pub struct Side<'a> {
-    /// What is there.
+    /// Name of the list, form or strip; the button that opens its drawer has it.
     pub name: &'a str,
     /// Its width until the divider is dragged, and that in a wide window, points.
     pub wide: [f32; 2],
@@ -30,6 +30,14 @@ impl Side<'_> {
     /// The window is so narrow that the list is a drawer.
     pub fn is_narrow(ui: &Ui) -> bool {
         ui.ctx().content_rect().width() < BESIDE
+    }
+
+    /// Shows what stays open whatever is clicked in it: nothing of it is chosen.
+    pub fn show_open(&self, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+        let _: Option<()> = self.show(ui, |ui| {
+            content(ui);
+            None
+        });
     }
 
     /// Shows the list, or the button that opens its drawer; what was chosen in it, which closes the drawer.

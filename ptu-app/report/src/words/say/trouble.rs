@@ -12,12 +12,12 @@ impl Words {
         what.say(self.manner(false))
     }
 
-    /// The same for who has a command line, with the commands that help.
+    /// Why something could not be done, with the commands that help.
     pub fn told(&self, what: &impl Say) -> String {
         what.say(self.manner(true))
     }
 
-    fn manner(&self, commands: bool) -> Manner {
+    pub(in crate::words) fn manner(&self, commands: bool) -> Manner {
         let korean = self.language == Language::Korean;
         Manner { korean, commands }
     }

@@ -109,10 +109,7 @@ impl ProceduresPage {
             at_right: false,
         };
         // Several are chosen in it.
-        let _: Option<()> = tree.show(ui, |ui| {
-            self.tree(ui, context);
-            None
-        });
+        tree.show_open(ui, |ui| self.tree(ui, context));
         CentralPanel::default().show(ui, |ui| {
             self.controls(ui, context);
             overview::overview(ui, context);

@@ -94,10 +94,7 @@ impl ReportPage {
                 wide: [232.0, 280.0],
                 at_right: true,
             };
-            let _: Option<()> = strip.show(ui, |ui| {
-                self.strip(ui, context);
-                None
-            });
+            strip.show_open(ui, |ui| self.strip(ui, context));
         }
         CentralPanel::default().show(ui, |ui| {
             self.runs.tell_other_unit(ui, context.words);
