@@ -14,6 +14,8 @@ pub struct AntennaSignal {
     pub level_mv: f64,
     /// Time for which a receiver of waveforms had it already when it was heard.
     pub heard_for: Duration,
+    /// Time for which it may be over already, as a receiver of waveforms hears it for longer than it is there.
+    pub lags: Duration,
 }
 
 /// Pulses of one tachometer input in one scan.

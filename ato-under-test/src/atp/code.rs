@@ -35,8 +35,8 @@ pub struct CodeDecoder {
     confirmed: Instant,
     candidate: Code,
     steady: OnDelay,
-    /// Time for which the candidate must be steady.
-    patience: Duration,
+    /// The candidate comes back after a more restrictive code: it must be steady for the hold time.
+    comes_back: bool,
     heard: Heard,
     /// When a more restrictive code took the place of another, or came back after it.
     restricted: Option<Instant>,
@@ -59,7 +59,7 @@ impl CodeDecoder {
             confirmed: Instant::ZERO,
             candidate: Code::None,
             steady: OnDelay::default(),
-            patience: Duration::ZERO,
+            comes_back: false,
             heard: Heard::default(),
             restricted: None,
             other: None,
@@ -95,14 +95,17 @@ impl CodeDecoder {
                 self.restricted = Some(now);
             }
             let comes_back = self.restricted.is_some_and(|at| now.since(at) < hold);
-            self.patience = match comes_back && stricter(self.code, match_) && confirms {
-                true => hold,
-                false => detect,
-            };
+            self.comes_back = comes_back && stricter(self.code, match_) && confirms;
             self.candidate = match_;
             self.steady.clear();
         }
-        let steady = self.steady.update(now, match_ != Code::None, self.patience);
+        // What may be over already permits no more.
+        let patience = match stricter(match_, self.code) {
+            true => detect,
+            false if self.comes_back => hold,
+            false => detect + signal.lags,
+        };
+        let steady = (self.steady).update(now, match_ != Code::None, patience);
         if match_ != Code::None && match_ != self.code {
             self.other = Some((match_, now));
         }
@@ -115,10 +118,10 @@ impl CodeDecoder {
             }
             self.by_sum = !steady;
             self.flicker_reported &= !steady;
-            self.confirm(now, match_);
+            self.confirm(now, signal, match_);
         } else if match_ == self.code && match_ != Code::None {
             match enough {
-                true => self.confirm(now, match_),
+                true => self.confirm(now, signal, match_),
                 false => self.unconfirmed = true,
             }
         }
@@ -135,9 +138,14 @@ impl CodeDecoder {
         self.report_unknown(now, strange, signal, detect + hold, log);
     }
 
-    fn confirm(&mut self, now: Instant, code: Code) {
+    fn confirm(&mut self, now: Instant, signal: AntennaSignal, code: Code) {
+        let before = if code == self.code {
+            self.confirmed
+        } else {
+            Instant::ZERO
+        };
         self.code = code;
-        self.confirmed = now;
+        self.confirmed = before.max(now.back(signal.lags));
         self.unconfirmed = false;
     }
 
@@ -265,6 +273,7 @@ mod tests {
             rate_hz,
             level_mv,
             heard_for: Duration::ZERO,
+            lags: Duration::ZERO,
         }
     }
 

@@ -110,7 +110,9 @@ impl FrontEnd {
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
         let mut own = in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv);
-        own.heard_for = (image.sampled()).map_or(Duration::ZERO, |sampled| sampled.heard_for);
+        if let Some(sampled) = image.sampled() {
+            (own.heard_for, own.lags) = (sampled.heard_for, sampled.lags);
+        }
         let track = self.separate(
             own,
             image
@@ -291,6 +293,7 @@ fn in_antenna(carrier_hz: u16, rate_chz: u16, level_mv: u16) -> AntennaSignal {
         rate_hz: f64::from(rate_chz) / 100.0,
         level_mv: f64::from(level_mv),
         heard_for: Duration::ZERO,
+        lags: Duration::ZERO,
     }
 }
 

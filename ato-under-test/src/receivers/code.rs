@@ -13,14 +13,14 @@ use super::downmix::{Downmix, Phasor};
 /// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
-/// Most values of a window: about a second.
-const MOST: usize = 640;
+/// Most values of a window.
+const MOST: usize = 400;
 /// Share of the time until a code is decoded that the window holds. In the rest the code must stay what it is: longer than
 /// a jump of the phase takes from the window's one end to where its other end no longer feels it.
 const SHARE_OF_DETECTION: f32 = 0.75;
 /// Shortest and longest window, s.
 const SHORTEST_S: f32 = 0.2;
-const LONGEST_S: f32 = 1.0;
+const LONGEST_S: f32 = 0.62;
 /// Of noise alone, the weaker half of all values has this share of the mean power.
 const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
 /// Least share of the keying's power that the rate's fundamental has, of the window and of each half. A square wave has
@@ -35,6 +35,15 @@ const NEARLY: f32 = 0.88;
 const EXPLAINED: f32 = 0.7;
 /// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
 const WHOLE: f32 = 0.88;
+/// Periods of a rate in half a window with fewer of which its mean and its tone there are told apart step by step.
+const FEW_PERIODS: f32 = 1.4;
+const STEPS: usize = 3;
+/// Least amplitude of a rate in the newest half of the window over that in the oldest, and most that it is off a code's, Hz:
+/// else it has just ended.
+const GOES_ON: f32 = 0.9;
+const GOES_ON_HZ: f32 = 0.15;
+/// Power of a code's fundamental over its power on the carrier.
+const OF_CARRIER: f32 = 4.0 / (PI * PI);
 /// Most power in quadrature of one code alone, over that of the keying.
 const BESIDE: f32 = 0.12;
 /// With less noise than this, over the power of the keying, each break of a rate shows.
@@ -89,6 +98,8 @@ pub struct Heard {
     pub validity: f32,
     /// Level over the noise within 160 Hz of the carrier, dB; of a carrier without a code it is not known.
     pub snr_db: Option<f32>,
+    /// The newest half of the window has it as strong as the oldest, and no noise hides a break.
+    pub goes_on: bool,
 }
 
 /// Receives the codes of one carrier.
@@ -169,20 +180,21 @@ impl CodeReceiver {
         let on = self.on_carrier();
         let mean = mean_of(&on.values[all.clone()], |value| value);
         let power = power_around(&on.values[all.clone()], mean);
-        let heard = |rate_hz, level_mv, validity, snr_db| {
+        let heard = |rate_hz, level_mv, validity, snr_db, goes_on| {
             (level_mv >= self.reception.level_min_mv).then_some(Heard {
                 carrier_hz: self.reception.carrier_hz + on.offset_hz,
                 rate_hz,
                 level_mv,
                 validity,
                 snr_db,
+                goes_on,
             })
         };
         let flat = libm::sqrtf(2.0 * (power - on.noise).max(0.0)) < FLAT * mean;
         if flat && on.beside < BESIDE * mean * mean {
-            return heard(0.0, mean / SQRT_2, 1.0, None);
+            return heard(0.0, mean / SQRT_2, 1.0, None, true);
         }
-        let (tone, rate_hz, is_whole) = self.rate(&on, mean, rates_hz)?;
+        let (tone, rate_hz, [is_whole, goes_on]) = self.rate(&on, mean, rates_hz)?;
         let share = tone.power() / power;
         if share < LEAST_SHARE || tone.amplitude < LEAST_DEPTH * mean {
             return None;
@@ -208,7 +220,14 @@ impl CodeReceiver {
             _ => return None,
         };
         let snr_db = Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6)));
-        heard(rate_hz, libm::sqrtf(signal / 2.0), share.min(1.0), snr_db)
+        let level_mv = libm::sqrtf(signal / 2.0);
+        heard(
+            rate_hz,
+            level_mv,
+            share.min(1.0),
+            snr_db,
+            goes_on && is_clear,
+        )
     }
 
     /// Level of the louder half of the window, mV rms.
@@ -278,37 +297,44 @@ impl CodeReceiver {
         weakest.iter().sum::<f32>() / quarter as f32 / WEAKER_HALF / 2.0
     }
 
-    /// The strongest rate, what it is exactly, and whether it goes on through the window without a break: of the table, or
-    /// of all others.
-    fn rate(&self, on: &OnCarrier, mean: f32, table_hz: &[f32]) -> Option<(Tone, f32, bool)> {
+    /// The strongest rate, what it is exactly, and whether it goes on through the window without a break, and at its end: of
+    /// the table, or of all others.
+    fn rate(&self, on: &OnCarrier, mean: f32, table_hz: &[f32]) -> Option<(Tone, f32, [bool; 2])> {
         let strongest = |rates: &mut dyn Iterator<Item = f32>| {
             let tones = rates.map(|rate_hz| self.tone(on, mean, rate_hz, 0, self.window));
             tones.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
         };
         let nearest = strongest(&mut table_hz.iter().copied())?;
-        if let Some((offset_hz, is_whole)) = self.offset_of_rate(on, nearest)
+        if let Some((offset_hz, lasts)) = self.offset_of_rate(on, nearest)
             && offset_hz.abs() < RATE_STEP_HZ / 2.0
         {
-            return Some((nearest, nearest.rate_hz + offset_hz, is_whole));
+            return Some((nearest, nearest.rate_hz + offset_hz, lasts));
         }
         let steps = ((RATES_HZ.1 - RATES_HZ.0) / RATE_STEP_HZ) as usize;
         let others = (0..steps).map(|step| RATES_HZ.0 + step as f32 * RATE_STEP_HZ);
         let nearest = strongest(&mut others.chain(table_hz.iter().copied()))?;
-        let (offset_hz, is_whole) = self.offset_of_rate(on, nearest)?;
+        let (offset_hz, lasts) = self.offset_of_rate(on, nearest)?;
         let rate_hz = nearest.rate_hz + offset_hz;
         let tone = self.tone(on, mean, rate_hz, 0, self.window);
-        Some((tone, rate_hz, is_whole))
+        Some((tone, rate_hz, lasts))
     }
 
     /// By how much the code rate is above this one, Hz, from how its phase goes on: judged in three halves that overlap,
     /// since a jump of the phase looks like another rate, and shows in the middle half.
-    fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, bool)> {
+    fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, [bool; 2])> {
         let half = self.window / 2;
+        let half_s = half as f32 / self.downmix.envelope_hz();
+        let few = whole.rate_hz * half_s < FEW_PERIODS;
+        let steps = if few { STEPS } else { 0 };
         let mut halves = [whole; 3];
         for (place, of_half) in halves.iter_mut().enumerate() {
             let (from, to) = (place * half / 2, place * half / 2 + half);
-            let mean = mean_of(&on.values[from..to], |value| value);
+            let mut mean = mean_of(&on.values[from..to], |value| value);
             *of_half = self.tone(on, mean, whole.rate_hz, from, to);
+            for _ in 0..steps {
+                mean = self.mean_beside(on, *of_half, from, to);
+                *of_half = self.tone(on, mean, whole.rate_hz, from, to);
+            }
             let power = power_around(&on.values[from..to], mean);
             if of_half.power() < LEAST_SHARE_OF_HALF * power {
                 return None;
@@ -316,10 +342,12 @@ impl CodeReceiver {
         }
         // The phases are those at the middle of each half, of the nominal rate's own clock.
         let turned = wrapped(halves[2].angle - halves[0].angle);
-        let offset_hz = turned / TAU / (half as f32 / self.downmix.envelope_hz());
+        let offset_hz = turned / TAU / half_s;
         let least = whole.amplitude.min(halves[1].amplitude);
         let is_whole = least >= WHOLE * halves[0].amplitude.max(halves[2].amplitude);
-        Some((offset_hz, is_whole))
+        let as_strong = halves[2].amplitude >= GOES_ON * halves[0].amplitude;
+        let goes_on = as_strong && offset_hz.abs() < GOES_ON_HZ;
+        Some((offset_hz, [is_whole, goes_on]))
     }
 
     /// Whether what a code does not explain of the window is a weaker one at another rate.
@@ -338,7 +366,24 @@ impl CodeReceiver {
             .map(|rate_hz| self.tone(on, mean, *rate_hz, 0, self.window).power())
             .fold(0.0, f32::max);
         let unexplained = power - on.noise - tone.power() / OF_SQUARE_WAVE;
-        second * self.apart <= tone.power() && second / OF_SQUARE_WAVE >= EXPLAINED * unexplained
+        // Its carrier may be in quadrature.
+        (second + OF_CARRIER * on.beside) * self.apart <= tone.power()
+            && second / OF_SQUARE_WAVE >= EXPLAINED * unexplained
+    }
+
+    /// Mean of a part of the window beside a tone.
+    fn mean_beside(&self, on: &OnCarrier, tone: Tone, from: usize, to: usize) -> f32 {
+        let step = TAU * tone.rate_hz / self.downmix.envelope_hz();
+        let (mut at, turn) = (
+            Phasor::at(tone.angle + step * from as f32),
+            Phasor::at(step),
+        );
+        let mut sum = 0.0;
+        for (value, w) in on.values[from..to].iter().zip(hann(to - from)) {
+            sum += (value - tone.amplitude * at.re) * w;
+            at = at.times(turn);
+        }
+        sum * 2.0 / (to - from) as f32
     }
 
     /// Amplitude and phase of a rate in a part of the window.

@@ -20,6 +20,9 @@ const COILS: usize = Coil::ALL.len();
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
 const HEARD_EARLY_MS: u64 = 150;
+/// Time for which a code that does not go on may be over when it is heard still: this, ms, and a part of the window.
+const HEARD_LATE_MS: u64 = 40;
+const HEARD_LATE_PART: u64 = 10;
 /// Scans for which the last code stands in for one that noise hides.
 const STANDS_IN: u8 = 3;
 /// Weakest level of TWC and of a marker, as a share of its configured one.
@@ -32,6 +35,8 @@ pub struct Sampled {
     pub input: IoInput,
     /// Time for which the code was there already when it was heard.
     pub heard_for: Duration,
+    /// Time for which it may be over already.
+    pub lags: Duration,
     /// Time since the last marker was passed.
     pub marker_age: Duration,
 }
@@ -129,8 +134,8 @@ impl Coils {
         if rests(Coil::AtpAntenna) && rests(Coil::Sensor1A) {
             return None;
         }
-        let mut heard_for = Duration::ZERO;
-        if let Some(heard) = self.hear_code() {
+        let (mut heard_for, mut lags) = (Duration::ZERO, Duration::ZERO);
+        if let Some((heard, stands_in)) = self.hear_code() {
             let whole = |value: f32| libm::roundf(value) as u16;
             input.carrier_hz = whole(heard.carrier_hz);
             input.code_rate_chz = whole(100.0 * heard.rate_hz);
@@ -138,6 +143,9 @@ impl Coils {
             let window_s = (self.codes.first()).map_or(0.0, |(receiver, _)| receiver.window_s());
             let window_ms = (window_s * 1000.0) as u64;
             heard_for = Duration::from_ms(window_ms.saturating_sub(HEARD_EARLY_MS));
+            if stands_in > 0 || !heard.goes_on {
+                lags = Duration::from_ms(HEARD_LATE_MS + window_ms / HEARD_LATE_PART);
+            }
         }
         let [one, two] = &self.sensors;
         let sample_us = 1e6 / SAMPLE_HZ;
@@ -152,19 +160,20 @@ impl Coils {
         Some(Sampled {
             input,
             heard_for,
+            lags,
             marker_age: Duration::from_us(age),
         })
     }
 
-    /// The code in the antenna now.
-    fn hear_code(&mut self) -> Option<Heard> {
+    /// The code in the antenna now, and for how many scans it has stood in.
+    fn hear_code(&mut self) -> Option<(Heard, u8)> {
         let now = (self.codes.iter()).find_map(|(receiver, rates)| receiver.heard(rates));
         self.heard = match (now, self.heard) {
             (Some(heard), _) => Some((heard, 0)),
             (None, Some((last, since))) if since < STANDS_IN => Some((last, since + 1)),
             _ => None,
         };
-        self.heard.map(|(heard, _)| heard)
+        self.heard
     }
 
     /// Bytes received by TWC since they were forgotten last.

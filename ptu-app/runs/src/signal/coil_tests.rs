@@ -116,11 +116,75 @@ pub(super) fn decided(
             false => steady = Duration::ZERO,
         }
         candidate = code;
-        if let Some(rate) = code.filter(|_| steady + sampled.heard_for >= detect) {
+        if let Some(rate) = code.filter(|_| steady + sampled.heard_for >= detect + sampled.lags) {
             decided.push((scan, rate));
         }
     }
     decided
+}
+
+/// What is in the antenna, each for so many ms: the rate of a code, 0 of a carrier without one, `None` nothing.
+fn by_turns(
+    config: &UnitConfig,
+    parts: &[(Option<f64>, u64)],
+    level_mv: f64,
+    skipped: usize,
+) -> Vec<f64> {
+    let carrier_hz = config.codes[0].carrier_hz;
+    let mut wave = CodeWave::new(carrier_hz, 10.0, level_mv, RATE);
+    wave.nth(skipped);
+    let mut samples = Vec::new();
+    for (rate_hz, ms) in parts {
+        let level_mv = if rate_hz.is_some() { level_mv } else { 0.0 };
+        wave.set(carrier_hz, rate_hz.unwrap_or(0.0), level_mv, RATE);
+        samples.extend(wave.by_ref().take(*ms as usize * 48));
+    }
+    samples
+}
+
+/// Goal: by waveforms a code raises a limit where it does by values, and soon after. Method: each type of unit; a code of any
+/// level, in bursts of any length below the time of detection and with any pause, between silence, a carrier without a
+/// code, or another code, from which it is told later; then the same for long. 75 and a stop by turns are always among them.
+#[test]
+fn a_burst_that_is_too_short_by_values_is_by_waveforms() {
+    let mut random = Random::new(3);
+    // Shares of the time of detection, %: between silence or a carrier without a code, and between codes. A window that is
+    // long is clear of a code later.
+    for (name, shares) in [("sg100", [97, 85]), ("seoul34", [75, 70])] {
+        let config = scripts().unit_config(name).expect("read").content;
+        let detect_ms = u64::from(config.receiver.detect_ms);
+        let most_ms = shares.map(|share| detect_ms * share / 100);
+        let first_ms = |parts: &[(Option<f64>, u64)], rate_hz: f64, random: &mut Random| {
+            let level_mv = config.receiver.level_min_mv * (1.3 + 10.0 * random.unit());
+            let samples = by_turns(&config, parts, level_mv, random.below(48_000));
+            let scans = samples.len() / SCAN_SAMPLES;
+            let decided = decided(&config, samples.into_iter(), scans);
+            let first = decided.iter().find(|(_, rate)| *rate == rate_hz);
+            first.map(|(scan, _)| *scan as u64 * SCAN.as_ms())
+        };
+        for case in 0..36 {
+            let codes = &config.codes;
+            let code = &codes[codes.len() - 1 - case % codes.len()];
+            let others = codes.iter().filter(|other| other.rate_hz != code.rate_hz);
+            let other = others
+                .map(|other| other.rate_hz)
+                .nth(random.below(codes.len() - 1));
+            let (around, most_ms) = match case % 3 {
+                0 => (Some(0.0), most_ms[0]),
+                1 => (None, most_ms[0]),
+                _ => (other, most_ms[1]),
+            };
+            let burst_ms = most_ms - random.below(most_ms as usize / 6) as u64;
+            let pause_ms = 150 + random.below(detect_ms as usize) as u64;
+            let turns = [(around, pause_ms), (Some(code.rate_hz), burst_ms)].repeat(5);
+            let what = format!("{name} {}, {turns:?}", code.name);
+            assert_eq!(first_ms(&turns, code.rate_hz, &mut random), None, "{what}");
+            let begins = [(around, detect_ms), (Some(code.rate_hz), 2 * detect_ms)];
+            let first = first_ms(&begins, code.rate_hz, &mut random).expect("it is decided");
+            let soon = most_ms..detect_ms + 190;
+            assert!(soon.contains(&(first - detect_ms)), "{what}: {first} ms");
+        }
+    }
 }
 
 /// Two codes, one after the other, at any phase of carrier and code, or one beside a weaker one, in any noise, hum and
