@@ -1,10 +1,12 @@
 //! Search for hazards: scenes that follow no rule against an independent monitor of what is true.
 //!
 //! A breach is explained by a condition that `docs/protection.md` exports by name: one of the scene, or a failed part that
-//! the condition names. Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one scene, shortened.
+//! the condition names. Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one scene, shortened, and as a procedure.
 
 mod acts;
 mod authority;
+mod forms;
+mod guards;
 mod memory;
 mod monitor;
 mod permitted;
@@ -12,10 +14,12 @@ mod place;
 mod plan;
 mod play;
 mod proceeding;
+mod scene;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use self::acts::Kind;
 use self::monitor::Invariant;
 use self::plan::Plan;
 use self::play::{Find, play};
@@ -83,6 +87,8 @@ fn explained(find: &Find, exported: &[Exported]) -> Option<&'static str> {
 struct Search {
     setup: BenchSetup,
     modes: Vec<FaultMode>,
+    /// What each plan has, whatever else; none = by turns.
+    first: Option<Kind>,
 }
 
 impl Search {
@@ -93,11 +99,12 @@ impl Search {
         Self {
             setup,
             modes: catalogue,
+            first: None,
         }
     }
 
     fn plan(&self, number: u64) -> Plan {
-        Plan::draw(&self.setup, &self.modes, number)
+        Plan::draw(&self.setup, &self.modes, self.first, number)
     }
 
     /// Plays the plans of these numbers on all processors: finds, and the time played, min.
@@ -118,7 +125,7 @@ impl Search {
     }
 
     /// The same breach by as few acts as do it.
-    fn shortened(&self, number: u64) -> Option<Find> {
+    fn shortened(&self, number: u64) -> Option<(Plan, Find)> {
         let mut plan = self.plan(number);
         let mut find = play(&self.setup, &plan)?;
         loop {
@@ -130,7 +137,7 @@ impl Search {
             });
             match shorter {
                 Some((shorter, less)) => (plan, find) = (shorter, less),
-                None => return Some(find),
+                None => return Some((plan, find)),
             }
         }
     }
@@ -159,8 +166,8 @@ fn judge(search: &Search, finds: &[(u64, Find)], minutes: f64) {
     for ((invariant, how), numbers) in &kinds {
         println!("{invariant:?} {how}: {}, {numbers:?}", numbers.len());
         for number in numbers.iter().take(SHORTENED) {
-            if let Some(find) = search.shortened(*number) {
-                println!("  {number}: {find}");
+            if let Some((plan, find)) = search.shortened(*number) {
+                println!("  {number}: {find}\n{}", scene::script(&plan, &find));
             }
         }
     }

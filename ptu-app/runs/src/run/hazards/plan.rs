@@ -1,6 +1,8 @@
 //! What is done to a unit: how a scene begins, what is done in it and when, which parts have failed. A plan follows from
 //! its number alone, so that a part of it can be left out and the rest played again.
 
+use std::fmt;
+
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{StationData, Stimulus};
 use protocol::injection::FaultMode;
@@ -18,6 +20,22 @@ pub enum Act {
     Supply(bool),
     /// Two codes, or two positions of the mode switch or the reverser, by turns, each for its time, until another is put in.
     Alternate([(Stimulus, Duration); 2]),
+}
+
+impl fmt::Display for Act {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Do(stimulus) => write!(f, "{stimulus}"),
+            Self::Supply(on) => write!(f, "supply {on}"),
+            Self::Alternate([(first, one), (second, other)]) => {
+                let (one, other) = (one.as_ms(), other.as_ms());
+                write!(
+                    f,
+                    "{first} for {one} ms and {second} for {other} ms by turns"
+                )
+            }
+        }
+    }
 }
 
 /// How a scene begins.
@@ -79,8 +97,14 @@ pub struct Draw<'a> {
 }
 
 impl Plan {
-    /// The plan of a number. Scenes and pairs of kinds come by turns, so that each meets each.
-    pub fn draw(setup: &BenchSetup, catalogue: &[FaultMode], number: u64) -> Self {
+    /// The plan of a number. Scenes and pairs of kinds come by turns, so that each meets each; or `first` meets each, and
+    /// then one fault alone is in each plan.
+    pub fn draw(
+        setup: &BenchSetup,
+        catalogue: &[FaultMode],
+        first: Option<Kind>,
+        number: u64,
+    ) -> Self {
         let turn = number as usize;
         let scene = SCENES[turn % SCENES.len()];
         let mut random = Random::new(number);
@@ -99,7 +123,8 @@ impl Plan {
             true => [70_000, 130_000, 260_000][random.below(3)],
             false => 60_000,
         };
-        let faults = faults(catalogue, &mut random);
+        let always = first.is_some() && catalogue.len() == 1;
+        let faults = faults(catalogue, always, &mut random);
         let displaced_m = displaced(&mut random, ride);
         let data_of = (ride && random.chance(0.2)).then(|| random.below(sections.len()));
         let adhesion = random
@@ -118,7 +143,7 @@ impl Plan {
         let quiet = ride && displaced_m != [0.0; 4] && draw.random.chance(0.6);
         if !quiet {
             kinds.extend([
-                KINDS[pair % KINDS.len()],
+                first.unwrap_or(KINDS[pair % KINDS.len()]),
                 KINDS[pair / KINDS.len() % KINDS.len()],
             ]);
             let more = [0, 0, 2, 5, 12][draw.random.below(5)];
@@ -200,9 +225,12 @@ impl Plan {
 }
 
 /// None, one or two parts that have failed. A time base may be off by any factor.
-fn faults(catalogue: &[FaultMode], random: &mut Random) -> Vec<FaultMode> {
+fn faults(catalogue: &[FaultMode], always: bool, random: &mut Random) -> Vec<FaultMode> {
     use protocol::injection::{Effect, Place};
-    let count = [0, 0, 0, 1, 1, 2][random.below(6)];
+    let count = match [0, 0, 0, 1, 1, 2][random.below(6)] {
+        _ if always => 1,
+        count => count,
+    };
     let mut draw = || {
         let mut mode = catalogue[random.below(catalogue.len())].clone();
         if let (Place::Clock, Effect::Gain { factor }) = (mode.place, &mut mode.effect) {

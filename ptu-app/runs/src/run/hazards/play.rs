@@ -1,6 +1,7 @@
 //! Plays a plan on a bench, and has the monitor watch.
 
 use std::fmt;
+use std::iter::Peekable;
 
 use btu_rig::rig::Bench;
 use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
@@ -40,7 +41,7 @@ pub struct Find {
     /// Faults that were injected, and those of tachometers that the bench made.
     pub faults: Vec<String>,
     /// What was done until then, in order.
-    pub acts: Vec<String>,
+    pub acts: Vec<(Instant, Act)>,
 }
 
 impl fmt::Display for Find {
@@ -53,7 +54,9 @@ impl fmt::Display for Find {
             ..
         } = self;
         writeln!(f, "at {at} with {faults:?}: {state}")?;
-        write!(f, "    {}", acts.join("; "))
+        let acts = acts.iter();
+        let acts = acts.map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6));
+        write!(f, "    {}", acts.collect::<Vec<_>>().join("; "))
     }
 }
 
@@ -86,12 +89,17 @@ struct Player<'a> {
     tcms_good: bool,
     driven: bool,
     pulsed: usize,
-    acts: Vec<(Instant, String)>,
+    acts: Vec<(Instant, Act)>,
 }
 
 /// Plays it; what was found first, if anything was, and what only conditions explain.
 pub fn play(setup: &BenchSetup, plan: &Plan) -> Option<Find> {
     Player::new(setup, plan).play()
+}
+
+/// The limit that the unit tells in each scan of a plan, km/h.
+pub fn limits(setup: &BenchSetup, plan: &Plan) -> Vec<f64> {
+    Player::new(setup, plan).limits()
 }
 
 impl<'a> Player<'a> {
@@ -137,13 +145,7 @@ impl<'a> Player<'a> {
         let mut found: Option<(Find, u32)> = None;
         while self.bench.now() < end {
             let now = self.bench.now();
-            let due = |at_ms: u32| now >= begin + Duration::from_ms(u64::from(at_ms));
-            while let Some((_, act)) = acts.next_if(|(at_ms, _)| due(*at_ms)) {
-                self.act(*act);
-            }
-            self.turn(now);
-            self.go_on(now);
-            self.bench.tick().expect("the embedded unit answers");
+            self.scan(begin, &mut acts);
             // Without TCMS nothing tells of motion that no tachometer sees.
             if !self.powered || self.blind() && !self.tcms_good {
                 seen_from = now + started;
@@ -164,6 +166,36 @@ impl<'a> Player<'a> {
             }
         }
         None
+    }
+
+    /// One scan, with what is due in it.
+    fn scan<'p>(
+        &mut self,
+        begin: Instant,
+        acts: &mut Peekable<impl Iterator<Item = &'p (u32, Act)>>,
+    ) {
+        let now = self.bench.now();
+        let due = |at_ms: u32| now >= begin + Duration::from_ms(u64::from(at_ms));
+        while let Some((_, act)) = acts.next_if(|(at_ms, _)| due(*at_ms)) {
+            self.act(*act);
+        }
+        self.turn(now);
+        self.go_on(now);
+        self.bench.tick().expect("the embedded unit answers");
+    }
+
+    /// The limit in each scan, km/h.
+    fn limits(mut self) -> Vec<f64> {
+        self.begin();
+        let begin = self.bench.now();
+        let end = begin + Duration::from_ms(u64::from(self.plan.length_ms));
+        let mut acts = self.plan.acts.iter().peekable();
+        let mut limits = Vec::new();
+        while self.bench.now() < end {
+            self.scan(begin, &mut acts);
+            limits.push(self.bench.rig().sample().get(Signal::Limit).unwrap_or(0.0));
+        }
+        limits
     }
 
     fn observed(&self) -> Observed<'_> {
@@ -201,16 +233,13 @@ impl<'a> Player<'a> {
         if self.tacho_made {
             faults.push("speed_sensor_1.of_the_bench".to_owned());
         }
-        let acts = self.acts.iter();
         Find {
             breach,
             at: seen.now,
             state: state(seen),
             hidden_kmh: seen.kmh() - seen.value(Signal::Speed),
             faults,
-            acts: acts
-                .map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6))
-                .collect(),
+            acts: self.acts.clone(),
         }
     }
 
@@ -234,15 +263,6 @@ impl<'a> Player<'a> {
         self.wait(4_000);
         self.apply(Stimulus::Acknowledge);
         self.wait(1_000);
-        // The same in every plan.
-        self.acts.clear();
-        self.acts.push((
-            self.bench.now(),
-            format!(
-                "{scene:?}, section {}, markers displaced by {:?} m",
-                self.section.section, self.plan.displaced_m
-            ),
-        ));
         if let Some(coefficient) = self.plan.adhesion {
             self.apply(Stimulus::Adhesion {
                 coefficient: Some(coefficient),
@@ -329,13 +349,10 @@ impl<'a> Player<'a> {
             Act::Supply(on) => {
                 self.powered = on;
                 self.bench.link_mut().set_power(now, on);
-                self.acts.push((now, format!("supply {on}")));
+                self.acts.push((now, act));
             }
             Act::Alternate(turns) => {
-                let [(first, one), (second, other)] = turns;
-                let (one, other) = (one.as_ms(), other.as_ms());
-                let text = format!("{first} for {one} ms and {second} for {other} ms by turns");
-                self.acts.push((now, text));
+                self.acts.push((now, act));
                 self.turns = Some(turns);
                 self.turn_due = now;
             }
@@ -355,10 +372,8 @@ impl<'a> Player<'a> {
 
     /// Contacts of the desk change all the time.
     fn chatters(&self) -> bool {
-        (self.turns).is_some_and(|[(one, _), (other, _)]| {
-            let of_desk = matches!(one, Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. });
-            of_desk && one != other
-        })
+        self.turns
+            .is_some_and(|turns| of_desk(turns) && turns[0].0 != turns[1].0)
     }
 
     /// What cannot be done is not done, as a bench refuses it.
@@ -387,15 +402,8 @@ impl<'a> Player<'a> {
             Stimulus::Marker { .. } => self.pulsed += 1,
             _ => {}
         }
-        let ends_turns = match stimulus {
-            Stimulus::Code { .. } | Stimulus::CodeOff | Stimulus::CodesAlong { .. } => {
-                !self.chatters()
-            }
-            Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. } => self.chatters(),
-            _ => false,
-        };
-        self.turns = self.turns.filter(|_| !ends_turns);
-        self.acts.push((now, stimulus.to_string()));
+        self.turns = self.turns.filter(|turns| !ends(*turns, stimulus));
+        self.acts.push((now, Act::Do(stimulus)));
     }
 
     /// No tachometer gives pulses.
@@ -404,6 +412,21 @@ impl<'a> Player<'a> {
         let dead = |signal| sample.get(signal) == Some(1.0);
         let unfed = |fault: &FaultMode| fault.place == Place::SpeedSensors;
         dead(Signal::Tacho1) && dead(Signal::Tacho2) || self.plan.faults.iter().any(unfed)
+    }
+}
+
+/// What alternates are contacts of the desk, not codes.
+fn of_desk(turns: [(Stimulus, Duration); 2]) -> bool {
+    let [(one, _), _] = turns;
+    matches!(one, Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. })
+}
+
+/// A stimulus takes the place of two that alternate.
+pub fn ends(turns: [(Stimulus, Duration); 2], stimulus: Stimulus) -> bool {
+    match stimulus {
+        Stimulus::Code { .. } | Stimulus::CodeOff | Stimulus::CodesAlong { .. } => !of_desk(turns),
+        Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. } => of_desk(turns),
+        _ => false,
     }
 }
 
