@@ -72,7 +72,7 @@ fn bursts_raise_no_limit_by_waveforms_either() {
 
 /// The same in scenes with codes that flicker, and anything else.
 #[test]
-#[ignore = "long suite: 60 scenes, each by values and by waveforms"]
+#[ignore = "long suite: 41 scenes, each by values and by waveforms"]
 fn scenes_by_waveforms_permit_no_more() {
     let mut search = Search::new(setup(&[]), "*");
     search.first = Some(Kind::Flicker);
