@@ -98,8 +98,10 @@ pub struct Heard {
     pub validity: f32,
     /// Level over the noise within 160 Hz of the carrier, dB; of a carrier without a code it is not known.
     pub snr_db: Option<f32>,
-    /// The newest half of the window has it as strong as the oldest, and no noise hides a break.
+    /// The newest half of the window has the code as strong as the oldest.
     pub goes_on: bool,
+    /// There is too little noise to hide a break.
+    pub is_clear: bool,
 }
 
 /// Receives the codes of one carrier.
@@ -180,7 +182,7 @@ impl CodeReceiver {
         let on = self.on_carrier();
         let mean = mean_of(&on.values[all.clone()], |value| value);
         let power = power_around(&on.values[all.clone()], mean);
-        let heard = |rate_hz, level_mv, validity, snr_db, goes_on| {
+        let heard = |rate_hz, level_mv, validity, snr_db, goes_on, is_clear| {
             (level_mv >= self.reception.level_min_mv).then_some(Heard {
                 carrier_hz: self.reception.carrier_hz + on.offset_hz,
                 rate_hz,
@@ -188,11 +190,12 @@ impl CodeReceiver {
                 validity,
                 snr_db,
                 goes_on,
+                is_clear,
             })
         };
         let flat = libm::sqrtf(2.0 * (power - on.noise).max(0.0)) < FLAT * mean;
         if flat && on.beside < BESIDE * mean * mean {
-            return heard(0.0, mean / SQRT_2, 1.0, None, true);
+            return heard(0.0, mean / SQRT_2, 1.0, None, true, true);
         }
         let (tone, rate_hz, [is_whole, goes_on]) = self.rate(&on, mean, rates_hz)?;
         let share = tone.power() / power;
@@ -221,13 +224,7 @@ impl CodeReceiver {
         };
         let snr_db = Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6)));
         let level_mv = libm::sqrtf(signal / 2.0);
-        heard(
-            rate_hz,
-            level_mv,
-            share.min(1.0),
-            snr_db,
-            goes_on && is_clear,
-        )
+        heard(rate_hz, level_mv, share.min(1.0), snr_db, goes_on, is_clear)
     }
 
     /// Level of the louder half of the window, mV rms.

@@ -20,7 +20,8 @@ const COILS: usize = Coil::ALL.len();
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
 const HEARD_EARLY_MS: u64 = 150;
-/// Time for which a code that does not go on may be over when it is heard still: this, ms, and a part of the window.
+/// Time for which a code may be over when it is heard still: where noise may hide its end, ms; and where it does not go on
+/// through the window, a part of the window more.
 const HEARD_LATE_MS: u64 = 40;
 const HEARD_LATE_PART: u64 = 10;
 /// Scans for which the last code stands in for one that noise hides.
@@ -143,9 +144,12 @@ impl Coils {
             let window_s = (self.codes.first()).map_or(0.0, |(receiver, _)| receiver.window_s());
             let window_ms = (window_s * 1000.0) as u64;
             heard_for = Duration::from_ms(window_ms.saturating_sub(HEARD_EARLY_MS));
-            if stands_in > 0 || !heard.goes_on {
-                lags = Duration::from_ms(HEARD_LATE_MS + window_ms / HEARD_LATE_PART);
-            }
+            let ends = stands_in > 0 || !heard.goes_on;
+            lags = Duration::from_ms(match (ends, heard.is_clear) {
+                (true, _) => HEARD_LATE_MS + window_ms / HEARD_LATE_PART,
+                (false, false) => HEARD_LATE_MS,
+                (false, true) => 0,
+            });
         }
         let [one, two] = &self.sensors;
         let sample_us = 1e6 / SAMPLE_HZ;

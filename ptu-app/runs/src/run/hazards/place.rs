@@ -5,7 +5,7 @@ use protocol::message::{DoorSide, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::{Invariant, NO_POWER_N, Observed};
+use super::monitor::{Invariant, MOVES_KMH, NO_POWER_N, Observed};
 
 /// Place that may be the stop point's, m: tolerance, and what a position may be off behind the last marker.
 const AT_STOP_POINT_M: f64 = 0.3 + 0.5;
@@ -81,9 +81,11 @@ impl Place {
         }
     }
 
-    /// A start was allowed.
+    /// A start was allowed. A train under way has begun by the data before: another order starts nothing.
     pub fn begin(&mut self, seen: Observed<'_>) {
-        self.begun_with = seen.told;
+        if seen.kmh() < MOVES_KMH {
+            self.begun_with = seen.told;
+        }
     }
 
     fn section(&self) -> Option<&Section> {
