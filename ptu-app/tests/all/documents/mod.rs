@@ -13,7 +13,7 @@ use fault_db::FaultState;
 use ptu_report::words::Language;
 
 /// Longest README, lines, and its longest line, characters.
-const README_LINES: usize = 120;
+const README_LINES: usize = 110;
 const README_COLUMNS: usize = 120;
 /// Longest other document, lines.
 const DOCUMENT_LINES: usize = 400;
