@@ -11,6 +11,9 @@ const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
 const CHOSEN: Duration = Duration::from_ms(1_000);
 /// Time after which a train that stands does so for the unit, too: its standstill, and the window of its speed.
 const STANDS: Duration = Duration::from_ms(1_000);
+/// The lever's emergency brake, and the time in which its line closes again.
+const LEVER_EB: f64 = -8.0;
+const CLOSES: Duration = Duration::from_ms(300);
 /// Way in which ATO may correct a stop, m, and its speed, km/h.
 const JOG_M: f64 = 6.2;
 const JOG_KMH: f64 = 5.6;
@@ -21,6 +24,8 @@ pub(super) struct Authority {
     by_hand: bool,
     by_ato: bool,
     lever: f64,
+    /// When a person moved the lever from its emergency brake to power.
+    from_brake: Option<Instant>,
     switch: u8,
     turned: Instant,
     departure: bool,
@@ -92,7 +97,13 @@ impl Authority {
         let before = std::mem::replace(&mut self.lever, lever);
         let braked = seen.on(Signal::EbLoop);
         // Half of the first notch is told as none.
-        let by_lever = lever > 0.0 && before <= 0.0 && !braked || lever == 0.0;
+        if lever > 0.0 && before <= LEVER_EB {
+            self.from_brake = Some(seen.now);
+        }
+        // The act is the same while the line that the lever itself opened closes.
+        let released = (self.from_brake).is_some_and(|at| seen.now.since(at) < CLOSES);
+        let moved = lever > 0.0 && (before <= 0.0 || released);
+        let by_lever = moved && !braked || lever == 0.0;
         self.by_hand |= by_lever && self.switch != 4;
         let heard = seen.value(Signal::Wayside) == 1.0 && seen.powered;
         let departure = seen.on(Signal::Departure) && heard;

@@ -15,6 +15,8 @@ use super::place::Place;
 
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
 pub(super) const MOVES_KMH: f64 = 1.08 + 0.4;
+/// Speed, km/h, at which a brake has stopped the train.
+const STOPPED_KMH: f64 = 0.1;
 /// What a measured speed may be off, km/h.
 const SPEED_OFF_KMH: f64 = 0.6;
 /// Time from a cause to a contact, beside what is stated: scans of unit and bench, and window of the speed.
@@ -321,8 +323,9 @@ impl Monitor {
         if wrong {
             self.rolled_m += seen.speed_mps.abs() * 0.01;
         }
-        // By the brake, or by a departure, a new sum begins.
-        if eb || blind || self.authority.begins() {
+        // By the brake, once the service brake has stopped it, or by a departure, a new sum begins.
+        let stopped = seen.on(Signal::Fsb) && seen.kmh() < STOPPED_KMH;
+        if eb || blind || stopped || self.authority.begins() {
             self.rolled_m = 0.0;
         }
         let fast = seen.kmh() > JOG_KMH + SPEED_OFF_KMH || seen.traction_n > NO_POWER_N;

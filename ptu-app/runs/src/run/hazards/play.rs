@@ -11,7 +11,7 @@ use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::{Breach, Monitor, Observed};
+use super::monitor::{Breach, MOVES_KMH, Monitor, Observed};
 use super::plan::{Act, Plan, Scene};
 use crate::link::SimLink;
 use crate::run::BenchSetup;
@@ -379,6 +379,10 @@ impl<'a> Player<'a> {
     /// What cannot be done is not done, as a bench refuses it.
     fn apply(&mut self, stimulus: Stimulus) {
         let now = self.bench.now();
+        // No train that moves comes to stand on a bench, or off it, in no time.
+        if matches!(stimulus, Stimulus::TrainDriven { .. }) && self.observed().kmh() > MOVES_KMH {
+            return;
+        }
         if self.bench.rig_mut().apply(now, &stimulus).is_err() {
             return;
         }
