@@ -51,7 +51,6 @@ wordings! {
         train_no: "train number", "편성 번호";
         loading: "loading …", "불러오는 중 …";
         other_unit: "of another unit: {unit}, not {connected}", "다른 장치의 시험: {unit} (연결됨: {connected})";
-        only_unit: "only unit {unit}", "장치 {unit}만";
         limit_is: "limit {limit}", "허용 {limit}";
         nothing: "nothing here yet", "아직 아무것도 없음";
         runs: "Recorded runs", "시험 기록";

@@ -5,6 +5,7 @@ use super::wordings;
 wordings! {
     /// What a unit has stored.
     Memory {
+        title: "Records kept in the unit", "장치에 저장된 기록";
         import: "Import the unit's log", "장치 기록 가져오기";
         pull: "Pull the run record", "주행 기록 가져오기";
         compare: "Compare with a sound run", "정상 주행과 비교";

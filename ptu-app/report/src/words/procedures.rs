@@ -10,6 +10,7 @@ wordings! {
         live_signals_hint: "the signals of the page Bench, drawn below the run as they come", "시험대 화면의 신호를 시험 아래에 실시간으로 표시";
         find: "find", "찾기";
         reload: "Reload scripts", "스크립트 다시 읽기";
+        choice: "All, none, reload", "전체, 해제, 다시 읽기";
         all: "All", "전체";
         none: "None", "해제";
         chosen: "{steps} steps chosen, at most {time}", "{steps}개 단계 선택, 최대 {time}";

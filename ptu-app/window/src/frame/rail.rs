@@ -1,8 +1,8 @@
 //! The rail of the pages: an icon, the key and the name of each; below them the history and the menu.
 
 use eframe::egui::{
-    Align, Align2, FontId, Layout, Popup, RectAlign, Response, Role, Sense, Ui, WidgetInfo, pos2,
-    vec2,
+    Align, Align2, FontId, Layout, Popup, Rect, RectAlign, Response, Role, Sense, Ui, WidgetInfo,
+    pos2, vec2,
 };
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
@@ -95,6 +95,11 @@ fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
             palette.hover
         };
         painter.rect_filled(rect, 6.0, ground);
+    }
+    if place.chosen {
+        let at = Rect::from_x_y_ranges(rect.left() - 4.0..=rect.left() - 1.0, rect.y_range());
+        let painter = painter.with_clip_rect(at);
+        painter.rect_filled(at.shrink2(vec2(0.0, 4.0)), 0.0, palette.accent);
     }
     let draw =
         |at, align, text: &str, font, colour| painter.text(at, align, text, font, colour).right();

@@ -1,6 +1,15 @@
-//! The folder in which files are saved by default.
+//! Where a file is read or written: in the folder for documents until somebody says otherwise.
 
 use std::path::{Path, PathBuf};
+
+use eframe::egui::{Label, RichText, Ui};
+use egui_material_icons::icons::ICON_FOLDER_OPEN;
+
+use super::{Face, Look, caption, find_edit, menu};
+use crate::Palette;
+
+/// Width of the field for a path, points.
+const FIELD: f32 = 420.0;
 
 /// The folder for documents, or the one the program was started in.
 pub fn usual_folder() -> PathBuf {
@@ -9,4 +18,19 @@ pub fn usual_folder() -> PathBuf {
         .filter(|folder| folder.is_dir())
         .or_else(|| std::env::current_dir().ok())
         .unwrap_or_default()
+}
+
+/// A button of this name behind which the path is written, and the name of the file.
+pub fn file_place(ui: &mut Ui, path: &mut String, (name, hint): (&str, &str)) {
+    ui.horizontal(|ui| {
+        let face = Face::new(Look::Quiet, "").icon(ICON_FOLDER_OPEN);
+        menu(ui, &face.named(name).hint(name), |ui| {
+            caption(ui, hint);
+            find_edit(ui, path, name, FIELD);
+        });
+        let file = Path::new(path.trim()).file_name().unwrap_or_default();
+        let file = RichText::new(file.to_string_lossy()).color(Palette::of(ui).second);
+        ui.add(Label::new(file).truncate())
+            .on_hover_text(path.as_str());
+    });
 }

@@ -5,9 +5,8 @@ use eframe::egui::Ui;
 use super::{pick, segments};
 use ptu_report::words::{Words, fill};
 
-/// A row less wide than this has a list of them, which takes so much of it, points.
-const LEAST: f32 = 1000.0;
-const NARROW: f32 = 90.0;
+/// Width of a list of them, points.
+const LIST: f32 = 90.0;
 /// Microseconds of a day.
 pub const DAY_US: i64 = 86_400_000_000;
 /// Spans to look back, days; none = all there is.
@@ -15,17 +14,22 @@ const SPANS: [Option<i64>; 4] = [Some(30), Some(90), Some(365), None];
 
 /// Chooses the days to look back.
 pub fn look_back(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
-    let name = |days: Option<i64>| match days {
-        Some(days) => fill(words.faults.days, &[("n", &days)]),
-        None => words.faults.always.to_owned(),
-    };
-    let names = SPANS.map(|span| (span, name(span)));
-    match ui.max_rect().width() < LEAST {
-        true => {
-            pick(ui, (words.faults.since, NARROW), days, names);
-        }
-        false => segments(ui, days, names.iter().map(|(span, name)| (*span, &**name))),
-    }
+    let names = named(words, words.faults.always);
+    segments(ui, days, names.iter().map(|(span, name)| (*span, &**name)));
+}
+
+/// The same in a list, which says what it is of.
+pub fn look_back_list(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
+    let (since, always) = (words.faults.since, words.faults.always);
+    let names = named(words, &format!("{since}: {always}"));
+    pick(ui, (since, LIST), days, names);
+}
+
+fn named(words: &Words, always: &str) -> [(Option<i64>, String); SPANS.len()] {
+    SPANS.map(|span| match span {
+        Some(days) => (span, fill(words.faults.days, &[("n", &days)])),
+        None => (span, always.to_owned()),
+    })
 }
 
 /// The first time of interest, µs since 1970; none = all there is.

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{Done, Face, Job, Look};
+use super::{Done, Face, Job, Look, more};
 use crate::{DataPaths, PageContext};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
@@ -52,7 +52,14 @@ impl MemoryReader {
             Stored::Runs => words.memory.pull,
         };
         let face = Face::new(Look::Secondary, text).off(asked.as_ref().err().copied());
-        if let (true, Ok(asked)) = (face.show(ui).clicked(), asked) {
+        let clicked = more(ui, words.memory.title, |ui| {
+            let clicked = face.show(ui).clicked();
+            if clicked {
+                ui.close();
+            }
+            clicked
+        });
+        if let (Some(true), Ok(asked)) = (clicked, asked) {
             self.begin(asked, context);
         }
         self.job.result(ui);

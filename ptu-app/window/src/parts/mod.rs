@@ -16,6 +16,7 @@ mod limit_bar;
 mod link;
 pub mod look_back;
 mod memory;
+mod menu;
 mod open_file;
 mod pick;
 mod progress;
@@ -40,13 +41,14 @@ pub use edit::{
     caption, field, find_edit, go_on, name_edit, name_input, note_edit, path_edit, typed,
 };
 pub use face::{Face, Look, dashed_outline, focus_ring};
-pub use file::usual_folder;
+pub use file::{file_place, usual_folder};
 pub use job::{Done, Job, Told};
 pub use limit_bar::{limit_bar, limit_scale, limits_within, value_text};
 pub use link::link;
 pub use memory::{MemoryReader, Stored};
+pub use menu::{before_more, menu, more};
 pub use open_file::open_file;
-pub use pick::{named_combo, pick};
+pub use pick::{named_combo, names, pick};
 pub use progress::progress;
 pub use rows::rows;
 pub use run_list::RunList;

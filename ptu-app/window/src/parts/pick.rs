@@ -22,6 +22,12 @@ pub fn pick<T: Clone + PartialEq, S: Into<String>>(
     combo.inner.unwrap_or_default()
 }
 
+/// Names in order, each once.
+pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let names: std::collections::BTreeSet<_> = all.collect();
+    names.into_iter().map(str::to_owned).collect()
+}
+
 /// Gives a box to choose from, which shows only what is chosen, the name of what it chooses.
 pub fn named_combo(response: &Response, name: &str, chosen: &str) {
     response.widget_info(|| {

@@ -1,10 +1,10 @@
 //! Questions that were given a name: what a page was asked, to be asked again; and layouts of lanes likewise.
 
-use eframe::egui::{Button, Popup, PopupCloseBehavior, Ui};
-use egui_material_icons::icons::{ICON_BOOKMARK, ICON_KEYBOARD_ARROW_DOWN};
+use eframe::egui::{Button, Ui};
+use egui_material_icons::icons::ICON_BOOKMARK;
 use serde::{Deserialize, Serialize};
 
-use super::{Face, Look, caption, name_edit, typed};
+use super::{Face, Look, caption, menu, name_edit, typed};
 use ptu_report::words::Words;
 
 /// Width of the field for a name, points.
@@ -62,10 +62,8 @@ pub fn saved_questions<T: Clone + PartialEq>(
 ) -> Option<T> {
     let at = saved.iter().position(|question| question.asked == *now);
     let mut chosen = None;
-    let menu = Face::new(Look::Quiet, said.list).icon(ICON_BOOKMARK);
-    let menu = menu.end(ICON_KEYBOARD_ARROW_DOWN).show(ui);
-    let menu = Popup::menu(&menu).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    menu.show(|ui| {
+    let face = Face::new(Look::Quiet, "").icon(ICON_BOOKMARK);
+    menu(ui, &face.named(said.list).hint(said.list), |ui| {
         if saved.is_empty() {
             ui.label(said.none);
         }

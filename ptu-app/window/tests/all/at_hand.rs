@@ -36,7 +36,7 @@ fn a_sheet_is_white_in_a_dark_window_and_can_be_opened_once_written() {
     assert!(paper.into_iter().any(|fill| fill == Color32::WHITE));
     assert!(!window.shows("Open, print"));
     let file = window.place.text_path("mine.pdf");
-    window.write_over("file", &file);
+    window.name_file("file", &file);
     window.click("PDF");
     window.wait_for("Open, print");
     window.wait_for(&file);
@@ -51,12 +51,13 @@ fn faults_and_traces_are_those_of_the_connected_unit_until_all_are_asked_for() {
     let mut window = Window::with(place, scripts(), settings(Page::Faults));
     window.wait_for_part(" · BAD-1 · ");
     window.connect();
-    window.wait_for("only unit SIM-0001");
-    assert!(!window.shows_part(" · BAD-1 · "));
-    window.click("only unit SIM-0001");
+    window.until("only the connected unit", |window| {
+        !window.shows_part(" · BAD-1 · ")
+    });
+    window.click_in("unit", "all units");
     window.wait_for_part(" · BAD-1 · ");
     window.page(Page::Traces);
     window.wait_for("no trace fits the filter");
-    window.click("only unit SIM-0001");
+    window.click_in("unit", "all units");
     window.wait_for("BAD-1");
 }

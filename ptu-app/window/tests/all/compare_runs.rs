@@ -154,7 +154,7 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         );
         window.click(report.all_steps);
         let file = window.place.text_path("compared.html");
-        window.write_over(report.file, &file);
+        window.name_file(report.file, &file);
         window.click(report.write_html);
         window.wait_for(report.open_file);
         let page = window.place.read("compared.html");

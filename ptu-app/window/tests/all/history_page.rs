@@ -172,7 +172,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     settings.unit.faults = vec!["eb_relay.slow".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
     let words = Language::Korean.words();
-    window.click(words.procedures.none);
+    window.click_in(words.procedures.choice, words.procedures.none);
     window.click("과속에 따른 ATP 제동 체결");
     window.connect();
     window.wait_for("SIM-0001");

@@ -82,14 +82,18 @@ fn laid_out(
     window.wait_for(words.faults.serial_new);
     look(&mut window, "repair");
     window.key(Key::Escape);
+    let sheet = match language {
+        Language::English => "Unit BAD-1, run",
+        Language::Korean => "장치 BAD-1, 시험",
+    };
     for (page, said) in [
         (Page::Traces, words.traces.events),
         (Page::Diagnosis, words.diagnosis.reasons),
-        (Page::Report, words.report.sheet),
+        (Page::Report, sheet),
         (Page::Statistics, words.statistics.mtbf_is),
     ] {
         window.page(page);
-        window.wait_for(said);
+        window.wait_for_part(said);
         look(&mut window, page.name(words));
         if page == Page::Traces {
             window.click_last(words.traces.signals);
@@ -125,7 +129,7 @@ fn laid_out(
         let made = window.place.ptu(&[&["signal", "make"][..], &make].concat());
         made.exits(0);
         let file = window.place.text_path(make[2]);
-        window.write_over(words.common.file, &file);
+        window.name_file(words.common.file, &file);
         window.click(words.signals.open);
         window.wait_for_part(make[1]);
         look(&mut window, make[2]);

@@ -39,7 +39,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
     window.key(Key::PageDown);
     window.wait_for("472");
     let file = window.place.text_path("mine.pdf");
-    window.write_over("file", &file);
+    window.name_file("file", &file);
     for (button, name, begin) in [
         ("PDF", "mine.pdf", &b"%PDF-"[..]),
         ("HTML", "mine.html", b"<!DOCTYPE html>"),
@@ -138,11 +138,11 @@ fn what_another_program_records_is_shown_and_a_lost_database_is_said() {
 fn a_file_that_cannot_be_written_is_said() {
     let mut window = window(Language::English);
     let nowhere = window.place.text_path("no/such/folder/x.pdf");
-    window.write_over("file", &nowhere);
+    window.name_file("file", &nowhere);
     window.click("PDF");
     window.wait_for_part("The report was not written");
     window.wait_for_part("there is no folder");
-    window.write_over("file", " ");
+    window.name_file("file", " ");
     window.click("HTML");
     window.wait_for("name a file");
 }
@@ -211,7 +211,7 @@ fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {
     window.click("English");
     window.wait_for("What did not pass");
     let file = window.place.text_path("english");
-    window.write_over("파일", &file);
+    window.name_file("파일", &file);
     window.click("HTML");
     window.wait_for_part("저장 완료");
     assert!(window.place.read("english.html").contains("lang=\"en\""));

@@ -110,7 +110,10 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
         window.wait_for("SN-77");
         window.wait_for(words.care.is_server);
         assert!(!window.shows(words.faults.verify), "{:#?}", window.shown());
+        window.click(words.memory.title);
+        window.wait_for(words.memory.import);
         assert!(!window.enabled(words.frame.connect) && !window.enabled(words.memory.import));
+        window.key(eframe::egui::Key::Escape);
         assert_eq!(complaints(&mut window), Vec::<String>::new());
         window.page(Page::Case);
         window.wait_for(words.care.is_server);

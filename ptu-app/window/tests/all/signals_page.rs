@@ -22,7 +22,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         place.write("text.wav", "a text");
         let mut window = Window::with(place, scripts(), settings);
         window.click(said.generator);
-        window.write_over(words.common.file, &file);
+        window.name_file(words.common.file, &file);
         window.click(said.twc);
         window.write_over(said.bytes, "01 fe 3x");
         window.wait_for(said.bytes_hint);
@@ -47,7 +47,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         assert!(window.place.path("made-2.wav").is_file());
         window.click(said.recording_of);
         let text = window.place.text_path("text.wav");
-        window.write_over(words.common.file, &text);
+        window.name_file(words.common.file, &text);
         window.click(said.open);
         window.wait_for_part(match language {
             Language::English => "text.wav is no WAV file",

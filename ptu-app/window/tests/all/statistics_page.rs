@@ -228,7 +228,7 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
         let mut window = window(place, language);
         window.click(said.each_10000_km);
         window.wait_for(said.no_distances);
-        window.write(said.odometers, &file);
+        window.name_file(said.odometers, &file);
         window.click(said.read_odometers);
         window.wait_for(said.per_10000_km);
         let month = window.place.json(&stats);

@@ -45,7 +45,7 @@ fn a_run_is_followed_by_its_signals() {
     assert!(!window.shows_part(plot));
     window.click("Live signals");
     window.wait_for_part("Plot: speed 0.0 km/h");
-    window.click("None");
+    window.click_in("All, none, reload", "None");
     window.click("Overspeed: alarm, service brake, emergency brake");
     window.click("Run");
     window.until("speed in the plot", |window| {
@@ -352,11 +352,11 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
         format!("{good}x = [0] * 1000000000\n"),
     )
     .expect("written");
-    window.click("Reload scripts");
+    window.click_in("All, none, reload", "Reload scripts");
     window.wait_for_part("needs more than 512 MB of memory");
     assert!(!window.enabled("Run"));
     std::fs::write(folder.join("own/own.star"), good).expect("written");
-    window.click("Reload scripts");
+    window.click_in("All, none, reload", "Reload scripts");
     window.click("Run");
     window.wait_for_part("Run over: passed");
 }

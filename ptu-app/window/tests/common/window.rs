@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use eframe::egui::epaint::Primitive;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -25,6 +26,10 @@ const FRAME_S: f32 = 1.0 / 60.0;
 const STEP: Duration = Duration::from_millis(15);
 /// Longest pause between two frames of one that waits.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+/// No page has more to press.
+const MOST_STOPS: usize = 200;
+/// So far around it is marked what has the keyboard, points.
+const AROUND: f32 = 4.0;
 
 /// A window in a place of its own.
 pub struct Window {
@@ -322,6 +327,69 @@ impl Window {
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
         self.harness.step();
         self.write(label, text);
+    }
+
+    /// Presses what has this name by keys alone: Tab until it has the keyboard, which is seen at each stop, then Space.
+    pub fn press(&mut self, label: &str) {
+        self.tab_to(label);
+        self.pass(MOMENT_S);
+        self.key(Key::Space);
+    }
+
+    /// Brings the keyboard to what has this name.
+    pub fn tab_to(&mut self, label: &str) {
+        self.until(label, |window| window.enabled(label));
+        for _ in 0..MOST_STOPS {
+            let mut of_name = self.harness.query_all_by_label(label);
+            let is_there = of_name.any(|node| node.is_focused());
+            drop(of_name);
+            if is_there {
+                return;
+            }
+            let focused = self.focused();
+            let before = focused.as_ref().map(|(_, rect)| self.painted(*rect));
+            self.key(Key::Tab);
+            if let (Some((name, rect)), Some(before)) = (focused, before) {
+                let after = self.painted(rect);
+                assert_ne!(before, after, "that {name} has the keyboard is not seen");
+            }
+        }
+        panic!("no key leads to {label}: {:#?}", self.shown());
+    }
+
+    /// What has the keyboard, and where it is seen.
+    fn focused(&self) -> Option<(String, Rect)> {
+        let mut nodes = self.harness.query_all_by(|_| true);
+        let node = nodes.find(|node| node.is_focused())?;
+        let seen = node.rect().intersect(self.harness.ctx.content_rect());
+        let name = node.accesskit_node().label().unwrap_or_default();
+        seen.is_positive().then_some((name, seen))
+    }
+
+    /// Colours and corners of what is painted here and close around it.
+    fn painted(&self, rect: Rect) -> Vec<(Pos2, [u8; 4])> {
+        let shapes = self.harness.output().shapes.clone();
+        let parts = self.harness.ctx.tessellate(shapes, 1.0);
+        let meshes = parts.into_iter().filter_map(|part| match part.primitive {
+            Primitive::Mesh(mesh) => Some(mesh.vertices),
+            Primitive::Callback(_) => None,
+        });
+        let around = rect.expand(AROUND);
+        let corners = meshes.flatten().filter(|at| around.contains(at.pos));
+        corners.map(|at| (at.pos, at.color.to_array())).collect()
+    }
+
+    /// Names the file of this button in its menu.
+    pub fn name_file(&mut self, label: &str, path: &str) {
+        self.click(label);
+        self.write_over(label, path);
+        self.key(Key::Escape);
+    }
+
+    /// Clicks this in the menu of this name.
+    pub fn click_in(&mut self, menu: &str, label: &str) {
+        self.click(menu);
+        self.click_last(label);
     }
 
     /// Presses a key.

@@ -27,11 +27,8 @@ use ptu_runs::run::BenchSetup;
 pub use rolling::chosen;
 use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 
-/// Width of the stimuli, and the least that is left of it in a small window.
-const STIMULI: f32 = 400.0;
-const STIMULI_LEAST: f32 = 324.0;
-/// Most of a small window that stimuli take.
-const STIMULI_SHARE: f32 = 0.4;
+/// Width of the stimuli.
+const STIMULI: f32 = 324.0;
 /// Least height of log and plot, and what stands around them.
 const LOWEST: f32 = 100.0;
 const AROUND: f32 = 30.0;
@@ -72,7 +69,7 @@ impl BenchPage {
         if seen.phase != Phase::Idle {
             sheet.given = StimuliGiven::default();
         }
-        stimuli_panel(ui).show(ui, |ui| {
+        stimuli_panel().show(ui, |ui| {
             let mut hand = StimulusPanel {
                 bench: &unit.bench,
                 seen: &seen,
@@ -126,16 +123,12 @@ fn sheet<'a>(
 }
 
 /// Room for stimuli at the right.
-fn stimuli_panel(ui: &Ui) -> Panel {
-    let width = STIMULI.min(ui.available_width() * STIMULI_SHARE);
+fn stimuli_panel() -> Panel {
     let frame = Frame::new().inner_margin(Margin {
         left: 8,
         ..Margin::ZERO
     });
-    Panel::right("stimuli")
-        .default_size(width)
-        .min_size(STIMULI_LEAST)
-        .frame(frame)
+    Panel::right("stimuli").exact_size(STIMULI).frame(frame)
 }
 
 /// The live view, and log and plot in the height it leaves.

@@ -48,7 +48,10 @@ pub fn head(
     let part = part(words, detail, parts);
     let code = naming::code(fault.code, &fault.code_name, words);
     let severity = words.report.severity(&fault.severity);
+    // Lines of text, of which one can be clicked.
+    let target = std::mem::replace(&mut ui.spacing_mut().interact_size.y, 0.0);
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().interact_size.y = target;
         ui.label(RichText::new(words.common.unit).color(palette.quiet));
         serial_link(ui, words, &fault.unit_serial, go_to);
     });
@@ -63,6 +66,7 @@ pub fn head(
             ui.label(value);
         });
     }
+    ui.spacing_mut().interact_size.y = target;
 }
 
 /// The part that it points at, the one that it comes from, and how many other faults do.

@@ -7,7 +7,6 @@ use crate::settings::FaultsQuestion;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
-    pub unit: Option<String>,
     pub lru: Option<String>,
     pub state: Option<FaultState>,
     /// Days to look back.
@@ -19,10 +18,10 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// As it is saved; what a bar of the statistics stands for is not.
-    pub fn question(&self) -> FaultsQuestion {
+    /// As it is saved with the unit; what a bar of the statistics stands for is not.
+    pub fn question(&self, unit: Option<&str>) -> FaultsQuestion {
         FaultsQuestion {
-            unit: self.unit.clone(),
+            unit: unit.map(str::to_owned),
             part: self.lru.clone(),
             state: self.state.map(|state| state.to_string()),
             days: self.days,
@@ -33,7 +32,6 @@ impl Filter {
     /// As it was saved.
     pub fn asked(question: FaultsQuestion) -> Self {
         Self {
-            unit: question.unit,
             lru: question.part,
             state: question.state.and_then(|state| state.parse().ok()),
             days: question.days,
@@ -46,10 +44,7 @@ impl Filter {
     pub fn takes(&self, fault: &FaultSummary) -> bool {
         let text = self.text.trim().to_lowercase();
         let has = |what: &str| what.to_lowercase().contains(&text);
-        self.unit
-            .as_ref()
-            .is_none_or(|unit| *unit == fault.unit_serial)
-            && self.lru.as_ref().is_none_or(|lru| *lru == fault.lru)
+        self.lru.as_ref().is_none_or(|lru| *lru == fault.lru)
             && self.state.is_none_or(|state| state == fault.state)
             && (self.of_bar.cause.as_deref()).is_none_or(|cause| cause == fault.cause())
             && (self.of_bar.first_seen_us.as_ref())
@@ -60,10 +55,4 @@ impl Filter {
                 || has(&fault.unit_serial)
                 || has(&fault.severity))
     }
-}
-
-/// Names in order, each once.
-pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let names: std::collections::BTreeSet<_> = all.collect();
-    names.into_iter().map(str::to_owned).collect()
 }

@@ -8,10 +8,10 @@ use egui_material_icons::icons::{
 use fault_db::{FaultState, FaultSummary, Id};
 
 use super::History;
-use super::filter::{Filter, names};
+use super::filter::Filter;
 use crate::Palette;
 use crate::page_context::FaultsOf;
-use crate::parts::{Cell, Column, Table, chip, find_edit, look_back, pick};
+use crate::parts::{Cell, Column, Table, chip, find_edit, look_back, names, pick};
 use ptu_report::naming::{DOT, PartNames, seen_in_short};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
@@ -20,8 +20,6 @@ use ptu_runs::clock;
 const FIELD: f32 = 90.0;
 
 pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &History) {
-    let faults_of = || history.faults.iter();
-    let as_it_is = |name: &String| name.clone();
     let part = |part: &String| history.parts.name(part, words.language).to_owned();
     let name = |state: &FaultState| words.fault_state(*state).to_owned();
     find_edit(ui, &mut filter.text, words.faults.find, 1.5 * FIELD);
@@ -32,17 +30,9 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &Histor
         name,
         &mut filter.state,
     );
-    let parts = names(faults_of().map(|fault| fault.lru.as_str()));
+    let parts = names(history.faults.iter().map(|fault| fault.lru.as_str()));
     choose(ui, words, (words.common.part, parts), part, &mut filter.lru);
-    let units = names(faults_of().map(|fault| fault.unit_serial.as_str()));
-    choose(
-        ui,
-        words,
-        (words.common.unit, units),
-        as_it_is,
-        &mut filter.unit,
-    );
-    look_back::look_back(ui, words, &mut filter.days);
+    look_back::look_back_list(ui, words, &mut filter.days);
 }
 
 /// `called` says what people call one of them.
@@ -53,8 +43,7 @@ fn choose<T: Clone + PartialEq>(
     called: impl Fn(&T) -> String,
     chosen: &mut Option<T>,
 ) {
-    ui.label(what);
-    let any = (None, words.faults.any.to_owned());
+    let any = (None, format!("{what}: {}", words.faults.any));
     let all = all.into_iter().map(|one| (Some(one.clone()), called(&one)));
     pick(ui, (what, FIELD), chosen, std::iter::once(any).chain(all));
 }

@@ -13,7 +13,7 @@ use fault_db::{FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 use crate::page_context::FaultsOf;
 use crate::parts::look_back::since_us;
 use crate::parts::{
-    Face, Look, MemoryReader, SavedSaid, UnitFilter, dialog_is_open, saved_questions,
+    Face, Look, MemoryReader, SavedSaid, UnitFilter, dialog_is_open, names, saved_questions,
 };
 use crate::query_worker::Pending;
 use crate::request::CachedResponse;
@@ -153,14 +153,17 @@ impl FaultsPage {
                 let mut is_read = false;
                 let shown = ui.horizontal_wrapped(|ui| {
                     list::filters(ui, words, &mut self.filter, history);
+                    let units = history.faults.iter().map(|fault| &*fault.unit_serial);
+                    self.units.show(ui, context, &names(units));
                     let saved = (&mut context.settings.faults, &mut self.question);
-                    let now = self.filter.question();
+                    let now = self.filter.question(self.units.taken());
                     if let Some(asked) =
                         saved_questions(ui, &SavedSaid::questions(words), saved, &now)
                     {
+                        self.units.take(asked.unit.clone());
                         self.filter = Filter::asked(asked);
                     }
-                    self.units.show(ui, context);
+                    is_read = self.unit_log.show(ui, context);
                     list::of_bar(ui, words, &mut self.filter, &history.parts);
                     let all = history.faults.iter();
                     let (filter, units) = (&self.filter, &self.units);
@@ -172,7 +175,6 @@ impl FaultsPage {
                         [("n", &shown.len()), ("of", &history.faults.len())];
                     let count = fill(words.faults.shown, &count);
                     ui.label(RichText::new(count).color(Palette::of(ui).quiet));
-                    is_read = self.unit_log.show(ui, context);
                     shown
                 });
                 if is_read {

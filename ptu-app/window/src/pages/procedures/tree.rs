@@ -11,23 +11,48 @@ use eframe::egui::{
 
 use super::ProceduresPage;
 use super::selection::{Selection, Share, possible};
-use crate::parts::find_edit;
+use crate::parts::{before_more, find_edit, more};
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
 
-/// Width of the field, points.
-const FIND: f32 = 150.0;
+/// What is done with all of the tree.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Choice {
+    All,
+    None,
+    Reload,
+}
 
 impl ProceduresPage {
     pub(super) fn tree(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
+        let said = &words.procedures;
+        let mut choice = None;
         ui.horizontal(|ui| {
-            find_edit(ui, &mut self.find, words.procedures.find, FIND);
-            if ui.button(words.procedures.reload).clicked() {
-                self.load(context);
-            }
+            let wide = before_more(ui);
+            find_edit(ui, &mut self.find, said.find, wide);
+            let all = [
+                (Choice::Reload, said.reload),
+                (Choice::All, said.all),
+                (Choice::None, said.none),
+            ];
+            // What is not loaded is not chosen.
+            let offered = match self.suite {
+                Request::Ready(_) => &all[..],
+                _ => &all[..1],
+            };
+            choice = more(ui, said.choice, |ui| {
+                let clicked = |(_, name): &&(Choice, &str)| ui.button(*name).clicked();
+                let (choice, _) = offered.iter().filter(clicked).last()?;
+                ui.close();
+                Some(*choice)
+            });
         });
+        let choice = choice.flatten();
+        if choice == Some(Choice::Reload) {
+            self.load(context);
+        }
         let suite = match &self.suite {
             Request::Ready(suite) => suite,
             Request::Failed(why) => {
@@ -42,14 +67,11 @@ impl ProceduresPage {
         let connection = context.units.chosen().connection();
         let before = self.chosen(connection);
         let mut chosen = before.clone();
-        ui.horizontal(|ui| {
-            if ui.button(words.procedures.all).clicked() {
-                chosen = Selection::usual(&suite.procedures, connection);
-            }
-            if ui.button(words.procedures.none).clicked() {
-                chosen = Selection::default();
-            }
-        });
+        match choice {
+            Some(Choice::All) => chosen = Selection::usual(&suite.procedures, connection),
+            Some(Choice::None) => chosen = Selection::default(),
+            Some(Choice::Reload) | None => {}
+        }
         let (steps, time) = chosen.extent(&suite.procedures);
         let time = minutes(time.as_secs());
         let said = fill(

@@ -8,13 +8,11 @@ use egui_material_icons::icons::{
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::data_paths::DataPaths;
 use crate::messages::told;
-use crate::parts::{Face, Look, NoteOn, caption, find_edit, foot, open_file, segments};
+use crate::parts::{Face, Look, NoteOn, caption, file_place, foot, open_file, segments};
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Language, Words, fill};
 
-/// Least width of the field for a file beside its buttons, points.
-const FIELD: f32 = 120.0;
 /// What is written, and which of it is pressed first.
 const ENDINGS: [(Look, &str); 3] = [
     (Look::Primary, ".pdf"),
@@ -28,8 +26,7 @@ impl ReportPage {
         let before = self.language(context);
         let mut language = before;
         foot(ui, "files of a sheet", |ui| {
-            caption(ui, words.report.file);
-            self.file_field(ui, words, ui.available_width());
+            self.file_place(ui, words);
             ui.horizontal_wrapped(|ui| self.buttons(ui, context));
             self.open_written(ui, context);
         });
@@ -57,20 +54,15 @@ impl ReportPage {
     pub(super) fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         ui.horizontal(|ui| {
-            ui.label(words.report.file);
-            let names = ENDINGS.map(|(look, ending)| Face::new(look, name_of(words, ending)));
-            let wide = |face: &Face<'_>| face.wide(ui) + ui.spacing().item_spacing.x;
-            let buttons: f32 = names.iter().map(wide).sum();
-            let left = ui.available_width() - buttons - ui.spacing().item_spacing.x;
-            self.file_field(ui, words, left.max(FIELD));
             self.buttons(ui, context);
+            self.file_place(ui, words);
         });
         self.open_written(ui, context);
     }
 
-    fn file_field(&mut self, ui: &mut Ui, words: &Words, wide: f32) {
-        let field = find_edit(ui, &mut self.file, words.report.file, wide);
-        field.on_hover_text(words.report.write_hint);
+    fn file_place(&mut self, ui: &mut Ui, words: &Words) {
+        let said = (words.report.file, words.report.write_hint);
+        file_place(ui, &mut self.file, said);
     }
 
     fn buttons(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {

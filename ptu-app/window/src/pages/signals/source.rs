@@ -9,7 +9,7 @@ use protocol::config::UnitConfig;
 use super::Slot;
 use super::generator::{Made, Order};
 use super::seen::Seen;
-use crate::parts::{Done, Face, Job, Look, Told, caption, path_edit, pick, usual_folder};
+use crate::parts::{Done, Face, Job, Look, Told, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
 use ptu_report::words::{Words, fill};
@@ -60,9 +60,8 @@ impl Source {
     ) {
         let said = &words.signals;
         let wide = ui.available_width();
-        let label = caption(ui, words.common.file);
-        ui.add(path_edit(&mut self.file, wide))
-            .labelled_by(label.id);
+        let name = words.common.file;
+        file_place(ui, &mut self.file, (name, name));
         let devices = match devices {
             Ok(devices) => devices,
             Err(why) => {

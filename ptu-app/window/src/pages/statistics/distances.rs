@@ -8,7 +8,7 @@ use super::counted::Counted;
 use super::{of_month, shown_months};
 use crate::page_context::Destination;
 use crate::parts::bars::{Bar, Chart};
-use crate::parts::{Face, Look, UnitFilter, caption, path_edit};
+use crate::parts::{Face, Look, UnitFilter, caption, file_place};
 use crate::{PageContext, Palette};
 use ptu_report::fault_months::{Month, OnTheWay};
 use ptu_report::words::{Words, fill};
@@ -45,12 +45,10 @@ impl DistancesFile {
         let kept = &mut context.settings.distances;
         let typed = self.typed.get_or_insert_with(|| kept.clone());
         let mut again = false;
-        let label = caption(ui, said.odometers).on_hover_text(said.odometers_hint);
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
             let read = Face::new(Look::Secondary, said.read_odometers);
-            let left = ui.available_width() - read.wide(ui) - ui.spacing().item_spacing.x;
-            ui.add(path_edit(typed, left)).labelled_by(label.id);
             again = read.show(ui).clicked();
+            file_place(ui, typed, (said.odometers, said.odometers_hint));
         });
         if again {
             typed.trim().clone_into(kept);

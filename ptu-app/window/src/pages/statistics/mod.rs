@@ -52,7 +52,7 @@ impl StatisticsPage {
         let words = context.words;
         ui.horizontal_wrapped(|ui| {
             look_back::look_back(ui, words, &mut self.days);
-            self.units.show(ui, context);
+            self.units.show(ui, context, &[]);
             self.life.search(ui, words);
             self.questions(ui, context);
         });

@@ -2,24 +2,27 @@
 
 use eframe::egui::{RichText, Ui};
 use egui_material_icons::icons::{
-    ICON_FIT_SCREEN, ICON_FUNCTIONS, ICON_HEIGHT, ICON_TUNE, ICON_UNDO, ICON_ZOOM_IN, ICON_ZOOM_OUT,
+    ICON_BACKSPACE, ICON_FIT_SCREEN, ICON_FUNCTIONS, ICON_HEIGHT, ICON_TUNE, ICON_UNDO,
+    ICON_ZOOM_IN, ICON_ZOOM_OUT,
 };
 
 use crate::parts::{Face, Look, segments};
-use crate::{PageContext, Palette};
+use crate::{PageContext, Palette, Sizes};
 use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
-use ptu_report::words::fill;
+use ptu_report::words::{Traces, fill};
 
+/// A row so many times as wide as its letters are high has words.
+const WORDS: f32 = 64.0;
 /// How much one press zooms.
 pub const ZOOM: f64 = 0.7;
 
+/// True if there is room for words.
 pub fn view(
     ui: &mut Ui,
     scene: &mut TracePlot,
-    choosing: &mut bool,
-    told: &mut bool,
+    (choosing, told): (&mut bool, &mut bool),
     context: &mut PageContext<'_>,
-) {
+) -> bool {
     let words = &context.words.traces;
     let mut kind = scene.axis().kind();
     let kinds = [
@@ -49,6 +52,8 @@ pub fn view(
     if back.show(ui).clicked() {
         scene.zoom_back();
     }
+    // Words beside the icons where there is room for them.
+    let roomy = ui.max_rect().width() > WORDS * Sizes::of(ui).body;
     for (cursor, letter, name) in [
         (Cursor::A, "A", words.cursor_a),
         (Cursor::B, "B", words.cursor_b),
@@ -59,22 +64,28 @@ pub fn view(
             scene.put(cursor, middle);
         }
     }
-    let clear = Face::new(Look::Quiet, words.clear_cursors);
-    if clear.show(ui).clicked() {
+    if icon(ICON_BACKSPACE, words.clear_cursors).show(ui).clicked() {
         scene.clear_cursors();
     }
-    let toggled = |ui: &mut Ui, on: &mut bool, sign, (name, hint): (&str, &str)| {
+    let toggled = |ui: &mut Ui, on: &mut bool, sign, (said, name, hint)| {
         let look = if *on { Look::Chosen } else { Look::Quiet };
-        *on ^= Face::new(look, name)
-            .icon(sign)
-            .hint(hint)
-            .show(ui)
-            .clicked();
+        let face = Face::new(look, said).icon(sign);
+        *on ^= face.named(name).hint(hint).show(ui).clicked();
     };
-    let close = (words.close_axes, words.close_axes_hint);
+    let close = ("", words.close_axes, words.close_axes_hint);
     toggled(ui, scene.close(), ICON_HEIGHT, close);
-    toggled(ui, choosing, ICON_TUNE, (words.signals, ""));
-    toggled(ui, told, ICON_FUNCTIONS, (words.statistics, ""));
+    for (on, sign, name) in [
+        (choosing, ICON_TUNE, words.signals),
+        (told, ICON_FUNCTIONS, words.statistics),
+    ] {
+        let said = if roomy { name } else { "" };
+        toggled(ui, on, sign, (said, name, name));
+    }
+    roomy
+}
+
+/// How far the train's place was moved back to fit the axis of distances.
+pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     if let Axis::Distance {
         rows_back, back_m, ..
     } = scene.axis()

@@ -17,6 +17,8 @@ use ptu_report::words::fill;
 
 /// Traces offered to compare with.
 const OFFERED: usize = 100;
+/// Width of the box in which one is chosen, points.
+const CHOICE: f32 = 110.0;
 /// Lanes shown of those that deviate.
 const DEVIATING: usize = 12;
 
@@ -80,7 +82,7 @@ impl OverlayRequest {
         matches!(self.overlay, Request::Pending(_))
     }
 
-    /// What to compare with, and what the comparison says.
+    /// What to compare with.
     pub fn bar(
         &mut self,
         ui: &mut Ui,
@@ -89,11 +91,11 @@ impl OverlayRequest {
         context: &mut PageContext<'_>,
     ) {
         let words = &context.words.traces;
-        ui.label(words.overlay);
         let mut against = self.against.clone();
         let chosen = self.name(list, context);
         let combo = ComboBox::from_id_salt("compare with")
-            .width(190.0)
+            .width(CHOICE)
+            .truncate()
             .selected_text(&chosen)
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut against, None, words.no_overlay);
@@ -113,10 +115,14 @@ impl OverlayRequest {
         if against != self.against {
             self.ask(against, scene, context);
         }
+    }
+
+    /// What the comparison says, and its offset.
+    pub fn said(&self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.is_pending() {
             ui.spinner();
             ui.label(match &self.against {
-                Some(OverlaySource::Twin) => words.making_twin,
+                Some(OverlaySource::Twin) => context.words.traces.making_twin,
                 _ => context.words.common.loading,
             });
         }
@@ -148,7 +154,7 @@ impl OverlayRequest {
 
     fn name(&self, list: &TraceList, context: &PageContext<'_>) -> String {
         match &self.against {
-            None => context.words.traces.no_overlay.to_owned(),
+            None => context.words.traces.overlay.to_owned(),
             Some(OverlaySource::Twin) => context.words.traces.good_twin.to_owned(),
             Some(OverlaySource::File(file)) => file_name(file),
             Some(OverlaySource::Trace(id)) => {

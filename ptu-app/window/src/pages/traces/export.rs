@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 
-use eframe::egui::{Button, ColorImage, Popup, PopupCloseBehavior, Rect, Ui};
+use eframe::egui::{Button, ColorImage, Rect, Ui};
 use egui_material_icons::icons::ICON_DOWNLOAD;
 use fault_db::Id;
 
 use crate::PageContext;
-use crate::parts::{Face, Look, name_input, path_edit, usual_folder};
+use crate::parts::{Face, Look, menu, name_input, path_edit, usual_folder};
 use crate::query_worker::Pending;
 use ptu_report::trace_view::csv::csv;
 use ptu_report::trace_view::{Kind, TracePlot};
@@ -34,11 +34,17 @@ impl Export {
     }
 
     /// The menu that saves; `rect` is what the picture is of.
-    pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {
-        let face = Face::new(Look::Quiet, context.words.traces.save).icon(ICON_DOWNLOAD);
-        let menu = Popup::menu(&face.show(ui));
-        let menu = menu.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        menu.show(|ui| self.menu(ui, scene, rect, context));
+    pub fn bar(
+        &mut self,
+        ui: &mut Ui,
+        scene: &TracePlot,
+        (rect, roomy): (Rect, bool),
+        context: &PageContext<'_>,
+    ) {
+        let save = context.words.traces.save;
+        let face = Face::new(Look::Quiet, if roomy { save } else { "" });
+        let face = face.icon(ICON_DOWNLOAD).named(save).hint(save);
+        menu(ui, &face, |ui| self.menu(ui, scene, rect, context));
     }
 
     fn menu(&mut self, ui: &mut Ui, scene: &TracePlot, rect: Rect, context: &PageContext<'_>) {

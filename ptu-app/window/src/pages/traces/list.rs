@@ -4,7 +4,9 @@ use eframe::egui::{RichText, ScrollArea, TextWrapMode, Ui};
 use egui_material_icons::icons::ICON_DO_NOT_DISTURB_ON;
 use fault_db::Id;
 
-use crate::parts::{MemoryReader, Stored, UnitFilter, chip, find_edit, verdict_chip};
+use crate::parts::{
+    MemoryReader, Stored, UnitFilter, before_more, chip, find_edit, names, verdict_chip,
+};
 use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::naming::PartNames;
@@ -44,12 +46,17 @@ impl TraceList {
         chosen: Option<Id>,
     ) -> Option<(Id, Id)> {
         let words = context.words;
-        if self.unit_record.0.show(ui, context) {
-            self.runs = CachedResponse::default();
-        }
-        let wide = f32::INFINITY;
-        let edit = find_edit(ui, &mut self.filter, words.traces.filter, wide);
-        if self.units.show(ui, context) | edit.changed() {
+        let mut applies = false;
+        ui.horizontal_wrapped(|ui| {
+            let wide = before_more(ui);
+            let edit = find_edit(ui, &mut self.filter, words.traces.filter, wide);
+            if self.unit_record.0.show(ui, context) {
+                self.runs = CachedResponse::default();
+            }
+            let units = self.runs.items().iter().map(|run| &*run.unit);
+            applies = self.units.show(ui, context, &names(units)) | edit.changed();
+        });
+        if applies {
             self.apply();
         }
         let runs = match self.runs.get() {

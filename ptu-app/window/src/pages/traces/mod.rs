@@ -38,6 +38,8 @@ pub use small::SmallTrace;
 
 /// Height of a row of controls.
 const ROW: f32 = 28.0;
+/// Between two of the toolbar, points.
+const BETWEEN: f32 = 4.0;
 
 #[derive(Default)]
 pub struct TracesPage {
@@ -140,13 +142,19 @@ impl TracesPage {
         };
         // Words stand on one line with what they name.
         ui.spacing_mut().interact_size.y = ROW;
-        heading(ui, scene, &self.list, context);
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
-            bar::view(ui, scene, &mut self.choosing, &mut self.told, context);
-            self.export.bar(ui, scene, rect, context);
+            ui.spacing_mut().item_spacing.x = BETWEEN;
+            let sides = (&mut self.choosing, &mut self.told);
+            let roomy = bar::view(ui, scene, sides, context);
+            self.export.bar(ui, scene, (rect, roomy), context);
             self.record.bar(ui, scene, context);
             self.behind.bar(ui, scene, &self.list, context);
+        });
+        ui.horizontal_wrapped(|ui| {
+            heading(ui, scene, &self.list, context);
+            bar::moved_back(ui, scene, &words.traces);
+            self.behind.said(ui, scene, context);
         });
         events::links(ui, scene, words);
         self.notes.bar(ui, scene, context);
@@ -176,33 +184,31 @@ impl TracesPage {
 fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
     let opened = scene.opened();
-    ui.horizontal_wrapped(|ui| {
-        let (unit, when) = list.whose(opened.run);
-        let known = |text| match text {
-            "" => words.traces.not_known,
-            text => text,
-        };
-        let (unit, when) = (known(unit), known(when));
-        let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
-        let title = ui.label(RichText::new(title).strong());
-        title.on_hover_text(opened.id.to_string());
-        let data = opened.view.data();
-        let warn = Palette::of(ui).warn;
-        for (amiss, text) in [
-            (data.partial, words.traces.cut_short),
-            (data.gaps, words.traces.has_gaps),
-        ] {
-            if amiss {
-                ui.label(RichText::new(text).color(warn));
-            }
+    let (unit, when) = list.whose(opened.run);
+    let known = |text| match text {
+        "" => words.traces.not_known,
+        text => text,
+    };
+    let (unit, when) = (known(unit), known(when));
+    let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
+    let title = ui.label(RichText::new(title).strong());
+    title.on_hover_text(opened.id.to_string());
+    let data = opened.view.data();
+    let warn = Palette::of(ui).warn;
+    for (amiss, text) in [
+        (data.partial, words.traces.cut_short),
+        (data.gaps, words.traces.has_gaps),
+    ] {
+        if amiss {
+            ui.label(RichText::new(text).color(warn));
         }
-        if let Some(run) = opened.run {
-            if link(ui, words.traces.to_report).clicked() {
-                context.go_to.push(Destination::Report(run));
-            }
-            if link(ui, words.traces.to_diagnosis).clicked() {
-                context.go_to.push(Destination::Diagnosis(run));
-            }
+    }
+    if let Some(run) = opened.run {
+        if link(ui, words.traces.to_report).clicked() {
+            context.go_to.push(Destination::Report(run));
         }
-    });
+        if link(ui, words.traces.to_diagnosis).clicked() {
+            context.go_to.push(Destination::Diagnosis(run));
+        }
+    }
 }

@@ -65,7 +65,7 @@ fn the_whole_way(language: Language) {
     window
         .harness()
         .set_size(eframe::egui::vec2(1280.0, 1100.0));
-    window.click(words.procedures.none);
+    window.click_in(words.procedures.choice, words.procedures.none);
     for title in match language {
         Language::English => [
             "Identity and configuration of the unit",
@@ -90,12 +90,12 @@ fn the_whole_way(language: Language) {
     window.disconnect();
     window.wait_for(words.frame.not_connected);
     window.page(Page::Faults);
-    window.click(words.memory.import);
+    window.click_in(words.memory.title, words.memory.import);
     window.until("the log", |window| {
         told(window, "SIM-0001: ", words.memory.imported)
     });
     window.page(Page::Traces);
-    window.click(words.memory.pull);
+    window.click_in(words.memory.title, words.memory.pull);
     window.until("the run record", |window| {
         told(window, "SIM-0001: ", words.memory.pulled)
     });
@@ -215,9 +215,9 @@ fn the_windows_buttons_read_the_unit_that_is_not_connected() {
     };
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), scripts(), settings);
-    window.click("Import the unit's log");
+    window.click_in("Records kept in the unit", "Import the unit's log");
     window.wait_for_part("MEM-3:");
     window.click("Traces");
-    window.click("Pull the run record");
+    window.click_in("Records kept in the unit", "Pull the run record");
     window.wait_for_part("MEM-3: 0 rows read, 0 new runs");
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{
     Align2, AsIdSalt, Color32, FontId, FontSelection, Frame, Margin, Painter, Pos2, Rect, RichText,
-    Role, Sense, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Role, Sense, Stroke, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use crate::Palette;
@@ -26,11 +26,11 @@ pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A frame around what belongs together.
+/// A frame around what belongs together: a line and no ground, which would be most of what is painted of a live page.
 pub fn framed(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     Frame::new()
-        .fill(Palette::of(ui).panel)
-        .corner_radius(4)
+        .stroke(Stroke::new(1.0, Palette::of(ui).grid))
+        .corner_radius(6)
         .inner_margin(Margin::symmetric(8, 4))
         .show(ui, |ui| {
             ui.set_width(ui.available_width());

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use eframe::egui::{
-    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
+    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 use protocol::signal::Signal;
 
@@ -60,7 +60,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let words = &view.words.bench;
     let painter = ui.painter_at(area);
-    painter.rect_filled(area, 4.0, palette.panel);
+    painter.rect_stroke(area, 6.0, (1.0, palette.grid), StrokeKind::Inside);
     let speeds = [
         Signal::Speed,
         Signal::TrainSpeed,

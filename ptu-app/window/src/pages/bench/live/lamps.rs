@@ -146,7 +146,7 @@ fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
         }
         LampState::Off => {
             let line = Stroke::new(1.0, palette.grid);
-            painter.rect(rect, 6.0, palette.panel, line, StrokeKind::Inside);
+            painter.rect_stroke(rect, 6.0, line, StrokeKind::Inside);
             painter.circle_stroke(bulb, 6.0, Stroke::new(1.0, palette.quiet));
             (palette.ink, palette.quiet)
         }

@@ -1,7 +1,7 @@
 //! The track strip: start, PSM1 to PSM4, stop point, train.
 
 use eframe::egui::{
-    Align2, Color32, Painter, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+    Align2, Color32, Painter, Rect, RichText, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 use protocol::signal::Signal;
 
@@ -21,7 +21,7 @@ pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Pale
     let size = vec2(ui.available_width(), HEIGHT);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let painter = ui.painter_at(area);
-    painter.rect_filled(area, 4.0, palette.panel);
+    painter.rect_stroke(area, 6.0, (1.0, palette.grid), StrokeKind::Inside);
     let said = said(strip, view, words);
     let head = pos2(area.left() + 8.0, area.top() + 11.0);
     let text = RichText::new(&said).size(13.0).color(palette.quiet);

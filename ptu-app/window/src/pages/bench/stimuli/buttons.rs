@@ -6,8 +6,8 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::stimulus::{StationData, Stimulus};
 use eframe::egui::emath::Numeric;
 use eframe::egui::{
-    Align, Button, Checkbox, ComboBox, DragValue, Id, Layout, Response, RichText, Role, Ui,
-    WidgetInfo, vec2,
+    Align, Button, Checkbox, ComboBox, DragValue, Id, Layout, Rect, Response, RichText, Role,
+    Sense, Ui, WidgetInfo, vec2,
 };
 
 use crate::messages::told;
@@ -17,7 +17,10 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::BenchWorker;
 
 /// Width of a row's name.
-const NAME: f32 = 116.0;
+const NAME: f32 = 94.0;
+/// Between two buttons of a row, and beside what stands on one.
+const GAP: f32 = 3.0;
+const BESIDE: f32 = 5.0;
 
 /// What the page remembers of what was given, because no signal tells it.
 #[derive(Debug, Default)]
@@ -157,7 +160,8 @@ pub fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, Id)) {
             ui.set_min_width(NAME);
             ui.label(RichText::new(name).color(Palette::of(ui).quiet))
         });
-        ui.spacing_mut().item_spacing.x = 5.0;
+        ui.spacing_mut().item_spacing.x = GAP;
+        ui.spacing_mut().button_padding.x = BESIDE;
         ui.horizontal_wrapped(|ui| add(ui, label.inner.id));
     });
 }
@@ -169,7 +173,7 @@ pub fn number<N: Numeric>(
     value: &mut N,
     range: RangeInclusive<N>,
     unit: &str,
-) {
+) -> Response {
     let suffix = if unit.is_empty() {
         String::new()
     } else {
@@ -181,10 +185,10 @@ pub fn number<N: Numeric>(
         .speed((span / 2_000.0).max(0.01))
         .max_decimals(if N::INTEGRAL { 0 } else { 2 })
         .suffix(suffix);
-    ui.add(drag).labelled_by(label);
+    ui.add(drag).labelled_by(label)
 }
 
-/// A number filled in, of a row that has several.
+/// A number filled in, of a row that has several: its unit says which it is.
 pub fn named_number<N: Numeric>(
     ui: &mut Ui,
     name: &str,
@@ -192,8 +196,10 @@ pub fn named_number<N: Numeric>(
     range: RangeInclusive<N>,
     unit: &str,
 ) {
-    let label = ui.label(name).id;
-    number(ui, label, value, range, unit);
+    let at = Rect::from_min_size(ui.cursor().min, vec2(0.0, 0.0));
+    let label = ui.interact(at, ui.scope_id().with(name), Sense::hover());
+    label.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+    number(ui, label.id, value, range, unit).on_hover_text(name);
 }
 
 /// One of several, filled in.
