@@ -14,7 +14,7 @@ use ptu_report::words::{Language, Words};
 use ptu_window::Density;
 
 /// The usual window, the smallest, the usual one at 150 %, and a wide one, points.
-const SIZES: [[f32; 2]; 4] = [
+pub const SIZES: [[f32; 2]; 4] = [
     [1280.0, 800.0],
     [900.0, 600.0],
     [853.0, 533.0],

@@ -16,6 +16,7 @@ mod history_page;
 mod internal_names;
 mod layout;
 mod locked_window;
+mod nothing_lost;
 mod on_ports;
 mod readers;
 mod report_page;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::epaint::Primitive;
-use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_options::Page;
@@ -63,6 +63,13 @@ impl Window {
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
         let paths = DataPaths::new(place.path("history.db"), scripts);
         Self::on(size, place, paths, settings)
+    }
+
+    /// Another one on the history of this one.
+    pub fn beside(&self, settings: Settings) -> Self {
+        let scripts = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
+        let paths = DataPaths::new(self.place.path("history.db"), scripts);
+        Self::on([1280.0, 800.0], Place::new(), paths, settings)
     }
 
     /// A window on the history of a server.
@@ -178,6 +185,23 @@ impl Window {
     /// Clicks it twice within 180 ms, as many do.
     pub fn double_click(&mut self, label: &str) {
         self.click_once_still(label, |places| places.first().copied(), 2);
+    }
+
+    /// The same here, whatever is here.
+    pub fn double_click_at(&mut self, pos: Pos2) {
+        self.pass(MOMENT_S);
+        self.click_at(pos, 2);
+    }
+
+    /// Everything that can be clicked and is wholly in view.
+    pub fn buttons(&self) -> Vec<(String, Rect)> {
+        let seen = self.harness.ctx.content_rect();
+        let all = self.harness.query_all_by(|_| true).filter_map(|node| {
+            let of = node.accesskit_node();
+            let is_one = of.role() == Role::Button && !of.is_disabled();
+            Some((of.label().filter(|_| is_one)?, node.rect()))
+        });
+        all.filter(|(_, at)| seen.contains_rect(*at)).collect()
     }
 
     /// Clicks the last of several of this name that is in view.

@@ -6,7 +6,7 @@ mod detail;
 mod filter;
 mod list;
 
-use eframe::egui::{Key, Panel, RichText, ScrollArea, Ui, UiBuilder};
+use eframe::egui::{Key, Label, Panel, RichText, ScrollArea, Ui, UiBuilder};
 use egui_material_icons::icons::ICON_ARROW_BACK;
 use fault_db::{FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 
@@ -174,7 +174,8 @@ impl FaultsPage {
                     let count: [(&str, &dyn std::fmt::Display); 2] =
                         [("n", &shown.len()), ("of", &history.faults.len())];
                     let count = fill(words.faults.shown, &count);
-                    ui.label(RichText::new(count).color(Palette::of(ui).quiet));
+                    let count = RichText::new(count).color(Palette::of(ui).quiet);
+                    ui.add(Label::new(count).extend());
                     shown
                 });
                 if is_read {
