@@ -49,7 +49,7 @@ impl Counted {
         if !self.by_key {
             return self.window.write_over(label, written);
         }
-        self.window.tab_to(label);
+        self.window.tab_to(label, true);
         let harness = self.window.harness();
         harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
         self.window.step();
@@ -271,6 +271,7 @@ fn signed_sheet(mut counted: Counted) {
     counted.window.key(Key::Escape);
     counted.click(words.report.write_pdf);
     counted.window.wait_for(words.report.open_file);
+    assert!(counted.window.place.path("sheet.pdf").is_file());
     // Where the sheet is written is known without a click; this test has a place of its own.
     assert!(counted.clicks <= CLICKS, "{} clicks", counted.clicks);
     let wrong = &counted.wrong;

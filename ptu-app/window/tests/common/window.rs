@@ -193,6 +193,17 @@ impl Window {
         self.click_at(pos, 2);
     }
 
+    /// Empty fields to write in, but those of these names.
+    pub fn empty_fields(&self, but: &[&str]) -> Vec<String> {
+        let all = self.harness.query_all_by(|_| true).filter_map(|node| {
+            let of = node.accesskit_node();
+            let is_one = of.role() == Role::TextInput && !of.is_disabled();
+            let is_empty = node.value().is_none_or(|value| value.is_empty());
+            of.label().filter(|_| is_one && is_empty)
+        });
+        all.filter(|name| !but.contains(&&**name)).collect()
+    }
+
     /// Everything that can be clicked and is wholly in view.
     pub fn buttons(&self) -> Vec<(String, Rect)> {
         let seen = self.harness.ctx.content_rect();
@@ -355,17 +366,20 @@ impl Window {
 
     /// Presses what has this name by keys alone: Tab until it has the keyboard, which is seen at each stop, then Space.
     pub fn press(&mut self, label: &str) {
-        self.tab_to(label);
+        self.tab_to(label, false);
         self.pass(MOMENT_S);
         self.key(Key::Space);
     }
 
-    /// Brings the keyboard to what has this name.
-    pub fn tab_to(&mut self, label: &str) {
+    /// Brings the keyboard to the field of this name, or to something else that has it.
+    pub fn tab_to(&mut self, label: &str, is_field: bool) {
         self.until(label, |window| window.enabled(label));
         for _ in 0..MOST_STOPS {
             let mut of_name = self.harness.query_all_by_label(label);
-            let is_there = of_name.any(|node| node.is_focused());
+            let is_there = of_name.any(|node| {
+                let of = node.accesskit_node().role();
+                node.is_focused() && (of == Role::TextInput) == is_field
+            });
             drop(of_name);
             if is_there {
                 return;
@@ -375,7 +389,10 @@ impl Window {
             self.key(Key::Tab);
             if let (Some((name, rect)), Some(before)) = (focused, before) {
                 let after = self.painted(rect);
-                assert_ne!(before, after, "that {name} has the keyboard is not seen");
+                assert!(
+                    before != after,
+                    "{name} has the keyboard, which is not seen"
+                );
             }
         }
         panic!("no key leads to {label}: {:#?}", self.shown());

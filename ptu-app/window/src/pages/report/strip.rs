@@ -8,7 +8,9 @@ use egui_material_icons::icons::{
 use super::{ReportPage, SheetOf, Shown, file};
 use crate::data_paths::DataPaths;
 use crate::messages::told;
-use crate::parts::{Face, Look, NoteOn, caption, file_place, foot, open_file, segments};
+use crate::parts::{
+    ActionPlace, Face, Look, NoteOn, caption, file_place, foot, open_file, segments,
+};
 use crate::request::Request;
 use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Language, Words, fill};
@@ -68,9 +70,10 @@ impl ReportPage {
     fn buttons(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let busy = (!self.writing.is_idle()).then_some(words.report.writing);
+        let place = ActionPlace::new(ui, "files of a sheet", self.run());
         for (look, ending) in ENDINGS {
             let face = Face::new(look, name_of(words, ending)).because(busy);
-            if face.show(ui).clicked() {
+            if place.clicked(&face.show(ui)) {
                 self.write(context, ending);
             }
         }

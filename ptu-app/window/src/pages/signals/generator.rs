@@ -6,7 +6,9 @@ use eframe::egui::{Checkbox, Slider, Ui, vec2};
 use protocol::config::UnitConfig;
 
 use crate::PageContext;
-use crate::parts::{Face, Look, caption, drawings, path_edit, pick, segments, show_drawings};
+use crate::parts::{
+    ActionPlace, Face, Look, caption, drawings, path_edit, pick, segments, show_drawings,
+};
 use crate::request::CachedResponse;
 use ptu_report::signal::sketch;
 use ptu_report::words::Words;
@@ -78,13 +80,14 @@ impl Generator {
         let wave = self.wave();
         let why_not = why_not.or_else(|| wave.is_none().then_some(said.bytes_hint));
         let mut order = None;
+        let place = ActionPlace::new(ui, "orders of a generator", ());
         ui.horizontal(|ui| {
             let play = Face::new(Look::Primary, said.play).because(why_not);
-            if play.show(ui).clicked() {
+            if place.clicked(&play.show(ui)) {
                 order = Some(Order::Play);
             }
             let save = Face::new(Look::Secondary, said.save).hint(said.save_hint);
-            if save.because(why_not).show(ui).clicked() {
+            if place.clicked(&save.because(why_not).show(ui)) {
                 order = Some(Order::Save);
             }
         });
