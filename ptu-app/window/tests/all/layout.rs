@@ -189,7 +189,7 @@ fn laid_out(
         let run = window.app().units().chosen().run.as_ref();
         run.is_some_and(|run| run.id().is_some())
     });
-    window.step();
+    window.wait_for_part("(eb_relay, ");
     look(&mut window, "results");
 }
 

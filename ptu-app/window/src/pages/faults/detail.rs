@@ -48,13 +48,12 @@ pub fn head(
     let part = part(words, detail, parts);
     let code = naming::code(fault.code, &fault.code_name, words);
     let severity = words.report.severity(&fault.severity);
-    // Lines of text, of which one can be clicked.
-    let target = std::mem::replace(&mut ui.spacing_mut().interact_size.y, 0.0);
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().interact_size.y = target;
         ui.label(RichText::new(words.common.unit).color(palette.quiet));
         serial_link(ui, words, &fault.unit_serial, go_to);
     });
+    // The others are lines of text, and nothing to click.
+    let target = std::mem::replace(&mut ui.spacing_mut().interact_size.y, 0.0);
     for (what, value) in [
         (words.faults.cause, &*part),
         (words.common.code, &code),

@@ -12,7 +12,7 @@ use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
 use ptu_report::words::{Traces, fill};
 
 /// A row so many times as wide as its letters are high has words.
-const WORDS: f32 = 64.0;
+const WORDS: f32 = 62.0;
 /// How much one press zooms.
 pub const ZOOM: f64 = 0.7;
 
