@@ -38,6 +38,10 @@ fn the_whole_way(language: Language) {
     window.connect();
     window.wait_for(words.frame.arm);
 
+    // The stimuli, and the list of procedures later, are longer than the window is high.
+    window
+        .harness()
+        .set_size(eframe::egui::vec2(1280.0, 1500.0));
     let test_code = format!("{}: 55", words.bench.test_code);
     window.wait_for(&test_code);
     assert!(!window.enabled(&test_code));
@@ -61,10 +65,6 @@ fn the_whole_way(language: Language) {
     window.wait_for(words.frame.arm);
 
     window.page(Page::Procedures);
-    // The list of procedures is longer than the window is high.
-    window
-        .harness()
-        .set_size(eframe::egui::vec2(1280.0, 1100.0));
     window.click_in(words.procedures.choice, words.procedures.none);
     for title in match language {
         Language::English => [
