@@ -38,14 +38,14 @@ pub(super) struct Authority {
 }
 
 impl Authority {
-    /// Power without anybody's act. One scan.
-    pub fn lacks(&mut self, seen: Observed<'_>, powers: bool) -> bool {
+    /// Power without anybody's act, so far from a stop point, m. One scan.
+    pub fn lacks(&mut self, seen: Observed<'_>, off_stop_m: Option<f64>, powers: bool) -> bool {
         let (before_hand, before_ato) = (self.by_hand, self.by_ato);
         self.end(seen);
         self.begin(seen);
         let given_anew = self.by_ato && self.given == Some(seen.now);
         self.begun = self.by_hand && !before_hand || self.by_ato && !before_ato || given_anew;
-        let jogs = seen.to_stop_m.is_some_and(|m| m.abs() < JOG_M) && seen.kmh() < JOG_KMH;
+        let jogs = off_stop_m.is_some_and(|m| m < JOG_M) && seen.kmh() < JOG_KMH;
         // What fades under the brake, and after it, is no start.
         let fades = seen.traction_n < std::mem::replace(&mut self.traction_n, seen.traction_n);
         let powers = powers && !seen.on(Signal::EbLoop) && !fades;

@@ -430,7 +430,8 @@ impl Monitor {
         self.line_open = line.then(|| self.line_open.unwrap_or(seen.now));
         self.released = self.released.filter(|_| moves && !line);
         let powers = seen.traction_n > NO_POWER_N;
-        let unasked = self.authority.lacks(seen, powers);
+        let off_stop_m = self.place.off_stop_m(seen);
+        let unasked = self.authority.lacks(seen, off_stop_m, powers);
         if self.authority.begins() {
             self.place.begin(seen);
         }

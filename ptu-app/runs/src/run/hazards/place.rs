@@ -11,6 +11,8 @@ use super::monitor::{Invariant, MOVES_KMH, NO_POWER_N, Observed};
 const AT_STOP_POINT_M: f64 = 0.3 + 0.5;
 /// Time for which what slid, or was laid, may still be believed.
 const LATELY: Duration = Duration::from_ms(20_000);
+/// Time in which ATO may still correct a stop after the next section was laid.
+const CORRECTS: Duration = Duration::from_ms(10_000);
 /// Time for which doors that were enabled at the last platform stay so.
 const LEFT: Duration = Duration::from_ms(2_000);
 
@@ -28,6 +30,8 @@ pub(super) struct Place {
     /// Its distance to run when the section was laid.
     laid_m: Option<f64>,
     laid: Instant,
+    /// The section was laid behind another.
+    follows: bool,
     /// The train has stood at a stop point since the unit has its supply, and since its cab was last left.
     arrived: bool,
     arrivals: usize,
@@ -47,6 +51,7 @@ impl Place {
             section: 0,
             laid_m: None,
             laid: Instant::ZERO,
+            follows: false,
             arrived: false,
             arrivals: 0,
             standing: false,
@@ -60,6 +65,7 @@ impl Place {
     pub fn note(&mut self, seen: Observed<'_>) {
         if seen.section != self.section {
             self.ended = self.standing.then_some(self.section);
+            self.follows = self.section != 0;
             self.section = seen.section;
             self.laid_m = seen.to_stop_m;
             self.laid = seen.now;
@@ -86,6 +92,15 @@ impl Place {
         if seen.kmh() < MOVES_KMH {
             self.begun_with = seen.told;
         }
+    }
+
+    /// Distance to the nearest stop point, m: that of the section's end, or for a while that of the one before.
+    pub fn off_stop_m(&self, seen: Observed<'_>) -> Option<f64> {
+        let to_stop_m = seen.to_stop_m?.abs();
+        let corrects = self.follows && seen.now.since(self.laid) < CORRECTS;
+        let left = self.laid_m.filter(|_| corrects);
+        let behind_m = left.zip(seen.to_stop_m).map(|(laid, to)| (laid - to).abs());
+        Some(to_stop_m.min(behind_m.unwrap_or(f64::INFINITY)))
     }
 
     fn section(&self) -> Option<&Section> {
