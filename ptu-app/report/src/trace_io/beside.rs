@@ -5,6 +5,7 @@ use std::path::Path;
 use fault_db::{Id, Store, TraceData};
 
 use super::align::{Aligned, align};
+use super::known::OWN;
 use super::series::import;
 use super::times::Columns;
 use ptu_runs::failure::{Asked, Failure, Unknown, did_you_mean};
@@ -35,7 +36,8 @@ pub fn beside(
         let mut has = import.tables.iter().flat_map(|table| &table.channels);
         if !has.any(|channel| channel.name == *signal) {
             let names = import.tables.iter().flat_map(|table| &table.channels);
-            let near = did_you_mean(heading, names.map(|channel| channel.name.as_str()));
+            let names = names.map(|channel| channel.name.trim_end_matches(OWN));
+            let near = did_you_mean(heading, names);
             let file = file.display().to_string();
             return Err(Failure::usage(Asked::NoColumn(file, heading.clone(), near)));
         }

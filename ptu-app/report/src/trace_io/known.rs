@@ -1,6 +1,6 @@
 //! Signals by the names and words that they have in files: found at once, however many there are.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use fault_db::{Channel, ChannelKind};
 
@@ -10,6 +10,9 @@ use super::times::number;
 
 /// A longer text is no word of a signal, bytes.
 const MAX_WORD: usize = 1024;
+
+/// Behind the name of a column for which another was named.
+pub(super) const OWN: &str = " (own column)";
 
 /// A signal, and the numbers of its words.
 #[derive(Clone)]
@@ -24,6 +27,8 @@ pub(super) struct Known {
 pub(super) struct KnownSignals {
     signals: Vec<Known>,
     places: HashMap<String, usize>,
+    /// Names of signals for which another column was named: a column of such a name is a number of its own.
+    replaced: HashSet<String>,
 }
 
 impl Known {
@@ -84,10 +89,18 @@ impl KnownSignals {
             }
             all.signals.push(Known::new(channel.clone()));
         }
-        for (heading, signal) in called {
-            if let Some(place) = all.places.get(signal).copied() {
-                all.places.insert(heading.clone(), place);
-            }
+        let place = |signal| all.places.get(signal).copied();
+        let called: Vec<_> = (called.iter())
+            .filter_map(|(heading, signal)| Some((heading, place(signal)?)))
+            .collect();
+        for (_, replaced) in &called {
+            let all_names = all.places.iter().filter(|(_, place)| *place == replaced);
+            all.replaced.extend(all_names.map(|(name, _)| name.clone()));
+        }
+        all.places.retain(|name, _| !all.replaced.contains(name));
+        for (heading, place) in called {
+            all.replaced.remove(heading);
+            all.places.insert(heading.clone(), place);
         }
         all
     }
@@ -100,9 +113,13 @@ impl KnownSignals {
     /// The same; else a number of this name.
     pub fn signal(&self, name: &str) -> Known {
         let known = self.named(name).cloned();
+        let own = || match self.replaced.contains(name) {
+            true => plain(&format!("{name}{OWN}")),
+            false => plain(name),
+        };
         known.unwrap_or_else(|| Known {
             is_of_a_trace: false,
-            ..Known::new(plain(name))
+            ..Known::new(own())
         })
     }
 }
