@@ -1,5 +1,6 @@
 //! Whose act lets the train start: a person's, or an order of the wayside, after the last thing that stopped it.
 
+use btu_rig::lever::Lever;
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
@@ -11,8 +12,7 @@ const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
 const CHOSEN: Duration = Duration::from_ms(1_000);
 /// Time after which a train that stands does so for the unit, too: its standstill, and the window of its speed.
 const STANDS: Duration = Duration::from_ms(1_000);
-/// The lever's emergency brake, and the time in which its line closes again.
-const LEVER_EB: f64 = -8.0;
+/// Time in which the brake line closes again behind the lever's emergency brake.
 const CLOSES: Duration = Duration::from_ms(300);
 /// Way in which ATO may correct a stop, m, and its speed, km/h.
 const JOG_M: f64 = 6.2;
@@ -97,7 +97,7 @@ impl Authority {
         let before = std::mem::replace(&mut self.lever, lever);
         let braked = seen.on(Signal::EbLoop);
         // Half of the first notch is told as none.
-        if lever > 0.0 && before <= LEVER_EB {
+        if lever > 0.0 && before == Lever::Emergency.number() {
             self.from_brake = Some(seen.now);
         }
         // The act is the same while the line that the lever itself opened closes.

@@ -11,7 +11,7 @@ use crate::{PageContext, Palette, Sizes};
 use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
 use ptu_report::words::{Traces, fill};
 
-/// A row so many times as wide as its letters are high has words.
+/// Least width of the toolbar in which its buttons have words, in heights of a letter.
 const WORDS: f32 = 62.0;
 /// How much one press zooms.
 pub const ZOOM: f64 = 0.7;

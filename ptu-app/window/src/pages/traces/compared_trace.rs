@@ -82,7 +82,7 @@ impl OverlayRequest {
         matches!(self.overlay, Request::Pending(_))
     }
 
-    /// What to compare with.
+    /// Chooses what the trace is compared with: nothing, a sound twin, or another trace.
     pub fn bar(
         &mut self,
         ui: &mut Ui,
