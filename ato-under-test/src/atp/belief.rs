@@ -5,6 +5,8 @@
 //! a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed, says that its
 //! own axles stand. So it does while TCMS tells that they turn and no tachometer does, or that they are much faster than
 //! both. From rest, power that is asked for and moves nothing is cut.
+//!
+//! A clock that is fast makes all speeds too low: where TCMS's counter contradicts the clock, speeds are raised by as much.
 
 use protocol::config::TachoConfig;
 use protocol::event::Event;
@@ -26,6 +28,8 @@ const BACK: Duration = Duration::from_ms(1_000);
 pub struct Witness {
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
+    /// Share by which the unit's clock is faster than TCMS's, slower negative.
+    pub clock_gains: f64,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
     /// The start of the train is awaited again: a person acknowledges.
@@ -73,6 +77,8 @@ pub struct Belief {
     powerless: OnDelay,
     cut: bool,
     told: Edge,
+    clock_told: Edge,
+    clock_fast: f64,
 }
 
 impl Belief {
@@ -87,11 +93,14 @@ impl Belief {
         log: &mut EventLog,
     ) {
         let speed = speeds[0].max(speeds[1]);
+        self.hold_clock(now, witness, config, log);
         if witness.unguarded || witness.tested {
             *self = Self {
                 reference_mps: speed.mps(),
                 last_mps: speed.mps(),
                 each_mps: speeds.map(Speed::mps),
+                clock_fast: self.clock_fast,
+                clock_told: self.clock_told,
                 ..Self::default()
             };
             return;
@@ -109,6 +118,26 @@ impl Belief {
         }
         self.settle(now, speed, witness, config);
         self.await_start(now, pulses, witness, config, log);
+    }
+
+    /// Compares the clock with TCMS's; a share that late frames may make is none.
+    fn hold_clock(
+        &mut self,
+        now: Instant,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        let gains = witness.clock_gains;
+        let off = libm::fabs(gains) > config.clock_share && !witness.unguarded;
+        self.clock_fast = if off { gains.max(0.0) } else { 0.0 };
+        if self.clock_told.rises(off) {
+            log.push(
+                now,
+                Event::ClockContradicted,
+                libm::round(gains * 1e4) as i32,
+            );
+        }
     }
 
     /// A tachometer turns, and does not fall faster than adhesion lets it: what the other one did was its own fault.
@@ -195,6 +224,11 @@ impl Belief {
     pub fn doubted(&self) -> Option<Speed> {
         let doubted_mps = self.doubted_mps?;
         Some(Speed::from_mps(doubted_mps.max(self.told_mps)))
+    }
+
+    /// Share by which speeds are too low, because the clock is fast.
+    pub fn clock_fast(&self) -> f64 {
+        self.clock_fast
     }
 
     /// Power is cut: it moves nothing.

@@ -22,11 +22,15 @@ const SIDES: [(Outputs, TrainLines, TrainLines); 2] = [
 #[derive(Clone, Copy, Debug)]
 pub struct DoorLines {
     lines: TrainLines,
+    /// The train tells of doors by side, or has told of them before.
+    by_side: bool,
 }
 
 impl DoorLines {
-    pub const fn new(lines: TrainLines) -> Self {
-        Self { lines }
+    /// Lines of a train that `told` of doors by side before: the supervision of sides outlasts that it does.
+    pub const fn new(lines: TrainLines, told: bool) -> Self {
+        let by_side = told || lines.contains(TrainLines::DOORS_BY_SIDE);
+        Self { lines, by_side }
     }
 
     /// All doors are proved closed, and by side closed and locked.
@@ -36,7 +40,7 @@ impl DoorLines {
 
     /// The train has lines for each side.
     pub fn by_side(self) -> bool {
-        self.lines.contains(TrainLines::DOORS_BY_SIDE)
+        self.by_side
     }
 
     /// Sides on which doors are not proved closed and locked. One line for all doors tells of no side.
@@ -52,7 +56,8 @@ impl DoorLines {
     }
 
     /// Sides whose lines contradict each other: doors that are locked and not closed, or closed and open by the line
-    /// of all doors; `None` where that line alone is wrong. Nothing while they fit.
+    /// of all doors; `DoorSide::None` where that line alone is wrong, or the train tells of sides no more. Nothing while they
+    /// fit.
     pub fn contradiction(self) -> Option<DoorSide> {
         if !self.by_side() {
             return None;
@@ -60,7 +65,8 @@ impl DoorLines {
         let locked_open = self
             .sides(|_, closed, locked| self.lines.contains(locked) && !self.lines.contains(closed));
         let both = TrainLines::LEFT_CLOSED | TrainLines::RIGHT_CLOSED;
-        let fits = self.lines.contains(both) == self.lines.contains(TrainLines::DOORS_CLOSED);
+        let fits = self.lines.contains(both) == self.lines.contains(TrainLines::DOORS_CLOSED)
+            && self.lines.contains(TrainLines::DOORS_BY_SIDE);
         (locked_open != DoorSide::None || !fits).then_some(locked_open)
     }
 
@@ -77,7 +83,7 @@ mod tests {
     const ALL: TrainLines = TrainLines::from_bits_retain(0b11_1110_0000_0001);
 
     fn without(lines: TrainLines) -> DoorLines {
-        DoorLines::new(ALL.difference(lines))
+        DoorLines::new(ALL.difference(lines), true)
     }
 
     #[test]
@@ -100,11 +106,11 @@ mod tests {
 
     #[test]
     fn one_line_for_all_doors_tells_of_no_side() {
-        let open = DoorLines::new(TrainLines::empty());
+        let open = DoorLines::new(TrainLines::empty(), false);
         assert!(!open.closed());
         assert_eq!(open.open_without(Outputs::empty()), DoorSide::None);
         assert_eq!(open.contradiction(), None);
-        assert!(DoorLines::new(TrainLines::DOORS_CLOSED).closed());
+        assert!(DoorLines::new(TrainLines::DOORS_CLOSED, false).closed());
     }
 
     #[test]
@@ -129,6 +135,7 @@ mod tests {
             (all, Some(DoorSide::None)),
             (left, Some(DoorSide::None)),
             (TrainLines::RIGHT_CLOSED | all, Some(DoorSide::Right)),
+            (TrainLines::DOORS_BY_SIDE, Some(DoorSide::None)),
         ] {
             assert_eq!(without(missing).contradiction(), contradiction);
         }

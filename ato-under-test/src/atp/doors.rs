@@ -201,7 +201,7 @@ mod tests {
     /// A train that stands at a platform on this side.
     fn at_platform(lines: TrainLines, side: DoorSide) -> DoorInputs {
         DoorInputs {
-            lines: Some(DoorLines::new(lines)),
+            lines: Some(DoorLines::new(lines, false)),
             supervised: true,
             latched: true,
             standstill: true,

@@ -77,6 +77,8 @@ pub struct ScanContext {
     pub runs_farther: f64,
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
+    /// Share by which the unit's clock is faster than TCMS's, slower negative.
+    pub clock_gains: f64,
     /// Others have opened the brake line, as it is read back or TCMS tells it.
     pub line_open: bool,
     /// Others have opened the line that had followed the relay.
@@ -117,6 +119,8 @@ pub struct Atp {
     inputs_lost: Edge,
     broken: Edge,
     doors_closed: bool,
+    /// The train has told of doors by side since power-up.
+    doors_by_side: bool,
     doors_open: DoorSide,
 }
 
@@ -146,6 +150,7 @@ impl Atp {
             inputs_lost: Edge::default(),
             broken: Edge::default(),
             doors_closed: false,
+            doors_by_side: false,
             doors_open: DoorSide::None,
         }
     }
@@ -203,7 +208,8 @@ impl Atp {
             .proof
             .step(now, speed, self.demand(motion, margins), margins);
         let beyond = self.supervision.emergency(now, motion, proof, margins);
-        let door_lines = DoorLines::new(inputs.lines);
+        self.doors_by_side |= inputs.lines.contains(TrainLines::DOORS_BY_SIDE);
+        let door_lines = DoorLines::new(inputs.lines, self.doors_by_side);
         self.doors_closed = door_lines.closed();
         self.doors_open = door_lines.open();
         let door_inputs = DoorInputs {
@@ -357,6 +363,7 @@ impl Atp {
         let held = self.power_cut() || context.tcms_holds;
         Witness {
             tcms_speed: context.tcms_speed,
+            clock_gains: context.clock_gains,
             powers: notch && !held,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             tested: false,

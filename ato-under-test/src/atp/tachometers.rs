@@ -184,7 +184,7 @@ impl Tachometers {
     /// The greater of the two.
     fn measured(&self) -> Speed {
         let greater = self.meters[0].speed().max(self.meters[1].speed());
-        Speed::from_mps(greater.mps() * (1.0 + self.farther))
+        Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.belief.clock_fast()))
     }
 
     /// The safe speed: the greater of the two, or what the train may still have where they are not believed.

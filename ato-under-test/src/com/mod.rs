@@ -2,6 +2,7 @@
 
 mod image;
 mod maintenance;
+mod pace;
 mod ports;
 mod reject_watch;
 mod tcms;

@@ -3,6 +3,8 @@
 use protocol::message::{TcmsToAtc, TcmsToAtcBits};
 use protocol::{Duration, Instant, Speed};
 
+use super::pace::Pace;
+
 /// Effort as TCMS may say it: 10 bits and sign (S4).
 const EFFORT: core::ops::RangeInclusive<i16> = -1024..=1023;
 /// TCMS brakes by itself, or gives no power whatever it is asked for.
@@ -17,6 +19,7 @@ pub struct TcmsLink {
     last: TcmsToAtc,
     heard: Option<Instant>,
     counter_moved: Option<Instant>,
+    pace: Pace,
     alive: bool,
     reported: Option<bool>,
     timeout: Duration,
@@ -31,6 +34,7 @@ impl TcmsLink {
             last: TcmsToAtc::default(),
             heard: None,
             counter_moved: None,
+            pace: Pace::default(),
             alive: false,
             reported: None,
             timeout,
@@ -47,6 +51,8 @@ impl TcmsLink {
         self.heard = Some(now);
         if self.counter_moved.is_none() || frame.alive != self.last.alive {
             self.counter_moved = Some(now);
+            let counts = frame.alive.wrapping_sub(self.last.alive);
+            self.pace.count(now, counts);
         }
         self.last = frame;
         true
@@ -115,6 +121,11 @@ impl TcmsLink {
     pub fn speed(&self) -> Option<Speed> {
         let tells = self.says(TcmsToAtcBits::TELLS_SPEED);
         tells.then(|| Speed::from_cms(self.last.speed_cms))
+    }
+
+    /// Share by which the unit's clock is faster than TCMS's, slower negative.
+    pub fn clock_gains(&self) -> f64 {
+        self.pace.clock_gains()
     }
 
     /// TCMS reads the head control relay of the unit's cab as dropped.

@@ -63,6 +63,8 @@ pub enum DoorLine {
     RightClosed,
     /// Doors on the right locked.
     RightLocked,
+    /// That the train tells of doors by side.
+    BySide,
 }
 
 impl DoorLine {
@@ -73,14 +75,16 @@ impl DoorLine {
         "left_locked",
         "right_closed",
         "right_locked",
+        "by_side",
     ];
     /// All, in the same order.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::All,
         Self::LeftClosed,
         Self::LeftLocked,
         Self::RightClosed,
         Self::RightLocked,
+        Self::BySide,
     ];
 
     /// The line called `label`.

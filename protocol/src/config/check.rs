@@ -100,6 +100,7 @@ impl UnitConfig {
             tacho.no_pulses_ms: 500.0, 60000.0;
             tacho.tcms_moves_kmh: 0.5, 20.0;
             tacho.tcms_difference_kmh: 2.0, 50.0;
+            tacho.clock_share: 0.05, 0.5;
             overspeed.alarm_margin_kmh: 0.0, 20.0;
             overspeed.fsb_margin_kmh: 0.0, 20.0;
             overspeed.yard_kmh: 5.0, 45.0;

@@ -48,6 +48,9 @@ pub struct TachoConfig {
     /// believed.
     #[serde(default = "TachoConfig::default_tcms_difference_kmh")]
     pub tcms_difference_kmh: f64,
+    /// Share by which the unit's clock may differ from the pace of TCMS's alive counter.
+    #[serde(default = "TachoConfig::default_clock_share")]
+    pub clock_share: f64,
     /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
     #[serde(default = "TachoConfig::default_share")]
     pub share: f64,
@@ -98,6 +101,10 @@ impl TachoConfig {
 
     const fn default_tcms_difference_kmh() -> f64 {
         10.0
+    }
+
+    const fn default_clock_share() -> f64 {
+        0.08
     }
 
     const fn default_adhesion() -> f64 {

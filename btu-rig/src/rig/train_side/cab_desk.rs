@@ -227,7 +227,7 @@ impl CabDesk {
     /// Door train lines: one through the closed contacts of all doors, and two for each side.
     fn door_lines(&self) -> TrainLines {
         let [left, right] = self.side_lines();
-        let mut lines = TrainLines::DOORS_BY_SIDE;
+        let mut lines = TrainLines::empty();
         // In the order of `DoorLine`.
         let by_doors = [
             (TrainLines::DOORS_CLOSED, left.0 && right.0),
@@ -235,6 +235,7 @@ impl CabDesk {
             (TrainLines::LEFT_LOCKED, left.1),
             (TrainLines::RIGHT_CLOSED, right.0),
             (TrainLines::RIGHT_LOCKED, right.1),
+            (TrainLines::DOORS_BY_SIDE, true),
         ];
         for ((line, on), said) in by_doors.into_iter().zip(self.line_said) {
             lines.set(line, said.unwrap_or(on));

@@ -3,10 +3,9 @@
 
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{
-    CutOut, DoorLine, DoorState, OrderData, StationData, Stimulus, TachoCondition, TcmsCondition,
-    TrainSwitch, WaysideCondition,
+    CutOut, DoorLine, DoorState, StationData, Stimulus, TachoCondition, TcmsCondition, TrainSwitch,
 };
-use protocol::message::{DoorSide, ModeSwitch, RunningMode, TrainOrder};
+use protocol::message::ModeSwitch;
 use protocol::{Duration, Speed};
 
 use super::plan::{Act, Draw};
@@ -220,59 +219,12 @@ impl Draw<'_> {
         self.back(at_ms, Stimulus::DoorLine { line, on: None });
     }
 
-    /// Station data of this section or of any other of the track database.
-    fn station(&mut self, at_ms: u32) {
-        let line = &self.setup.line.content;
-        let other = self.chance(0.5);
-        let section = match other {
-            true => &line.sections[self.random.below(line.sections.len())],
-            false => &line.sections[self.section],
-        };
-        let mut station = match self.random.chance(0.5) {
-            true => StationData::at_departure(section),
-            false => StationData::at_arrival(section, line.station_after(section)),
-        };
-        station.departure = self.chance(0.6);
-        if self.chance(0.2) {
-            station.door_side = self.one_of(&[
-                DoorSide::None,
-                DoorSide::Left,
-                DoorSide::Right,
-                DoorSide::Both,
-            ]);
-        }
-        if self.chance(0.2) {
-            station.running_mode = self.one_of(&[RunningMode::Slow, RunningMode::Recovery]);
-        }
-        self.station = station;
-        self.at(at_ms, Stimulus::Station(station));
-    }
-
-    /// Given, withheld, or given twice.
-    fn departure(&mut self, at_ms: u32) {
-        for (step, departure) in [(0, true), (1, false), (2, true)] {
-            if self.chance(0.6) {
-                let station = StationData {
-                    departure,
-                    ..self.station
-                };
-                self.at(at_ms + step * 900, Stimulus::Station(station));
-            }
-        }
-    }
-
     fn start(&mut self, at_ms: u32) {
         self.at(at_ms, Stimulus::Start);
     }
 
     fn acknowledge(&mut self, at_ms: u32) {
         self.at(at_ms, Stimulus::Acknowledge);
-    }
-
-    fn wayside(&mut self, at_ms: u32) {
-        let condition = self.one_of(&[WaysideCondition::Silent, WaysideCondition::Corrupt]);
-        self.at(at_ms, Stimulus::Wayside(condition));
-        self.back(at_ms, Stimulus::Wayside(WaysideCondition::Good));
     }
 
     fn tcms(&mut self, at_ms: u32) {
@@ -372,18 +324,6 @@ impl Draw<'_> {
             TrainSwitch::TurnBack,
         ]);
         self.at(at_ms, Stimulus::Switch { switch, on: true });
-    }
-
-    /// The wayside puts the train away, wakes it, turns it back, or orders nothing.
-    fn orders(&mut self, at_ms: u32) {
-        let order = self.one_of(&[
-            TrainOrder::PutAway,
-            TrainOrder::WakeUp,
-            TrainOrder::TurnBack,
-            TrainOrder::None,
-        ]);
-        let orders = OrderData::of_section(order, None, 0.0);
-        self.at(at_ms, Stimulus::Orders(Some(orders)));
     }
 
     /// Wheels of the train's range, that of the configuration, or what no wheel has.

@@ -4,7 +4,8 @@ use btu_rig::lever::Lever;
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::{MOVES_KMH, Observed};
+use super::monitor::{MOVES_KMH, NO_POWER_N};
+use super::observed::Observed;
 
 /// Time for which a departure is on its way, or an act that was over before its condition may still count.
 const ON_ITS_WAY: Duration = Duration::from_ms(1_000);
@@ -67,7 +68,9 @@ impl Authority {
             seen.on(Signal::DoorEnableRight),
         ];
         let stands = seen.kmh() < MOVES_KMH;
-        self.still = self.still.filter(|_| stands).or(stands.then_some(seen.now));
+        // A train under power has begun its run before it moves.
+        let still = stands && seen.traction_n <= NO_POWER_N;
+        self.still = self.still.filter(|_| still).or(still.then_some(seen.now));
         let forced = (0..2).any(|side| seen.doors_open[side] && !enabled[side] && stands);
         if seen.on(Signal::EbLoop) || forced || !seen.on(Signal::Hcr) || !seen.powered {
             (self.by_hand, self.by_ato) = (false, false);

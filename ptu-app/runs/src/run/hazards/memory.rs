@@ -4,7 +4,7 @@
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, SCAN};
 
-use super::monitor::Observed;
+use super::observed::Observed;
 
 /// Remembers values that were there lately.
 #[derive(Default)]

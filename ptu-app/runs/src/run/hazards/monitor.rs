@@ -5,11 +5,12 @@
 
 use protocol::config::UnitConfig;
 use protocol::line::Line;
-use protocol::signal::{Sample, Signal};
+use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
 use super::authority::Authority;
 use super::memory::{Asleep, Blind};
+use super::observed::Observed;
 use super::permitted::{Limits, Permitted};
 use super::place::Place;
 
@@ -25,9 +26,8 @@ const SLACK: Duration = Duration::from_ms(300);
 const SLOWS_MPS2: f64 = 0.3;
 /// Traction that is none, N: what an inverter still gives while its order fades.
 pub(super) const NO_POWER_N: f64 = 10_000.0;
-/// Speed of a jog, km/h, and overrun after which a train may be jogged back, m, with what its position may be off.
+/// Speed of a jog, km/h.
 const JOG_KMH: f64 = 5.0;
-const JOGS_FROM_M: f64 = 5.3 + 0.9;
 /// Sum of ways against or without a direction between two departures, m: tolerance, and one window at the speed of a roll.
 const ROLLED_M: f64 = 0.5 + 0.5;
 /// Time for which a line that is open applies no brake.
@@ -39,6 +39,9 @@ const TOLD: Duration = Duration::from_ms(1_000);
 /// Way with a door open, m, and time in which a train that moves is braked.
 const OPEN_WAY_M: f64 = 0.3;
 const OPEN_BRAKED_S: f64 = 0.5;
+
+/// How a train breaks I2 that no stop code stops.
+pub(super) const UNDER_STOP: &str = "moves under a stop";
 
 /// What must hold at any time; numbers are never used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,114 +77,6 @@ pub struct Breach {
     pub how: &'static str,
     /// Condition of the scene that explains it.
     pub condition: Option<&'static str>,
-}
-
-/// What is true in a scan.
-#[derive(Clone, Copy)]
-pub struct Observed<'a> {
-    pub now: Instant,
-    pub sample: &'a Sample,
-    /// Of the train, m/s, forward positive.
-    pub speed_mps: f64,
-    /// Forward positive, m/s².
-    pub accel_mps2: f64,
-    /// Distance to the stop point, m, where a section is laid.
-    pub to_stop_m: Option<f64>,
-    /// Traction at the wheels, N; 0 while the bench turns them.
-    pub traction_n: f64,
-    /// A car slips or slides.
-    pub sliding: bool,
-    /// The wheels follow the train; else the bench turns them, whatever brakes do.
-    pub driven: bool,
-    /// Doors of the left and of the right.
-    pub doors_open: [bool; 2],
-    /// Reverser: 1, 0, -1.
-    pub reverser: i8,
-    /// Contacts of the mode switch or the reverser change all the time.
-    pub chatters: bool,
-    /// Section that the train is on.
-    pub section: u16,
-    /// Section whose data the wayside gives.
-    pub told: u16,
-    /// The start button is pressed, or was a moment ago.
-    pub start: bool,
-    /// No tachometer gives pulses.
-    pub blind: bool,
-    /// The unit has its supply.
-    pub powered: bool,
-    /// Carrier and code rate of a neighbouring track's code, Hz; its level is a signal.
-    pub crosstalk: [f64; 2],
-    /// Wheel diameter that is being keyed in, mm; 0 = as configured.
-    pub wheel_mm: Option<f64>,
-    /// Pulses of markers that lie nowhere, so far.
-    pub pulsed: usize,
-    /// How far beyond their places the markers lie, m.
-    pub displaced: [f64; 4],
-}
-
-impl<'a> Observed<'a> {
-    /// A train at rest on the bench, forward, with its unit supplied.
-    pub(super) fn at_rest(now: Instant, sample: &'a Sample) -> Self {
-        Self {
-            now,
-            sample,
-            speed_mps: 0.0,
-            accel_mps2: 0.0,
-            to_stop_m: None,
-            traction_n: 0.0,
-            sliding: false,
-            driven: true,
-            doors_open: [false; 2],
-            reverser: 1,
-            chatters: false,
-            section: 0,
-            told: 0,
-            start: false,
-            blind: false,
-            powered: true,
-            crosstalk: [0.0; 2],
-            wheel_mm: None,
-            pulsed: 0,
-            displaced: [0.0; 4],
-        }
-    }
-}
-
-impl Observed<'_> {
-    pub(super) fn on(&self, signal: Signal) -> bool {
-        self.value(signal) > 0.5
-    }
-
-    pub(super) fn value(&self, signal: Signal) -> f64 {
-        self.sample.get(signal).unwrap_or(0.0)
-    }
-
-    pub(super) fn kmh(&self) -> f64 {
-        self.speed_mps.abs() * 3.6
-    }
-
-    pub(super) fn switch(&self) -> u8 {
-        self.value(Signal::ModeSwitch) as u8
-    }
-
-    /// ATO drives the train, as TCMS has it.
-    pub(super) fn by_ato(&self) -> bool {
-        matches!(self.value(Signal::TcmsMode) as u8, 4 | 5)
-    }
-
-    /// The train may be jogging back: by ATO, past the stop point, doors closed.
-    fn jogs_back(&self) -> bool {
-        let past = |to_stop_m: f64| (-JOGS_FROM_M..1.2).contains(&to_stop_m);
-        let backward = self.reverser == 1 && self.speed_mps < 0.0;
-        self.by_ato() && backward && self.to_stop_m.is_some_and(past)
-    }
-
-    /// It runs where neither reverser nor code lets it.
-    fn wrong_way(&self) -> bool {
-        let by_code = matches!(self.switch(), 2..=4);
-        let against = self.speed_mps * f64::from(self.reverser) <= 0.0;
-        (against || by_code && self.speed_mps < 0.0) && !self.jogs_back()
-    }
 }
 
 /// Watches over all invariants.
@@ -282,12 +177,7 @@ impl Monitor {
         vec![
             (I2, "over the limit", above(fsb_kmh, keyed) && !braked, 300),
             (I2, "over the limit, unslowed", unslowed, 6_000),
-            (
-                I2,
-                "moves under a stop",
-                most_kmh == 0.0 && moves && !braked,
-                500,
-            ),
+            (I2, UNDER_STOP, most_kmh == 0.0 && moves && !braked, 500),
             (
                 I2,
                 "by a code that was not there for long enough",
@@ -362,7 +252,9 @@ impl Monitor {
             0.0
         };
         self.opened = open.then(|| self.opened.unwrap_or(seen.now));
-        let armed = seen.on(Signal::Armed);
+        // A bench that has not heard the unit for a moment does not know.
+        let armed =
+            (seen.sample.get(Signal::Armed)).map_or(self.armed_open.is_some(), |on| on > 0.5);
         let long = (self.opened).is_some_and(|since| seen.now.since(since) > TOLD);
         self.armed_open = armed.then(|| self.armed_open.unwrap_or(long));
         let most_m = OPEN_WAY_M + self.open_mps * OPEN_BRAKED_S;
@@ -380,6 +272,7 @@ impl Monitor {
         let unenabled = (0..2).any(|side| ordered[side] && !enabled[side]);
         let forced = (0..2).any(|side| seen.doors_open[side] && !enabled[side]);
         let closes = seen.on(Signal::DoorOrderClose) && forced;
+        let supervised = seen.powered && seen.on(Signal::Hcr) && seen.switch() != 0;
         let moves = seen.kmh() > MOVES_KMH && !blind;
         vec![
             (
@@ -387,6 +280,12 @@ impl Monitor {
                 "moves with a door open",
                 open && !braked && self.open_m > most_m,
                 0,
+            ),
+            (
+                I3,
+                "a door forced open, and no brake",
+                forced && supervised && !braked && !seen.on(Signal::Fsb),
+                1_000,
             ),
             (I4, "enabled in motion", any && moves, 0),
             (I4, "enabled away from the place", any && !platform.there, 0),
@@ -435,8 +334,10 @@ impl Monitor {
         if self.authority.begins() {
             self.place.begin(seen);
         }
+        // Wheels that slide are braked as much as the rails let them.
         let ineffective = line
             && seen.driven
+            && !seen.sliding
             && seen.speed_mps * seen.accel_mps2 > -SLOWS_MPS2 * seen.speed_mps.abs();
         let hcr = seen.on(Signal::Hcr);
         let fit = hcr && seen.reverser == 1 && seen.doors_open == [false; 2];

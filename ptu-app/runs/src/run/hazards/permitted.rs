@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
 use super::memory::{Confirmed, Lately};
-use super::monitor::Observed;
+use super::observed::Observed;
 use super::proceeding::{Proceeding, YardEnded};
 
 /// Time for which a code that is no longer there may still be in force, and the desk's order on its way, beside hold time

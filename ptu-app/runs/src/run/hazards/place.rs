@@ -5,7 +5,8 @@ use protocol::message::{DoorSide, ModeSwitch};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::{Invariant, MOVES_KMH, NO_POWER_N, Observed};
+use super::monitor::{Invariant, MOVES_KMH, NO_POWER_N};
+use super::observed::Observed;
 
 /// Place that may be the stop point's, m: tolerance, and what a position may be off behind the last marker.
 const AT_STOP_POINT_M: f64 = 0.3 + 0.5;
@@ -32,7 +33,7 @@ pub(super) struct Place {
     laid: Instant,
     /// The section was laid behind another.
     follows: bool,
-    /// The train has stood at a stop point since the unit has its supply, and since its cab was last left.
+    /// The train has come to a stop point since the unit has its supply, and since its cab was last left.
     arrived: bool,
     arrivals: usize,
     standing: bool,
@@ -75,10 +76,11 @@ impl Place {
         let standing = at_stop && seen.kmh() < 0.25;
         if standing && !self.standing {
             self.arrivals += 1;
+            self.arrived = true;
         }
         self.standing = standing;
-        let cab_left = seen.switch() == ModeSwitch::Off.code();
-        self.arrived = (self.arrived || standing) && seen.powered && !cab_left;
+        let cab_left = seen.switch() == ModeSwitch::Off.code() || !seen.on(Signal::Hcr);
+        self.arrived &= seen.powered && !cab_left;
         if !seen.powered {
             self.arrivals = 0;
         }

@@ -1,18 +1,19 @@
 //! Plays a plan on a bench, and has the monitor watch.
 
-use std::fmt;
 use std::iter::Peekable;
 
 use btu_rig::rig::Bench;
 use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
 use protocol::injection::{FaultMode, Place};
 use protocol::line::Section;
-use protocol::message::ModeSwitch;
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::{Breach, MOVES_KMH, Monitor, Observed};
+use super::find::{Find, state};
+use super::monitor::{Breach, MOVES_KMH, Monitor};
+use super::observed::Observed;
 use super::plan::{Act, Plan, Scene};
+use super::ride::Ride;
 use crate::link::SimLink;
 use crate::run::BenchSetup;
 
@@ -24,59 +25,13 @@ const HEARD_AGAIN: Duration = Duration::from_ms(2_000);
 const PRESSED: Duration = Duration::from_ms(800);
 /// Time for which a wheel diameter that is keyed in may be taken: the bench keys it in for 300 ms.
 const KEYED_IN: Duration = Duration::from_ms(600);
-/// Longest time at a platform, and time from new station data to departure and to the start button.
-const DWELL: Duration = Duration::from_ms(14_000);
-const DEPARTS: Duration = Duration::from_ms(3_000);
-const STARTS: Duration = Duration::from_ms(4_500);
 
-/// First breach of an invariant in a plan.
-#[derive(Debug)]
-pub struct Find {
-    pub breach: Breach,
-    pub at: Instant,
-    /// Signals and true motion at the breach.
-    pub state: String,
-    /// By how much the unit tells a lower speed than there is, km/h.
-    pub hidden_kmh: f64,
-    /// Faults that were injected, and those of tachometers that the bench made.
-    pub faults: Vec<String>,
-    /// What was done until then, in order.
-    pub acts: Vec<(Instant, Act)>,
-}
-
-impl fmt::Display for Find {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            at,
-            state,
-            faults,
-            acts,
-            ..
-        } = self;
-        writeln!(f, "at {at} with {faults:?}: {state}")?;
-        let acts = acts.iter();
-        let acts = acts.map(|(at, act)| format!("{:.2} s {act}", at.as_us() as f64 / 1e6));
-        write!(f, "    {}", acts.collect::<Vec<_>>().join("; "))
-    }
-}
-
-/// What the wayside of a ride does next.
-#[derive(Clone, Copy, PartialEq)]
-enum Ride {
-    At(Instant),
-    Given(Instant),
-    Pressed,
-    UnderWay,
-    Arrived(Instant),
-    Over,
-}
-
-struct Player<'a> {
-    bench: Bench<SimLink>,
-    setup: &'a BenchSetup,
-    plan: &'a Plan,
-    section: &'a Section,
-    ride: Ride,
+pub(super) struct Player<'a> {
+    pub(super) bench: Bench<SimLink>,
+    pub(super) setup: &'a BenchSetup,
+    pub(super) plan: &'a Plan,
+    pub(super) section: &'a Section,
+    pub(super) ride: Ride,
     reverser: i8,
     powered: bool,
     turns: Option<[(Stimulus, Duration); 2]>,
@@ -84,7 +39,7 @@ struct Player<'a> {
     started: Option<Instant>,
     crosstalk: [f64; 2],
     wheel: Option<(f64, Instant)>,
-    told: StationData,
+    pub(super) told: StationData,
     tacho_made: bool,
     tcms_good: bool,
     driven: bool,
@@ -283,7 +238,7 @@ impl<'a> Player<'a> {
     }
 
     /// Lays the section, with its markers where they lie in truth.
-    fn lay(&mut self) {
+    pub(super) fn lay(&mut self) {
         let section = Some(self.section.section);
         self.apply(Stimulus::MarkersAlong { section });
         for (psm, by_m) in (1..).zip(self.plan.displaced_m) {
@@ -294,52 +249,6 @@ impl<'a> Player<'a> {
                 });
             }
         }
-    }
-
-    /// The wayside of a ride, and a driver who presses the start button.
-    fn go_on(&mut self, now: Instant) {
-        let truth = self.bench.rig().truth();
-        let stands = truth.speed_mps.abs() < 0.05;
-        let line = &self.setup.line.content;
-        self.ride = match self.ride {
-            Ride::At(at) if now.since(at) > DEPARTS => {
-                let departure = StationData {
-                    departure: true,
-                    ..self.told
-                };
-                self.apply(Stimulus::Station(departure));
-                Ride::Given(at)
-            }
-            Ride::Given(at) if now.since(at) > STARTS => {
-                if self.plan.scene.switch() == ModeSwitch::Automatic {
-                    self.apply(Stimulus::Start);
-                }
-                Ride::Pressed
-            }
-            Ride::Given(_) | Ride::Pressed if truth.speed_mps > 1.4 => {
-                let next = line.station_after(self.section);
-                self.apply(Stimulus::Station(StationData::at_arrival(
-                    self.section,
-                    next,
-                )));
-                Ride::UnderWay
-            }
-            Ride::UnderWay if stands && truth.to_stop_m.is_some_and(|m| m.abs() < 25.0) => {
-                Ride::Arrived(now)
-            }
-            Ride::Arrived(at) if now.since(at) > DWELL => match line.after(self.section) {
-                None => Ride::Over,
-                Some(next) => {
-                    self.section = next;
-                    self.lay();
-                    let data_of = self.plan.data_of.and_then(|at| line.sections.get(at));
-                    let data = StationData::at_departure(data_of.unwrap_or(next));
-                    self.apply(Stimulus::Station(data));
-                    Ride::At(now)
-                }
-            },
-            ride => ride,
-        };
     }
 
     fn act(&mut self, act: Act) {
@@ -377,7 +286,7 @@ impl<'a> Player<'a> {
     }
 
     /// What cannot be done is not done, as a bench refuses it.
-    fn apply(&mut self, stimulus: Stimulus) {
+    pub(super) fn apply(&mut self, stimulus: Stimulus) {
         let now = self.bench.now();
         // No train that moves comes to stand on a bench, or off it, in no time.
         if matches!(stimulus, Stimulus::TrainDriven { .. }) && self.observed().kmh() > MOVES_KMH {
@@ -432,37 +341,4 @@ pub fn ends(turns: [(Stimulus, Duration); 2], stimulus: Stimulus) -> bool {
         Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. } => of_desk(turns),
         _ => false,
     }
-}
-
-fn state(seen: Observed<'_>) -> String {
-    let signals = [
-        Signal::Mode,
-        Signal::TcmsMode,
-        Signal::Limit,
-        Signal::Speed,
-        Signal::Eb,
-        Signal::EbLoop,
-        Signal::EbCause,
-        Signal::Fsb,
-        Signal::FsbCause,
-        Signal::Standstill,
-        Signal::Position,
-        Signal::Aligned,
-        Signal::TwcSection,
-    ];
-    let values = signals.map(|signal| {
-        let value = seen
-            .sample
-            .get(signal)
-            .map_or("-".to_owned(), |value| format!("{value:.1}"));
-        format!("{} {value}", signal.name())
-    });
-    format!(
-        "section {}, {:.2} km/h, {:.2} m to the stop point, {:.0} N, {}",
-        seen.section,
-        seen.speed_mps * 3.6,
-        seen.to_stop_m.unwrap_or(f64::NAN),
-        seen.traction_n,
-        values.join(", ")
-    )
 }

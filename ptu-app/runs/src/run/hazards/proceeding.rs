@@ -7,7 +7,7 @@ use protocol::config::{CodeMeaning, SpeedCode, UnitConfig};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::monitor::Observed;
+use super::observed::Observed;
 
 /// Motion slower than this counts as standing, km/h: tolerance of standstill, and what wheels and windows make of it.
 const STANDS_KMH: f64 = 1.08 + 0.4;

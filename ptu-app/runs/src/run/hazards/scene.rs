@@ -14,9 +14,10 @@ use protocol::event::{Event, Severity};
 use protocol::message::TrainOrder;
 use protocol::{Duration, Instant};
 
+use super::find::Find;
 use super::monitor::Invariant;
 use super::plan::{Act, Plan};
-use super::play::{Find, ends};
+use super::play::ends;
 
 /// Signal, value: a train that is braked, or stands.
 const BRAKED: &str =
