@@ -5,6 +5,8 @@
 //!
 //! Where no other check tells more, one that was made may: what comes and goes hits other checks the next time. What lasts
 //! shows the same again.
+//!
+//! Between parts that are named the next check decides by passing or not: signs beside the result may have been seen before.
 
 use std::collections::BTreeSet;
 
@@ -81,38 +83,88 @@ impl Belief<'_, '_> {
             let gain_bits = self.gain_bits(place, &classes);
             (gain_bits >= least).then_some((place, cost_s, gain_bits))
         });
-        let (place, cost_s, gain_bits) = most_per_second(worth_making)?;
-        let [passes_with, fails_with] = self.parted_by(place, &classes);
-        Some(NextCheck {
+        most_per_second(worth_making).map(|best| self.recommended(best, again, &classes))
+    }
+
+    /// The check not in `done` that tells the likely parts apart, per second: it passes where some of them have failed, and
+    /// does not where others have. Where none does, the one in `done` that tells the most when it is made again. `None` if
+    /// none is worth it.
+    pub fn parting_check(&self, done: &BTreeSet<CheckName>) -> Option<NextCheck> {
+        let classes = self.classes();
+        let least = self.model.settings.told_gain_bits;
+        let parting = costs(self.model, done, None, None, false).filter_map(|(place, cost_s)| {
+            let gain_bits = information_bits(&self.passing(place, &classes));
+            let both_ways = || {
+                let parted = self.parted_by(place, &classes);
+                parted.iter().all(|parts| !parts.is_empty())
+            };
+            (gain_bits >= least && both_ways()).then_some((place, cost_s, gain_bits))
+        });
+        let fresh = most_per_second(parting).map(|best| self.recommended(best, false, &classes));
+        fresh.or_else(|| {
+            self.next_check_again(done)
+                .filter(|again| again.gain_bits >= least)
+        })
+    }
+
+    fn recommended(
+        &self,
+        (place, cost_s, gain_bits): (usize, f64, f64),
+        again: bool,
+        classes: &Classes,
+    ) -> NextCheck {
+        let [passes_with, fails_with] = self.parted_by(place, classes);
+        NextCheck {
             check: self.model.dictionary.checks[place].clone(),
             gain_bits,
             cost_s,
             again,
             passes_with,
             fails_with,
-        })
+        }
+    }
+
+    /// Probability that the check at `place` passes, and that it does not, with each likely part.
+    fn passing(&self, place: usize, classes: &Classes) -> [Vec<f64>; 2] {
+        let joint = self.joint(place, classes);
+        let parts = FIRST_EFFECT..FIRST_EFFECT + self.model.parts().len();
+        let likely: Vec<_> = parts
+            .filter(|class| self.is_likely(classes.all[*class]))
+            .collect();
+        let mut passing = [vec![0.0; likely.len()], vec![0.0; likely.len()]];
+        for (outcome, row) in joint.iter().enumerate() {
+            let sums = &mut passing[usize::from(!self.passed(place, outcome))];
+            for (sum, class) in sums.iter_mut().zip(&likely) {
+                *sum += row[*class];
+            }
+        }
+        passing
+    }
+
+    /// Whether this outcome of the check at `place` is a pass.
+    fn passed(&self, place: usize, outcome: usize) -> bool {
+        let known = self.model.outlooks[place].outcomes.get(outcome);
+        known.is_some_and(|known| known.result == Verdict::Passed)
+    }
+
+    fn is_likely(&self, probability: f64) -> bool {
+        probability >= self.model.settings.conclusion.named_at
     }
 
     /// The likely parts with whose fault the check at `place` passes, and those with whose fault it does not.
     fn parted_by(&self, place: usize, classes: &Classes) -> [Vec<LruId>; 2] {
         let joint = self.joint(place, classes);
-        let outcomes = &self.model.outlooks[place].outcomes;
-        let passed = |outcome: usize| {
-            let known = outcomes.get(outcome);
-            known.is_some_and(|known| known.result == Verdict::Passed)
-        };
         let mut parted = [Vec::new(), Vec::new()];
-        let likely = self.model.settings.conclusion.named_at;
         for (part, lru) in self.model.parts().iter().enumerate() {
             let class = FIRST_EFFECT + part;
             let all: f64 = joint.iter().map(|row| row[class]).sum();
             let of_passed = joint
                 .iter()
                 .enumerate()
-                .filter(|(outcome, _)| passed(*outcome));
+                .filter(|(outcome, _)| self.passed(place, *outcome));
             let passes =
                 of_passed.map(|(_, row)| row[class]).sum::<f64>() / all.max(f64::MIN_POSITIVE);
-            if classes.all[class] < likely {
+            if !self.is_likely(classes.all[class]) {
                 continue;
             }
             if passes >= MOSTLY {

@@ -18,6 +18,8 @@ pub struct Settings {
     pub healthy_at: f64,
     /// Checks with less expected information, bits, are not recommended.
     pub least_gain_bits: f64,
+    /// A check that is to tell likely parts apart tells at least this, bits.
+    pub told_gain_bits: f64,
     /// Pseudo-runs for smoothing, beside the counted runs.
     pub doubt_runs: f64,
     /// Share of checks that a mode acts on otherwise than counted: like another mode of the same part, or anyhow.
@@ -192,6 +194,7 @@ impl Settings {
                 conclusion.modes_with_sign as f64,
             ),
             ("least_gain_bits", self.least_gain_bits),
+            ("told_gain_bits", self.told_gain_bits),
             ("spell_rate", self.spell_rate),
             ("doubt_runs", self.doubt_runs),
             ("suspect", self.suspect),
@@ -219,6 +222,7 @@ impl Default for Settings {
             healthy_at: 0.99,
             hidden_fault: 0.05,
             least_gain_bits: 0.01,
+            told_gain_bits: 0.1,
             doubt_runs: 1.0,
             otherwise: 0.0001,
             otherwise_unseen: 0.1,

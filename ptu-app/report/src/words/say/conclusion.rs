@@ -27,11 +27,7 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
         | Conclusion::OneOrCommon { .. }
         | Conclusion::NotAlone { .. } => next.map(|next| run_next(next, names)),
         Conclusion::NothingSeen { .. } | Conclusion::CannotTell { .. } | Conclusion::BrokenOff => {
-            let [nothing] = both([(
-                "nothing in this suite would tell more",
-                "더 알려 줄 점검이 없습니다",
-            )]);
-            Some(next.map_or(nothing, |next| run_next(next, names)))
+            Some(next.map_or_else(|| swap(conclusion, names), |next| run_next(next, names)))
         }
     };
     match then {
@@ -186,6 +182,24 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
         _ => [
             format!("cannot tell yet which: {all}{more}"),
             format!("아직 판별할 수 없습니다: {all_ko}{more_ko}"),
+        ],
+    }
+}
+
+/// What is left where no check tells the likely parts apart.
+fn swap(conclusion: &Conclusion, names: &[Lru]) -> Both {
+    let likeliest = match conclusion {
+        Conclusion::CannotTell { likely } => likely.first(),
+        _ => None,
+    };
+    match likeliest.map(|part| called(&part.lru, names)) {
+        None => [
+            "no check tells more".to_owned(),
+            "더 알려 줄 점검이 없습니다".to_owned(),
+        ],
+        Some([part, part_ko]) => [
+            format!("no check tells more: swap {part} and run again what failed"),
+            format!("더 알려 줄 점검이 없습니다: {part_ko} 교환 후 불합격 항목을 다시 시험합니다"),
         ],
     }
 }
