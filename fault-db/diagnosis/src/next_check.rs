@@ -6,7 +6,7 @@
 //! Where no other check tells more, one that was made may: what comes and goes hits other checks the next time. What lasts
 //! shows the same again.
 //!
-//! Between parts that are named the next check decides by passing or not: signs beside the result may have been seen before.
+//! What a person is told decides by passing or not: signs beside the result may have been seen before.
 
 use std::collections::BTreeSet;
 
@@ -60,50 +60,47 @@ impl Belief<'_, '_> {
         under_way: Option<&str>,
         may: Option<&BTreeSet<String>>,
     ) -> Option<NextCheck> {
-        self.best_check(done, under_way, may, false)
-    }
-
-    /// The check in `done` that is worth most when it is made again.
-    pub fn next_check_again(&self, done: &BTreeSet<CheckName>) -> Option<NextCheck> {
-        self.best_check(done, None, None, true)
-    }
-
-    /// `again` chooses among the checks in `done`, otherwise among the others.
-    fn best_check(
-        &self,
-        done: &BTreeSet<CheckName>,
-        under_way: Option<&str>,
-        may: Option<&BTreeSet<String>>,
-        again: bool,
-    ) -> Option<NextCheck> {
         let classes = self.classes();
         let least = self.model.settings.least_gain_bits;
-        let costs = costs(self.model, done, under_way, may, again);
+        let costs = costs(self.model, done, under_way, may, false);
         let worth_making = costs.filter_map(|(place, cost_s)| {
             let gain_bits = self.gain_bits(place, &classes);
             (gain_bits >= least).then_some((place, cost_s, gain_bits))
         });
-        most_per_second(worth_making).map(|best| self.recommended(best, again, &classes))
+        most_per_second(worth_making).map(|best| self.recommended(best, false, &classes))
     }
 
-    /// The check not in `done` that tells the likely parts apart, per second: it passes where some of them have failed, and
-    /// does not where others have. Where none does, the one in `done` that tells the most when it is made again. `None` if
-    /// none is worth it.
-    pub fn parting_check(&self, done: &BTreeSet<CheckName>) -> Option<NextCheck> {
+    /// The check that tells a person the most per second by passing or not. Where a run showed a fault, and several parts are
+    /// likely, the check passes where some of them have failed and does not where others have; a single likely part decides it.
+    /// A check in `done` is made again only where no other is worth it.
+    pub fn told_check(&self, done: &BTreeSet<CheckName>, shows_a_fault: bool) -> Option<NextCheck> {
         let classes = self.classes();
-        let least = self.model.settings.told_gain_bits;
-        let parting = costs(self.model, done, None, None, false).filter_map(|(place, cost_s)| {
-            let gain_bits = information_bits(&self.passing(place, &classes));
-            let both_ways = || {
-                let parted = self.parted_by(place, &classes);
-                parted.iter().all(|parts| !parts.is_empty())
-            };
-            (gain_bits >= least && both_ways()).then_some((place, cost_s, gain_bits))
-        });
-        let fresh = most_per_second(parting).map(|best| self.recommended(best, false, &classes));
-        fresh.or_else(|| {
-            self.next_check_again(done)
-                .filter(|again| again.gain_bits >= least)
+        let named =
+            (FIRST_EFFECT..classes.all.len()).filter(|class| self.is_likely(classes.all[*class]));
+        let named: Vec<_> = named.filter(|_| shows_a_fault).collect();
+        let (least, columns) = match named.len() {
+            0 => (
+                self.model.settings.least_gain_bits,
+                (0..classes.all.len()).collect(),
+            ),
+            1 => (
+                self.model.settings.told_gain_bits,
+                (0..classes.all.len()).collect(),
+            ),
+            _ => (self.model.settings.told_gain_bits, named.clone()),
+        };
+        [false, true].into_iter().find_map(|again| {
+            let telling =
+                costs(self.model, done, None, None, again).filter_map(|(place, cost_s)| {
+                    let gain_bits = information_bits(&self.passing(place, &classes, &columns));
+                    if gain_bits < least {
+                        return None;
+                    }
+                    let sides = self.parted_by(place, &classes);
+                    let decided = sides.iter().filter(|parts| !parts.is_empty()).count();
+                    (again || decided >= named.len().min(2)).then_some((place, cost_s, gain_bits))
+                });
+            most_per_second(telling).map(|best| self.recommended(best, again, &classes))
         })
     }
 
@@ -124,17 +121,13 @@ impl Belief<'_, '_> {
         }
     }
 
-    /// Probability that the check at `place` passes, and that it does not, with each likely part.
-    fn passing(&self, place: usize, classes: &Classes) -> [Vec<f64>; 2] {
+    /// Probability that the check at `place` passes, and that it does not, with each of these classes.
+    fn passing(&self, place: usize, classes: &Classes, columns: &[usize]) -> [Vec<f64>; 2] {
         let joint = self.joint(place, classes);
-        let parts = FIRST_EFFECT..FIRST_EFFECT + self.model.parts().len();
-        let likely: Vec<_> = parts
-            .filter(|class| self.is_likely(classes.all[*class]))
-            .collect();
-        let mut passing = [vec![0.0; likely.len()], vec![0.0; likely.len()]];
+        let mut passing = [vec![0.0; columns.len()], vec![0.0; columns.len()]];
         for (outcome, row) in joint.iter().enumerate() {
             let sums = &mut passing[usize::from(!self.passed(place, outcome))];
-            for (sum, class) in sums.iter_mut().zip(&likely) {
+            for (sum, class) in sums.iter_mut().zip(columns) {
                 *sum += row[*class];
             }
         }

@@ -18,7 +18,7 @@ pub struct Settings {
     pub healthy_at: f64,
     /// Checks with less expected information, bits, are not recommended.
     pub least_gain_bits: f64,
-    /// A check that is to tell likely parts apart tells at least this, bits.
+    /// A check that a person is told to make next, where parts are named, tells at least this by passing or not, bits.
     pub told_gain_bits: f64,
     /// Pseudo-runs for smoothing, beside the counted runs.
     pub doubt_runs: f64,

@@ -257,14 +257,7 @@ impl Weights {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
-        let named_at = settings.conclusion.named_at;
-        let told = self.told();
-        let named = told.iter().filter(|part| part.probability >= named_at);
-        if seen.shows_a_fault() && named.count() > 1 {
-            return belief.parting_check(&done);
-        }
-        let fresh = belief.next_check(&done, None, None);
-        fresh.or_else(|| belief.next_check_again(&done))
+        belief.told_check(&done, seen.shows_a_fault())
     }
 
     /// `parts` are told with these probabilities.

@@ -209,7 +209,8 @@ impl Monitor {
     fn of_way(&mut self, seen: Observed<'_>, blind: bool) -> Vec<Condition> {
         use Invariant::{I1, I8};
         let eb = seen.on(Signal::EbLoop);
-        let wrong = seen.wrong_way() && !eb && !blind;
+        // A reverser that chatters is judged by I10.
+        let wrong = seen.wrong_way() && !eb && !blind && !seen.chatters;
         if wrong {
             self.rolled_m += seen.speed_mps.abs() * 0.01;
         }
