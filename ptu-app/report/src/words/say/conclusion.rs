@@ -237,8 +237,8 @@ pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
             format!("{passed_ko} 고장이면 합격합니다"),
         ],
         (true, false) => [
-            format!("it fails if the fault is in {failed}"),
-            format!("{failed_ko} 고장이면 불합격합니다"),
+            format!("it fails if the fault is in {failed}, and passes if not"),
+            format!("{failed_ko} 고장이면 불합격, 아니면 합격합니다"),
         ],
         (false, false) => [
             format!("it passes if the fault is in {passed}, and fails if it is in {failed}"),
