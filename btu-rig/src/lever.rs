@@ -52,7 +52,6 @@ impl Lever {
             .find(|lever| lever.to_string().eq_ignore_ascii_case(name))
     }
 
-    /// As scripts write it.
     pub fn number(self) -> f64 {
         match self {
             Self::Emergency => -8.0,

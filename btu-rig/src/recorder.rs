@@ -69,7 +69,6 @@ struct Open {
     until: Instant,
 }
 
-/// A window cut out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedWindow {
     /// Faults it shows, by their number in the procedure.

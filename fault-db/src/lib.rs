@@ -20,6 +20,8 @@
 //! Names ending in `at_us` are microseconds since 1970 (UTC); `bench_us` is time on the bench's own clock;
 //! `bench_time_us` and `wall_time_us` are durations.
 
+#![warn(missing_docs)]
+
 mod backend;
 mod error;
 mod exchange;

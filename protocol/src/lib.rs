@@ -16,6 +16,7 @@
 //! Integers cross the wire, SI `f64` is used inside; [`Speed`], [`Instant`] and [`Duration`] keep
 //! units straight. `no_std` with `alloc`: no clock, no thread, no file.
 #![no_std]
+#![warn(missing_docs)]
 
 extern crate alloc;
 

@@ -32,7 +32,6 @@ const BESIDE_BAR: usize = 100;
 /// How much is said of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
-    /// What did not pass.
     Quiet,
     /// And each procedure, and the step under way on a terminal.
     Usual,

@@ -18,7 +18,6 @@ use ptu_runs::stdio;
 /// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
 const WAITING: usize = 65_536;
 
-/// Where the lines go.
 #[derive(Clone, Debug)]
 pub enum Place {
     /// Standard output, which then has nothing else.
@@ -46,7 +45,6 @@ struct Stream {
     to: Option<SyncSender<String>>,
     thread: JoinHandle<std::io::Result<()>>,
     place: Place,
-    /// It took no more.
     is_cut: bool,
 }
 

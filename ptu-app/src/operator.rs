@@ -24,7 +24,6 @@ impl Operator {
     }
 }
 
-/// What follows a question.
 pub const HOW_TO_ANSWER: &str = "[y/n]";
 
 impl RunControl for Operator {

@@ -17,9 +17,7 @@ pub enum Checks {
     /// Not finished yet.
     #[default]
     Running,
-    /// All passed.
     Passed,
-    /// One has failed.
     Failed(AtoFailure),
 }
 
@@ -49,7 +47,6 @@ pub fn next(state: AtoState, inputs: ArtInputs) -> AtoState {
     }
 }
 
-/// ATO drives in this state.
 pub fn drives(state: AtoState) -> bool {
     matches!(state, AtoState::Start | AtoState::Run)
 }

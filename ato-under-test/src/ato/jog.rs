@@ -35,7 +35,6 @@ const HOLD_M: f64 = 0.05;
 pub struct JogInputs {
     /// ATO drives.
     pub drives: bool,
-    /// The wheels stand.
     pub stands: bool,
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
@@ -45,7 +44,6 @@ pub struct JogInputs {
     pub aligned_m: f64,
     /// The section's last marker was seen: an overrun is one by more than wheels.
     pub last_marker: bool,
-    /// It jogs at all.
     pub jogs: bool,
 }
 
@@ -86,7 +84,6 @@ pub struct Jog {
 }
 
 impl Jog {
-    /// One cycle.
     pub fn step(&mut self, inputs: &JogInputs, config: &JogConfig) -> JogOutcome {
         let Some(to_stop_m) = inputs.to_stop_m.filter(|m| inputs.drives && m.is_finite()) else {
             *self = Self::default();
@@ -182,7 +179,6 @@ impl Jog {
         matches!(self.phase, Phase::Turns(_) | Phase::Goes(..)).then_some(self.backward)
     }
 
-    /// It orders backward.
     pub fn backward(&self) -> bool {
         self.direction() == Some(true)
     }

@@ -70,7 +70,6 @@ pub struct AtoInputs<'a> {
     pub aligned_m: f64,
     /// The section's last marker was seen.
     pub last_marker: bool,
-    /// ATO jogs at all.
     pub jogs: bool,
     /// Measured speed.
     pub speed: Speed,
@@ -103,7 +102,6 @@ pub struct AtoOutputs {
     pub jog: JogOutcome,
     /// Distance run in this cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
-    /// Why it cannot drive.
     pub failure: AtoFailure,
     /// What its watch found in this cycle.
     pub findings: Findings,

@@ -60,7 +60,6 @@ pub struct MonitorInputs {
     pub asked_mps2: f64,
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
-    /// The wheels stand.
     pub stands: bool,
     /// As near to the stop point as ATO could bring the train.
     pub arrived: bool,

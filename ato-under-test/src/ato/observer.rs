@@ -44,7 +44,6 @@ pub struct Observer {
     slid_m: f64,
 }
 
-/// A first-order lag.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lag(f64);
 
@@ -209,7 +208,6 @@ impl Observer {
         self.asked[whole] * (1.0 - part) + self.asked[whole + 1] * part
     }
 
-    /// The train stands.
     pub fn reset(&mut self) {
         *self = Self::new(&self.config, self.measurement);
     }

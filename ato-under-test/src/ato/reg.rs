@@ -55,7 +55,6 @@ impl Regulator {
         }
     }
 
-    /// Nothing is asked for.
     pub fn reset(&mut self) {
         self.accel_mps2 = 0.0;
     }

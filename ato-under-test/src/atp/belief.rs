@@ -36,7 +36,6 @@ pub struct Witness {
     pub acknowledge: bool,
     /// The speeds are of test signals, which change as a tester likes.
     pub tested: bool,
-    /// Nothing is compared.
     pub unguarded: bool,
 }
 

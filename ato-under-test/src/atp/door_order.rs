@@ -39,7 +39,6 @@ impl DoorOrders {
     }
 }
 
-/// Sides of these enables.
 pub fn enabled_sides(enable: Outputs) -> DoorSide {
     side_of(
         enable.contains(Outputs::DOOR_ENABLE_LEFT),

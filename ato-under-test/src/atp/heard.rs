@@ -16,7 +16,6 @@ pub struct Heard {
 struct Spell {
     code: Code,
     from: Instant,
-    /// Its last scan.
     to: Instant,
 }
 

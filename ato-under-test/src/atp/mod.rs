@@ -416,7 +416,6 @@ impl Atp {
         self.limit
     }
 
-    /// Sides on which doors are enabled.
     pub fn enabled(&self) -> DoorSide {
         enabled_sides(self.doors.enable())
     }

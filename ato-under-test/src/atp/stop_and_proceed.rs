@@ -63,7 +63,6 @@ impl StopAndProceed {
         self.proceeds.map(|(_, limit)| limit)
     }
 
-    /// The warning sounds.
     pub fn warns(&self) -> bool {
         self.warns
     }

@@ -7,7 +7,6 @@ use protocol::Instant;
 use protocol::link::{End, Link, Received};
 use protocol::message::{Channel, Message};
 
-/// One of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
     /// To I/O, TCMS and wayside, and to a tester that plays them.
@@ -43,7 +42,6 @@ impl Ports {
         }
     }
 
-    /// The link on a port.
     pub fn link(&self, port: Port) -> &Link {
         match port {
             Port::Harness => &self.harness,

@@ -72,7 +72,6 @@ impl Stabling {
         core::mem::take(&mut self.wants_test)
     }
 
-    /// One cycle.
     pub fn step(&mut self, now: Instant, inputs: StablingInputs, log: &mut EventLog) {
         let taken = inputs.driverless == Some(false);
         match self.stage {

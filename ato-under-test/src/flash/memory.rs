@@ -62,7 +62,6 @@ struct Rings {
 pub enum SetClockError {
     /// It is none that can be, or too many were sent.
     OutOfRange,
-    /// The device failed.
     Failed,
 }
 

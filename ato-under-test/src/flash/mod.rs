@@ -49,6 +49,5 @@ pub trait BlockDevice: fmt::Debug + Send {
     fn read(&self, block: usize, offset: usize, into: &mut [u8]) -> Result<(), FlashError>;
 }
 
-/// The device failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashError;

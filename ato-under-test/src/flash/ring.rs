@@ -29,10 +29,8 @@ const SLOT_BYTES: usize = 4 + 4 + CONTENT_BYTES + 4;
 /// Entries of a block.
 pub const SLOTS: u32 = ((BLOCK_BYTES - HEADER_BYTES) / SLOT_BYTES) as u32;
 
-/// An entry as stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
-    /// Its number.
     pub sequence: u32,
     /// The power-up that it was written in, from 1.
     pub power_up: u32,
@@ -43,11 +41,9 @@ pub struct Stored {
 /// What stands in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
-    /// Nothing yet.
     Empty,
     /// Something that does not check.
     Damaged,
-    /// An entry.
     Entry(Stored),
 }
 

@@ -13,7 +13,6 @@ const DIP: Duration = Duration::from_ms(100);
 pub enum Supply {
     /// Voltage is there.
     Up,
-    /// It is not.
     Down,
     /// It has just come back.
     Back,

@@ -58,7 +58,6 @@ struct Count {
 #[derive(Clone, Debug, Default)]
 pub struct TachoCompare {
     total: Count,
-    /// Where the window began.
     window: Option<Count>,
     last_share: Option<f64>,
     differs: bool,
@@ -70,7 +69,6 @@ pub struct TachoCompare {
 }
 
 impl TachoCompare {
-    /// One scan.
     pub fn step(
         &mut self,
         now: Instant,

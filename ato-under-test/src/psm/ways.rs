@@ -22,7 +22,6 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// A new section begins.
     pub fn clear(&mut self) {
         self.count = 0;
     }

@@ -17,18 +17,12 @@ use super::tcp::Server;
 /// Baud rate of a serial port when none is given.
 const BAUD: u32 = 115_200;
 
-/// Where something is served.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// On a new pseudo-terminal.
     Pty,
     /// On a serial port.
-    Serial {
-        /// Its path.
-        path: String,
-        /// Its rate.
-        baud: u32,
-    },
+    Serial { path: String, baud: u32 },
     /// At an address, `HOST:PORT`, to one TCP client at a time.
     Tcp(String),
 }
@@ -54,7 +48,6 @@ impl Place {
     }
 }
 
-/// An open wire.
 pub struct Wire {
     name: String,
     end: FarEnd,
@@ -63,7 +56,6 @@ pub struct Wire {
 enum FarEnd {
     /// A pseudo-terminal made for this.
     Pty(Pty),
-    /// A real port.
     Serial(SerialEnd),
     /// A socket that serves one client at a time.
     Tcp(Server),
@@ -116,7 +108,6 @@ impl Wire {
         })
     }
 
-    /// Where testers reach it.
     pub fn name(&self) -> &str {
         &self.name
     }

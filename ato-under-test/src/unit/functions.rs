@@ -87,13 +87,11 @@ impl Functions {
         }
     }
 
-    /// One scan.
     pub fn scan(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         self.protect(now, around, log);
         self.locate(now, around, log);
     }
 
-    /// One cycle.
     pub fn cycle(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         self.relocated = false;
         let between_loops = self.between_loops(around);

@@ -26,7 +26,6 @@ pub struct Landmark {
     pub t_s: f64,
     /// Head of the train in the section, m.
     pub x_m: f64,
-    /// What happened.
     pub what: Mark,
 }
 
@@ -41,7 +40,6 @@ pub enum Mark {
     Limit(f64),
     /// The stop curve took over.
     StopCurve,
-    /// The train stopped.
     Stop,
     /// The unit or TCMS logged an event.
     Logged(LoggedEvent),

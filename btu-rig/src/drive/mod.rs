@@ -85,7 +85,6 @@ pub enum Ending {
         /// Preconditions that do not hold, if the unit said.
         refusals: Option<u16>,
     },
-    /// The train never moved.
     #[error("never left: no motion in Automatic Run")]
     NeverLeft,
     /// The unit applied the emergency brake; the train stands.
@@ -125,7 +124,6 @@ fn into(mode: Option<Mode>) -> String {
 /// What a run came to.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// How it ended.
     pub ending: Ending,
     /// One row a cycle from the start button on. Time 0 is when the train began to move.
     pub rows: Vec<Row>,
@@ -138,7 +136,6 @@ pub struct Outcome {
     pub metrics: Option<Metrics>,
 }
 
-/// Where the run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     Begin,
@@ -162,7 +159,6 @@ enum Phase {
     Over,
 }
 
-/// A run under way.
 #[derive(Debug)]
 pub struct Drive {
     plan: DrivePlan,
@@ -307,7 +303,6 @@ impl Drive {
         None
     }
 
-    /// The train has left.
     fn run(
         &mut self,
         now: Instant,

@@ -4,7 +4,6 @@ use protocol::signal::Signal;
 
 use crate::recorder;
 
-/// One cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Every signal.

@@ -25,7 +25,6 @@ pub enum Operand {
 /// How a signal is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
-    /// The same recorded step.
     Equal,
     /// Another recorded step.
     NotEqual,
@@ -104,12 +103,10 @@ impl std::fmt::Display for MissingData {
 pub(super) enum Answer {
     Yes,
     No,
-    /// It is unknown.
     NoData(MissingData),
 }
 
 impl Operand {
-    /// Its value now.
     pub(super) fn value(&self, captured: &Captured) -> Result<f64, MissingData> {
         let value = match self {
             Self::Literal(value) => Some(*value),

@@ -35,7 +35,6 @@ impl LogState {
 pub struct LineState {
     /// Since the bench began.
     pub lost_or_damaged: u64,
-    /// In the last seconds.
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
@@ -60,7 +59,6 @@ pub struct UnitTimeBounds {
 pub struct UnitTime {
     /// Stamp of the latest state: what is new in it happened by then, ms.
     pub stamp_ms: u32,
-    /// And after these.
     pub after: UnitTimeBounds,
     /// Stamp of the latest answer to a request, which acts from that scan on, ms.
     pub answered_ms: Option<u32>,

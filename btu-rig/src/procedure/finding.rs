@@ -16,7 +16,6 @@ pub use list::{Findings, Found};
 /// An entry of the unit's log or of TCMS's, by its code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LoggedEvent {
-    /// Whose log has it.
     pub source: EventSource,
     /// Number in the event dictionary, also one that this version does not know.
     pub code: u16,
@@ -49,9 +48,7 @@ pub enum Finding {
     LimitMissed(LimitMissed),
     /// A condition did not come true in time.
     NeverBecame {
-        /// The condition.
         condition: Condition,
-        /// The time it had.
         within: Duration,
         /// The bits of its signal at the end, where it is a set of these.
         seen: Option<u16>,
@@ -62,7 +59,6 @@ pub enum Finding {
     },
     /// A condition did not stay true.
     HeldOnlyFor {
-        /// The condition.
         condition: Condition,
         /// For how long it did.
         held: Duration,
@@ -71,28 +67,22 @@ pub enum Finding {
     },
     /// A condition came true that must not.
     CameTrue {
-        /// The condition.
         condition: Condition,
     },
     /// Whether a condition that must not come true did is not known.
     Unknown {
-        /// The condition.
         condition: Condition,
-        /// The data that were missing.
         missing: MissingData,
     },
     /// An event was not logged that should have been.
     NotLogged {
-        /// The event.
         event: Event,
         /// Least and greatest parameter.
         parameter: [i32; 2],
-        /// The time it had.
         within: Duration,
     },
     /// An event was logged that must not be.
     Logged {
-        /// The event.
         event: Event,
     },
     /// An event was logged that no step provoked.
@@ -101,17 +91,14 @@ pub enum Finding {
     BrakeApplied,
     /// The operator answered a question with no.
     SaidNo {
-        /// The question.
         question: String,
     },
     /// The operator did not answer a question.
     NoAnswer {
-        /// The question.
         question: String,
     },
     /// There is no operator to answer a question.
     NeedsOperator {
-        /// The question.
         question: String,
     },
     /// A measurement has no value.
@@ -120,7 +107,6 @@ pub enum Finding {
         measurement: String,
         /// How many others of the step have none for the same reason.
         others: u32,
-        /// Why.
         why: WhyNoValue,
     },
     /// A limit of a measurement refers to one without a value.
@@ -130,7 +116,6 @@ pub enum Finding {
     },
     /// The unit or the bench refused a stimulus or request, in their words.
     Refused {
-        /// Why.
         why: String,
     },
     /// Others started a unit on a train again while it was tested.
@@ -142,45 +127,36 @@ pub enum Finding {
     },
     /// A motion or request of the tester did not end in time.
     NotFinished {
-        /// The time it had.
         within: Duration,
     },
     /// Frames that were lost between tester and unit may be why this event was logged, or, without one, why the
     /// emergency brake was applied.
     LineDisturbed {
-        /// The event.
         event: Option<LoggedEvent>,
     },
     /// Frames were lost between tester and unit in a step that failed.
     FramesLost {
-        /// How many.
         frames: u64,
     },
     /// The log could not be read while a step waited for it.
     LogNotRead {
-        /// The time that took.
         within: Duration,
     },
     /// The log was not read to its end after the procedure.
     LogNotReadToEnd {
-        /// The time that took.
         within: Duration,
     },
     /// A step took longer than it may.
     TimeLimit {
-        /// The time it had.
         limit: Duration,
-        /// What it waited for.
         waiting: Option<WaitedFor>,
     },
     /// The link to the unit cannot be used.
     LinkLost {
-        /// Why.
         why: LinkTrouble,
     },
     /// The tester's computer, or the link, stood still in an attempt at a step.
     StoodStill {
-        /// For how long.
         by: Duration,
         /// In which attempt, from 1.
         attempt: u32,
@@ -193,14 +169,12 @@ pub enum Finding {
     InCleanUp(Box<Finding>),
     /// These actions did not end in time.
     CleanUpTooLong {
-        /// The time they had.
         within: Duration,
     },
     /// The operator cut these actions short.
     CleanUpCutShort,
     /// Outputs did not become safe in time.
     NotSafe {
-        /// The time they had.
         within: Duration,
     },
     /// The operator stopped the run.
@@ -228,14 +202,11 @@ pub enum Finding {
     },
     /// Whether the condition under which a step is run holds is not known.
     ConditionUnknown {
-        /// The data that were missing.
         missing: MissingData,
     },
     /// The selection has no step.
     NoStepToRun,
-    /// No step was run.
     NoStepRun,
-    /// The program itself failed.
     ProgramFailed,
     /// The link was lost, and steps were left.
     LinkLostAt {
@@ -255,12 +226,10 @@ pub enum Finding {
     },
     /// The unit says that items of its self-test failed.
     SelfTestFailed {
-        /// Their bits.
         items: u16,
     },
     /// More entries of logs than are kept.
     TooManyEvents {
-        /// How many more.
         more: u64,
     },
     /// The unit's clock goes wrong by the bench's.
@@ -272,12 +241,10 @@ pub enum Finding {
     FoundBefore {
         /// Name of the fault.
         fault: String,
-        /// What came after.
         before: Before,
     },
     /// An entry of a log, as a fault.
     Event {
-        /// The entry.
         event: LoggedEvent,
         /// Measured speed at that time, km/h.
         speed_kmh: f64,
@@ -296,12 +263,10 @@ pub enum Finding {
         turn: u32,
         /// Number of repetitions that were asked for.
         turns: u32,
-        /// What it found.
         findings: Findings,
     },
     /// More that was found, and is not kept.
     More {
-        /// How many.
         n: u32,
     },
     /// This unit's software does not tell signals that the procedure looks at.
@@ -326,11 +291,9 @@ pub enum Finding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WhyNoValue {
-    /// Data were missing.
     Missing(MissingData),
     /// What ends it did not come about.
     NeverEnded(Condition),
-    /// It was not measured.
     NotMeasured,
 }
 
@@ -352,7 +315,6 @@ pub enum Before {
 pub enum WaitedFor {
     /// The end of its actions.
     Actions,
-    /// An expectation.
     Expectation(Expectation),
 }
 

@@ -6,7 +6,6 @@ use super::condition::{Captured, Operand};
 /// A limit as it stands when the value is judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Bound {
-    /// None given.
     Open,
     /// This number.
     At(f64),

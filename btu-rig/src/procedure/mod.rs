@@ -98,7 +98,6 @@ pub struct Refusal(pub String);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventSource {
-    /// The unit under test.
     Unit,
     /// Train control and monitoring system: its events are of the train.
     Tcms,

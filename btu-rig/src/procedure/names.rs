@@ -9,7 +9,6 @@ const CAPITALS: [&str; 9] = [
 /// Before the name of an item of the unit's self-test.
 const SELF_TEST: &str = "self_test.";
 
-/// An identifier as words.
 pub fn spoken(name: &str) -> String {
     if let Some(item) = name.strip_prefix(SELF_TEST) {
         return format!("Self-test: {}", spoken(item));
@@ -22,7 +21,6 @@ pub fn spoken(name: &str) -> String {
     said.join(" ")
 }
 
-/// A name.
 pub(super) struct Name<'a>(pub &'a str);
 
 impl Display for Name<'_> {

@@ -27,7 +27,6 @@ impl Connection {
         (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
     }
 
-    /// What scripts call it.
     pub fn word(self) -> &'static str {
         match self {
             Self::Btu => "harness",
@@ -43,9 +42,7 @@ pub struct Procedure {
     pub id: String,
     /// What it checks, in English.
     pub title: String,
-    /// The same in Korean.
     pub title_ko: Option<String>,
-    /// What it needs.
     pub needs: Connection,
     /// Run only when it is asked for by name: too long for a run of everything.
     pub on_request: bool,
@@ -61,13 +58,11 @@ pub struct Procedure {
     pub setup: Vec<Action>,
     /// Done after the last step, whatever happened.
     pub cleanup: Vec<Action>,
-    /// The steps in order.
     pub steps: Vec<Step>,
     /// How many measurements its steps make: the number of slots to capture them.
     pub slots: usize,
 }
 
-/// One step of a procedure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// Name, unique in the procedure.
@@ -76,11 +71,9 @@ pub struct Step {
     pub line: u32,
     /// What is done, in order.
     pub actions: Vec<Action>,
-    /// What must be seen.
     pub expectations: Vec<Expectation>,
     /// Where the numbers of its expectations come from: times, and what signals are compared with.
     pub origin: Origin,
-    /// What is measured.
     pub measures: Vec<Measure>,
     /// Events this step is meant to cause.
     pub provokes: Vec<Event>,
@@ -134,7 +127,6 @@ pub enum Action {
     },
     /// Asks the operator; without one this is an error.
     Prompt {
-        /// The question.
         text: String,
         /// Time allowed.
         within: Duration,
@@ -194,7 +186,6 @@ pub enum TimeFrom {
     Condition(Condition),
 }
 
-/// What is measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum What {
     /// Time to the first scan in which a condition holds, ms.
@@ -233,7 +224,6 @@ pub struct Measure {
     pub name: String,
     /// Where its value is kept for later steps.
     pub slot: usize,
-    /// What is measured.
     pub what: What,
     /// Least value allowed, in the unit of [`unit`](Self::unit).
     pub low: Option<Operand>,

@@ -49,7 +49,6 @@ pub struct StepResult {
     pub turn: u32,
     /// Number of repetitions that were asked for.
     pub turns: u32,
-    /// Which result of it.
     pub kind: ResultKind,
     /// Line of the `step()` call in the script, from 1.
     pub line: u32,
@@ -65,7 +64,6 @@ pub struct StepResult {
     pub bench_time: Duration,
     /// Where the numbers of its expectations come from, as [`Measurement::limit_source`].
     pub limit_source: Option<String>,
-    /// What it measured.
     pub measurements: Vec<Measurement>,
 }
 
@@ -138,11 +136,9 @@ impl Outside {
 /// What failed outside the steps of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutsideStep {
-    /// Where.
     pub place: Outside,
     /// Failed, error or aborted.
     pub verdict: Verdict,
-    /// What.
     pub finding: Finding,
     /// Bench time.
     pub at: Instant,
@@ -158,7 +154,6 @@ pub enum RunEvent {
         /// Bench time.
         at: Instant,
     },
-    /// A step begins.
     StepStarted {
         /// Place in the procedure.
         index: usize,
@@ -187,19 +182,16 @@ pub enum RunEvent {
     },
     /// The operator is asked; answer with [`super::Runner::answer`].
     Prompt {
-        /// The question.
         text: String,
         /// How long it may take.
         left: Duration,
     },
-    /// A measurement is done.
     Measured {
         /// Step's place in the procedure.
         index: usize,
         /// Value, limits and verdict.
         measurement: Measurement,
     },
-    /// A step is done.
     StepFinished(StepResult),
     /// The unit logged an event above information that no step so far provoked.
     UnsolicitedEvent(UnitEvent),

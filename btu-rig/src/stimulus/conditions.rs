@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TachoCondition {
-    /// As it should be.
     Good,
     /// No pulses.
     Dead,
@@ -17,7 +16,6 @@ pub enum TachoCondition {
     },
     /// Pulses of a speed multiplied by a factor (missing teeth, wrong wheel diameter).
     Scaled {
-        /// The factor.
         factor: f64,
     },
     /// It gives the wrong direction.
@@ -55,13 +53,9 @@ pub enum DoorState {
 pub enum DoorLine {
     /// Through the closed contacts of all doors.
     All,
-    /// Doors on the left closed.
     LeftClosed,
-    /// Doors on the left locked.
     LeftLocked,
-    /// Doors on the right closed.
     RightClosed,
-    /// Doors on the right locked.
     RightLocked,
     /// That the train tells of doors by side.
     BySide,
@@ -93,14 +87,12 @@ impl DoorLine {
         Some(Self::ALL[place])
     }
 
-    /// Its name in scripts.
     pub const fn label(self) -> &'static str {
         Self::LABELS[self as usize]
     }
 }
 
 impl DoorState {
-    /// As people call it.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Open => "open",
@@ -138,9 +130,7 @@ pub enum TrainSwitch {
     EbCutOut,
     /// Main reservoir pressure low.
     MainReservoirLow,
-    /// Security brake.
     SecurityBrake,
-    /// Parking brake.
     ParkingBrake,
     /// Button for release of the brakes by force.
     ForcedRelease,
@@ -151,7 +141,6 @@ pub enum TrainSwitch {
 }
 
 impl TrainSwitch {
-    /// As people call it.
     pub fn label(self) -> &'static str {
         match self {
             Self::OtherCab => "head control relay of the other cab",
@@ -184,7 +173,6 @@ pub enum CarFailure {
 }
 
 impl CarFailure {
-    /// As people call it.
     pub fn label(self) -> &'static str {
         match self {
             Self::InverterSilent => "inverter silent",
@@ -199,8 +187,6 @@ impl CarFailure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutOut {
-    /// Its brake.
     Brake,
-    /// Its inverter.
     Inverter,
 }

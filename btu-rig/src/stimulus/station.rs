@@ -14,18 +14,14 @@ pub struct StationData {
     pub route: u16,
     /// Section number.
     pub section: u16,
-    /// This station.
     pub station: u16,
-    /// Next station.
     pub next_station: u16,
     /// Loop number.
     pub loop_id: u16,
     /// Fixed speed, km/h; `None` = no order.
     pub fixed_speed_kmh: Option<u8>,
-    /// Running mode.
     #[serde(with = "running_mode")]
     pub running_mode: RunningMode,
-    /// Door side.
     #[serde(with = "door_side")]
     pub door_side: DoorSide,
     /// Departure given.

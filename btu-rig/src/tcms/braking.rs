@@ -43,7 +43,6 @@ struct CarPart {
 struct PairShares {
     /// Full service, with what it takes over for others.
     full_n: f64,
-    /// Its inverters by adhesion.
     electric_n: f64,
     trailer_air_n: f64,
     motor_air_n: f64,
@@ -80,7 +79,6 @@ pub struct Inverters<'a> {
 /// What each car is asked for, N, sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakeDemands {
-    /// The whole train.
     pub train_n: f64,
     /// Inverters (DBE1).
     pub electric_n: PerCar,

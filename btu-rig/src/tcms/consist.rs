@@ -59,7 +59,6 @@ pub struct Consist {
 }
 
 impl Consist {
-    /// A train without passengers.
     pub fn new(data: &CarsData) -> Self {
         let count = data.cars.iter().map(|car| car.pair).max().unwrap_or(0);
         let mut consist = Self {

@@ -74,7 +74,6 @@ struct SharingInputs {
 }
 
 impl Effort {
-    /// None yet.
     pub fn new(consist: Consist) -> Self {
         let (motors, air) = (consist.data.motor_times(), consist.data.air_times());
         Self {

@@ -28,7 +28,6 @@ pub struct MonitorInputs<'a> {
     pub nobody_brakes: bool,
     /// Cars without a brake: cut out.
     pub brakes_cut_out: CarSet,
-    /// Cars whose inverter is cut out.
     pub inverters_cut_out: CarSet,
     /// The driver releases brakes by force.
     pub forced_release: bool,

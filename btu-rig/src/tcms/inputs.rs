@@ -30,7 +30,6 @@ pub struct CabInputs {
 pub struct TcmsInputs<'a> {
     /// Both cabs; the unit is in the first.
     pub cabs: [CabInputs; 2],
-    /// All doors proved closed.
     pub doors_closed: bool,
     /// Pressure switch of the main reservoir.
     pub main_reservoir_low: bool,
@@ -42,9 +41,7 @@ pub struct TcmsInputs<'a> {
     pub parking_brake: bool,
     /// Driverless initialisation or turn-back.
     pub turn_back: bool,
-    /// Cars whose brake is cut out.
     pub brakes_cut_out: CarSet,
-    /// Cars whose inverter is cut out.
     pub inverters_cut_out: CarSet,
     /// The unit's contacts; `None` = not heard. Its relay in the emergency brake line counts as open
     /// then, so that the train brakes, and powering is cut; the contacts for full service and holding

@@ -46,7 +46,6 @@ pub(super) struct Report {
 const MAX_WAITING: usize = 256;
 
 impl Report {
-    /// Nothing logged.
     pub fn new(data: &TcmsData) -> Self {
         Self {
             events: Vec::new(),

@@ -24,7 +24,6 @@ pub struct TcmsView {
     pub holding: bool,
     /// Emergency brake train line.
     pub line: Line,
-    /// Why powering is cut.
     pub power_cuts: PowerCuts,
     /// Lamps that are lit.
     pub lamps: Lamps,

@@ -7,7 +7,6 @@ use super::{MAX_CARS, PerCar};
 pub struct CarSet(u16);
 
 impl CarSet {
-    /// None of them.
     pub const NONE: Self = Self(0);
 
     /// The car at a place; none for a place no train has.

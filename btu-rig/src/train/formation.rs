@@ -41,7 +41,6 @@ pub(super) struct Formation {
     service_n: PerCar,
     motor_cars: CarSet,
     faults: EquipmentFaults,
-    /// None of them.
     sound: bool,
     /// Pressure in each car's cylinders as force, N.
     cylinders_n: PerCar,

@@ -63,9 +63,7 @@ pub struct TrainInputs {
     pub forced_release: bool,
     /// The line takes no regenerated power.
     pub regeneration_refused: bool,
-    /// Cars whose brake is cut out.
     pub brakes_cut_out: CarSet,
-    /// Cars whose inverter is cut out.
     pub inverters_cut_out: CarSet,
     /// Traction pulls backward.
     pub backward: bool,
@@ -107,7 +105,6 @@ pub struct TrainState {
     pub gradient_n: f64,
     /// Traction power at the wheels, W.
     pub tractive_power_w: f64,
-    /// A brake is on.
     pub braking: bool,
     /// A car slips or slides.
     pub sliding: bool,

@@ -23,7 +23,6 @@ pub enum Settled<'d> {
 /// The probabilities of all hypotheses, and the evidence they rest on.
 #[derive(Clone, Debug)]
 pub struct Belief<'m, 'd> {
-    /// What it is a belief in.
     pub model: &'m Model<'d>,
     /// Logarithms of the likelihood of all steps, without their signs, under each effect.
     effects: Vec<f64>,
@@ -121,7 +120,6 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.shown.get(&place)
     }
 
-    /// The signs that showed.
     pub(super) fn signs(&self) -> &SignsSeen {
         &self.signs
     }

@@ -13,7 +13,6 @@ pub struct StepOutcome {
     /// The step's verdict.
     #[serde(deserialize_with = "observed")]
     pub result: Verdict,
-    /// The signs that showed.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub signs: BTreeSet<Sign>,
 }
@@ -35,7 +34,6 @@ pub struct Values {
     pub n: u32,
     /// How often nothing could be measured.
     pub missing: u32,
-    /// Their mean.
     pub mean: f64,
     /// Sum of squared distances from the mean.
     pub squares: f64,

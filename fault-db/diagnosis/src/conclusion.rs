@@ -10,23 +10,19 @@ use super::verdict::{Finding, PartProbability};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Conclusion {
-    /// One part has failed.
     Found {
-        /// The part.
         part: LruId,
         /// How likely that is.
         probability: f64,
     },
     /// Two parts have failed.
     TwoFound {
-        /// The part.
         parts: [LruId; 2],
         /// How likely it is that both have.
         probability: f64,
     },
     /// One of the parts of a group has failed.
     OneOf {
-        /// The group.
         group: Group,
         /// How likely it is that one of them has.
         probability: f64,
@@ -35,7 +31,6 @@ pub enum Conclusion {
     Common {
         /// The part that both share, such as a supply or a link.
         cause: Shared,
-        /// The parts.
         parts: [LruId; 2],
         /// How likely it is that both show a fault.
         probability: f64,
@@ -44,7 +39,6 @@ pub enum Conclusion {
     OneOrCommon {
         /// The part that both share, such as a supply or a link.
         cause: Shared,
-        /// The part.
         part: LruId,
         /// How likely it is that it has failed.
         probability: f64,
@@ -53,14 +47,12 @@ pub enum Conclusion {
     },
     /// A part is likely, and a sign that none of its faults shows names another, with which it shares nothing.
     NotAlone {
-        /// The part.
         part: LruId,
         /// How likely it is that it has failed.
         probability: f64,
         /// The part that the sign names.
         other: LruId,
     },
-    /// Nothing is wrong.
     NoFault {
         /// How likely that is.
         probability: f64,
@@ -84,7 +76,6 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// In a word.
     pub fn finding(&self) -> Finding {
         match self {
             Self::Found { .. } => Finding::Found,

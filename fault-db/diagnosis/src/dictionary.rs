@@ -28,9 +28,7 @@ pub struct Basis {
     pub unit_config_sha256: String,
     /// SHA-256 of each procedure's script.
     pub procedures: BTreeMap<String, String>,
-    /// Line.
     pub line: String,
-    /// Train.
     pub train: String,
     /// How the units were reached: `harness`, or `ptu` for the maintenance port alone.
     #[serde(default = "harness")]
@@ -83,16 +81,12 @@ pub struct Column {
 /// A fault mode with its levels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
-    /// Which.
     pub name: ModeName,
-    /// Its levels.
     pub columns: Vec<Column>,
 }
 
-/// A fault dictionary.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dictionary {
-    /// Its provenance.
     pub basis: Basis,
     /// Seeds of the campaign's runs.
     pub seeds: Vec<u64>,

@@ -13,7 +13,6 @@ use super::weights::Weights;
 /// A part that was found, and what it explains of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// The part.
     pub lru: LruId,
     /// Probability that it has failed.
     pub probability: f64,

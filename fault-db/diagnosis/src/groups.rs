@@ -20,18 +20,14 @@ use super::weights::Weights;
 /// What to measure, and where, as the file of relations has it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Measure {
-    /// In English.
     pub english: String,
-    /// In Korean.
     pub korean: String,
 }
 
 /// Parts that are not always told apart, and what tells which has failed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Group {
-    /// The parts.
     pub parts: Vec<LruId>,
-    /// What to measure, and where.
     pub measure: Measure,
 }
 
@@ -42,7 +38,6 @@ pub struct Shared {
     pub part: LruId,
     /// Parts that it reaches.
     pub reaches: Vec<LruId>,
-    /// What to measure, and where.
     pub measure: Measure,
 }
 
@@ -51,7 +46,6 @@ pub struct Shared {
 pub struct Relations {
     /// Parts that checks do not always tell apart.
     pub groups: Vec<Group>,
-    /// What several parts share.
     pub shared: Vec<Shared>,
 }
 

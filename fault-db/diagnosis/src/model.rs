@@ -32,18 +32,14 @@ pub const FIRST_EFFECT: usize = 1;
 /// A hypothesis. Modes and levels are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hypothesis {
-    /// Nothing is wrong.
     NoFault,
     /// One level of a fault mode.
     Mode {
-        /// The mode.
         mode: usize,
-        /// Its level.
         column: usize,
     },
     /// A fault of a part, given by its index in the model, in a way that is not in the dictionary.
     Unseen {
-        /// The part.
         part: usize,
     },
 }
@@ -63,7 +59,6 @@ pub struct StepLikelihoods {
 /// A dictionary prepared for diagnosis.
 #[derive(Debug)]
 pub struct Model<'a> {
-    /// The dictionary.
     pub dictionary: &'a Dictionary,
     /// Priors and thresholds.
     pub settings: &'a Settings,
@@ -73,9 +68,7 @@ pub struct Model<'a> {
     pub ln_priors: Vec<f64>,
     /// How parts depend on each other.
     pub relations: &'a Relations,
-    /// The parts.
     parts: Vec<&'a LruId>,
-    /// Effects of each part.
     effects_of_parts: Vec<Vec<usize>>,
     /// For each part, logarithms of the probability that an unseen mode of it acts like each effect.
     resemblance: Vec<Vec<f64>>,

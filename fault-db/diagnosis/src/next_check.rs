@@ -20,7 +20,6 @@ use super::observation::CheckName;
 /// A part is told by a check that passes, or does not, with this probability if the part has failed.
 const MOSTLY: f64 = 0.7;
 
-/// A recommended check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextCheck {
     /// Procedure and step.

@@ -32,7 +32,6 @@ pub(crate) fn observed<'de, D: Deserializer<'de>>(from: D) -> Result<Verdict, D:
 pub struct CheckName {
     /// Procedure, for instance `atp/overspeed`.
     pub procedure: String,
-    /// Step.
     pub step: String,
 }
 
@@ -103,7 +102,6 @@ impl TryFrom<String> for Sign {
 /// A step that was run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObservedStep {
-    /// Which.
     pub check: CheckName,
     /// Its verdict, one that [`is_observed`].
     #[serde(deserialize_with = "observed")]

@@ -9,7 +9,6 @@ type Shares = Vec<(usize, f64)>;
 /// The outcomes of one check.
 #[derive(Clone, Debug, Default)]
 pub struct Outlook {
-    /// Which they are.
     pub outcomes: Vec<StepOutcome>,
     /// On a healthy unit.
     pub healthy: Shares,

@@ -23,7 +23,6 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The repair is proven.
     pub fn is_proven(&self) -> bool {
         self.more == Some(0)
     }

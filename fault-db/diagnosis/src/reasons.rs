@@ -21,7 +21,6 @@ const CONFLICTING_EVENTS: usize = 5;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// What a step showed.
     Step(StepReason),
     /// A sign in the unit's log.
     Logged(Sign),
@@ -32,7 +31,6 @@ pub enum Reason {
 /// What a step showed, held against the dictionary: under the fault, and on a healthy unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepReason {
-    /// The step.
     pub check: CheckName,
     /// How it ended.
     pub result: Verdict,
@@ -47,7 +45,6 @@ pub struct StepReason {
 /// A measured value, to four significant figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ValueReason {
-    /// What it is called.
     pub name: String,
     /// The value, if there is one.
     pub value: Option<f64>,
@@ -61,7 +58,6 @@ pub struct ValueReason {
 pub enum Known {
     /// Faults of earlier runs named it.
     Recurred {
-        /// So many runs.
         runs: u32,
         /// Since this repair, if there was one.
         since: Option<Repaired>,
@@ -69,18 +65,13 @@ pub enum Known {
     /// It was repaired, and the fault came back.
     CameBack(Repaired),
     /// Who brought the unit said so.
-    BroughtWith {
-        /// What was said.
-        symptom: String,
-    },
+    BroughtWith { symptom: String },
     /// Diagnoses named it before confirmed repairs.
     WasRight {
         /// Repairs in which it was the part.
         right: u32,
-        /// All of these repairs.
         named: u32,
     },
-    /// It was repaired before.
     OftenRepaired {
         /// Confirmed repairs of it.
         of_part: u32,

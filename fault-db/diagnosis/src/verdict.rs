@@ -25,21 +25,16 @@ pub struct Candidate {
     pub lru: LruId,
     /// Fault mode.
     pub fault: String,
-    /// What is wrong.
     pub text: FaultText,
     /// Probability of the mode, alone or beside another.
     pub probability: f64,
-    /// What speaks for it.
     #[serde(rename = "for")]
     pub for_it: Vec<Reason>,
-    /// What speaks against it.
     pub against: Vec<Reason>,
 }
 
-/// A part and its probability.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartProbability {
-    /// The part.
     pub lru: LruId,
     /// Of [`Diagnosis::lrus`] its share, of [`Diagnosis::parts`] the probability that it has failed.
     pub probability: f64,
@@ -48,23 +43,19 @@ pub struct PartProbability {
 /// Two fault modes at once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TwoFaults {
-    /// Their names.
     pub faults: [String; 2],
     /// Probability of both.
     pub probability: f64,
 }
 
-/// What diagnosis comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
-    /// One part is found.
     Found,
     /// Two parts are found.
     TwoFound,
     /// One of the parts of a group, which a measurement tells apart.
     OneOf,
-    /// Nothing is wrong.
     NoFault,
     /// One of several parts, and it cannot be told which.
     CannotTell,
@@ -73,7 +64,6 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// The word.
     pub fn label(self) -> &'static str {
         match self {
             Self::Found => "found",
@@ -86,14 +76,12 @@ impl Finding {
     }
 }
 
-/// A diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
     /// Modes, those of the likeliest part first.
     pub candidates: Vec<Candidate>,
     /// The check to make next; none when the question is settled or nothing would tell.
     pub next_check: Option<NextCheck>,
-    /// What it comes to.
     pub conclusion: Conclusion,
     /// Parts, the likeliest first, with their shares, which are 1 together with that of no fault: of two at once each has
     /// half.
@@ -118,7 +106,6 @@ pub struct Assessment<'m, 'd, 's> {
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
-    /// Of all that was seen.
     pub fn of(model: &'m Model<'d>, seen: &'s Observation) -> Self {
         let belief = Belief::after(model, seen);
         let (weights, pairs) = Weights::after(&belief, seen);
@@ -131,7 +118,6 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         }
     }
 
-    /// What it comes to.
     pub fn diagnosis(&self) -> Diagnosis {
         let (belief, weights) = (&self.belief, &self.weights);
         let settings = &belief.model.settings.conclusion;

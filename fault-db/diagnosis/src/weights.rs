@@ -17,11 +17,9 @@ const UNSEEN: &str = "unseen";
 /// A fault of one part: a mode of the dictionary, or one that is not in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Fault {
-    /// Its likeliest hypothesis.
     pub hypothesis: Hypothesis,
     /// Of all its levels, alone or beside another.
     pub probability: f64,
-    /// Of that level.
     pub of_level: f64,
 }
 
@@ -32,12 +30,7 @@ pub enum FaultText {
     /// As the catalogue of faults has it.
     Mode(String),
     /// What confirmed repairs of a depot have settled.
-    Confirmed {
-        /// How many.
-        cases: u32,
-        /// Of which units.
-        units: String,
-    },
+    Confirmed { cases: u32, units: String },
     /// In a way that is not in the dictionary.
     Unseen {
         /// The mode that it acts like, and what is wrong under that.

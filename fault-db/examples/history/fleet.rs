@@ -20,7 +20,6 @@ pub struct Slot {
     pub turn: u32,
 }
 
-/// One on-board unit.
 pub struct Unit {
     pub serial: String,
     /// Empty: a spare, on the bench.
@@ -36,7 +35,6 @@ pub struct Unit {
     pub seen_us: i64,
 }
 
-/// All of them.
 pub struct Fleet {
     pub units: Vec<Unit>,
 }

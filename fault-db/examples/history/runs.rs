@@ -32,7 +32,6 @@ pub struct Visit {
     pub traced: bool,
 }
 
-/// What became of it.
 #[derive(Default)]
 pub struct Seen {
     pub occurrences: usize,

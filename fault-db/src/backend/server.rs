@@ -13,7 +13,6 @@ use super::value::Value;
 /// The advisory lock of all writers: the letters `FTDB`.
 const WRITERS_LOCK: i64 = 0x4654_4442;
 
-/// An open connection.
 pub(crate) struct Server {
     client: RefCell<Client>,
     /// Prepared statements by text and parameter types, as the server plans for both.

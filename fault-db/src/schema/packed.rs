@@ -21,7 +21,6 @@ const FAULTS: &str =
         f.last_at_us, f.closed_at_us, f.repairs, f.cause)
     FROM fault f WHERE f.seq BETWEEN p.block * 32 AND p.block * 32 + 31";
 
-/// Their occurrences.
 const OCCURRENCES: &str = "SELECT packed_rows(o.fault, o.at_us, o.line, s.procedure, o.run)
     FROM fault_occurrence o LEFT JOIN step s ON s.run = o.run AND s.step_index = o.step_index
     WHERE o.fault BETWEEN p.block * 32 AND p.block * 32 + 31";
@@ -71,7 +70,6 @@ pub(crate) fn fill_empty_blocks(backend: &Backend) -> SqlResult<()> {
 /// Zero bytes at the end.
 const PADDING: usize = 8;
 
-/// A value to pack.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Cell {
     Null,

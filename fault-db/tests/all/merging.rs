@@ -20,7 +20,6 @@ fn opened(path: &Path, seed: u64) -> Store {
     Store::open(path, options).expect("opens")
 }
 
-/// A laptop with a name.
 fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
     opened(&dir.path().join(name), seed)
 }

@@ -49,7 +49,6 @@ fn set(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
-/// A reader under test.
 pub struct Fuzz {
     name: String,
     corpus: Vec<Vec<u8>>,

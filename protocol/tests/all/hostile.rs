@@ -15,7 +15,6 @@ use crate::common::corpus;
 const SEEDS: u64 = 400;
 const MUTATIONS: usize = 60;
 
-/// One damaged stream.
 fn damaged(random: &mut Random, corpus: &[Vec<u8>]) -> Vec<u8> {
     let mut stream = Vec::new();
     for _ in 0..MUTATIONS {

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use ptu_report::words::Words;
 
-/// A page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Page {
@@ -19,9 +18,7 @@ pub enum Page {
     Drive,
     /// Recorded traces.
     Traces,
-    /// The fault history.
     Faults,
-    /// The part to replace.
     Diagnosis,
     /// The test sheet of a run.
     Report,
@@ -68,7 +65,6 @@ impl Page {
         format!("{} or {last}", pages.join(", "))
     }
 
-    /// Its name.
     pub fn name(self, words: &Words) -> &'static str {
         match self {
             Self::Case => words.case.title,

@@ -22,10 +22,7 @@ pub struct WindowOptions {
     /// Language, en or ko [default: as it was left, at first that of the locale]
     #[arg(long, value_name = "LANGUAGE")]
     pub lang: Option<Language>,
-    #[allow(
-        missing_docs,
-        reason = "a comment would be the help, which names the pages"
-    )]
+    // A comment would be the help, which names the pages.
     #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
     pub page: Option<Page>,
     #[allow(
@@ -49,10 +46,10 @@ pub struct WindowOptions {
     /// Make the database that --db names if it is not there
     #[arg(long)]
     pub create: bool,
-    #[allow(missing_docs, reason = "a comment would be part of the help")]
+    // A documentation comment would be part of the help.
     #[command(flatten)]
     pub database: Database,
-    #[allow(missing_docs, reason = "a comment would be part of the help")]
+    // A documentation comment would be part of the help.
     #[command(flatten)]
     pub scripts: ScriptsOption,
 }

@@ -91,7 +91,6 @@ fn shortfall(short: &Shortfall) -> Value {
     })
 }
 
-/// For people.
 pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -> String {
     let mut text = String::new();
     let dictionary = &outcome.dictionary;

@@ -11,7 +11,6 @@ use ptu_runs::words::noun;
 
 /// What was done, and what a person should know besides.
 pub struct Said {
-    /// What was done.
     pub text: String,
     /// What should be looked at.
     pub notes: Vec<String>,

@@ -23,7 +23,6 @@ pub struct SheetStatement {
     pub version: u32,
     /// `sheet`.
     pub what: String,
-    /// The run.
     pub id: String,
     /// SHA-256 of the page with its certificate, but without this document.
     pub sheet: String,
@@ -34,10 +33,8 @@ pub struct SheetStatement {
     /// Who signed.
     #[serde(default)]
     pub who: String,
-    /// Whose key it is.
     #[serde(default)]
     pub kind: String,
-    /// The public key.
     #[serde(default)]
     pub key: String,
 }

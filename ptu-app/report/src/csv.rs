@@ -39,11 +39,9 @@ pub const MARK: &str = "\u{feff}";
 pub enum Cell {
     /// What people and scripts wrote.
     Text(String),
-    /// What we counted.
     Number(String),
 }
 
-/// The table.
 pub fn csv(run: &RunDetail) -> String {
     let mut text = format!("{MARK}{}\n", COLUMNS.join(","));
     for step in &run.steps {

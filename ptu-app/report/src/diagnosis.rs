@@ -147,7 +147,6 @@ pub enum Possible<'a> {
     Part(&'a Candidate),
     /// Two faults at once.
     Both(&'a TwoFaults),
-    /// Nothing is wrong.
     NoFault,
 }
 

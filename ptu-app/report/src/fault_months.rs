@@ -61,7 +61,6 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
 pub struct OnTheWay {
     /// Distance of all of them, km.
     pub km: f64,
-    /// Trains.
     pub trains: u32,
     /// Their faults, counted as those of the month are.
     pub faults: u32,

@@ -37,7 +37,6 @@ fn figures_json(figures: &UnseenFigures) -> Value {
     })
 }
 
-/// For people.
 pub fn left_out_text(left_out: &LeftOut) -> String {
     let mut text = String::new();
     for (what, figures) in [
@@ -80,7 +79,6 @@ pub fn pairs_json(pairs: &PairFigures) -> Value {
     })
 }
 
-/// For people.
 pub fn pairs_text(pairs: &PairFigures) -> String {
     let mut text = format!("\ntwo faults at once: {} runs detected\n", pairs.both.all);
     shares_text(

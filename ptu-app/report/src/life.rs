@@ -93,7 +93,6 @@ fn joined<const N: usize>(texts: [&str; N]) -> String {
     said.join(DOT)
 }
 
-/// The same as data.
 pub fn json(life: &Life) -> Value {
     let stays = life.stays.iter().map(|stay| {
         json!({

@@ -7,7 +7,6 @@ use crate::words::Words;
 
 /// A drawing with its title, and how it was made.
 pub struct PlotPage {
-    /// The drawing.
     pub plot: Plot,
     /// By which command, and when.
     pub made: String,

@@ -19,7 +19,6 @@ use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
 use ptu_runs::stdio;
 
-/// A report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
     path: PathBuf,
@@ -107,7 +106,6 @@ impl Target {
         }
     }
 
-    /// The file.
     pub fn path(&self) -> &Path {
         &self.path
     }

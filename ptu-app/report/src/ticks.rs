@@ -24,7 +24,6 @@ impl Ticks {
         }
     }
 
-    /// The values.
     pub fn values(self) -> impl Iterator<Item = f64> {
         (self.first..=self.last).map(move |i| i as f64 * self.step)
     }

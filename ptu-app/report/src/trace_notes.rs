@@ -16,7 +16,6 @@ pub struct TraceNote {
     pub at: String,
     /// Who wrote it, and on a signed run whether it is signed.
     pub who: String,
-    /// What it says.
     pub text: String,
 }
 

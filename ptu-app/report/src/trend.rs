@@ -9,13 +9,11 @@ use ptu_runs::clock::{local_day, utc_day};
 
 /// What is known of a measurement over time.
 pub struct Trend {
-    /// What was asked.
     pub query: TrendQuery,
     /// Limits and their unit, as they were last.
     pub limits: TrendLimits,
     /// Value by value, or day by day.
     pub course: TimeSeries,
-    /// All together.
     pub process: Option<Process>,
     /// Procedures that measure it.
     pub procedures: Vec<String>,
@@ -25,9 +23,7 @@ pub struct Trend {
 
 /// Values over time.
 pub enum TimeSeries {
-    /// Of one unit.
     Points(Vec<TrendPoint>),
-    /// Of all.
     Days(Vec<TrendDay>, Vec<TrendUnit>),
 }
 
@@ -74,7 +70,6 @@ impl TimeSeries {
         }
     }
 
-    /// For its analysis.
     pub fn samples(&self) -> Vec<Sample> {
         match self {
             Self::Points(points) => points

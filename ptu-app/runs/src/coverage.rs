@@ -29,7 +29,6 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Of a stored run.
     pub fn of_run(run: &RunDetail) -> Self {
         let skipped = run
             .steps

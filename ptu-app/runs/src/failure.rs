@@ -19,7 +19,6 @@ pub use near::{Near, did_you_mean, did_you_mean_number};
 pub enum Exit {
     /// All passed, or the question was answered.
     Passed,
-    /// A check failed.
     Failed,
     /// The command or a script is wrong.
     Usage,
@@ -45,15 +44,12 @@ impl Exit {
 /// What went wrong, as data, with its sentences in both languages. Its text is that of a command line.
 #[derive(Clone, Debug)]
 pub enum Trouble {
-    /// The history.
     Store(Arc<StoreError>),
     /// The history, in a file that was not named with `--db`.
     NamedStore(Arc<StoreError>),
     /// A run that the history does not hold.
     NotStored {
-        /// The run.
         run: Id,
-        /// Why.
         error: Arc<StoreError>,
         /// Its last traces, which are lost.
         left_out: usize,
@@ -64,7 +60,6 @@ pub enum Trouble {
     RestKept {
         /// Why the history cannot take it.
         error: Arc<StoreError>,
-        /// The file.
         rest: PathBuf,
     },
     /// The link to a unit that was there.
@@ -75,7 +70,6 @@ pub enum Trouble {
     Because(Box<[Self; 2]>),
     /// Several at once.
     All(Vec<Self>),
-    /// In words of others.
     Told(String),
 }
 
@@ -178,9 +172,7 @@ impl fmt::Display for Trouble {
 /// An error for a person: what happened, to which thing, what to do next.
 #[derive(Debug)]
 pub struct Failure {
-    /// The exit code.
     pub exit: Exit,
-    /// The message.
     pub message: Trouble,
 }
 

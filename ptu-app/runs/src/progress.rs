@@ -35,7 +35,6 @@ impl Progress {
         }
     }
 
-    /// So many are done.
     pub fn tell(&mut self, done: usize) {
         if let Some(bar) = &self.bar {
             bar.set_position(done as u64);

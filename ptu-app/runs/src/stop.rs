@@ -20,7 +20,6 @@ struct StopRequests {
 }
 
 impl Stop {
-    /// One more press.
     pub fn press(&self) {
         self.0.count.fetch_add(1, Ordering::Relaxed);
     }

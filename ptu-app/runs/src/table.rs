@@ -17,7 +17,6 @@ const LEAST_OF_SENTENCE: usize = 24;
 /// Room for the sign that there are more columns.
 const MORE: usize = 3;
 
-/// A table being filled.
 pub struct Table {
     rows: Vec<Vec<String>>,
     right: Vec<usize>,
@@ -25,7 +24,6 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these headings.
     pub fn new(headings: &[&str]) -> Self {
         let headings = headings.iter().map(|heading| cell(heading, WIDEST));
         Self {

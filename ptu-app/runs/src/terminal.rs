@@ -14,9 +14,7 @@ const END: char = '\u{f8ff}';
 pub struct Terminal {
     /// Width and height, if answers go to a terminal.
     pub size: Option<[usize; 2]>,
-    /// Answers are coloured.
     pub colours_answers: bool,
-    /// Notes are coloured.
     pub colours_notes: bool,
 }
 
@@ -48,9 +46,7 @@ pub enum Style {
     Bad,
     /// Verdict of what could not be judged.
     Doubt,
-    /// A part.
     Part,
-    /// A limit.
     Limit,
 }
 

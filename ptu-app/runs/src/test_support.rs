@@ -23,7 +23,6 @@ pub fn setup(faults: &[&str]) -> BenchSetup {
     choice.setup(&scripts()).expect("a bench")
 }
 
-/// All procedures for this bench.
 pub fn procedures(setup: &BenchSetup) -> Vec<Arc<Procedure>> {
     let texts = scripts().procedures().expect("procedures");
     let (config, line) = (&setup.config.content, &setup.line.content);

@@ -23,7 +23,6 @@ fn embedded() -> Embedded {
     files.expect("main calls script_files::embed before files are looked for")
 }
 
-/// A place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A folder on the disk.
@@ -37,7 +36,6 @@ pub enum Place {
 pub enum Found {
     /// On the disk.
     File(PathBuf),
-    /// In the program.
     Embedded(&'static str, &'static [u8]),
 }
 

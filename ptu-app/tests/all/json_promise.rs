@@ -6,7 +6,6 @@ use serde_json::Value;
 
 use crate::common::{Place, list, text};
 
-/// What is promised.
 const PROMISED: &str = include_str!("../../../docs/json.txt");
 
 type Shape = BTreeMap<String, BTreeSet<&'static str>>;

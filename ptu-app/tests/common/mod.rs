@@ -108,7 +108,6 @@ impl Place {
         self.folder.path().join(name)
     }
 
-    /// The same as text.
     pub fn text_path(&self, name: &str) -> String {
         self.path(name).display().to_string()
     }

@@ -84,7 +84,6 @@ impl Terminal {
         }
     }
 
-    /// Rows and columns.
     pub fn resize(&self, [rows, columns]: [u16; 2]) {
         let mut size = rustix::termios::tcgetwinsize(&self.line).expect("a size");
         (size.ws_row, size.ws_col) = (rows, columns);
@@ -104,7 +103,6 @@ impl Terminal {
         String::from_utf8_lossy(&shown.borrow()).into_owned()
     }
 
-    /// Types a line.
     pub fn type_line(&self, line: &str) {
         let mut keys = File::from(self.screen.try_clone().expect("a copy"));
         writeln!(keys, "{line}").expect("typed");

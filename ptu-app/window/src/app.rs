@@ -41,7 +41,6 @@ pub struct Options {
     pub interrupted: Stop,
 }
 
-/// The window.
 pub struct App {
     queries: QueryWorker,
     database: DataWatch,
@@ -100,7 +99,6 @@ impl App {
         })
     }
 
-    /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         self.follow_operator();
         let words = self.settings.language.words();
@@ -183,7 +181,6 @@ impl App {
         &self.settings
     }
 
-    /// The page shown.
     pub fn page(&self) -> Page {
         self.settings.page
     }

@@ -64,7 +64,6 @@ pub struct Sizes {
     /// What a page is about.
     pub lead: f32,
     pub title: f32,
-    /// What is read first.
     pub headline: f32,
     pub icon: f32,
     /// Height of what can be clicked, and of a row.
@@ -73,7 +72,6 @@ pub struct Sizes {
     pub bar: f32,
     /// Height of what stands below a page.
     pub footer: f32,
-    /// Whose they are.
     pub density: Density,
 }
 

@@ -31,7 +31,6 @@ pub enum About {
     Connection(u64),
     /// The present or last run of the unit of this number.
     Run(u64),
-    /// The database file.
     Database,
 }
 

@@ -54,7 +54,6 @@ pub struct FaultsOf {
     pub month: String,
     /// Days to look back.
     pub days: Option<i64>,
-    /// Of which unit.
     pub units: UnitFilter,
 }
 
@@ -65,7 +64,6 @@ pub enum Destination {
     /// The test sheet of a run.
     Report(Id),
     Diagnosis(Id),
-    /// One fault.
     Fault(Id),
     /// The life of a unit, a train or a part by its serial number.
     Life(String),

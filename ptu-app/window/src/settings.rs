@@ -24,7 +24,6 @@ const SHIFT_US: i64 = 10 * 3_600_000_000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Language.
     pub language: Language,
     /// Dark window, as in a dark cab.
     pub dark: Option<bool>,
@@ -48,7 +47,6 @@ pub struct Settings {
     pub server: String,
     /// File with readings of trains' odometers.
     pub distances: String,
-    /// The unit connected last.
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
     pub plotted: Vec<String>,

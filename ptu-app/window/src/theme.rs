@@ -21,11 +21,9 @@ pub struct Palette {
     pub hover: Color32,
     /// Lines behind curves and between parts.
     pub grid: Color32,
-    /// Of fields and bars.
     pub edge: Color32,
     /// The strongest ink there is on the window's ground.
     pub ink: Color32,
-    /// What is less important.
     pub second: Color32,
     /// Labels.
     pub quiet: Color32,

@@ -71,7 +71,6 @@ pub struct Demand {
 
 /// Turns a situation into a demand.
 pub trait SpeedController: Debug + Send + CloneBoxed {
-    /// One cycle.
     fn step(&mut self, input: &ControllerInput) -> Demand;
     /// Way in which it brings a train from one cruising speed to a lower one, m.
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64;

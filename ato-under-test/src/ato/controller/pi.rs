@@ -17,7 +17,6 @@ use super::plausibility::PlausibilityCheck;
 use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::ReferenceGenerator;
 
-/// The controller.
 #[derive(Clone, Debug)]
 pub struct Pi {
     generator: ReferenceGenerator,

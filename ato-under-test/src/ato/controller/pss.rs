@@ -18,7 +18,6 @@ use super::plausibility::PlausibilityCheck;
 use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::{Descent, Setpoint, correction_mps2};
 
-/// The controller.
 #[derive(Clone, Debug)]
 pub struct Pss {
     descent: Descent,

@@ -36,7 +36,6 @@ enum Phase {
     FinalStop(FinalStop),
 }
 
-/// The controller.
 #[derive(Clone, Debug)]
 pub struct Servo {
     config: ServoConfig,

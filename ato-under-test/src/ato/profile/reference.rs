@@ -24,7 +24,6 @@ pub struct ReferenceInputs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     pub setpoint: Setpoint,
-    /// The stop curve rules.
     pub stopping: bool,
     /// Greatest acceleration that may be asked for, m/s².
     pub most_mps2: f64,

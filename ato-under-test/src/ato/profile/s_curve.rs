@@ -49,7 +49,6 @@ impl SCurve {
         curve
     }
 
-    /// Where it leads.
     pub fn target_mps(&self) -> f64 {
         self.to_mps
     }

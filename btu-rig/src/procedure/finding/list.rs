@@ -15,7 +15,6 @@ pub struct Findings(Vec<Found>);
 /// A finding, and how often it came.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// The finding.
     pub finding: Finding,
     /// How often it came; not in JSON if once.
     #[serde(default = "once", skip_serializing_if = "is_once")]
@@ -36,7 +35,6 @@ impl Findings {
         self.0.iter()
     }
 
-    /// Nothing was found.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

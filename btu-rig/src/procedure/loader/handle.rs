@@ -221,7 +221,6 @@ fn nested_item(value: Value<'_>, depth: usize) -> Item {
     }
 }
 
-/// A Starlark value for an item.
 fn alloc(item: Item, heap: Heap<'_>) -> Value<'_> {
     match item {
         Item::None => Value::new_none(),

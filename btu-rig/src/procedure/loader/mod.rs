@@ -78,7 +78,6 @@ pub struct Loaded {
     pub errors: Vec<LoadError>,
     /// Procedures, by name, that a train without cars cannot be tested by.
     pub need_cars: Vec<String>,
-    /// What scripts printed.
     pub printed: Vec<String>,
 }
 
@@ -87,7 +86,6 @@ pub struct Loaded {
 pub enum LoadEvent<'a> {
     /// The script of this path is being evaluated from now on.
     Evaluates(&'a str),
-    /// This procedure was loaded.
     Loaded(Box<Procedure>),
 }
 

@@ -64,7 +64,6 @@ impl Dimension {
         }
     }
 
-    /// What it is.
     pub(super) const fn word(self) -> &'static str {
         match self {
             Self::Speed => "speed",
@@ -87,7 +86,6 @@ impl Dimension {
     }
 }
 
-/// An amount of something.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
     pub dimension: Dimension,
@@ -124,7 +122,6 @@ impl Quantity {
         Self::new(self.dimension, self.value * factor, self.origin.clone())
     }
 
-    /// Which is greater.
     pub(super) fn compare(&self, other: &Self) -> Result<Ordering, String> {
         self.same(other, "compare")?;
         Ok(self.value.total_cmp(&other.value))

@@ -109,7 +109,6 @@ pub struct Runner {
     not_reported: u64,
     leaving: bool,
     pause: Pause,
-    /// Where it began.
     begun_at: Resume,
     /// What is left for the next runner.
     resume: Option<Resume>,
@@ -166,7 +165,6 @@ impl Runner {
         }
     }
 
-    /// The procedure it runs.
     pub fn procedure(&self) -> &Arc<Procedure> {
         &self.procedure
     }

@@ -2,7 +2,6 @@
 
 use crate::procedure::plan::Procedure;
 
-/// What a prompt does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PromptPolicy {
     /// No operator is present: a step with a prompt is skipped; one in set-up or clean-up is an error.
@@ -12,7 +11,6 @@ pub enum PromptPolicy {
     Ask,
 }
 
-/// What to run and how.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Places of the chosen steps; `None` = all.
@@ -21,7 +19,6 @@ pub struct RunOptions {
     pub repeat: u32,
     /// Skip the rest after the first step that did not pass.
     pub stop_on_fail: bool,
-    /// What a prompt does.
     pub prompts: PromptPolicy,
     /// A step begins one scan after the one before it ended, not with it, so that
     /// [`Runner::leave`](super::Runner::leave) can come between.

@@ -20,7 +20,6 @@ pub enum Harness {
     Auto,
     /// Only the maintenance channel.
     None,
-    /// All channels.
     Bench,
 }
 
@@ -53,7 +52,6 @@ pub struct HarnessWatch {
 }
 
 impl HarnessWatch {
-    /// As the user says.
     pub fn new(asked: Harness) -> Self {
         Self {
             found: match asked {

@@ -83,7 +83,6 @@ pub struct LineWatch {
     clock: Option<(Instant, u32)>,
     /// Whether the unit's clock goes as the bench's does.
     clock_is_right: bool,
-    /// Its rate.
     rate: ClockRate,
     lateness: Lateness,
     /// When a frame came last, and how late it was.

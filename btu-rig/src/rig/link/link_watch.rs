@@ -21,7 +21,6 @@ const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 /// may do so while it is about to be heard again.
 const STARTING: Duration = Duration::from_ms(10_000);
 
-/// Channels that are watched.
 const WATCHED: [Channel; 2] = [Channel::Io, Channel::Ptu];
 
 #[derive(Debug, Default)]

@@ -98,7 +98,6 @@ impl Exchange {
         self.ended.take()
     }
 
-    /// Nothing is under way.
     pub fn idle(&self) -> bool {
         self.current.is_none() && self.queue.is_empty()
     }

@@ -13,7 +13,6 @@ const MAX_ATTEMPTS: usize = 3;
     reason = "one request is under way at a time"
 )]
 pub enum Request {
-    /// The whole arm exchange.
     Arm {
         /// A refusal is a failure, and else an outcome.
         refusal_fails: bool,
@@ -23,7 +22,6 @@ pub enum Request {
     /// A message that is answered by `StimulusAnswer`.
     Stimulus {
         message: Message,
-        /// What to call it.
         what: &'static str,
         /// Doing it twice is the same as doing it once.
         repeatable: bool,

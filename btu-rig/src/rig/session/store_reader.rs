@@ -23,7 +23,6 @@ const NO_ANSWER: Duration = Duration::from_ms(5_000);
 /// More entries than any unit can hold.
 const MOST: u32 = 200_000;
 
-/// What a store holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StoredData {
     /// Events, in order.
@@ -49,7 +48,6 @@ pub enum StoreState {
     Unknown,
     /// There is none: the unit is an older one.
     Missing,
-    /// It is being read.
     Reading,
     /// All is read that was there when it was first asked for.
     Read,
@@ -65,7 +63,6 @@ struct Gap {
     times: u32,
 }
 
-/// The reader of one store.
 #[derive(Debug)]
 pub struct StoreReader {
     store: StoreKind,
@@ -240,7 +237,6 @@ impl StoreReader {
         self.until.saturating_sub(self.next)
     }
 
-    /// What is read.
     pub fn data(&self) -> &StoredData {
         &self.data
     }

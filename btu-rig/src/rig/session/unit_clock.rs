@@ -29,7 +29,6 @@ pub struct UnitClock {
 }
 
 impl UnitClock {
-    /// The time to tell.
     pub fn tell(&mut self, time: TimeOfDay) {
         *self = Self {
             time: Some(time),
@@ -78,7 +77,6 @@ impl UnitClock {
         self.settled |= self.told.contains(&answer.request_seq);
     }
 
-    /// Nothing is under way.
     pub fn settled(&self) -> bool {
         self.settled || self.time.is_none()
     }

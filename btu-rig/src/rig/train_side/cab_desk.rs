@@ -74,7 +74,6 @@ impl Entry {
     }
 }
 
-/// Switches that are on.
 #[derive(Clone, Copy, Debug)]
 struct Switches(u16);
 

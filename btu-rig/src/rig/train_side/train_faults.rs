@@ -62,7 +62,6 @@ struct ActiveFault {
 }
 
 impl Injected {
-    /// None yet.
     pub fn new(seed: u64) -> Self {
         Self {
             modes: Vec::new(),
@@ -125,7 +124,6 @@ pub enum Misplaced {
         /// Identifier of the fault mode, `part.mode`.
         fault: String,
     },
-    /// The train is shorter.
     #[error("fault {fault} is on car {car}, and this train has {cars}")]
     NoSuchCar {
         /// Identifier of the fault mode, `part.mode`.

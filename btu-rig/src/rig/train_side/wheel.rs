@@ -32,7 +32,6 @@ struct Plan {
 }
 
 impl Default for Plan {
-    /// Nothing to do.
     fn default() -> Self {
         let segments = [Segment::default(); 3];
         Self {
@@ -52,7 +51,6 @@ pub struct Wheel {
     backward: bool,
     plan: Plan,
     motion: Motion,
-    /// The tachometers' axle.
     axle: Motion,
     forward_at_rest: bool,
 }

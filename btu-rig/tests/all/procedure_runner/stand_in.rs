@@ -43,7 +43,6 @@ pub struct Fake {
     pub applied: Vec<Stimulus>,
     pub refuse: bool,
     pub unsettled: bool,
-    /// What the unit refuses.
     pub refusal: Option<&'static str>,
     /// Items of the self-test that the unit makes, all of them passed.
     pub self_test: SelfTest,

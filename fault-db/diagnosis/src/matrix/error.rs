@@ -7,7 +7,6 @@ pub enum MatrixError {
     /// No JSON, or not of this shape; the cause says where.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
-    /// Nothing to tell apart.
     #[error("\"states\" is empty; at least one is needed")]
     NoStates,
     /// Nothing to tell apart with.
@@ -34,45 +33,26 @@ pub enum MatrixError {
     DuplicateId {
         /// `state` or `test`.
         kind: &'static str,
-        /// The name.
         id: String,
     },
     /// Negative, above 1, or no number.
     #[error("state \"{state}\" has the probability {p}; it must lie in 0..1")]
-    Probability {
-        /// The state.
-        state: String,
-        /// What it has.
-        p: f64,
-    },
+    Probability { state: String, p: f64 },
     /// Probabilities of all states together.
     #[error(
         "the probabilities of the {states} states sum to {sum}, not 1; exactly one state holds, so add what is missing (\"no fault\"?) or scale them"
     )]
-    ProbabilitySum {
-        /// How many states.
-        states: usize,
-        /// Their sum.
-        sum: f64,
-    },
+    ProbabilitySum { states: usize, sum: f64 },
     /// Zero, negative, or no number.
     #[error("test \"{test}\" has the cost {cost}; it must be above 0 and finite")]
-    Cost {
-        /// The test.
-        test: String,
-        /// What it has.
-        cost: f64,
-    },
+    Cost { test: String, cost: f64 },
     /// A cell outside 0..1.
     #[error(
         "test \"{test}\" fails in state \"{state}\" with the probability {value}; it must lie in 0..1"
     )]
     Cell {
-        /// The test.
         test: String,
-        /// The state.
         state: String,
-        /// What is there.
         value: f64,
     },
     /// Cells of another number than states times tests.
@@ -87,10 +67,7 @@ pub enum MatrixError {
     },
     /// A test that is not in the matrix.
     #[error("\"outcomes\" name the test \"{test}\", which is not among \"tests\"")]
-    UnknownTest {
-        /// The name.
-        test: String,
-    },
+    UnknownTest { test: String },
     /// A state that is not in the matrix.
     #[error(
         "the outcomes of test \"{test}\" name the state \"{state}\", which is not among \"states\""
@@ -98,41 +75,23 @@ pub enum MatrixError {
     UnknownState {
         /// The test whose cells name it.
         test: String,
-        /// The name.
         state: String,
     },
     /// One row of outcomes given twice.
     #[error("the outcomes of test \"{test}\" are there twice")]
-    TestTwice {
-        /// The test.
-        test: String,
-    },
-    /// One cell given twice.
+    TestTwice { test: String },
     #[error("the outcomes of test \"{test}\" name the state \"{state}\" twice")]
-    CellTwice {
-        /// The test.
-        test: String,
-        /// The state.
-        state: String,
-    },
+    CellTwice { test: String, state: String },
     /// An outcome that was found, of a test nobody knows.
     #[error("an outcome is given for the test \"{test}\", which the matrix does not have")]
-    OutcomeUnknown {
-        /// The name.
-        test: String,
-    },
+    OutcomeUnknown { test: String },
     /// Two outcomes of one test.
     #[error("two outcomes are given for the test \"{test}\"; give the one that holds")]
-    OutcomeTwice {
-        /// The test.
-        test: String,
-    },
+    OutcomeTwice { test: String },
     /// An outcome that the test does not have.
     #[error("test \"{test}\" has the outcome {found}; it must be {known}")]
     OutcomeWord {
-        /// The test.
         test: String,
-        /// What is there.
         found: String,
         /// The outcomes that the test has.
         known: String,
@@ -145,7 +104,6 @@ pub enum MatrixError {
         /// The reason why the line cannot be read.
         what: String,
     },
-    /// Outcomes that no state explains.
     #[error(
         "the outcomes contradict each other: {before}no state is left in which \"{test}\" {outcome}; a fault that is not among the states, two at once, or an intermittent one would explain it"
     )]
@@ -154,7 +112,6 @@ pub enum MatrixError {
         before: String,
         /// The test that leaves nothing.
         test: String,
-        /// What it did.
         outcome: String,
     },
     /// A confidence that means nothing.

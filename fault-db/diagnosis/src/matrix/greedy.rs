@@ -47,7 +47,6 @@ pub(super) enum Rollout {
     On,
 }
 
-/// A complete tree.
 pub(super) struct GrownTree {
     pub(super) tree: Tree,
     /// Whether some choices were made by gain alone because the rollout work was used up.

@@ -13,16 +13,13 @@ const MAX_CELLS: usize = 50_000_000;
 /// What the system may be in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Its name.
     pub id: String,
     /// Probability before any test, 0..1.
     pub probability: f64,
 }
 
-/// What can be tested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Test {
-    /// Its name.
     pub id: String,
     /// What doing it once costs, above 0, in any unit.
     pub cost: f64,
@@ -122,7 +119,6 @@ impl Matrix {
         self.words.get(test).map_or(&[], Vec::as_slice)
     }
 
-    /// How many outcomes a test has.
     pub(super) fn outcomes(&self, test: usize) -> usize {
         self.words(test).len().max(2)
     }

@@ -67,7 +67,6 @@ impl<'a> NoisySpace<'a> {
         space
     }
 
-    /// Nothing seen yet.
     pub(super) fn root(&self) -> NoisyPoint {
         let possible = (0..self.problem.len()).fold(0, |set, group| set | 1 << group);
         NoisyPoint {

@@ -37,13 +37,11 @@ const MAX_NODES: usize = 200_000;
 /// How a tree is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The cheapest there is.
     Optimal,
     /// By information gain per cost, with a one-step rollout.
     Greedy,
 }
 
-/// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanOptions {
     /// How; without it the cheapest tree if that can be found, else a greedy one.
@@ -65,7 +63,6 @@ impl Default for PlanOptions {
 /// The order of tests from what is known on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The decision tree.
     pub tree: Tree,
     /// Its expected cost, in the unit of the tests' costs.
     pub expected_cost: f64,

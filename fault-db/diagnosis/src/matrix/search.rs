@@ -46,7 +46,6 @@ struct Known {
     test: Option<usize>,
 }
 
-/// A search under way.
 pub(super) struct Search<S: Space> {
     pub(super) space: S,
     known: HashMap<S::Point, Known, BuildHasherDefault<Mix>>,

@@ -12,18 +12,15 @@ const MAX_INDENT: usize = 40;
 pub enum Node {
     /// Do a test, and continue by its outcome.
     Test {
-        /// The test.
         test: usize,
         /// Probability of reaching the node.
         reached: f64,
         /// Each outcome that is possible here, and the node after it: an index of [`Tree::nodes`].
         ways: Vec<(usize, usize)>,
     },
-    /// A leaf.
     Leaf(Leaf),
 }
 
-/// An answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leaf {
     /// The only possible state, or several that cannot be told apart any further.

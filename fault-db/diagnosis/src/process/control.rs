@@ -24,9 +24,7 @@ pub struct Sign {
     pub kind: &'static str,
     /// Number of violations.
     pub times: u32,
-    /// The first.
     pub first_at_us: i64,
-    /// The last.
     pub last_at_us: i64,
 }
 

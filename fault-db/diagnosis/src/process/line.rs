@@ -10,7 +10,6 @@ const DAY_US: f64 = 86.4e9;
 /// Limit of a forecast, days.
 const FORESEEN_DAYS: f64 = 3650.0;
 
-/// A least-squares line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Line {
     /// Change in a day.
@@ -33,7 +32,6 @@ pub struct Line {
 /// When a limit will be crossed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Forecast {
-    /// The limit.
     pub limit: f64,
     /// When the line crosses it; before the last sample if it has done so already.
     pub at_us: i64,

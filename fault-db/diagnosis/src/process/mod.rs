@@ -15,7 +15,6 @@ pub use line::{Forecast, Line};
 pub struct Sample {
     /// When, microseconds.
     pub at_us: i64,
-    /// The value or mean.
     pub value: f64,
     /// Number of values.
     pub n: u32,
@@ -28,7 +27,6 @@ pub struct Sample {
 pub struct Process {
     /// Number of values.
     pub n: u32,
-    /// Mean.
     pub mean: f64,
     /// Short-term standard deviation: of single values from their moving range, of groups from their own
     /// scatter. `None` for fewer than two.

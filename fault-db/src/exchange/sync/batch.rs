@@ -61,7 +61,6 @@ pub(super) fn entries(
     Ok(entries)
 }
 
-/// The last outbox entry.
 pub(super) fn last(file: &Backend) -> SqlResult<i64> {
     let last = "SELECT coalesce(max(seq), 0) FROM outbox";
     Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())

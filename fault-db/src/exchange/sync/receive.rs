@@ -11,7 +11,6 @@ use crate::exchange::to_file::FileApplier;
 use crate::history::event_graph::{faults_of, settle};
 use crate::seal::BY_SYNC;
 
-/// Which events to receive.
 #[derive(Clone, Copy)]
 pub(super) struct PullScope {
     /// The server's row number of the laptop.
@@ -33,7 +32,6 @@ pub(super) fn last(backend: &Backend) -> SqlResult<i64> {
         .unwrap_or_default())
 }
 
-/// One batch of events.
 pub(super) struct Events {
     pub set: ChangeSet,
     /// Events outside their columns' domain, accepted by an early version of the server.

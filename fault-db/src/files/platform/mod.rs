@@ -23,7 +23,6 @@ pub(crate) use system::{
 pub(crate) struct Identity {
     device: u64,
     number: u64,
-    /// Names that it has.
     pub(crate) names: u64,
 }
 

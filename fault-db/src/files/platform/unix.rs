@@ -32,7 +32,6 @@ pub(crate) fn for_all(file: &File) -> std::io::Result<()> {
     file.set_permissions(rights)
 }
 
-/// Which file it is.
 #[expect(clippy::unnecessary_wraps, reason = "not every system numbers files")]
 pub(crate) fn identity(about: &Metadata) -> Option<Identity> {
     Some(Identity {

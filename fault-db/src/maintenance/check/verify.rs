@@ -91,7 +91,6 @@ struct Look<'a> {
     found: Verification,
 }
 
-/// A seal of a row.
 struct SealRow {
     origin: Id,
     ordinal: i64,

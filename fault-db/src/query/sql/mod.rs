@@ -97,7 +97,6 @@ impl Store {
     }
 }
 
-/// The error for an exceeded limit.
 fn exceeds(limit: QueryLimit) -> StoreError {
     StoreError::QueryExceeds { limit }
 }

@@ -65,7 +65,6 @@ fn loaded(train: &str, mass_kg: f64, load_kg: f64) -> [Fact; 2] {
     ]
 }
 
-/// One of the conditions.
 type Of = fn(&Conditions) -> f64;
 
 /// Train and day of a run. What is nominal is not named but for train and load.

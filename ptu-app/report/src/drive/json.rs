@@ -21,7 +21,6 @@ const PERCENTILES: [(&str, f64); 7] = [
     ("min", 0.0),
 ];
 
-/// All of it.
 pub fn json(results: &Results) -> Value {
     match &results.outcomes {
         Outcomes::Single(runs) => match runs.as_slice() {

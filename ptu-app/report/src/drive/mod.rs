@@ -22,7 +22,6 @@ use ptu_runs::failure::{Asked, Failure};
 
 /// What was driven, and how JSON tells it.
 pub struct Results {
-    /// The result.
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.
     pub list: bool,
@@ -41,7 +40,6 @@ impl Results {
     }
 }
 
-/// What was driven.
 pub enum Outcomes {
     /// Cases, each once.
     Single(Vec<Driven>),

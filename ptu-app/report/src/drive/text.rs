@@ -9,7 +9,6 @@ use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::table::Table;
 
-/// All of it.
 pub fn text(results: &Results) -> String {
     match &results.outcomes {
         Outcomes::Single(runs) => match runs.as_slice() {

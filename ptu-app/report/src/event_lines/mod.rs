@@ -23,7 +23,6 @@ pub struct EventLines {
 }
 
 impl EventLines {
-    /// The first line.
     pub fn started(&mut self) -> String {
         self.line(
             None,
@@ -72,7 +71,6 @@ impl EventLines {
         Some(self.line(Some(&procedure.id), name, keys))
     }
 
-    /// The last line.
     pub fn finished(&mut self, outcome: &Outcome) -> String {
         let counts = &outcome.counts;
         let keys = json!({

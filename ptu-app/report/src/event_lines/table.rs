@@ -8,11 +8,8 @@ pub const VERSION: u32 = 1;
 /// Type of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Text.
     Text,
-    /// Text, or null.
     TextOrNull,
-    /// A whole number.
     Whole,
     /// A whole number, or null.
     WholeOrNull,
@@ -20,7 +17,6 @@ pub enum Kind {
     Number,
     /// True or false.
     Bit,
-    /// A list.
     List,
 }
 
@@ -82,7 +78,6 @@ pub const COMMON: &[(&str, Kind, &str)] = &[
     ),
 ];
 
-/// All events.
 pub const EVENTS: &[EventKeys] = &[
     (
         "stream_started",

@@ -36,7 +36,6 @@ const ROWS: usize = 50_000;
 /// Months are counted so far.
 const MOST_MONTHS: usize = 10_000;
 
-/// What an export did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Exported {
     /// Partitions written.

@@ -13,7 +13,6 @@ use parquet::schema::types::Type;
 use super::views::{Kind, View};
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 
-/// A file in memory.
 pub(super) struct Partition<'a> {
     view: &'a View,
     file: SerializedFileWriter<Vec<u8>>,
@@ -62,7 +61,6 @@ impl<'a> Partition<'a> {
         Ok(())
     }
 
-    /// Its bytes.
     pub fn finish(self) -> Result<Vec<u8>, Failure> {
         let bytes = self.file.into_inner();
         bytes.map_err(|error| failed(self.view, &error))

@@ -8,7 +8,6 @@ pub(super) enum Kind {
     Text,
 }
 
-/// A view.
 pub(super) struct View {
     pub name: &'static str,
     /// Its time, µs since 1970; absent where its rows have no time.

@@ -11,7 +11,6 @@ pub enum Role {
     Tick,
     /// Name of a curve.
     Legend,
-    /// A named place.
     Place,
     /// What a curve says at a point.
     Note,
@@ -21,7 +20,6 @@ pub enum Role {
     Zero,
     /// Edge of the plot.
     Frame,
-    /// A shaded stretch.
     Shaded,
     /// A curve of this colour.
     Curve(usize),
@@ -36,11 +34,8 @@ pub enum Role {
 /// Which point of a text its place is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its beginning.
     Start,
-    /// Its middle.
     Middle,
-    /// Its end.
     End,
 }
 
@@ -60,7 +55,6 @@ impl Anchor {
 pub enum Mark {
     /// A text on a line.
     Text {
-        /// What for.
         role: Role,
         /// Where, on the base line.
         at: (f64, f64),
@@ -68,19 +62,14 @@ pub enum Mark {
         anchor: Anchor,
         /// Runs upwards.
         turned: bool,
-        /// The text.
         text: String,
     },
-    /// A line through points.
     Line {
-        /// What for.
         role: Role,
         /// The points of each of its pieces.
         pieces: Vec<Vec<(f64, f64)>>,
     },
-    /// A rectangle.
     Area {
-        /// What for.
         role: Role,
         /// Upper left corner.
         at: (f64, f64),
@@ -98,11 +87,8 @@ pub enum Mark {
         /// Shades from the upper left corner on, row by row.
         shades: Vec<u8>,
     },
-    /// A dot.
     Dot {
-        /// What for.
         role: Role,
-        /// Its middle.
         at: (f64, f64),
     },
 }

@@ -38,17 +38,13 @@ const SAMPLE_ROOM: f64 = 34.0;
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// A line between points.
     Line,
-    /// A thin dashed line.
     Dashed,
-    /// Dots.
     Dots,
     /// Bars from 0, as wide as points are apart.
     Bars,
 }
 
-/// A curve.
 #[derive(Clone, Debug)]
 pub struct Series {
     /// Name in the legend.
@@ -64,27 +60,21 @@ pub struct Series {
 /// A place on the horizontal axis.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// Where.
     pub x: f64,
-    /// Its name.
     pub name: String,
 }
 
 /// What a curve says at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    /// Where it begins.
     pub at: (f64, f64),
     /// It is written if it ends before here.
     pub until: f64,
-    /// The text.
     pub text: String,
 }
 
-/// A plot.
 #[derive(Clone, Debug, Default)]
 pub struct Plot {
-    /// What it shows.
     pub title: String,
     /// Horizontal axis with its unit.
     pub x_label: String,
@@ -98,13 +88,11 @@ pub struct Plot {
     pub raster: Option<Raster>,
     /// Curves, the last on top.
     pub series: Vec<Series>,
-    /// Places.
     pub places: Vec<Place>,
     /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
     pub shaded: Vec<(f64, f64)>,
     /// Names at the vertical axis instead of values, each where it stands.
     pub names: Vec<(f64, String)>,
-    /// What curves say.
     pub notes: Vec<Note>,
     /// Room left of the plot at least, so that plots below each other begin at the same place.
     pub beside: Option<f64>,

@@ -43,7 +43,6 @@ impl Raster {
     }
 }
 
-/// The colour of a shade.
 pub fn colour(shade: u8) -> [u8; 3] {
     let place = f32::from(shade) / 255.0 * (COLOURS.len() - 1) as f32;
     let below = (place as usize).min(COLOURS.len() - 2);

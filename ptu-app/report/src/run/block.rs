@@ -9,7 +9,6 @@ use crate::plot::Plot;
 pub enum Tone {
     /// Neither.
     Plain,
-    /// Of less weight.
     Soft,
     /// Passed.
     Good,
@@ -31,7 +30,6 @@ pub enum Block {
     Facts(Vec<(String, String)>),
     Text(Tone, String),
     Table(Table),
-    /// A drawing.
     Plot(Box<Plot>),
     /// What follows begins a page.
     NewPage,
@@ -44,7 +42,6 @@ pub enum Block {
 /// Where cells of a column stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// At its left.
     Left,
     /// At its right: numbers.
     Right,
@@ -65,7 +62,6 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
-/// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
     /// Stands for itself or begins a group.
@@ -93,7 +89,6 @@ pub enum Cell {
 /// A value between its limits, as shares of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
-    /// What is allowed.
     pub band: (f64, f64),
     pub value: f64,
     pub good: bool,

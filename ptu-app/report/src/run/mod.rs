@@ -53,7 +53,6 @@ pub struct Sheet {
 
 /// A trace on a test sheet.
 pub struct SheetTrace {
-    /// The trace.
     pub id: Id,
     /// Steps that were under way, by their place in the run.
     pub steps: Vec<u32>,

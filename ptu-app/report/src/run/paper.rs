@@ -25,7 +25,6 @@ pub struct Paper {
     pub(crate) blocks: Vec<Block>,
 }
 
-/// What can be printed.
 pub trait Printed {
     /// It, in one language.
     fn paper(&self, words: &Words) -> Paper;

@@ -30,7 +30,6 @@ impl<'a> Sources<'a> {
         place.map_or_else(String::new, |place| (place + 1).to_string())
     }
 
-    /// The list.
     pub fn blocks(&self, words: &Words) -> Vec<Block> {
         if self.0.is_empty() {
             return Vec::new();

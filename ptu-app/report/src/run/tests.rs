@@ -17,7 +17,6 @@ use super::{Sheet, html, pdf};
 use crate::words::{Language, Words};
 
 const HOSTILE: &str = "<script>alert(\"1\")</script>&'\u{1b}[31m\u{9b}2J\u{202e}";
-/// Of every measurement.
 const LIMIT_SOURCE: &str = "configuration overspeed.eb_delay_ms; default: two scans";
 
 /// A store and the folder it is in.

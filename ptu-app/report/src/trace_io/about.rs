@@ -12,7 +12,6 @@ pub const NAME: &str = "ptu.trace";
 /// Whose trace it is, when it was recorded, and what its signals are; of a part of a trace that part's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceInfo {
-    /// The trace.
     pub trace_id: String,
     /// The run it was recorded in.
     pub run_id: String,
@@ -26,7 +25,6 @@ pub struct TraceInfo {
     pub t0_bench_us: i64,
     /// Time from row to row, microseconds.
     pub period_us: i64,
-    /// Rows.
     pub rows: usize,
     /// The row of the trigger, which has the time 0; of a part it may be before or after all rows.
     pub trigger_row: Option<i64>,

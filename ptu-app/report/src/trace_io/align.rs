@@ -14,7 +14,6 @@ const ROUNDING_US: i64 = 1;
 /// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aligned {
-    /// The stored trace.
     pub trace: TraceData,
     /// The file's signals, at the same rows.
     pub imported: TraceData,

@@ -159,9 +159,7 @@ struct Reading<'a> {
     others: BTreeSet<String>,
     about: Option<TraceInfo>,
     messages: usize,
-    /// Of all topics.
     signals: usize,
-    /// Of all topics.
     samples: usize,
 }
 

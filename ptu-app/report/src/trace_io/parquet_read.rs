@@ -35,7 +35,6 @@ struct Signal {
     values: Option<Values>,
 }
 
-/// The column of times.
 struct Times {
     place: usize,
     values: Values,

@@ -79,7 +79,6 @@ pub struct TracePart<'s> {
     store: &'s Store,
     id: Id,
     rows: Range<usize>,
-    /// What it is.
     pub about: TraceInfo,
 }
 

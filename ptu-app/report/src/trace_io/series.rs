@@ -23,7 +23,6 @@ pub struct Table {
     pub columns: Vec<Vec<f64>>,
 }
 
-/// What a file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     /// Signals, by what they were sampled with.

@@ -11,7 +11,6 @@ pub(super) struct Text<R> {
 }
 
 enum Form {
-    /// Nothing was read yet.
     Unknown,
     Bytes,
     /// The halves of a character that is longer than one unit.

@@ -7,7 +7,6 @@ use super::Window;
 /// Signals that tell where the train is, the truest first, m.
 const POSITIONS: [&str; 2] = ["train_position", "position"];
 
-/// What the axis counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// Seconds.
@@ -51,7 +50,6 @@ pub struct Edges {
 }
 
 impl Axis {
-    /// Time.
     pub fn time(trace: &TraceData, zero_row: i64) -> Self {
         Self::Time {
             zero_row,
@@ -92,7 +90,6 @@ impl Axis {
         })
     }
 
-    /// What it counts.
     pub fn kind(&self) -> Kind {
         match self {
             Self::Time { .. } => Kind::Time,

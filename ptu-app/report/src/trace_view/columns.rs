@@ -12,7 +12,6 @@ pub struct Column {
 }
 
 impl Column {
-    /// Nothing known.
     pub const EMPTY: Self = Self {
         low: f32::NAN,
         high: f32::NAN,

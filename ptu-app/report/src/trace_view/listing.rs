@@ -17,7 +17,6 @@ const PERIODS_US: std::ops::RangeInclusive<i64> = 1..=60_000_000;
 /// A run with its traces.
 #[derive(Clone, Debug)]
 pub struct ListedRun {
-    /// The run.
     pub id: Id,
     /// Serial number of its unit.
     pub unit: String,
@@ -31,10 +30,8 @@ pub struct ListedRun {
     pub traces: Vec<ListedTrace>,
 }
 
-/// A trace in the list.
 #[derive(Clone, Debug)]
 pub struct ListedTrace {
-    /// The trace.
     pub id: Id,
     /// Its length, s.
     pub length_s: f64,
@@ -65,7 +62,6 @@ impl ListedFault {
         }
     }
 
-    /// What people call it.
     pub fn said(&self, language: Language) -> &str {
         match language {
             Language::English => &self.said[0],
@@ -95,14 +91,11 @@ pub struct Event {
     pub fault: Option<ListedFault>,
 }
 
-/// A trace that is open.
 #[derive(Debug)]
 pub struct OpenTrace {
-    /// The trace.
     pub id: Id,
     /// Its run, as far as it is known.
     pub run: Option<Id>,
-    /// Its samples.
     pub view: TraceView,
     /// The trigger and the faults found in its window, in order.
     pub events: Vec<Event>,

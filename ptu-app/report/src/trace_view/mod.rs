@@ -46,7 +46,6 @@ pub struct Window {
 }
 
 impl Window {
-    /// Its length.
     pub fn length(self) -> f64 {
         self.to - self.from
     }

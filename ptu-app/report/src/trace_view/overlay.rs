@@ -27,9 +27,7 @@ pub enum OverlaySource {
 /// Which trace is shown behind another.
 #[derive(Debug)]
 pub struct Overlay {
-    /// What it is.
     pub against: OverlaySource,
-    /// Its samples.
     pub view: TraceView,
     rule: Rule,
     /// Rows of the trace that it has samples for; none = wherever it has rows.

@@ -5,10 +5,8 @@ use super::Window;
 /// Shortest stretch that is shown as a value, pixels.
 const SHORTEST: f64 = 1.5;
 
-/// What a stretch shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpanKind {
-    /// One value.
     Value(f64),
     /// Values that change faster than can be seen.
     Busy,
@@ -21,7 +19,6 @@ pub struct Span {
     pub from: f32,
     /// Right edge.
     pub to: f32,
-    /// What it shows.
     pub shown: SpanKind,
 }
 

@@ -7,7 +7,6 @@ use super::view::{Summary, TraceView};
 /// What a signal did over a stretch of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Statistics {
-    /// Of a quantity.
     Quantity {
         /// Least value.
         low: f64,

@@ -21,19 +21,14 @@ const LEAST_WAY_M: f64 = 0.5;
 /// Zooms that can be undone.
 const MOST_ZOOMS: usize = 50;
 
-/// A cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cursor {
-    /// The first.
     A,
-    /// The second.
     B,
 }
 
-/// A lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lane {
-    /// Its signal.
     pub signal: String,
     /// Where the signal is in the trace; `None` = the trace lacks it.
     pub place: Option<usize>,
@@ -94,27 +89,22 @@ impl TracePlot {
         scene
     }
 
-    /// The trace.
     pub fn opened(&self) -> &Arc<OpenTrace> {
         &self.opened
     }
 
-    /// Its samples.
     pub fn view(&self) -> &TraceView {
         &self.opened.view
     }
 
-    /// Where its rows lie.
     pub fn axis(&self) -> &Axis {
         &self.axis
     }
 
-    /// The part in view.
     pub fn camera(&mut self) -> &mut VisibleRange {
         &mut self.camera
     }
 
-    /// The part in view.
     pub fn window(&self) -> Window {
         self.camera.window()
     }
@@ -274,7 +264,6 @@ impl TracePlot {
         &mut self.close
     }
 
-    /// Rows in view.
     pub fn rows_in_view(&self) -> Range<usize> {
         self.axis.rows_in(self.window())
     }

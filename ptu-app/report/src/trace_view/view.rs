@@ -41,7 +41,6 @@ impl TraceView {
         Self { data, summaries }
     }
 
-    /// The trace itself.
     pub fn data(&self) -> &TraceData {
         &self.data
     }
@@ -56,12 +55,10 @@ impl TraceView {
         &self.data.channels[place]
     }
 
-    /// Its samples.
     pub fn samples(&self, place: usize) -> &[f64] {
         &self.data.columns[place]
     }
 
-    /// Its samples in short.
     pub fn summary(&self, place: usize) -> &Summary {
         &self.summaries[place]
     }

@@ -28,12 +28,10 @@ impl VisibleRange {
         }
     }
 
-    /// What is in view.
     pub fn window(&self) -> Window {
         self.window
     }
 
-    /// All of it.
     pub fn fit(&mut self) {
         self.window = self.whole;
     }

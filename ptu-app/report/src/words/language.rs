@@ -10,19 +10,15 @@ use super::{ENGLISH, KOREAN, Words};
 /// What the user of this process prefers, if that is known.
 static PREFERRED: OnceLock<Language> = OnceLock::new();
 
-/// A language people read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Language {
-    /// English.
     #[default]
     English,
-    /// Korean.
     Korean,
 }
 
 impl Language {
-    /// All there are.
     pub const ALL: [Self; 2] = [Self::English, Self::Korean];
 
     /// Name of the language, in the language.

@@ -31,7 +31,6 @@ pub enum Doors {
 pub struct Arrival {
     /// Number of the section.
     pub section: u16,
-    /// The run.
     pub outcome: Outcome,
     /// The doors at its end.
     pub doors: Doors,

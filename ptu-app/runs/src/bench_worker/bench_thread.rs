@@ -42,7 +42,6 @@ enum WatchEnd {
     Run(Box<RunOrder>, Stop),
     Disconnect,
     LinkLost(LinkTrouble),
-    /// The worker was dropped.
     Closed,
 }
 

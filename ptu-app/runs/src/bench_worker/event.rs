@@ -11,19 +11,16 @@ use crate::run::{Outcome, SessionEvent};
 pub enum BenchEvent {
     /// The unit was reached and identified.
     Connected {
-        /// Its serial number.
         serial: String,
     },
     /// The unit could not be reached or is not the expected one: the reason.
     NotConnected(Trouble),
-    /// The unit was released.
     Disconnected {
         /// Whether safe outputs were confirmed and the unit was disarmed.
         safe: bool,
     },
     /// The link to the unit was lost outside a run: the reason.
     LinkLost(LinkTrouble),
-    /// The unit restarted.
     UnitRestarted,
     /// Safe outputs were not confirmed before a run began, or after everything was stopped.
     NotSafe,
@@ -33,9 +30,7 @@ pub enum BenchEvent {
     Broken,
     /// A manual stimulus was refused.
     NotDone {
-        /// The stimulus.
         asked: String,
-        /// The reason.
         why: String,
     },
     /// The unit or TCMS logged an event outside a run.
@@ -44,7 +39,6 @@ pub enum BenchEvent {
     Run {
         /// Procedure, as `atp/overspeed`.
         procedure: String,
-        /// The event.
         event: SessionEvent,
     },
     /// The run has ended and is recorded.

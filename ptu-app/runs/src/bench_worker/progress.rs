@@ -39,7 +39,6 @@ pub struct Progress {
     planned: usize,
     /// Steps by procedure and place in it.
     counter: StepCounter<(usize, usize)>,
-    /// Where it is.
     pub present: Option<RunPosition>,
     /// Faults found, in order.
     pub faults: Vec<FaultSeen>,
@@ -55,7 +54,6 @@ pub struct Progress {
 /// A procedure of a run.
 #[derive(Debug)]
 pub struct ProcedureProgress {
-    /// The procedure.
     pub procedure: Arc<Procedure>,
     /// Steps chosen of it.
     pub chosen: Vec<usize>,
@@ -91,7 +89,6 @@ pub struct RunPosition {
 /// Something that may take until a moment on the wall clock.
 #[derive(Clone, Debug)]
 pub struct Waiting<T> {
-    /// What.
     pub what: T,
     /// How long it might still take when it was said.
     pub left: Duration,
@@ -188,14 +185,12 @@ impl Progress {
         }
     }
 
-    /// The run is over.
     pub fn end(&mut self, outcome: Option<Outcome>) {
         self.present = None;
         self.ended = Some(outcome);
         self.ended_us = now_us();
     }
 
-    /// It goes on.
     pub fn is_running(&self) -> bool {
         self.ended.is_none()
     }
@@ -205,7 +200,6 @@ impl Progress {
         self.ended.as_ref()?.as_ref().map(|outcome| outcome.id)
     }
 
-    /// The step under way.
     pub fn step(&self) -> Option<&Step> {
         let present = self.present.as_ref()?;
         let procedure = &self.procedures.get(present.procedure)?.procedure;

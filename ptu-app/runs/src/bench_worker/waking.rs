@@ -30,7 +30,6 @@ const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 pub enum Watched {
     /// What the connection bar does.
     Bar,
-    /// Curves.
     Curves,
     /// All of them as in the cab.
     #[default]

@@ -35,7 +35,6 @@ pub struct Effort {
 /// The figures over adaptive runs of all held-out units with a fault.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AdaptiveFigures {
-    /// Steps of the suite.
     pub suite_steps: usize,
     /// Its bench time on a good unit, s.
     pub suite_s: f64,

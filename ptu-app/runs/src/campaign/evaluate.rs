@@ -20,7 +20,6 @@ const MOST_PARTS: usize = 3;
 pub struct Assessment {
     /// Fault mode.
     pub fault: String,
-    /// Its part.
     pub lru: LruId,
     /// `permanent`, `intermittent` or `degraded`.
     pub kind: &'static str,
@@ -28,15 +27,12 @@ pub struct Assessment {
     pub unsafe_: bool,
     /// A laptop alone should find it.
     pub reachable: bool,
-    /// Which of its levels.
     pub level: usize,
-    /// Seed.
     pub seed: u64,
     /// A step did not pass, or a fault was found.
     pub detected: bool,
     /// Parts that diagnosis is sure are the one, the likeliest first.
     pub parts: Vec<LruId>,
-    /// What diagnosis says.
     pub finding: Finding,
     /// All parts, the likeliest first.
     pub ranked: Vec<PartProbability>,
@@ -148,7 +144,6 @@ pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> 
 pub struct Share {
     /// Runs with the property.
     pub of: usize,
-    /// All runs.
     pub all: usize,
 }
 
@@ -178,7 +173,6 @@ impl Share {
 /// A fault mode that was missed or not isolated in some run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shortfall {
-    /// The mode.
     pub fault: String,
     /// Runs that were good in this respect, of how many.
     pub share: Share,
@@ -186,7 +180,6 @@ pub struct Shortfall {
     pub taken_for: Vec<String>,
 }
 
-/// The figures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
     /// Fault modes.

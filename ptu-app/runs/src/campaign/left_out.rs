@@ -18,7 +18,6 @@ use super::suite::{Suite, SuiteRun};
 /// Classes of probability of the reliability curve.
 const CLASSES: usize = 10;
 
-/// The figures of both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
     /// Dictionaries without a share of the modes, that keep another mode of each of their parts.
@@ -61,7 +60,6 @@ pub struct UnseenFigures {
 pub struct OtherFaults {
     /// A step did not pass, or a fault was found.
     pub detected: Share,
-    /// Of those.
     pub figures: UnseenFigures,
 }
 

@@ -38,7 +38,6 @@ use crate::run_diagnosis::basis;
 use crate::stop::Stop;
 use crate::structure::OffWay;
 
-/// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// Fault modes, by glob.
@@ -93,7 +92,6 @@ impl Request {
 
 /// The result of a campaign.
 pub struct Outcome {
-    /// The dictionary.
     pub dictionary: Dictionary,
     /// Held-out runs with a fault, each with its diagnosis.
     pub assessments: Vec<Assessment>,
@@ -140,11 +138,9 @@ pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode
 
 /// What came of a campaign.
 pub enum Ran {
-    /// All of it.
     All(Box<Outcome>),
     /// The runs of its shard are kept, so many; a dictionary is made of all.
     Part(usize),
-    /// It was stopped.
     Stopped,
 }
 

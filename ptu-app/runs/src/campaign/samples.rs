@@ -51,7 +51,6 @@ pub enum Purpose {
 /// One run of the suite.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// What it is for.
     pub purpose: Purpose,
     /// The faults, each at its level: none in a good unit, most often one.
     pub faults: Vec<FaultMode>,

@@ -30,10 +30,8 @@ pub struct Suite {
     pub structure: Structure,
 }
 
-/// A run of the suite.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SuiteRun {
-    /// What was seen.
     pub seen: Observation,
     /// All procedures passed and no fault was found.
     pub passed: bool,

@@ -24,7 +24,6 @@ const TIMESYNC: &str = "/run/systemd/timesync";
 pub enum ClockState {
     /// It was set by the network since the computer was started.
     Synchronised,
-    /// It was not.
     NotSynchronised,
     /// The system does not say.
     Unknown,

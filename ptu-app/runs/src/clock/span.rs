@@ -14,9 +14,7 @@ const HOUR_US: i64 = 3_600_000_000;
 /// From and until, microseconds since 1970; the end is not in it. None = open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// The beginning.
     pub since_us: Option<i64>,
-    /// The end.
     pub until_us: Option<i64>,
 }
 

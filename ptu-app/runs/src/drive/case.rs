@@ -21,7 +21,6 @@ const CONTROLLER_KEY: &str = "ato.controller";
 const DEFAULT_LINE: &str = "line8";
 const DEFAULT_SECTION: SectionChoice = SectionChoice::One(61);
 
-/// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// Line, `lines/NAME.toml`; none = line8.
@@ -44,30 +43,24 @@ pub struct Request {
     pub unit_config: String,
     /// Keys changed in it.
     pub settings: Vec<Setting>,
-    /// Seed.
     pub seed: u64,
 }
 
 /// A run, ready to be driven.
 #[derive(Clone)]
 pub struct Case {
-    /// Controller.
     pub controller: ControllerKind,
     /// Unit configuration and line.
     pub bench: Arc<DriveBench>,
-    /// The run.
     pub plan: DrivePlan,
     /// What is held fixed where the rest is drawn.
     pub fixed: Fixed,
-    /// Seed.
     pub seed: u64,
 }
 
 /// A run that is over.
 pub struct Driven {
-    /// What was run.
     pub case: Case,
-    /// The result.
     pub outcome: Outcome,
 }
 
@@ -177,7 +170,6 @@ impl Case {
         }
     }
 
-    /// Drives it.
     pub fn drive(&self) -> Outcome {
         drive(&self.bench, self.plan.clone(), self.seed)
     }

@@ -12,7 +12,6 @@ use crate::failure::{DriveTrouble, Failure, Unknown};
 pub enum SectionChoice {
     /// Every section of the line.
     All,
-    /// One.
     One(u16),
     /// From one to another, both included.
     Range(u16, u16),

@@ -17,14 +17,11 @@ const ENOUGH: f64 = 0.999;
 /// Farthest a run may stop past the stop point, m.
 const NEVER_PAST_M: f64 = 1.0;
 
-/// One run of many.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// Its own seed: `--scattered --seed` repeats it.
     pub seed: u64,
-    /// Its train and day.
     pub drawn: ScatterDraw,
-    /// How it ended.
     pub ending: Ending,
     /// Head of the train at rest less stop point, m.
     pub stop_error_m: Option<f64>,

@@ -32,7 +32,6 @@ const FRAMES_LOST: [Event; 4] = [
     Event::TwcLost,
 ];
 
-/// A log, judged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JudgedLog {
     /// Faults, in order.

@@ -19,7 +19,6 @@ const PER_STORED_US: u64 = 34_000;
 /// An entry with its date.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// The entry.
     pub event: UnitEvent,
     /// When it was made, µs UTC; none where the unit's clock does not tell.
     pub at_us: Option<i64>,
@@ -58,7 +57,6 @@ pub struct StoredRead {
     pub notes: Vec<String>,
 }
 
-/// A log as read.
 #[derive(Clone, Debug)]
 pub struct LogRead {
     /// Who the unit is.

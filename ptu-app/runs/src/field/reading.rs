@@ -16,7 +16,6 @@ use crate::stop::Stop;
 /// The unit that is asked for, and what it should be.
 #[derive(Clone, Debug)]
 pub struct AskedUnit {
-    /// Where it is.
     pub endpoint: Endpoint,
     /// Serial number expected of it.
     pub serial: Option<String>,
@@ -30,12 +29,9 @@ pub struct AskedUnit {
     pub operator: String,
 }
 
-/// A reading.
 #[derive(Clone, Debug)]
 pub struct UnitReading {
-    /// What was read.
     pub read: LogRead,
-    /// Where it came from.
     pub source: Source,
     /// Whether our own clock was right then.
     pub clock: ClockState,
@@ -48,7 +44,6 @@ pub struct UnitReading {
 pub struct ImportedLog {
     /// Faults, and why other entries are none.
     pub judged: JudgedLog,
-    /// What was new.
     pub imported: Imported,
 }
 

@@ -23,13 +23,11 @@ const POWER_UP: &str = "power_up";
 pub struct Source {
     /// Where the unit is: `serial:…`, `tcp:…`.
     pub endpoint: String,
-    /// Its serial number.
     pub serial: String,
     /// Name of its unit configuration.
     pub config_name: String,
     /// SHA-256 of it in hex; empty where the file is not at hand.
     pub unit_config_sha256: String,
-    /// Line.
     pub line: String,
     /// Who reads.
     pub operator: String,

@@ -16,13 +16,11 @@ use crate::failure::{Failure, FileTrouble, KeepTrouble, Why};
 pub struct Merged {
     /// The file's bytes: those of one process that made these runs alone.
     pub bytes: Vec<u8>,
-    /// Runs in it.
     pub runs: usize,
     /// Runs of the plan.
     pub all: usize,
 }
 
-/// What files lack.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct Missing {
     /// What the runs are of.
@@ -39,12 +37,10 @@ pub struct Missing {
     pub damage: Vec<String>,
 }
 
-/// What one shard lacks.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct ShardMissing {
     /// Its number, from 1.
     pub shard: u32,
-    /// Its runs.
     pub runs: usize,
     /// Those that no file has.
     pub missing: usize,

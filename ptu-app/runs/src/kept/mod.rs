@@ -44,7 +44,6 @@ impl Keep {
     }
 }
 
-/// What was made.
 pub enum Made<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),

@@ -12,7 +12,6 @@ pub struct Head {
     pub app_version: String,
     /// SHA-256 of program, scripts and data: of all that decides a run beside its name.
     pub made_by: String,
-    /// All runs.
     pub plan: Plan,
     /// The part of them that the file is for; none = all.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -26,7 +26,6 @@ const MOST_UNPACKED: u64 = 64 << 20;
 /// Compression level: written often, and read as often.
 const ZSTD_LEVEL: i32 = 3;
 
-/// What a record holds.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Content<R> {
@@ -34,7 +33,6 @@ enum Content<R> {
     Run { name: String, run: R },
 }
 
-/// The record of a head.
 pub(super) fn head_record(head: &Head) -> Vec<u8> {
     record(&Content::<()>::Head(head.clone()))
 }
@@ -78,7 +76,6 @@ fn unpacked<T: DeserializeOwned>(packed: &[u8]) -> Option<T> {
     serde_json::from_reader(std::io::BufReader::new(unpacked)).ok()
 }
 
-/// What a file holds.
 #[derive(Debug)]
 pub(super) struct Found<R> {
     /// The last head; the runs of all heads were made by the same.

@@ -128,7 +128,6 @@ impl KeyFile {
         })
     }
 
-    /// Its public part.
     pub fn entry(&self) -> &KeyEntry {
         &self.entry
     }

@@ -32,7 +32,6 @@ pub struct KeyEntry {
     /// The day from which on it is revoked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub revoked: Option<String>,
-    /// Why it was revoked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
@@ -41,7 +40,6 @@ pub struct KeyEntry {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeyList {
-    /// The keys.
     #[serde(default, rename = "key")]
     pub keys: Vec<KeyEntry>,
 }
@@ -198,7 +196,6 @@ impl KeyList {
         Ok(known.clone())
     }
 
-    /// The entry of this key.
     pub fn find(&self, key: &str) -> Option<&KeyEntry> {
         self.keys.iter().find(|entry| entry.key == key)
     }

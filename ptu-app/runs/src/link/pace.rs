@@ -6,13 +6,10 @@ use protocol::{Duration, Instant, ScanDeadlines};
 
 /// When the next scan is due.
 pub enum Pace {
-    /// As fast as possible.
     Virtual,
-    /// By the clock.
     Real {
         /// Where the deadlines count from.
         began: WallClock,
-        /// The deadlines.
         deadlines: ScanDeadlines,
     },
 }

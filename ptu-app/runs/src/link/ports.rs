@@ -7,10 +7,8 @@ use serde::Serialize;
 use crate::failure::{Failure, RunTrouble};
 pub use crate::platform::{closed_to_user, is_probed_by_others};
 
-/// A serial port.
 #[derive(Clone, Debug, Serialize)]
 pub struct PortFound {
-    /// Its path.
     pub path: String,
     /// `usb`, `bluetooth`, `pci` or `unknown`.
     pub kind: &'static str,

@@ -63,7 +63,6 @@ impl SimLink {
         }
     }
 
-    /// The supply is on.
     pub(crate) fn powered(&self) -> bool {
         self.unit.is_some()
     }

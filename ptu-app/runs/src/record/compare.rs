@@ -47,7 +47,6 @@ pub struct Parting {
     pub most_kmh: f64,
 }
 
-/// The stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopComparison {
     /// Place at rest less stop point, m, as the unit believed; above 0 = past it. None if the record does not end at
@@ -62,11 +61,9 @@ pub struct StopComparison {
 /// A recorded run beside what it should have been.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordComparison {
-    /// Section.
     pub section: u16,
     /// Where curves part, the first one first.
     pub partings: Vec<Parting>,
-    /// The stop.
     pub stop: StopComparison,
     /// Place where the brake for the stop begins, m: the run's and the sound unit's.
     pub brake_m: Option<f64>,
@@ -78,11 +75,9 @@ pub struct RecordComparison {
     pub twin_run_time_s: Option<f64>,
     /// Markers that the sound unit passed and the run did not.
     pub markers_missed: Vec<u8>,
-    /// What limits the comparison.
     pub notes: Vec<String>,
 }
 
-/// A run by place.
 struct Curve {
     /// Seconds since departure, place, speed and target, effort, marker count; rows that are known.
     rows: Vec<Point>,

@@ -37,7 +37,6 @@ pub struct RecordedRun {
     pub at_ms: u32,
     /// When it began, µs UTC, and by how much that may be wrong; none where the unit was not given the time.
     pub date: Option<(i64, Option<i64>)>,
-    /// Its rows.
     pub trace: TraceData,
     /// Rows before the first that is kept were overwritten or damaged: it does not begin where the run did.
     pub is_cut: bool,

@@ -14,7 +14,6 @@ const TRAIN: &str = "line6";
 /// What is asked for; what is not is found out from the trace and its run.
 #[derive(Clone, Debug, Default)]
 pub struct CompareRequest {
-    /// Section.
     pub section: Option<u16>,
     /// Line, `lines/NAME.toml`.
     pub line: Option<String>,
@@ -27,15 +26,12 @@ pub struct CompareRequest {
 /// A comparison, and of what.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// The trace.
     pub trace: Id,
     /// Serial number of the unit.
     pub unit_serial: String,
-    /// Line.
     pub line: String,
     /// Unit configuration.
     pub unit_config: String,
-    /// The comparison.
     pub comparison: RecordComparison,
 }
 

@@ -13,7 +13,6 @@ const NEAR_M: f64 = 30.0;
 /// A section, and how well it fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectionMatch {
-    /// Its number.
     pub section: u16,
     /// Root mean square of the differences of markers and stop, m.
     pub off_m: f64,

@@ -54,16 +54,12 @@ pub struct Rule {
     shift_rows: i64,
 }
 
-/// One signal that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
-    /// The signal.
     pub signal: String,
-    /// Its channel.
     pub channel: Channel,
     /// Row of the first trace.
     pub row: usize,
-    /// First difference.
     pub first: Difference,
     /// Largest difference: of a number by size, of a word the first.
     pub largest: Difference,
@@ -80,7 +76,6 @@ pub struct Difference {
     pub at_s: f64,
     /// What came; `None` = not known.
     pub value: Option<f64>,
-    /// What was expected.
     pub expected: Option<f64>,
 }
 

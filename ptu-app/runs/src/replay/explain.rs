@@ -9,10 +9,8 @@ use crate::failure::Failure;
 /// Signals and events named on the way from the first deviation to the brake.
 const LONGEST_CHAIN: usize = 12;
 
-/// What a trace shows.
 #[derive(Debug)]
 pub struct Explanation {
-    /// The trace.
     pub id: Id,
     /// The procedure it comes from.
     pub procedure: String,
@@ -31,13 +29,10 @@ pub struct Explanation {
 pub enum Link {
     /// A signal begins to deviate.
     Signal(Deviation),
-    /// A fault is found.
     Fault {
         /// Seconds from the trigger.
         at_s: f64,
-        /// Its number.
         code: i64,
-        /// Its name.
         name: String,
         /// Part it points at.
         lru: String,

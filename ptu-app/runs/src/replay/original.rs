@@ -31,11 +31,8 @@ pub struct Original {
     pub id: Id,
     /// The run it was recorded in.
     pub run_id: Id,
-    /// The procedure.
     pub procedure: String,
-    /// What came.
     pub trace: TraceData,
-    /// What the bench was made of.
     pub made: BenchContents,
     /// What was done to it.
     pub stimuli: Stimuli,
@@ -101,7 +98,6 @@ impl Original {
         self.trace.t0_bench_us - self.t0_bench_us + row as i64 * self.trace.period_us
     }
 
-    /// The row of the trigger.
     pub fn trigger_row(&self) -> usize {
         self.trace.trigger_row.unwrap_or(0) as usize
     }

@@ -21,7 +21,6 @@ use crate::words::{Manner, Say};
 /// What a replay is to be.
 #[derive(Clone, Debug)]
 pub struct Rerunning {
-    /// The unit.
     pub endpoint: Endpoint,
     /// Faults injected into the embedded unit, and into the train around any.
     pub faults: Vec<FaultMode>,
@@ -38,7 +37,6 @@ pub enum ReplayMatch {
     Reproduced,
     /// As the good twin: the fault does not show.
     AsTwin,
-    /// As neither.
     Otherwise,
 }
 
@@ -64,7 +62,6 @@ impl Say for ReplayMatch {
 }
 
 impl ReplayMatch {
-    /// For machines.
     pub fn key(self) -> &'static str {
         match self {
             Self::Sound => "sound",
@@ -88,11 +85,9 @@ impl ReplayMatch {
 pub struct Rerun {
     /// The run it was recorded as.
     pub run_id: Id,
-    /// Its trace.
     pub trace_id: Id,
     /// Serial number of the unit.
     pub serial: String,
-    /// What it is like.
     pub likeness: ReplayMatch,
     /// First deviating signal of the original, and whether it deviates again.
     pub first_again: Option<(String, bool)>,

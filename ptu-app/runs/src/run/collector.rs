@@ -40,7 +40,6 @@ impl Listener for () {
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// The run.
     pub id: Id,
     /// Over all procedures.
     pub verdict: Verdict,
@@ -59,7 +58,6 @@ pub struct Collector<'a> {
     store: RunStore,
     began: RunStart,
     listener: &'a mut dyn Listener,
-    /// What the benches are made of.
     made: BenchContents,
     /// Place of the present procedure in the run, counted from 1.
     ordinal: u32,
@@ -77,7 +75,6 @@ pub struct Collector<'a> {
     outside: Vec<OutsideStep>,
     /// The present procedure has something recorded that did not pass.
     says_why: bool,
-    /// So has the run.
     run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,

@@ -24,7 +24,6 @@ pub enum SessionEvent {
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
     /// be read.
     LinkLost(LinkTrouble),
-    /// Nothing more comes.
     Ended {
         /// Bench time this procedure took, bring-up included.
         bench_time: Duration,
@@ -36,6 +35,5 @@ pub enum SessionEvent {
 pub struct RecordedStimuli {
     /// When the procedure began.
     pub began: Instant,
-    /// What was done.
     pub record: StimulusRecord,
 }

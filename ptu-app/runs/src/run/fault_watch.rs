@@ -22,17 +22,14 @@ pub const CLOCK_WRONG: u16 = 9002;
 pub struct FaultSeen {
     /// Number of the fault.
     pub code: u16,
-    /// Its name.
     pub name: String,
     /// Part it points at.
     pub lru: Option<LruId>,
-    /// Its severity.
     pub severity: Severity,
     /// When, on the procedure's bench.
     pub at: Instant,
     /// Step under way, by its turn in the procedure.
     pub step: Option<usize>,
-    /// What was seen.
     pub finding: Finding,
     /// All signals at that moment.
     pub freeze: Vec<fault_db::FreezeSample>,

@@ -28,7 +28,6 @@ const AT_MS: u64 = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Happens {
     Nothing,
-    /// It is pushed.
     Moves,
     KeyTurned,
     ModeTurned,
@@ -36,7 +35,6 @@ enum Happens {
     PowerLost,
     /// It fails for half a second.
     Restarted,
-    /// The cable is pulled.
     Unplugged,
 }
 

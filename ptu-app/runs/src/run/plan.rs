@@ -16,7 +16,6 @@ const QUEUE: usize = 4096;
 
 /// A procedure and what of it is to be run.
 pub struct Task {
-    /// The procedure.
     pub procedure: Arc<Procedure>,
     /// Steps, repetitions, behaviour on failure.
     pub options: RunOptions,

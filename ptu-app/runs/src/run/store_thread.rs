@@ -134,7 +134,6 @@ impl RunStore {
         }
     }
 
-    /// Records a step.
     pub fn step(&self, step: StepRecord) {
         self.send(Entry::Step(step));
     }

@@ -22,7 +22,6 @@ pub struct Suite {
     pub errors: Vec<String>,
     /// Procedures left out because the train has no cars.
     pub need_cars: Vec<String>,
-    /// What scripts printed.
     pub printed: Vec<String>,
     /// SHA-256 of the unit configuration, line and train that the scripts were evaluated with.
     pub bench_sha256: [String; 3],

@@ -37,7 +37,6 @@ pub fn in_steps(signal: Signal, value: f64) -> f64 {
     }
 }
 
-/// The channel of a signal.
 pub fn channel(signal: Signal) -> Channel {
     let definition = signal.definition();
     let kind = match definition.kind {

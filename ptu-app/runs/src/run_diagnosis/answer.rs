@@ -28,9 +28,7 @@ use crate::words::Warning;
 pub struct Bench<'a> {
     /// SHA-256 of the unit configuration.
     pub unit_config_sha256: &'a str,
-    /// Line.
     pub line: &'a str,
-    /// Train.
     pub train: &'a str,
     /// How the unit is reached.
     pub connection: Connection,
@@ -40,9 +38,7 @@ pub struct Bench<'a> {
 
 /// The diagnosis of a run.
 pub struct Answer {
-    /// The run.
     pub run: RunDetail,
-    /// The diagnosis.
     pub diagnosis: Diagnosis,
     /// The likeliest fault of the part that was asked about, with what speaks for it and against it.
     pub why_not: Option<Candidate>,
@@ -54,7 +50,6 @@ pub struct Answer {
     pub warnings: Vec<Warning>,
     /// What people call the parts; none where the catalogue cannot be read.
     pub names: Vec<Lru>,
-    /// Where the dictionary is from.
     pub dictionary_from: Origin,
     /// The dictionary was made of what the scripts directory holds now.
     pub dictionary_current: bool,
@@ -63,7 +58,6 @@ pub struct Answer {
 /// What is asked of a stored run.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
-    /// The run.
     pub run: Id,
     /// Runs of the same unit that are evidence, too: the fault is there in all of them.
     pub with: &'a [Id],

@@ -10,9 +10,7 @@ use crate::failure::{Failure, FileTrouble};
 
 /// The bench that dictionaries are made on.
 pub const UNIT_CONFIG: &str = "sg100";
-/// Its line.
 pub const LINE: &str = "line8";
-/// Its train.
 pub const TRAIN: &str = "line6";
 
 /// Files besides procedures that decide what a fault does, under the scripts directory.

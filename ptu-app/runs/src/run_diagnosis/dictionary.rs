@@ -28,9 +28,7 @@ pub enum Origin {
 
 /// A dictionary, and what is to be said of it.
 pub struct Chosen {
-    /// The dictionary.
     pub dictionary: Dictionary,
-    /// Where it is from.
     pub from: Origin,
     /// It was made of what the scripts directory holds now.
     pub current: bool,

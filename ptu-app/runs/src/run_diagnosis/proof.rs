@@ -14,9 +14,7 @@ use crate::failure::Failure;
 /// What a run that passed says of the repair of a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepairProof {
-    /// The fault.
     pub fault: Id,
-    /// Its name.
     pub code_name: String,
     /// Runs that passed since the repair, this one among them.
     pub passed: usize,

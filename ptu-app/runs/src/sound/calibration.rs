@@ -13,7 +13,6 @@ use crate::signal::FULL_SCALE_MV;
 /// Longest file, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-/// Which way samples go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -30,13 +29,11 @@ pub struct Calibration {
     pub device: String,
     /// Whether it plays or records.
     pub direction: Direction,
-    /// The channel.
     pub channel: Side,
     /// What a whole sample stands for, mV.
     pub full_scale_mv: f64,
     /// When it was measured, µs UTC.
     pub at_us: i64,
-    /// With which instrument.
     pub instrument: String,
     /// Uncertainty of the instrument, %.
     pub uncertainty_percent: f64,
@@ -84,7 +81,6 @@ impl Calibrations {
         data::keep(file, self)
     }
 
-    /// That of a channel.
     pub fn of(&self, device: &str, direction: Direction, channel: Side) -> Option<&Calibration> {
         self.calibrations.iter().find(|of| {
             (of.device.as_str(), of.direction, of.channel) == (device, direction, channel)

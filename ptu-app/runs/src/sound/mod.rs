@@ -36,7 +36,6 @@ impl Side {
     /// Both, in the order of the channels.
     pub const ALL: [Self; CHANNELS] = [Self::Atp, Self::Twc];
 
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Atp => "atp",

@@ -17,7 +17,6 @@ const RISES_IN_S: f64 = 0.5;
 /// Samples that are written together, for each channel: 10 ms.
 const TOGETHER: usize = 480;
 
-/// What was played.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Played {
     /// For how long, s.

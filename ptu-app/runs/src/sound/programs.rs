@@ -12,7 +12,6 @@ use crate::platform::without_window;
 /// How long samples wait in the sound server, ms: with the 21 ms of the pipe, less than the 100 ms until silence.
 const LATENCY_MS: u32 = 60;
 
-/// A device for sound.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DeviceFound {
     /// Its name, as the sound server has it.
@@ -88,7 +87,6 @@ pub fn devices() -> Result<Vec<DeviceFound>, Failure> {
     Ok(found)
 }
 
-/// What a program prints.
 fn said(command: &mut Command) -> Result<String, Failure> {
     let name = command.get_program().to_string_lossy().into_owned();
     let failed = |why| Failure::bench(SoundTrouble::NotListed(name.clone(), why));
@@ -107,7 +105,6 @@ fn said(command: &mut Command) -> Result<String, Failure> {
     }
 }
 
-/// Its words are English.
 fn ready(mut command: Command) -> Command {
     without_window(&mut command).env("LC_ALL", "C");
     command

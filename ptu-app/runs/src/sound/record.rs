@@ -21,7 +21,6 @@ pub const MOST_RECORDED_S: f64 = 3.0 * 3_600.0;
 /// Gets the samples of each channel, mV, block by block; its failure ends the recording.
 pub type Take<'a> = dyn FnMut(&[Vec<f32>]) -> Result<(), Failure> + 'a;
 
-/// What was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// For how long, s.

@@ -13,7 +13,6 @@ use super::{Structure, WayStep};
 /// What a link of a chain makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Made {
-    /// A signal.
     Signal(Signal),
     /// An event that the unit logs.
     Event(Event),
@@ -22,9 +21,7 @@ pub enum Made {
 /// Parts, and what they make of the link before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
-    /// What they make.
     pub made: Made,
-    /// The parts.
     pub parts: Vec<LruId>,
 }
 

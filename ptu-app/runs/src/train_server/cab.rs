@@ -20,7 +20,6 @@ pub enum Order {
     Push(Speed),
     /// The unit's supply.
     Power(bool),
-    /// The end.
     Quit,
 }
 
@@ -107,7 +106,6 @@ impl Cab {
     }
 }
 
-/// What can be said.
 pub fn help() -> String {
     format!(
         "orders, a line each: key on|off, mode {}, cab on|off, doors open|closed, ack, start, move KMH, stop, \

@@ -46,7 +46,6 @@ const KEYS: [(&str, Key); 20] = [
 /// Positions of the reverser by their names.
 const REVERSER: [(i8, &str); 3] = [(1, "forward"), (0, "neutral"), (-1, "backward")];
 
-/// Names of all keys.
 pub fn names() -> impl Iterator<Item = &'static str> {
     KEYS.iter().map(|(name, _)| *name)
 }

@@ -31,7 +31,6 @@ use crate::typed::Typed;
 
 use cab::{Cab, Order};
 
-/// What is asked for.
 #[derive(Clone, Debug)]
 pub struct TrainRequest {
     /// Where the maintenance port is served.

@@ -10,7 +10,6 @@ use ptu_report::words::Language;
 /// Microseconds of a day.
 const DAY_US: f64 = 86.4e9;
 
-/// The page.
 pub fn page(trend: &Trend) -> String {
     let page = PlotPage {
         plot: plot(trend),

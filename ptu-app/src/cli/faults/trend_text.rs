@@ -20,7 +20,6 @@ const BARS: usize = 60;
 /// A unit this many standard deviations off the fleet's middle is worth a look.
 const STANDS_OUT: f64 = 3.0;
 
-/// All of it.
 pub fn text(trend: &Trend, limit: usize) -> String {
     let counts = &Words::shown().counts;
     let unit = &trend.limits.unit;

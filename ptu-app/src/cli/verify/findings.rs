@@ -23,7 +23,6 @@ pub(super) struct Findings {
     pub(super) signatures: Vec<Value>,
     /// The signatures, a sentence each.
     pub(super) said: Vec<String>,
-    /// What was changed, and where.
     pub(super) changes: Vec<String>,
     /// What is not signed, or not by a key that is trusted.
     pub(super) doubts: Vec<String>,

@@ -22,7 +22,6 @@ const TIMED: u32 = 3;
 struct Kills {
     at_writes: u32,
     at_times: u32,
-    /// It was over before.
     over: u32,
 }
 

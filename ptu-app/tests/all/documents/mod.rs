@@ -25,7 +25,6 @@ const ENDINGS: [&str; 9] = [
     "rs", "md", "star", "toml", "py", "json", "zst", "png", "txt",
 ];
 
-/// One Markdown file.
 struct Document {
     path: PathBuf,
     text: String,

@@ -24,7 +24,6 @@ pub fn signals() -> impl Iterator<Item = Signal> {
     unit.chain(given).take(SIGNALS)
 }
 
-/// The trace.
 pub fn trace() -> TraceData {
     let channel = |signal: Signal| {
         let definition = signal.definition();

@@ -46,7 +46,6 @@ fn main() {
     divan::main();
 }
 
-/// An open window.
 struct Window {
     context: Context,
     app: App,

@@ -42,7 +42,6 @@ pub struct Frame {
     care: Care,
     undo: messages::Undo,
     find: Find,
-    /// The rail is hidden.
     is_wide: bool,
     /// The rail has no room for the history.
     is_low: bool,

@@ -24,7 +24,6 @@ const ABOVE: f64 = 1.15;
 /// Counts have an axis that reaches so far: there are no halves on it.
 const LEAST: f64 = 5.0;
 
-/// A bar.
 pub struct Bar {
     pub name: String,
     /// What it counts, or a rate.

@@ -47,7 +47,6 @@ impl Card<'_> {
     }
 }
 
-/// The ground of a card.
 pub fn ground(palette: &Palette) -> Frame {
     let line = Stroke::new(1.0, palette.grid);
     let frame = Frame::new().fill(palette.panel).stroke(line);

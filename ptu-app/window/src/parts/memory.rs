@@ -12,10 +12,8 @@ use ptu_runs::link::Endpoint;
 use ptu_runs::record::pull_reading;
 use ptu_runs::stop::Stop;
 
-/// What is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stored {
-    /// The event log.
     #[default]
     Log,
     /// The record of automatic runs.

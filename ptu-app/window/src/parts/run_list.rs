@@ -35,7 +35,6 @@ pub struct RunList {
 /// What decides which run is shown unless one is chosen.
 #[derive(Clone, Default, PartialEq)]
 struct Followed {
-    /// The unit connected last.
     unit: Option<String>,
     runs_ended: usize,
 }

@@ -13,11 +13,9 @@ use ptu_runs::clock::now_us;
 /// Room for the button, points.
 const BUTTON: f32 = 130.0;
 
-/// What a note is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoteOn {
     Run(Id),
-    /// A place in a trace.
     Place(TracePlace),
 }
 

@@ -27,7 +27,6 @@ pub struct SavedSaid {
 }
 
 impl SavedSaid {
-    /// Of questions.
     pub fn questions(words: &Words) -> Self {
         let said = &words.statistics;
         Self {
@@ -39,7 +38,6 @@ impl SavedSaid {
         }
     }
 
-    /// Of layouts.
     pub fn layouts(words: &Words) -> Self {
         let said = &words.traces;
         Self {

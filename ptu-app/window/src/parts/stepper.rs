@@ -15,7 +15,6 @@ const MIDDLE: f32 = 24.0;
 const NAME: f32 = 50.0;
 const NARROW: f32 = 100.0;
 
-/// One step.
 pub struct Step<'a> {
     pub number: usize,
     pub name: &'a str,

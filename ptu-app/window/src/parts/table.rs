@@ -18,7 +18,6 @@ const GAP: f32 = 12.0;
 /// A row of a dense page is so high, points.
 const HIGH: f32 = 30.0;
 
-/// A column.
 pub struct Column<'a> {
     pub name: &'a str,
     /// Points in an engineer's window; 0 = what the others leave.
@@ -96,7 +95,6 @@ impl Table<'_> {
         }
     }
 
-    /// A row of this name.
     pub fn row(&self, ui: &mut Ui, (name, chosen): (&str, bool), cells: &[Cell<'_>]) -> Response {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let size = vec2(ui.available_width() - self.end, Self::high(ui));

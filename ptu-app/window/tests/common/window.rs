@@ -454,7 +454,6 @@ impl Window {
             .picture(context, self.harness.output(), ground)
     }
 
-    /// The window itself.
     pub fn app(&self) -> &App {
         self.harness.state().as_ref().expect("made")
     }

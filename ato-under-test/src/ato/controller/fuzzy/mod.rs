@@ -24,7 +24,6 @@ use super::plausibility::PlausibilityCheck;
 use super::{ControllerInput, Demand, SpeedController};
 use crate::ato::profile::ReferenceGenerator;
 
-/// The controller.
 #[derive(Clone, Debug)]
 pub struct Fuzzy {
     generator: ReferenceGenerator,

@@ -11,7 +11,6 @@ use crate::stimulus::{DoorLine, DoorState, Stimulus, TcmsCondition};
 
 /// Sides of a train.
 const SIDES: &[&str] = &["left", "right"];
-/// One of them.
 const SIDE: &[Param] = &[takes("side", ParamType::Choice(SIDES))];
 
 pub(super) static VERBS: &[Verb] = &[

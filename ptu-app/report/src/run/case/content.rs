@@ -27,7 +27,6 @@ const MOST_EVENTS: usize = 10;
 const MOST_NOTES: usize = 3;
 
 impl CaseSheet {
-    /// All of it.
     pub(super) fn blocks(&self, words: &Words) -> Vec<Block> {
         let (mut blocks, rows) = self.first_page(words);
         blocks.push(Block::NewPage);
@@ -103,7 +102,6 @@ impl CaseSheet {
         ]
     }
 
-    /// The faults of the case.
     fn faults(&self, words: &Words) -> Vec<Block> {
         let (common, report) = (&words.common, &words.report);
         let all = || std::iter::once(&self.fault.fault).chain(&self.fault.case);
@@ -170,7 +168,6 @@ impl CaseSheet {
         ]
     }
 
-    /// An event as a row.
     fn told(&self, event: &FaultEvent, words: &Words) -> Row {
         let (common, report) = (&words.common, &words.report);
         let what = match (event.passed_run(), &event.repair, &event.cause, event.state) {

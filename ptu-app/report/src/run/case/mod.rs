@@ -36,11 +36,9 @@ pub struct CaseSheet {
     pub steps: Vec<u32>,
     /// What was wrong with the unit, as who brought it said; the run before says it, or an earlier one of the case.
     pub symptom: Option<Symptom>,
-    /// The last repair.
     pub repair: Option<Repair>,
     /// Runs that passed since the repair, oldest first.
     pub passed: Vec<Id>,
-    /// The last of them.
     pub after: Option<Sheet>,
     /// What is said of the repair.
     pub standing: Standing,
@@ -48,9 +46,7 @@ pub struct CaseSheet {
 
 /// A repair as it was recorded.
 pub struct Repair {
-    /// What was done.
     pub record: RepairRecord,
-    /// By whom.
     pub who: String,
     /// When, µs UTC.
     pub at_us: i64,

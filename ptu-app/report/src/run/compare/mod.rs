@@ -30,7 +30,6 @@ pub struct Compared<'a> {
     pub step_after: Option<&'a StepRecord>,
     /// What it measured; none if the row is about the step.
     pub before: Option<&'a MeasurementRecord>,
-    /// The same measurement there.
     pub after: Option<&'a MeasurementRecord>,
 }
 
@@ -65,7 +64,6 @@ impl<'a> Compared<'a> {
 pub struct StepPair<'a> {
     /// The step without its measurements.
     pub step: Compared<'a>,
-    /// Its measurements.
     pub measurements: Vec<Compared<'a>>,
 }
 
@@ -89,7 +87,6 @@ pub struct Tally {
     pub passed_before: usize,
     /// They pass in neither.
     pub in_neither: usize,
-    /// A alone has them.
     pub only_a: usize,
     /// B alone has them.
     pub only_b: usize,
@@ -108,15 +105,12 @@ pub enum Differs {
     Scripts(Vec<String>),
     /// A run without a verdict.
     Unfinished(Id),
-    /// A began after B.
     Order,
 }
 
 /// Two runs, in the order in which they were named.
 pub struct RunComparison {
-    /// Run A.
     pub a: RunDetail,
-    /// Run B.
     pub b: RunDetail,
     /// What is shown has the steps that passed in both, too.
     pub all: bool,

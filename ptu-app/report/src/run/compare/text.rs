@@ -9,7 +9,6 @@ use crate::json::run_summary_json;
 use crate::words::{Language, Words};
 use ptu_runs::table::Table;
 
-/// For people.
 pub fn comparison_text(of: &RunComparison, words: &Words) -> String {
     let report = &words.report;
     let mut text = String::new();

@@ -32,11 +32,8 @@ pub enum Ink {
     Bad,
     /// Edges and rules.
     Rule,
-    /// Grids.
     Grid,
-    /// What is allowed.
     Band,
-    /// A shaded stretch.
     Shade,
     /// A curve of this colour.
     Curve(usize),
@@ -47,9 +44,7 @@ pub enum Ink {
 pub enum Item {
     /// Words.
     Text(Text),
-    /// A line through points.
     Line {
-        /// The points.
         points: Vec<(f32, f32)>,
         /// Colour.
         ink: Ink,
@@ -132,7 +127,6 @@ impl Item {
         self
     }
 
-    /// A level line.
     pub(crate) fn rule(x: f32, y: f32, long: f32, ink: Ink) -> Self {
         Self::Line {
             points: vec![(x, y), (x + long, y)],

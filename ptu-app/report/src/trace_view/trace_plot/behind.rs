@@ -11,9 +11,7 @@ use crate::trace_view::{Axis, Kind};
 /// The trace that is drawn behind for comparison.
 #[derive(Debug)]
 pub struct OverlayTrace {
-    /// Its samples.
     pub overlay: Arc<Overlay>,
-    /// Where its rows lie.
     pub axis: Axis,
     /// Rows by which it is laid later.
     pub shift_rows: i64,

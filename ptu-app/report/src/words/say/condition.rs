@@ -66,7 +66,6 @@ pub fn expectation(expected: &Expectation) -> String {
     }
 }
 
-/// Whose log it is.
 pub fn who(source: EventSource) -> &'static str {
     match source {
         EventSource::Unit => "장치",
@@ -102,7 +101,6 @@ pub fn signal(name_of: &str) -> Option<String> {
     Signal::from_name(name_of).map(name)
 }
 
-/// The same.
 pub fn name(signal: Signal) -> String {
     let said = content::korean(signal.definition().doc);
     let ends = [": ", ", ", " ("].iter().filter_map(|end| said.find(end));

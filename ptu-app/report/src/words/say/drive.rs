@@ -31,7 +31,6 @@ fn told(label: &str) -> String {
     content::korean(&label.replace('_', " ")).into_owned()
 }
 
-/// Why, behind what.
 fn behind(what: &str, why: Option<String>) -> String {
     why.map_or_else(|| what.to_owned(), |why| format!("{what}: {why}"))
 }

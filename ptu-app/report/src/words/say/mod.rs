@@ -32,7 +32,6 @@ impl Words {
         }
     }
 
-    /// One finding.
     pub fn finding(&self, one: &Finding) -> String {
         match self.language {
             Language::English => format!("{one:#}"),

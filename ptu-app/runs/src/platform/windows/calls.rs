@@ -21,10 +21,7 @@ pub enum JobLimit {
     /// Memory that it may have, bytes.
     Memory(usize),
     /// Processor time that it may take.
-    UserTime {
-        /// In seconds.
-        seconds: u64,
-    },
+    UserTime { seconds: u64 },
 }
 
 /// Ticks of the system's clock, 100 ns, in a second.

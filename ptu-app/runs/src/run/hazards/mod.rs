@@ -43,7 +43,6 @@ const SHORTENED: usize = 6;
 /// A condition that others than the unit have to see to.
 struct Exported {
     name: &'static str,
-    /// What it explains.
     invariants: Vec<&'static str>,
     /// Failed parts that are this condition; none where the monitor sees it in the scene.
     modes: Vec<glob::Pattern>,

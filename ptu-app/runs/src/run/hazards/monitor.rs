@@ -60,7 +60,6 @@ pub enum Invariant {
     I6,
     /// A failed path of a brake is followed by the next brake.
     I7,
-    /// It does not roll.
     I8,
     /// No power under a brake.
     I9,

@@ -93,7 +93,6 @@ impl Limits {
         }
     }
 
-    /// One scan.
     pub fn note(&mut self, seen: Observed<'_>) -> Permitted {
         let [own_kmh, second_kmh, selected_kmh] = self.by_codes(seen);
         let ended = self.yard_ended.note(seen);

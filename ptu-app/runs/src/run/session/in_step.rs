@@ -25,7 +25,6 @@ pub(super) struct InStep {
 #[derive(Clone, Copy, Debug)]
 struct Pause {
     since: Instant,
-    /// The offset before.
     before_ms: i64,
     took_ms: i64,
 }

@@ -43,7 +43,6 @@ impl BenchSnapshot {
         self.value(signal) == Some(value)
     }
 
-    /// A set of bits.
     pub fn bits(&self, signal: Signal) -> Option<u16> {
         self.value(signal).map(|value| value as u16)
     }

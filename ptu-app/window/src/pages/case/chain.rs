@@ -20,9 +20,7 @@ const TEXT: f32 = 13.5;
 struct Shown {
     /// Parts, the suspected one first.
     parts: String,
-    /// What they make.
     makes: String,
-    /// How it is marked.
     mark: Mark,
 }
 

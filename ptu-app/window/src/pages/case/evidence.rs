@@ -37,7 +37,6 @@ pub struct Evidence {
 struct FailedCheck {
     procedure: Arc<Procedure>,
     index: usize,
-    /// As results name it.
     name: String,
     suspect: Option<LruId>,
 }

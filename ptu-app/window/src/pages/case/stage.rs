@@ -13,7 +13,6 @@ pub enum Stage {
     Unit,
     /// A run looks for the part.
     Find,
-    /// What it found.
     Result,
     /// What was done is written down.
     Repair,
@@ -35,7 +34,6 @@ impl Stage {
         Self::Sheet,
     ];
 
-    /// Its name.
     pub fn name(self, words: &Words) -> &'static str {
         let words = &words.case;
         match self {

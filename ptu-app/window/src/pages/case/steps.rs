@@ -150,7 +150,6 @@ impl CasePage {
         }
     }
 
-    /// Where Back leads.
     pub(super) fn back(&self, context: &PageContext<'_>) -> Option<Stage> {
         let before = Stage::ALL
             .into_iter()

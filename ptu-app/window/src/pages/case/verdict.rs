@@ -55,7 +55,6 @@ impl Told {
         }
     }
 
-    /// A check failed.
     pub fn is_failed(self) -> bool {
         matches!(self, Self::Part | Self::Unsure | Self::NoPart)
     }

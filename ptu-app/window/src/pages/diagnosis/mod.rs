@@ -51,7 +51,6 @@ impl NamedAnswer {
         })
     }
 
-    /// What a trace shows.
     fn shown_by(&self, trace: Id, words: &Words) -> String {
         let shown = self
             .traced

@@ -40,7 +40,6 @@ impl Offered {
     }
 }
 
-/// What is chosen.
 #[derive(Clone, Debug)]
 pub struct Form {
     line: String,

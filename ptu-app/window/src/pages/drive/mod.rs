@@ -31,7 +31,6 @@ pub struct DrivePage {
     /// Counts sheets: another one is looked at from its top.
     number: usize,
     pages: Request<Vec<Page>>,
-    /// Language of the pages.
     language: Option<Language>,
 }
 

@@ -27,7 +27,6 @@ pub struct Change {
     /// What is written about one fault.
     of: Option<Id>,
     note: String,
-    /// The dialog is open.
     asked: Option<Asked>,
     /// Answers with the fault that was changed, and when.
     under_way: Request<Written>,

@@ -29,7 +29,6 @@ impl Filter {
         }
     }
 
-    /// As it was saved.
     pub fn asked(question: FaultsQuestion) -> Self {
         Self {
             lru: question.part,

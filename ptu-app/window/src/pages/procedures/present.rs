@@ -43,7 +43,6 @@ pub fn present(
     .inner
 }
 
-/// The step under way.
 fn step(
     ui: &mut Ui,
     words: &Words,

@@ -48,7 +48,6 @@ struct Asked {
     depot: String,
 }
 
-/// What a sheet is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SheetOf {
     Run(Id),

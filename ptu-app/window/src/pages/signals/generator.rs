@@ -25,7 +25,6 @@ const LONGEST_S: f64 = 600.0;
 const MOST_BYTES: usize = 200;
 const SEED: u64 = 1;
 
-/// What is filled in.
 pub struct Generator {
     is_twc: bool,
     code: String,
@@ -66,7 +65,6 @@ pub enum Order {
     Play,
 }
 
-/// What is to be made.
 pub struct Made {
     pub wave: Wave,
     pub strength: Strength,

@@ -81,7 +81,6 @@ impl Source {
         pick(ui, (name, wide), chosen, offered);
     }
 
-    /// What is asked for.
     pub fn orders(ui: &mut Ui, why_not: Option<&str>, words: &Words) -> Option<Asked> {
         let mut asked = None;
         ui.horizontal(|ui| {

@@ -16,7 +16,6 @@ use ptu_runs::failure::{Failure, Trouble};
 /// A repair after which the fault is seen again within this many days did not hold.
 pub const BACK_WITHIN_DAYS: u32 = 30;
 
-/// Of what is asked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asked {
     /// Serial number; none = all units.
@@ -27,12 +26,10 @@ pub struct Asked {
     pub distances: String,
 }
 
-/// What was counted.
 pub struct Counted {
     pub asked: Asked,
     /// Cases by cause, the most frequent first.
     pub causes: Vec<FaultStat>,
-    /// Of all causes together.
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,

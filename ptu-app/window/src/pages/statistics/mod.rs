@@ -199,7 +199,6 @@ impl StatisticsPage {
     }
 }
 
-/// Whose faults they are.
 fn of(words: &Words, counted: &Counted) -> String {
     match &counted.asked.unit {
         Some(unit) => fill(words.statistics.of_unit, &[("unit", unit)]),

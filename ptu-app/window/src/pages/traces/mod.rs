@@ -60,7 +60,6 @@ pub struct TracesPage {
 }
 
 impl TracesPage {
-    /// Shows it.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
         let words = &context.words.traces;

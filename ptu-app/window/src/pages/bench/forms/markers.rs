@@ -29,7 +29,6 @@ impl MarkerForm {
         }
     }
 
-    /// The marker lies elsewhere.
     pub fn moved(&self) -> Stimulus {
         Stimulus::MarkerMoved {
             psm: self.psm,
@@ -37,7 +36,6 @@ impl MarkerForm {
         }
     }
 
-    /// The marker is missing.
     pub fn missing(&self) -> Stimulus {
         Stimulus::MarkerMoved {
             psm: self.psm,

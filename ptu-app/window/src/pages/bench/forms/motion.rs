@@ -27,7 +27,6 @@ pub struct MotionForm {
 /// What a channel can be made to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TachoKind {
-    /// As it should be.
     Good,
     /// No pulses.
     Dead,

@@ -20,7 +20,6 @@ const CONDITIONS: [WaysideCondition; 3] = [
 /// Greatest speed that can be ordered, km/h: the next number stands for none.
 const MAX_ORDER_KMH: u8 = 254;
 
-/// The group.
 pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words().bench;
     row(ui, words.wayside, |ui, _| {
