@@ -370,9 +370,13 @@ impl Places {
                 wider = true;
             }
         }
-        // Until the instruments have acted, the unit shows what was before.
-        if matches!(step.actions.last().map(inner), Some(Action::Stimulus(_))) {
-            step.actions.push(Action::Wait(acts));
+        // Until all instruments have acted, the unit shows what was before; until all have read, some of them do.
+        let holds = |expected: &Expectation| matches!(expected, Expectation::Holds { .. });
+        let acted = matches!(step.actions.last().map(inner), Some(Action::Stimulus(_)));
+        match step.expectations.iter().any(holds) {
+            true => step.actions.push(Action::Wait(late)),
+            false if acted => step.actions.push(Action::Wait(acts)),
+            false => {}
         }
         if wider {
             let used = self.safe.join(" ");

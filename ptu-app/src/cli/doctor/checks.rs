@@ -320,7 +320,8 @@ pub(super) fn bench(
             serial_no: entry.serial.clone(),
             ..Instrument::default()
         });
-        registered.uncertainty.insert(REACTION.into(), took_ms);
+        let rounded_ms = (10.0 * took_ms).round() / 10.0;
+        registered.uncertainty.insert(REACTION.into(), rounded_ms);
         registered.at_us = now_us();
         store.register_instrument(&registered)?;
         findings.push(Finding::ok(doctor.bench, fill(doctor.instrument_ok, &of)));
