@@ -191,8 +191,9 @@ impl Placed {
 
     /// Switches all outputs off, in the order of the bench file.
     pub fn release(&mut self) {
-        let until = Clock::now() + SAFE_WITHIN;
-        self.workers.iter_mut().for_each(|worker| worker.end(until));
+        // One that does not answer takes no time of the others.
+        let each = SAFE_WITHIN / (self.workers.len() as u32).max(1);
+        self.workers.iter_mut().for_each(|worker| worker.end(each));
     }
 
     /// Takes out of the inputs what has a place.

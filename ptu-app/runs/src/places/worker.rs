@@ -121,14 +121,13 @@ impl Worker {
         state.fault.clone().map_or(Ok(()), Err)
     }
 
-    /// Switches its outputs off and waits for that.
-    pub fn end(&mut self, until: Instant) {
+    /// Switches its outputs off and waits for that, no longer than this.
+    pub fn end(&mut self, within: Duration) {
         let mut state = lock(&self.shared.0);
         state.ends = true;
         self.shared.1.notify_all();
-        let left = until.saturating_duration_since(Instant::now());
         let waits = |state: &mut State| !state.ended;
-        let waited = self.shared.1.wait_timeout_while(state, left, waits);
+        let waited = self.shared.1.wait_timeout_while(state, within, waits);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
         if state.ended
             && let Some(thread) = self.thread.take()
