@@ -44,6 +44,14 @@ pub enum LinkTrouble {
     /// Nothing can be sent or received any more.
     #[error(transparent)]
     Broken(LinkFailure),
+    /// An instrument of the bench does not do its part.
+    #[error("instrument {instrument} of the bench: {fault}")]
+    Instrument {
+        /// Its name in the bench file.
+        instrument: String,
+        /// What it does or does not.
+        fault: Box<InstrumentFault>,
+    },
     /// Another tester has the unit.
     #[error("the unit is taken by another tester, {by}, for {:.0} s{}", .held.as_secs(), silent_for(*.silent))]
     Taken {
@@ -148,6 +156,85 @@ pub enum LinkTrouble {
     /// The stored memory has become shorter while it was read.
     #[error("the unit's stored memory was exchanged or failed while it was read")]
     MemoryExchanged,
+}
+
+/// What an instrument of the bench does wrong: never a fault of the unit. Texts are the instrument's or the system's own.
+#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InstrumentFault {
+    /// Nobody answers there.
+    #[error("not reached at {at}: {why}")]
+    NotThere {
+        /// Where it should be.
+        at: String,
+        /// The system's word.
+        why: String,
+    },
+    /// The connection ended.
+    #[error("disconnected: {0}")]
+    Disconnected(String),
+    /// It took a question and does not answer.
+    #[error("no answer within {:.2} s", .0.as_secs())]
+    Silent(Duration),
+    /// It answers later than the bench file says.
+    #[error("slow: it took {:.0} ms, and the bench file states {:.0} ms", ms(*.took), ms(*.stated))]
+    Slow {
+        /// What a command or a reading took.
+        took: Duration,
+        /// What the bench file states.
+        stated: Duration,
+    },
+    /// Another model answers.
+    #[error("wrong model: {found} answers where {expected} is expected")]
+    OtherModel {
+        /// Its own word.
+        found: String,
+        /// What its driver is for.
+        expected: String,
+    },
+    /// It reports an error after a command.
+    #[error("it refused {command}: {error}")]
+    Refused {
+        /// The command.
+        command: String,
+        /// Its own word.
+        error: String,
+    },
+    /// More errors came than it keeps.
+    #[error("its error queue is full: {0}")]
+    QueueFull(String),
+    /// A value beyond what its driver states.
+    #[error("{value} is out of range for {what}, which takes {low} to {high}")]
+    OutOfRange {
+        /// The driver's name of the value.
+        what: String,
+        /// The value.
+        value: String,
+        /// Least.
+        low: String,
+        /// Greatest.
+        high: String,
+    },
+    /// What it answered cannot be read.
+    #[error("{found} is no answer to {asked}")]
+    NoAnswer {
+        /// The question.
+        asked: String,
+        /// The answer.
+        found: String,
+    },
+    /// The contact that proves a relay says otherwise.
+    #[error("the relay of {contact} is stuck: it was ordered {ordered} and is proved {}", 1 - .ordered)]
+    Stuck {
+        /// The stimulus.
+        contact: String,
+        /// 1 = closed.
+        ordered: u8,
+    },
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs() * 1000.0
 }
 
 /// What bytes without a valid frame look like.

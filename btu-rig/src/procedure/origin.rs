@@ -52,6 +52,11 @@ impl Origin {
         self.lacks = false;
     }
 
+    /// What a bench makes of the limit beside where it comes from.
+    pub fn add(&mut self, source: String) {
+        self.sources.insert(source);
+    }
+
     /// Whether a number has no source.
     pub fn lacks(&self) -> bool {
         self.lacks

@@ -23,6 +23,11 @@ pub trait UnitLink {
         Duration::ZERO
     }
 
+    /// How late an instrument of the bench was since this was last asked: what the unit did then is not judged.
+    fn take_late(&mut self) -> Duration {
+        Duration::ZERO
+    }
+
     /// The bench's clock goes on from another time by the wall: so many µs later, or earlier.
     fn shift_clock(&mut self, _later_us: i64) {}
 }

@@ -40,7 +40,7 @@ use crate::tcms::Tcms;
 use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
 use crate::waveform::ChannelConfig;
 
-pub use crate::procedure::link_trouble::{LinkFailure, LinkTrouble, PortFailure};
+pub use crate::procedure::link_trouble::{InstrumentFault, LinkFailure, LinkTrouble, PortFailure};
 pub use bench::{Bench, UnitLink};
 pub use link::Harness;
 pub use session::{ExpectedIdentity, LogSession, StoredData, TimeOfDay, UnitRecord};

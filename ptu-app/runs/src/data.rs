@@ -18,9 +18,12 @@ use crate::drive::train::train;
 use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
+use crate::places::{Model, Places};
 
 /// Folder of unit configurations, the fault catalogue and the structure.
 const UNITS: &str = "units";
+/// Folder of drivers of instruments.
+const INSTRUMENTS: &str = "instruments";
 /// The fault catalogue's name there.
 const FAULTS: &str = "faults";
 /// The name of the structure there.
@@ -179,6 +182,35 @@ impl ScriptsDirectory {
         })
     }
 
+    /// The bench file `benches/NAME.toml`, or a file ending in .toml, with the drivers of its instruments.
+    ///
+    /// # Errors
+    /// There is none of that name, or it is wrong.
+    pub fn bench_places(&self, name: &str) -> Result<Places, Failure> {
+        let driver = |model: &str| {
+            let read = self.load(INSTRUMENTS, model, "instrument", Model::from_toml);
+            read.map(|file| file.content)
+                .map_err(|failure| failure.message.to_string())
+        };
+        let read = |text: &str| Places::from_toml(text, driver);
+        let (content, sha256) = match name.strip_suffix(".toml") {
+            None => {
+                let file = self.load("benches", name, "bench", read)?;
+                (file.content, file.sha256)
+            }
+            Some(_) => {
+                let text = text(&Found::File(name.into()))?;
+                let wrong = |error| Failure::usage(FileTrouble::wrong(name, error));
+                (read(&text).map_err(wrong)?, sha256(&text))
+            }
+        };
+        Ok(Places {
+            name: name.to_owned(),
+            sha256,
+            ..content
+        })
+    }
+
     /// The catalogue of parts and fault modes: `units/faults.toml`, and the modes of the files in `faults/`.
     ///
     /// # Errors
@@ -215,8 +247,16 @@ impl ScriptsDirectory {
         for name in &trains {
             train(self, name)?;
         }
+        let (benches, models) = (self.names("benches"), self.names(INSTRUMENTS));
+        for name in &benches {
+            self.bench_places(name)?;
+        }
+        for name in &models {
+            self.load(INSTRUMENTS, name, "instrument", Model::from_toml)?;
+        }
         self.faults()?;
-        Ok(units.len() + lines.len() + trains.len() + self.0.catalogue().len())
+        let of_bench = benches.len() + models.len();
+        Ok(units.len() + lines.len() + trains.len() + of_bench + self.0.catalogue().len())
     }
 
     /// How good units, trains and benches differ: `bench_scatter.toml`, or a file given in its place.

@@ -35,6 +35,7 @@ pub mod keys;
 pub mod link;
 pub mod new_file;
 pub mod owner_only;
+pub mod places;
 pub mod platform;
 pub mod pool;
 pub mod progress;

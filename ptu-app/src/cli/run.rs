@@ -111,6 +111,9 @@ pub struct RunArguments {
     /// Codes, TWC, markers and pulses as values, or sampled, as waveforms; a file says what disturbs these
     #[arg(long, value_name = "values|sampled[:FILE]", default_value = "values")]
     signals: Signals,
+    /// Instruments of the bench, benches/NAME.toml or a file ending in .toml: where stimuli go and readings come from
+    #[arg(long, value_name = "NAME|FILE")]
+    bench: Option<String>,
     /// Run the simulated unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
@@ -209,7 +212,13 @@ impl RunArguments {
         if self.check {
             return check::show(&procedures, directory.check_data()?);
         }
-        let procedures = self.asked_for(procedures)?;
+        let mut procedures = self.asked_for(procedures)?;
+        if let Some(places) = &setup.places {
+            procedures = places.fit(procedures, &|note| words.told(&note));
+            places
+                .by_hand()
+                .for_each(|note| stdio::note(&words.told(&note)));
+        }
         let asks = procedures.iter().any(|procedure| procedure.asks());
         let drives = asks && !self.list && self.jobs == 1;
         let operator = drives.then(Operator::at_terminal).flatten();
@@ -266,6 +275,7 @@ impl RunArguments {
             signals: self.signals.clone(),
             realtime: self.realtime,
             slower: self.slower,
+            places: self.bench.clone().unwrap_or_default(),
         }
         .setup(directory)
     }

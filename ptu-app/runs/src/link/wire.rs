@@ -1,6 +1,7 @@
 //! A unit on a serial port or a TCP socket, by the clock, or on a pseudo-terminal in lock step.
 
 use std::io::{self, ErrorKind, Read, Write};
+use std::mem::take;
 use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
@@ -12,6 +13,7 @@ use serialport::SerialPort;
 
 use super::{Pace, open_port};
 use crate::failure::{EndpointError, Failure, NoUnit, RunTrouble};
+use crate::places::Placed;
 
 /// Baud rate when none is given.
 const BAUD: u32 = 115_200;
@@ -113,6 +115,10 @@ pub struct WireLink {
     backlog: Backlog,
     /// How long both ends stood still.
     pause: BenchDuration,
+    placed: Option<Placed>,
+    /// What leaves and what came, before instruments took and gave their part.
+    to_wire: Vec<u8>,
+    from_wire: Vec<u8>,
 }
 
 enum Port {
@@ -143,12 +149,21 @@ impl WireLink {
             read: Vec::new(),
             backlog: Backlog::default(),
             pause: BenchDuration::ZERO,
+            placed: None,
+            to_wire: Vec::new(),
+            from_wire: Vec::new(),
         })
     }
 
     /// To a unit that goes so many times slower than the clock.
     pub fn slower(mut self, slower: u32) -> Self {
         self.slower = slower;
+        self
+    }
+
+    /// With instruments that take a part of the stimuli and give a part of the readings.
+    pub fn with_instruments(mut self, placed: Placed) -> Self {
+        self.placed = Some(placed);
         self
     }
 
@@ -196,8 +211,8 @@ fn connect(address: &str) -> Result<Port, Failure> {
     Ok(Port::Tcp(stream))
 }
 
-impl UnitLink for WireLink {
-    fn exchange(
+impl WireLink {
+    fn exchange_frames(
         &mut self,
         now: Instant,
         to_unit: &[u8],
@@ -216,6 +231,36 @@ impl UnitLink for WireLink {
             let link = self.name.clone();
             LinkTrouble::Broken(LinkFailure { link, why })
         })
+    }
+}
+
+impl UnitLink for WireLink {
+    fn exchange(
+        &mut self,
+        now: Instant,
+        to_unit: &[u8],
+        from_unit: &mut Vec<u8>,
+    ) -> Result<(), LinkTrouble> {
+        let Some(mut placed) = self.placed.take() else {
+            return self.exchange_frames(now, to_unit, from_unit);
+        };
+        let (mut to_wire, mut from_wire) = (take(&mut self.to_wire), take(&mut self.from_wire));
+        placed.take(now, to_unit, &mut to_wire);
+        let exchanged = self.exchange_frames(now, &to_wire, &mut from_wire);
+        let given = placed.give(now, &from_wire, from_unit);
+        if exchanged.is_err() {
+            placed.release();
+        }
+        to_wire.clear();
+        from_wire.clear();
+        (self.to_wire, self.from_wire) = (to_wire, from_wire);
+        self.placed = Some(placed);
+        exchanged.and(given)
+    }
+
+    fn take_late(&mut self) -> BenchDuration {
+        let placed = self.placed.as_mut();
+        placed.map_or(BenchDuration::ZERO, Placed::take_late)
     }
 
     fn take_pause(&mut self) -> BenchDuration {

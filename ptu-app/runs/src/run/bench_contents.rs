@@ -54,6 +54,9 @@ pub struct BenchContents {
     /// What disturbed the waveforms that were used in place of numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waveforms: Option<ChannelConfig>,
+    /// The bench file that said where stimuli go and readings come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub places: Option<BenchFile>,
     /// At the wall clock's pace.
     pub realtime: bool,
     /// Only the maintenance port was connected: the train did all else by itself.
@@ -96,6 +99,11 @@ impl BenchContents {
             seed: setup.seed,
             scatter: setup.scatter.as_deref().copied(),
             waveforms: setup.waveforms.clone(),
+            places: setup.places.as_ref().map(|places| BenchFile {
+                name: places.name.clone(),
+                settings: Vec::new(),
+                sha256: places.sha256.clone(),
+            }),
             realtime: setup.realtime,
             on_train: connection == Connection::Ptu,
         }
@@ -188,6 +196,7 @@ impl BenchContents {
             slower: 1,
             record_whole: false,
             run_control: None,
+            places: None,
         })
     }
 

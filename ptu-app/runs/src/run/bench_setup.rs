@@ -24,6 +24,7 @@ use crate::aboard::UnitAboard;
 use crate::data::DataFile;
 use crate::failure::Failure;
 use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
+use crate::places::Places;
 use crate::stop::Stop;
 
 /// Sets the scans whose frames are late apart from what else the same seed gives.
@@ -70,6 +71,8 @@ pub struct BenchSetup {
     pub record_whole: bool,
     /// Watches and controls the runs, if set.
     pub run_control: Option<Arc<dyn RunControl>>,
+    /// Where stimuli go and readings come from; none = all are in the frames.
+    pub places: Option<Arc<Places>>,
 }
 
 /// The embedded unit where it is built in.

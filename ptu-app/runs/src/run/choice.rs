@@ -17,7 +17,7 @@ use super::signals::Signals;
 use crate::data::ScriptsDirectory;
 use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
-use crate::failure::{Failure, RunTrouble};
+use crate::failure::{Asked, Failure, RunTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
 
@@ -63,6 +63,9 @@ pub struct BenchChoice {
     /// Times slower than the wall clock.
     #[serde(skip)]
     pub slower: u32,
+    /// Bench file, `benches/NAME.toml`; empty = everything is in the frames.
+    #[serde(skip)]
+    pub places: String,
 }
 
 impl Default for BenchChoice {
@@ -84,6 +87,7 @@ impl Default for BenchChoice {
             settings: Vec::new(),
             scatter_file: None,
             slower: 1,
+            places: String::new(),
         }
     }
 }
@@ -135,6 +139,14 @@ impl BenchChoice {
         if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
             return Err(Failure::usage(RunTrouble::SampledOnSerial));
         }
+        let by_the_clock = matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_));
+        let places = match self.places.as_str() {
+            "" => None,
+            name if self.slower == 1 && by_the_clock => {
+                Some(Arc::new(directory.bench_places(name)?))
+            }
+            _ => return Err(Failure::usage(Asked::BenchByTheClock)),
+        };
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
         let train = train(directory, &self.train)?;
@@ -173,6 +185,7 @@ impl BenchChoice {
             slower: self.slower,
             record_whole: false,
             run_control: None,
+            places,
         })
     }
 }

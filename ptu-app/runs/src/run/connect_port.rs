@@ -20,6 +20,7 @@ use super::unit_text;
 use crate::clock::{ClockState, now_us};
 use crate::failure::{Exit, Failure, NoUnit, RunTrouble};
 use crate::link::{Endpoint, WireLink};
+use crate::places::Placed;
 use crate::stop::Stop;
 
 /// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
@@ -48,7 +49,10 @@ impl BenchSetup {
     /// # Errors
     /// It cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
-        let link = WireLink::open(&self.endpoint)?.slower(self.slower);
+        let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
+        if let Some(places) = &self.places {
+            link = link.with_instruments(Placed::open(places).map_err(NoUnit::PortFailed)?);
+        }
         let mut rig = self.rig(self.seed, Instant::ZERO);
         rig.set_harness(self.harness);
         let mut bench = Bench::new(rig, link);

@@ -209,8 +209,9 @@ impl<L: UnitLink> Session<L> {
             self.link_error.get_or_insert(failure);
         }
         self.keep_in_step();
-        let behind = self.behind();
-        if self.max_lag.is_some_and(|max_lag| behind > max_lag) {
+        let late = self.bench.link_mut().take_late();
+        let behind = self.behind().max(late);
+        if late > Duration::ZERO || self.max_lag.is_some_and(|max_lag| behind > max_lag) {
             self.stalled = self.stalled.max(Some(behind));
             let now = self.bench.now();
             self.bench.rig_mut().note_stalled(now);

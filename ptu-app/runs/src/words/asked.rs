@@ -14,6 +14,7 @@ sentences! {
         ErrorsInScripts(n: usize): "{n} errors in the scripts; nothing was driven", "스크립트 오류 {n}건. 아무것도 구동하지 않았습니다";
         NeedsCars(train: String, procedures: String): "the train \"{train}\" has no cars, which these test: {procedures}", "열차 \"{train}\"에는 차량이 없어 다음을 시험할 수 없습니다: {procedures}";
         JobsOnPort: "--jobs works on simulated units only; one port is one unit", "--jobs: 모의 장치에만 쓸 수 있습니다. 포트 하나에는 장치 하나만 있습니다";
+        BenchByTheClock: "--bench is for a unit on a port that goes by the clock, as instruments do", "--bench: 계측기처럼 실제 시간으로 동작하는, 포트의 장치에만 쓸 수 있습니다";
         SlowerWithoutClock: "--slower is for what goes by the clock: a unit on a port, or --realtime", "--slower: 포트의 장치나 --realtime과 함께 씁니다";
         AdaptiveOnce: "--adaptive does one step after the other, each once; leave --repeat and --jobs out", "--adaptive: 단계를 하나씩 한 번만 시험합니다. --repeat와 --jobs를 빼십시오";
         ExcludesNone(name: String, near: Near): "--exclude: no procedure \"{name}\" would be run{near}; `ptu run --list` shows all", "--exclude: 시험할 절차 중에 \"{name}\"이(가) 없습니다{near}. 전체 목록: `ptu run --list`";

@@ -1,7 +1,8 @@
 //! What is wrong with the link to a unit, in Korean.
 
 use btu_rig::procedure::link_trouble::{
-    GarbageCause, LinkFailure, LinkTrouble, PortFailure, Property, Refused, channel_name,
+    GarbageCause, InstrumentFault, LinkFailure, LinkTrouble, PortFailure, Property, Refused,
+    channel_name,
 };
 
 /// The trouble as a sentence.
@@ -10,6 +11,7 @@ pub fn korean(trouble: &LinkTrouble) -> String {
     use LinkTrouble as T;
     match trouble {
         T::Broken(LinkFailure { link, why }) => format!("{link}: {}", port(why)),
+        T::Instrument { instrument, fault } => format!("시험대 계측기 {instrument}: {}", of_instrument(fault)),
         T::Taken { by, held, silent } => {
             let silent = silent.map_or_else(String::new, |silent| format!(", 그중 {:.0} s 동안 무응답", silent.as_secs()));
             format!("다른 시험기가 장치를 사용 중입니다 ({by}, {:.0} s 전부터{silent})", held.as_secs())
@@ -60,6 +62,24 @@ pub fn korean(trouble: &LinkTrouble) -> String {
 }
 
 #[rustfmt::skip]
+fn of_instrument(fault: &InstrumentFault) -> String {
+    use InstrumentFault as F;
+    let ms = |duration: &protocol::Duration| duration.as_secs() * 1000.0;
+    match fault {
+        F::NotThere { at, why } => format!("{at}에 연결하지 못함: {why}"),
+        F::Disconnected(why) => format!("연결이 끊어짐: {why}"),
+        F::Silent(within) => format!("{:.2} s 동안 응답 없음", within.as_secs()),
+        F::Slow { took, stated } => format!("응답 지연: {:.0} ms 걸림 (시험대 파일에는 {:.0} ms)", ms(took), ms(stated)),
+        F::OtherModel { found, expected } => format!("기종이 다름: {found} 응답 (예상 {expected})"),
+        F::Refused { command, error } => format!("명령 {command}을(를) 거부함: {error}"),
+        F::QueueFull(error) => format!("오류 대기열이 가득 참: {error}"),
+        F::OutOfRange { what, value, low, high } => format!("{what} 값 {value}이(가) 범위 {low}~{high}를 벗어남"),
+        F::NoAnswer { asked, found } => format!("{asked}의 응답 {found}을(를) 해석할 수 없음"),
+        F::Stuck { contact, ordered } => format!("{contact} 릴레이 고착: 명령 {ordered}, 확인 접점 {}", 1 - ordered),
+    }
+}
+
+#[rustfmt::skip]
 fn port(failure: &PortFailure) -> String {
     match failure {
         PortFailure::Closed => "상대편에서 연결을 닫음".to_owned(),
@@ -79,6 +99,16 @@ mod tests {
         {"broken": {"link": "tcp:31", "why": {"reading": "22"}}},
         {"broken": {"link": "tcp:31", "why": {"writing": "23"}}},
         {"broken": {"link": "tcp:31", "why": {"not_in_lock_step": "24"}}},
+        {"instrument": {"instrument": "io1", "fault": {"not_there": {"at": "h:25", "why": "26"}}}},
+        {"instrument": {"instrument": "io2", "fault": {"disconnected": "27"}}},
+        {"instrument": {"instrument": "io3", "fault": {"silent": 1500000}}},
+        {"instrument": {"instrument": "io4", "fault": {"slow": {"took": 71000, "stated": 20000}}}},
+        {"instrument": {"instrument": "io5", "fault": {"other_model": {"found": "28", "expected": "29"}}}},
+        {"instrument": {"instrument": "io6", "fault": {"refused": {"command": "30", "error": "-222"}}}},
+        {"instrument": {"instrument": "io7", "fault": {"queue_full": "-350"}}},
+        {"instrument": {"instrument": "io8", "fault": {"out_of_range": {"what": "p1", "value": "81", "low": "2", "high": "3"}}}},
+        {"instrument": {"instrument": "io9", "fault": {"no_answer": {"asked": "32", "found": "33"}}}},
+        {"instrument": {"instrument": "io0", "fault": {"stuck": {"contact": "k7", "ordered": 1}}}},
         {"taken": {"by": "10.0.0.1:4711", "held": 61000000, "silent": 62000000}},
         {"not_one_byte": {"within": 3000000}},
         {"other_version": {"frames": 63}},

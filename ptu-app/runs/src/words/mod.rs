@@ -18,7 +18,7 @@ pub use refused::{
     BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
     RecordTrouble, RunTrouble, Sought, Unknown, Why, WrongCell,
 };
-pub use warned::{Differs, Warning};
+pub use warned::{BenchNote, Differs, Warning};
 
 use fault_db::Id;
 

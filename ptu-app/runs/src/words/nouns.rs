@@ -22,6 +22,7 @@ pub fn noun(english: &str) -> &str {
         "unit configuration" => "장치 구성",
         "line" => "노선",
         "train" => "열차",
+        "bench" => "시험대",
         "controller" => "제어기",
         "the name of who says it" => "작성자 이름",
         "the JUnit report" => "JUnit 보고서",

@@ -11,6 +11,16 @@ sentences! {
         ManyChanged(names: String, more: usize): "made before {names} and {more} more scripts changed", "변경된 스크립트: {names} 외 {more}개";
     }
 
+    /// What a bench of instruments makes of a step.
+    BenchNote {
+        NoPlace(bench: String, what: String): "bench {bench} has no {what}", "시험대 {bench}에 {what} 없음";
+        Beyond(bench: String, instrument: String, why: String): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 범위 밖 ({why})";
+        Do(what: String): "Please do by hand: {what}. Done?", "손으로 조작하십시오: {what}. 완료했습니까?";
+        See(what: String): "Please look: {what}. Is it so?", "확인하십시오: {what}. 맞습니까?";
+        Wider(bench: String, used: String, by: String): "bench {bench}: {used} (limits wider by {by})", "시험대 {bench}: {used} (한계 확대 {by})";
+        ByHand(instrument: String, what: String): "{instrument} has no watchdog: if this program is killed, {what}", "{instrument}에 워치독 없음. 이 프로그램이 강제로 종료되면: {what}";
+    }
+
     /// Why an answer is worth less than others.
     Warning {
         OtherConnection(how: &'static str): "the fault dictionary was made on another connection" [": make one with `ptu campaign{how}`" ": make one"], "고장 사전이 다른 연결 방식으로 만들어짐" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use fault_db::{Address, Store, StoreError};
+use btu_rig::rig::LinkTrouble;
+use fault_db::{Address, Instrument, Store, StoreError};
 
 use super::Finding;
 use crate::cli::gui;
@@ -12,12 +13,18 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 use ptu_runs::link::ports;
 use ptu_runs::owner_only;
+use ptu_runs::places::{Placed, Places};
 use ptu_runs::run::{BenchChoice, Suite};
 
 /// Below this, runs may soon find no room, bytes, a value of this program: some thousand runs with their traces.
 const LITTLE_ROOM: u64 = 1 << 30;
 /// Below this, the next runs may, bytes, a value of this program.
 const NO_ROOM: u64 = 100 << 20;
+/// Times that an instrument is tried.
+const ROUNDS: u32 = 20;
+/// What a Modbus module is registered as, and the unit of its reaction time, which is no uncertainty of a measured time.
+const MODULE: &str = "modbus module";
+const REACTION: &str = "ms reaction";
 /// The newest run is at most this far ahead of a clock that is right, µs: another computer's clock may be off a little.
 const AHEAD_US: i64 = 3_600_000_000;
 
@@ -264,6 +271,66 @@ pub(super) fn server(server: Option<&Address>, words: &Words) -> Finding {
             doctor.recorded_here,
         ),
     }
+}
+
+/// Each instrument of a bench does its part; what was measured goes into the register of instruments.
+pub(super) fn bench(
+    places: &Places,
+    store: &Store,
+    words: &Words,
+) -> Result<Vec<Finding>, Failure> {
+    let doctor = &words.doctor;
+    let known = store.instruments()?;
+    let mut findings = Vec::new();
+    for (name, tried) in Placed::check(places, ROUNDS) {
+        let entry = &places.instruments[&name];
+        let of = [("name", &name as _), ("serial", &entry.serial as _)];
+        let took_ms = match tried {
+            Ok(took_ms) => took_ms,
+            Err(fault) => {
+                let instrument = name.clone();
+                let fault = LinkTrouble::Instrument {
+                    instrument,
+                    fault: fault.into(),
+                };
+                let why = words.told(&fault);
+                let found = fill(doctor.instrument_wrong, &[of[0], of[1], ("why", &why)]);
+                findings.push(Finding::wrong(doctor.bench, found, doctor.check_instrument));
+                continue;
+            }
+        };
+        let took = format!("{took_ms:.1}");
+        let of = [
+            of[0],
+            of[1],
+            ("took", &took as _),
+            ("stated", &entry.uncertainty_ms as _),
+        ];
+        if took_ms > entry.uncertainty_ms as f64 {
+            let found = fill(doctor.instrument_late, &of);
+            findings.push(Finding::wrong(doctor.bench, found, doctor.state_more));
+            continue;
+        }
+        let before = known
+            .iter()
+            .find(|one| one.serial_no == entry.serial)
+            .cloned();
+        let mut registered = before.unwrap_or_else(|| Instrument {
+            kind: entry.model.clone().unwrap_or_else(|| MODULE.into()),
+            serial_no: entry.serial.clone(),
+            ..Instrument::default()
+        });
+        let rounded_ms = (10.0 * took_ms).round() / 10.0;
+        registered.uncertainty.insert(REACTION.into(), rounded_ms);
+        registered.at_us = now_us();
+        store.register_instrument(&registered)?;
+        findings.push(Finding::ok(doctor.bench, fill(doctor.instrument_ok, &of)));
+    }
+    for note in places.by_hand() {
+        let told = words.told(&note);
+        findings.push(Finding::ok(doctor.bench, told));
+    }
+    Ok(findings)
 }
 
 fn nearest_folder(file: &Path) -> Option<&Path> {

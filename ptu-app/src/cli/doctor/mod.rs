@@ -7,17 +7,18 @@ use fault_db::Address;
 use serde::Serialize;
 
 use super::{Database, Json, ScriptsOption, answered};
-use ptu_report::words::Doctor;
+use ptu_report::words::{Doctor, Words};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::table::padded;
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
 ///
-/// Changes nothing, opens no port, and says for each finding what to do.
+/// Changes nothing, opens no port, and says for each finding what to do. With --bench it examines instruments alone.
 ///
 /// Examples:
 ///   ptu doctor
 ///   ptu doctor --server postgres://kim@depot/history
+///   ptu doctor --bench example
 ///
 /// A port, display or server that is missing is a warning: the simulated unit needs none.
 ///
@@ -28,6 +29,9 @@ pub struct DoctorArguments {
     /// Server that this computer syncs with: postgres://USER@HOST/DATABASE
     #[arg(long, value_name = "ADDRESS")]
     server: Option<Address>,
+    /// Check the instruments of a bench, benches/NAME.toml or a file ending in .toml: they are switched, and registered
+    #[arg(long, value_name = "NAME|FILE")]
+    bench: Option<String>,
     #[command(flatten)]
     json: Json,
     #[command(flatten)]
@@ -108,6 +112,13 @@ impl DoctorArguments {
     /// Looks at all and tells.
     pub fn run(self) -> Result<Exit, Failure> {
         let words = self.json.words();
+        if let Some(bench) = &self.bench {
+            let places = self.scripts.find()?.bench_places(bench)?;
+            let store = self.database.open_file()?;
+            let findings = checks::bench(&places, &store, words)?;
+            store.close()?;
+            return self.answer(&findings, words);
+        }
         let mut findings = checks::scripts(self.scripts.find(), words);
         findings.extend(checks::ports(words));
         findings.push(checks::display(words));
@@ -121,11 +132,15 @@ impl DoctorArguments {
             findings.push(checks::disk(&file, words));
         }
         findings.push(checks::clock(words));
-        let server = match self.server {
-            Some(server) => Some(server),
+        let server = match &self.server {
+            Some(server) => Some(server.clone()),
             None => self.database.server()?,
         };
         findings.push(checks::server(server.as_ref(), words));
+        self.answer(&findings, words)
+    }
+
+    fn answer(&self, findings: &[Finding], words: &Words) -> Result<Exit, Failure> {
         let exit = match findings.iter().any(|found| found.state == State::Wrong) {
             true => Exit::Failed,
             false => Exit::Passed,

@@ -1,5 +1,6 @@
 //! What judges times by the clock, when nothing else runs.
 
 mod acceptance;
+mod bench;
 mod pace;
 mod standstill;

@@ -1,0 +1,387 @@
+//! The bench file, `benches/NAME.toml`.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use protocol::message::{ModeSwitch, Outputs, TrainLines};
+use protocol::signal::Signal;
+use serde::Deserialize;
+use thiserror::Error;
+use toml::Spanned;
+
+use super::model::Model;
+
+/// Why a bench file or a driver is refused.
+#[derive(Debug, Error)]
+pub enum PlacesError {
+    /// It is not as TOML, or has another key.
+    #[error("{0}")]
+    Toml(#[from] toml::de::Error),
+    /// What it says does not fit.
+    #[error("line {line}: {why}")]
+    Wrong {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong there.
+        why: String,
+    },
+}
+
+/// How an instrument is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum At {
+    /// Modbus TCP: address and unit.
+    Modbus(String, u8),
+    /// SCPI over TCP: address.
+    Scpi(String),
+}
+
+/// An instrument as the bench file has it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InstrumentEntry {
+    /// `modbus:HOST:PORT` or `scpi:HOST:PORT`.
+    at: String,
+    /// Number of the Modbus unit.
+    #[serde(default = "first_unit")]
+    unit: u8,
+    /// Driver of a SCPI instrument, `instruments/NAME.toml`.
+    pub model: Option<String>,
+    /// Serial number, by which it is registered.
+    pub serial: String,
+    /// Time between two readings, ms.
+    #[serde(default = "poll_ms")]
+    pub poll_ms: u64,
+    /// How late it may act and read, ms: what limits are widened by.
+    pub uncertainty_ms: u64,
+    /// Register into which a time in ms is written, after which the module drops its outputs by itself.
+    pub watchdog: Option<Watchdog>,
+    /// What is to be switched off by hand if the program was killed.
+    pub by_hand: Option<String>,
+}
+
+/// The watchdog of a module.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Watchdog {
+    /// Its holding register.
+    pub register: u16,
+    /// What is written there: ms until outputs drop.
+    pub ms: u16,
+}
+
+fn first_unit() -> u8 {
+    1
+}
+
+fn poll_ms() -> u64 {
+    10
+}
+
+/// One stimulus or reading.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// `frames`, `none`, `operator` or the name of an instrument.
+    at: String,
+    /// Coils of a module, of which one is on: as many as the point has positions.
+    #[serde(default)]
+    pub coils: Vec<u16>,
+    /// How long a pulse lasts, ms.
+    #[serde(default)]
+    pub pulse_ms: u64,
+    /// Input of a module that proves the coil's relay.
+    pub proved_by: Option<u16>,
+    /// Input of a module that is read.
+    pub input: Option<u16>,
+    /// The input is closed where the signal's contact is open.
+    #[serde(default)]
+    pub inverted: bool,
+    /// Channel of the instrument, put into its commands.
+    #[serde(default)]
+    pub channel: u8,
+    /// What of the driver is read.
+    pub read: Option<String>,
+    /// Signal per unit of what is read.
+    pub scale: Option<f64>,
+    /// Expanded uncertainty of the reading, in the unit of the signal.
+    #[serde(default)]
+    pub uncertainty: f64,
+    /// Time allowed to a person, s.
+    pub within_s: Option<u64>,
+}
+
+/// Where a point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place<'a> {
+    /// In the frames, as without a bench file.
+    Frames,
+    /// Nowhere: the bench does not have it.
+    None,
+    /// A person does it, in so many seconds.
+    Operator(u64),
+    /// The instrument of this name.
+    Instrument(&'a str),
+}
+
+impl Point {
+    /// Where it is.
+    pub fn place(&self) -> Place<'_> {
+        match self.at.as_str() {
+            "frames" => Place::Frames,
+            "none" => Place::None,
+            "operator" => Place::Operator(self.within_s.unwrap_or(OPERATOR_S)),
+            name => Place::Instrument(name),
+        }
+    }
+}
+
+/// Time a person has, s [default].
+const OPERATOR_S: u64 = 60;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Text {
+    #[serde(default)]
+    instruments: BTreeMap<String, Spanned<InstrumentEntry>>,
+    safe: Spanned<Vec<String>>,
+    #[serde(default)]
+    stimuli: BTreeMap<String, Spanned<Point>>,
+    #[serde(default)]
+    readings: BTreeMap<String, Spanned<Point>>,
+}
+
+/// A bench file that was checked.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its text.
+    pub sha256: String,
+    /// Instruments by name.
+    pub instruments: BTreeMap<String, InstrumentEntry>,
+    /// Drivers of SCPI instruments, by the name of the instrument.
+    pub models: BTreeMap<String, Arc<Model>>,
+    /// Instruments in the order in which their outputs are switched off.
+    pub safe: Vec<String>,
+    /// Stimuli that are not in the frames.
+    pub stimuli: BTreeMap<&'static str, Point>,
+    /// Readings that are not in the frames.
+    pub readings: BTreeMap<Signal, Point>,
+}
+
+/// Train lines, by their bits, and the other stimuli.
+const LINES: &str = "doors_closed hcr maintenance_key acknowledge start eb_loop forward backward eb_loop_fed doors_by_side \
+    left_closed left_locked right_closed right_locked";
+const OTHERS: &str = "code crosstalk tacho1 tacho2 marker mode_switch controller entries twc";
+
+/// Signals that the unit's contacts and displays show, and the contact.
+pub(super) const READINGS: [(Signal, Outputs); 17] = [
+    (Signal::Eb, Outputs::EB_RELAY),
+    (Signal::Fsb, Outputs::FSB),
+    (Signal::PowerCut, Outputs::POWER_CUT),
+    (Signal::Alarm, Outputs::ALARM),
+    (Signal::HoldingBrake, Outputs::HOLDING_BRAKE),
+    (Signal::DoorEnableLeft, Outputs::DOOR_ENABLE_LEFT),
+    (Signal::DoorEnableRight, Outputs::DOOR_ENABLE_RIGHT),
+    (Signal::CodeValid, Outputs::CODE_VALID),
+    (Signal::Standstill, Outputs::STANDSTILL),
+    (Signal::Healthy, Outputs::HEALTHY),
+    (Signal::DoorOrderLeft, Outputs::OPEN_LEFT),
+    (Signal::DoorOrderRight, Outputs::OPEN_RIGHT),
+    (Signal::DoorOrderClose, Outputs::CLOSE_DOORS),
+    (Signal::Limit, Outputs::empty()),
+    (Signal::Speed, Outputs::empty()),
+    (Signal::Marker, Outputs::empty()),
+    (Signal::MarkerCount, Outputs::empty()),
+];
+
+/// Train lines with their names in a bench file.
+pub(super) fn lines() -> impl Iterator<Item = (&'static str, TrainLines)> {
+    let bits = (0..).map(|bit| TrainLines::from_bits_retain(1 << bit));
+    LINES.split_ascii_whitespace().zip(bits)
+}
+
+/// Everything that a bench file may place.
+pub(super) fn stimuli() -> impl Iterator<Item = &'static str> {
+    LINES.split_ascii_whitespace().chain(OTHERS.split(' '))
+}
+
+impl Places {
+    /// Reads a bench file; `model` reads the driver of that name.
+    ///
+    /// # Errors
+    /// It is wrong, in a line that is named.
+    pub fn from_toml(
+        text: &str,
+        mut model: impl FnMut(&str) -> Result<Model, String>,
+    ) -> Result<Self, PlacesError> {
+        let read: Text = toml::from_str(text)?;
+        let wrong = |at: &Range<usize>, why: String| PlacesError::Wrong {
+            line: 1 + text[..at.start].matches('\n').count(),
+            why,
+        };
+        let mut models = BTreeMap::new();
+        let mut instruments = BTreeMap::new();
+        let switches = |name: &str| (read.stimuli.values()).any(|point| point.get_ref().at == name);
+        for (name, entry) in &read.instruments {
+            let refuse = |why| wrong(&entry.span(), format!("instrument {name}: {why}"));
+            let entry = entry.get_ref();
+            entry.check(switches(name)).map_err(refuse)?;
+            if let Some(driver) = &entry.model {
+                models.insert(name.clone(), Arc::new(model(driver).map_err(refuse)?));
+            }
+            instruments.insert(name.clone(), entry.clone());
+        }
+        let ordered = read.safe.get_ref();
+        let missing = instruments.keys().find(|name| !ordered.contains(name));
+        let unknown = ordered.iter().find(|name| !instruments.contains_key(*name));
+        if let Some(name) = missing.or(unknown) {
+            let why = format!(
+                "safe names each instrument once, in the order in which they are switched off: see {name}"
+            );
+            return Err(wrong(&read.safe.span(), why));
+        }
+        let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
+        let mut stimuli_at = BTreeMap::new();
+        for (name, point) in &read.stimuli {
+            let refuse = |why| wrong(&point.span(), format!("stimulus {name}: {why}"));
+            let known = stimuli().find(|known| known == name);
+            let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
+            let place = point.get_ref().place();
+            check_stimulus(known, point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            if place != Place::Frames {
+                stimuli_at.insert(known, point.get_ref().clone());
+            }
+        }
+        let mut readings_at = BTreeMap::new();
+        for (name, point) in &read.readings {
+            let refuse = |why| wrong(&point.span(), format!("reading {name}: {why}"));
+            let mut known = READINGS.into_iter().map(|(signal, _)| signal);
+            let known = known.find(|known| known.name() == name);
+            let known = known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
+            check_reading(point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            if point.get_ref().place() != Place::Frames {
+                readings_at.insert(known, point.get_ref().clone());
+            }
+        }
+        Ok(Self {
+            name: String::new(),
+            sha256: String::new(),
+            instruments,
+            models,
+            safe: ordered.clone(),
+            stimuli: stimuli_at,
+            readings: readings_at,
+        })
+    }
+
+    /// Everything that frames to the unit's inputs carry has another place.
+    pub(super) fn leaves_no_input(&self) -> bool {
+        let elsewhere = |name: &str| ["crosstalk", "entries", "twc"].contains(&name);
+        stimuli().all(|name| elsewhere(name) || self.stimuli.contains_key(name))
+    }
+
+    /// Everything that frames of the unit's outputs carry has another place.
+    pub(super) fn leaves_no_output(&self) -> bool {
+        (READINGS.iter()).all(|(signal, _)| self.readings.contains_key(signal))
+    }
+}
+
+impl InstrumentEntry {
+    /// How it is reached.
+    pub fn at(&self) -> At {
+        match self.at.split_once(':') {
+            Some(("modbus", address)) => At::Modbus(address.to_owned(), self.unit),
+            Some((_, address)) => At::Scpi(address.to_owned()),
+            None => At::Scpi(String::new()),
+        }
+    }
+
+    fn check(&self, switches: bool) -> Result<(), String> {
+        let (kind, address) = self.at.split_once(':').unwrap_or_default();
+        let port = address
+            .rsplit_once(':')
+            .map(|(_, port)| port.parse::<u16>());
+        if !["modbus", "scpi"].contains(&kind) || !matches!(port, Some(Ok(_))) {
+            return Err(format!(
+                "at is modbus:HOST:PORT or scpi:HOST:PORT, not \"{}\"",
+                self.at
+            ));
+        }
+        if (kind == "scpi") != self.model.is_some() {
+            return Err("a SCPI instrument has a model, a Modbus module has none".into());
+        }
+        if self.poll_ms == 0 || self.uncertainty_ms < self.poll_ms {
+            return Err("uncertainty_ms is at least poll_ms, and that at least 1".into());
+        }
+        if switches && self.watchdog.is_none() && self.by_hand.is_none() {
+            return Err("it drives outputs: give its watchdog, or say in by_hand what is to be switched off if the program is killed".into());
+        }
+        Ok(())
+    }
+}
+
+type Named<'a> = (Option<&'a InstrumentEntry>, Option<&'a Model>);
+
+fn check_stimulus(name: &str, point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
+    let Place::Instrument(instrument) = point.place() else {
+        let cab = !["code", "crosstalk", "tacho1", "tacho2", "marker", "twc"].contains(&name);
+        return match point.place() {
+            Place::Operator(_) if !cab => Err("no person is quick enough for it".into()),
+            _ => Ok(()),
+        };
+    };
+    let act = act_of(name);
+    match (entry.map(InstrumentEntry::at), act) {
+        (None, _) => Err(format!("no instrument {instrument}")),
+        (Some(At::Scpi(_)), Some(act)) => {
+            match model.is_some_and(|model| model.acts.contains_key(act)) {
+                true => Ok(()),
+                false => Err(format!("the model of {instrument} has no act {act}")),
+            }
+        }
+        (Some(At::Modbus(..)), None) => {
+            let coils = match name {
+                "mode_switch" => ModeSwitch::ALL.len(),
+                "marker" => 4,
+                "controller" | "entries" | "twc" | "crosstalk" => 0,
+                _ => 1,
+            };
+            match point.coils.len() {
+                n if n == coils && n > 0 => Ok(()),
+                _ if coils == 0 => Err("a module has no contacts for it".into()),
+                n => Err(format!("it takes {coils} coils, not {n}")),
+            }
+        }
+        _ => Err(format!("{instrument} is no instrument for it")),
+    }
+}
+
+/// What a SCPI instrument does for a stimulus.
+pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
+    match stimulus {
+        "code" => Some("code"),
+        "tacho1" | "tacho2" => Some("pulses"),
+        _ => None,
+    }
+}
+
+fn check_reading(point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
+    let Place::Instrument(instrument) = point.place() else {
+        return Ok(());
+    };
+    match entry.map(InstrumentEntry::at) {
+        None => Err(format!("no instrument {instrument}")),
+        Some(At::Modbus(..)) if point.input.is_some() => Ok(()),
+        Some(At::Modbus(..)) => Err("which input?".into()),
+        Some(At::Scpi(_)) => {
+            let read = point.read.as_deref().unwrap_or_default();
+            match model.is_some_and(|model| model.reads.contains_key(read)) {
+                true => Ok(()),
+                false => Err(format!("the model of {instrument} reads no \"{read}\"")),
+            }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! A Modbus TCP module: coils that are relays, inputs that are contacts.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::time::{Duration, Instant};
+
+use btu_rig::rig::InstrumentFault;
+use protocol::signal::Signal;
+use rmodbus::client::ModbusRequest;
+use rmodbus::guess_response_frame_len;
+use rmodbus::{ErrorKind, ModbusProto};
+
+use super::file::{Place, Places, Point, Watchdog};
+use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
+
+/// How long a relay and the contact that proves it may differ [default: pull-in, bounce and a poll].
+const RELAY_TAKES: Duration = Duration::from_millis(150);
+
+/// A connected module.
+pub(super) struct Module {
+    stream: TcpStream,
+    unit: u8,
+    transaction: u16,
+    stimuli: Vec<(&'static str, Point)>,
+    readings: Vec<(Signal, Point)>,
+    /// What was last written; none = not known.
+    written: Option<Vec<bool>>,
+    coils: usize,
+    inputs: u16,
+    /// Count of marker pulses, and the coil that is on until then.
+    pulses: Option<f64>,
+    pulse: Option<(u16, Instant)>,
+    /// Since when a relay is not where it is ordered, by coil.
+    astray: BTreeMap<u16, Instant>,
+}
+
+/// Connects to an address within the time for an answer.
+pub(super) fn connect(address: &str) -> Result<TcpStream, InstrumentFault> {
+    let not_there = |error: std::io::Error| InstrumentFault::NotThere {
+        at: address.to_owned(),
+        why: error.to_string(),
+    };
+    let addresses = address.to_socket_addrs().map_err(not_there)?;
+    let mut tried = Err(std::io::Error::other("the name has no address"));
+    for address in addresses {
+        tried = TcpStream::connect_timeout(&address, ANSWERS_WITHIN);
+        if tried.is_ok() {
+            break;
+        }
+    }
+    let stream = tried.map_err(not_there)?;
+    let set = stream
+        .set_nodelay(true)
+        .and_then(|()| stream.set_read_timeout(Some(ANSWERS_WITHIN)))
+        .and_then(|()| stream.set_write_timeout(Some(ANSWERS_WITHIN)));
+    set.map_err(not_there)?;
+    Ok(stream)
+}
+
+/// What a failed exchange says of an instrument.
+pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
+    use std::io::ErrorKind as E;
+    match error.kind() {
+        E::WouldBlock | E::TimedOut => InstrumentFault::Silent(span(ANSWERS_WITHIN)),
+        _ => InstrumentFault::Disconnected(error.to_string()),
+    }
+}
+
+impl Module {
+    /// Connects, starts the watchdog, and reads once.
+    pub fn open(
+        places: &Places,
+        name: &str,
+        (address, unit): (&str, u8),
+        watchdog: Option<Watchdog>,
+    ) -> Result<Self, InstrumentFault> {
+        let here = |point: &Point| point.place() == Place::Instrument(name);
+        let stimuli = places.stimuli.iter().filter(|(_, point)| here(point));
+        let stimuli: Vec<_> = stimuli.map(|(at, point)| (*at, point.clone())).collect();
+        let readings = places.readings.iter().filter(|(_, point)| here(point));
+        let readings: Vec<_> = readings.map(|(at, point)| (*at, point.clone())).collect();
+        let coils = stimuli.iter().flat_map(|(_, point)| &point.coils);
+        let proofs = stimuli.iter().filter_map(|(_, point)| point.proved_by);
+        let inputs = readings.iter().filter_map(|(_, point)| point.input);
+        let mut module = Self {
+            stream: connect(address)?,
+            unit,
+            transaction: 0,
+            coils: coils.max().map_or(0, |last| usize::from(*last) + 1),
+            inputs: inputs.chain(proofs).max().map_or(0, |last| last + 1),
+            stimuli,
+            readings,
+            written: None,
+            pulses: None,
+            pulse: None,
+            astray: BTreeMap::new(),
+        };
+        if let Some(Watchdog { register, ms }) = watchdog {
+            module.ask(|request, out| request.generate_set_holding(register, ms, out))?;
+        }
+        module.off()?;
+        Ok(module)
+    }
+
+    /// One question and its answer.
+    fn ask(
+        &mut self,
+        generate: impl FnOnce(&mut ModbusRequest, &mut Vec<u8>) -> Result<(), ErrorKind>,
+    ) -> Result<(ModbusRequest, Vec<u8>), InstrumentFault> {
+        self.transaction = self.transaction.wrapping_add(1);
+        let mut request = ModbusRequest::new_tcp_udp(self.unit, self.transaction);
+        let mut out = Vec::new();
+        let refused = |request: &ModbusRequest, error: ErrorKind| InstrumentFault::Refused {
+            command: format!("{:?} {}+{}", request.func, request.reg, request.count),
+            error: error.to_string(),
+        };
+        generate(&mut request, &mut out).map_err(|error| refused(&request, error))?;
+        self.stream
+            .write_all(&out)
+            .map_err(|error| io_fault(&error))?;
+        // The head says how long the rest is.
+        let mut answer = vec![0; 6];
+        self.stream
+            .read_exact(&mut answer)
+            .map_err(|error| io_fault(&error))?;
+        let head = [0, 1, 2, 3, 4, 5].map(|at| answer[at]);
+        let length = guess_response_frame_len(&head, ModbusProto::TcpUdp);
+        let length = length.map_err(|error| refused(&request, error))?;
+        answer.resize(usize::from(length), 0);
+        self.stream
+            .read_exact(&mut answer[6..])
+            .map_err(|error| io_fault(&error))?;
+        request
+            .parse_ok(&answer)
+            .map_err(|error| refused(&request, error))?;
+        Ok((request, answer))
+    }
+
+    /// The coils that are on now.
+    fn ordered(&mut self, wanted: &Wanted) -> Vec<bool> {
+        let mut coils = vec![false; self.coils];
+        for (name, point) in &self.stimuli {
+            let values = wanted.get(name);
+            let value = |key| values.and_then(|values: &Values| values.get(key)).copied();
+            let on = match *name {
+                "marker" => {
+                    let count = value("count");
+                    let before = std::mem::replace(&mut self.pulses, count);
+                    if let (Some(count), Some(before), Some(psm)) = (count, before, value("psm"))
+                        && count != before
+                        && let Some(coil) = point.coils.get((psm - 1.0) as usize)
+                    {
+                        let until = Instant::now() + Duration::from_millis(point.pulse_ms);
+                        self.pulse = Some((*coil, until));
+                    }
+                    self.pulse = self.pulse.filter(|(_, until)| Instant::now() < *until);
+                    self.pulse.map(|(coil, _)| coil)
+                }
+                "mode_switch" => value("position")
+                    .and_then(|position| point.coils.get(position as usize))
+                    .copied(),
+                _ => (point.coils.first().copied()).filter(|_| value("on") == Some(1.0)),
+            };
+            if let Some(on) = on {
+                coils[usize::from(on)] = true;
+            }
+        }
+        coils
+    }
+
+    /// A relay that was ordered and is not proved in time is stuck.
+    fn prove(&mut self, ordered: &[bool], inputs: &[bool]) -> Result<(), InstrumentFault> {
+        for (name, point) in &self.stimuli {
+            let (Some(coil), Some(proof)) = (point.coils.first(), point.proved_by) else {
+                continue;
+            };
+            let is = ordered.get(usize::from(*coil)).copied().unwrap_or(false);
+            if inputs.get(usize::from(proof)) == Some(&is) {
+                self.astray.remove(coil);
+            } else if self
+                .astray
+                .entry(*coil)
+                .or_insert_with(Instant::now)
+                .elapsed()
+                > RELAY_TAKES
+            {
+                return Err(InstrumentFault::Stuck {
+                    contact: (*name).to_owned(),
+                    ordered: u8::from(is),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Instrument for Module {
+    fn cycle(
+        &mut self,
+        wanted: &Wanted,
+        read: &mut BTreeMap<Signal, f64>,
+    ) -> Result<bool, InstrumentFault> {
+        let ordered = self.ordered(wanted);
+        let sets = self.coils > 0 && self.written.as_ref() != Some(&ordered);
+        if sets {
+            self.ask(|request, out| request.generate_set_coils_bulk(0, &ordered, out))?;
+            self.written = Some(ordered.clone());
+        }
+        if self.inputs == 0 {
+            return Ok(sets);
+        }
+        let count = self.inputs;
+        let (request, answer) =
+            self.ask(|request, out| request.generate_get_discretes(0, count, out))?;
+        let mut inputs = Vec::new();
+        let parsed = request.parse_bool(&answer, &mut inputs);
+        if parsed.is_err() || inputs.len() < usize::from(count) {
+            return Err(InstrumentFault::NoAnswer {
+                asked: format!("{count} inputs"),
+                found: format!("{answer:02x?}"),
+            });
+        }
+        for (signal, point) in &self.readings {
+            let input = point.input.map(usize::from).and_then(|at| inputs.get(at));
+            if let Some(closed) = input {
+                read.insert(*signal, f64::from(u8::from(*closed != point.inverted)));
+            }
+        }
+        self.prove(&ordered, &inputs).map(|()| true)
+    }
+
+    fn proved(&self) -> bool {
+        self.astray.is_empty()
+    }
+
+    fn off(&mut self) -> Result<(), InstrumentFault> {
+        self.written = None;
+        let nothing = vec![false; self.coils];
+        if self.coils > 0 {
+            self.ask(|request, out| request.generate_set_coils_bulk(0, &nothing, out))?;
+            self.written = Some(nothing);
+        }
+        self.pulses = None;
+        self.pulse = None;
+        Ok(())
+    }
+}

@@ -1,0 +1,141 @@
+//! The driver of a SCPI instrument, `instruments/NAME.toml`: templates of commands, questions, ranges.
+
+use std::collections::BTreeMap;
+
+use btu_rig::rig::InstrumentFault;
+use serde::Deserialize;
+
+use super::file::PlacesError;
+
+/// A driver.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// What its answer to `*IDN?` holds.
+    pub idn: String,
+    /// The question for the next entry of its error queue, whose answer begins with a number, 0 for none.
+    pub error: String,
+    /// Commands after connecting.
+    #[serde(default)]
+    pub begin: Vec<String>,
+    /// Commands that switch all its outputs off.
+    #[serde(default)]
+    pub off: Vec<String>,
+    /// What it does for stimuli.
+    #[serde(default)]
+    pub acts: BTreeMap<String, Act>,
+    /// What it reads.
+    #[serde(default)]
+    pub reads: BTreeMap<String, Read>,
+    /// Least and greatest of values that it takes.
+    #[serde(default)]
+    pub ranges: BTreeMap<String, [f64; 2]>,
+}
+
+/// Commands for a stimulus.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Act {
+    /// With these values.
+    pub on: Vec<String>,
+    /// A carrier without a code rate; none: it cannot.
+    #[serde(default)]
+    pub unmodulated: Vec<String>,
+    /// Taken away.
+    pub off: Vec<String>,
+}
+
+/// A question.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Read {
+    /// Its text.
+    pub ask: String,
+    /// Which of the numbers of the answer, counted from 0.
+    #[serde(default)]
+    pub field: usize,
+}
+
+/// Acts and their values.
+const ACTS: [(&str, &[&str]); 2] = [
+    (
+        "code",
+        &[
+            "channel",
+            "carrier_hz",
+            "rate_hz",
+            "period_s",
+            "level_mv",
+            "level_v",
+        ],
+    ),
+    ("pulses", &["channel", "hz", "backward"]),
+];
+
+impl Model {
+    /// Reads a driver.
+    ///
+    /// # Errors
+    /// It is wrong, in a line that is named.
+    pub fn from_toml(text: &str) -> Result<Self, PlacesError> {
+        let model: Self = toml::from_str(text)?;
+        let wrong = |found: &str, why: String| PlacesError::Wrong {
+            line: 1 + text
+                .split(found)
+                .next()
+                .unwrap_or(text)
+                .matches('\n')
+                .count(),
+            why,
+        };
+        for (name, act) in &model.acts {
+            let Some((_, values)) = ACTS.iter().find(|(known, _)| known == name) else {
+                return Err(wrong(
+                    name,
+                    format!("no act \"{name}\": it is code or pulses"),
+                ));
+            };
+            for command in act.on.iter().chain(&act.unmodulated).chain(&act.off) {
+                let used = command.split('{').skip(1);
+                let mut used = used.map(|rest| rest.split('}').next().unwrap_or(rest));
+                if let Some(other) = used.find(|value| !values.contains(value)) {
+                    let known = values.join(", ");
+                    return Err(wrong(
+                        command,
+                        format!("no value \"{other}\" of {name}: {known}"),
+                    ));
+                }
+            }
+        }
+        for (name, [low, high]) in &model.ranges {
+            if !(low.is_finite() && low < high) {
+                return Err(wrong(name, format!("range of {name}: [least, greatest]")));
+            }
+        }
+        Ok(model)
+    }
+
+    /// The value that is out of range, if one is.
+    pub fn out_of_range(&self, values: &BTreeMap<&'static str, f64>) -> Option<InstrumentFault> {
+        // A carrier that is not modulated has no rate.
+        let given = |(what, value): &(&&str, &f64)| **what != "rate_hz" || **value > 0.0;
+        values.iter().filter(given).find_map(|(what, value)| {
+            let [low, high] = self.ranges.get(*what)?;
+            (!(*low..=*high).contains(value)).then(|| InstrumentFault::OutOfRange {
+                what: (*what).to_owned(),
+                value: value.to_string(),
+                low: low.to_string(),
+                high: high.to_string(),
+            })
+        })
+    }
+}
+
+/// A command with its values.
+pub(super) fn filled(template: &str, values: &BTreeMap<&'static str, f64>) -> String {
+    let mut command = template.to_owned();
+    for (name, value) in values {
+        command = command.replace(&format!("{{{name}}}"), &value.to_string());
+    }
+    command
+}

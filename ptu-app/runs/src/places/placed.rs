@@ -1,0 +1,377 @@
+//! Between rig and unit: what has a place leaves the frames here, and what instruments read enters them.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant as Clock};
+
+use btu_rig::rig::{InstrumentFault, LinkTrouble};
+use protocol::frame::{Decoder, FLAG, Header, encode};
+use protocol::link::{End, Link};
+use protocol::message::{Channel, IoInput, IoOutput, Message, ModeSwitch, Outputs};
+use protocol::signal::Signal;
+use protocol::{Instant, Speed};
+
+use super::file::{At, Place, Places, Point, READINGS, lines};
+use super::modbus::Module;
+use super::scpi::Scpi;
+use super::worker::{Instrument, Timing, Values, Wanted, Worker};
+
+/// All outputs are off after this, on every end.
+const SAFE_WITHIN: Duration = Duration::from_secs(1);
+/// Periods without a pulse after which a wheel stands.
+const STANDS_AFTER: u64 = 2;
+/// A frequency that differs by less is not set anew.
+const SAME_HZ: f64 = 0.001;
+
+/// The instruments of a bench at work.
+pub struct Placed {
+    places: Arc<Places>,
+    workers: Vec<Worker>,
+    to_unit: Bodies,
+    from_unit: Bodies,
+    pulses: [PulseRate; 2],
+    wanted: Wanted,
+    /// What the unit's own frames said last.
+    outputs: IoOutput,
+    /// For outputs that no frame of the unit carries.
+    link: Link,
+}
+
+/// An instrument that was tried: its name, and how long it takes to act and to read, ms, or what is wrong.
+pub type Checked = (String, Result<f64, InstrumentFault>);
+
+fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
+    LinkTrouble::Instrument {
+        instrument: instrument.to_owned(),
+        fault: Box::new(fault),
+    }
+}
+
+fn open(places: &Places, name: &str) -> Result<Box<dyn Instrument>, InstrumentFault> {
+    let entry = &places.instruments[name];
+    Ok(match entry.at() {
+        At::Modbus(address, unit) => Box::new(Module::open(
+            places,
+            name,
+            (&address, unit),
+            entry.watchdog,
+        )?),
+        At::Scpi(address) => Box::new(Scpi::open(places, name, &address)?),
+    })
+}
+
+impl Placed {
+    /// Connects, checks and switches off each instrument, and reads each once.
+    ///
+    /// # Errors
+    /// The first that does not do its part.
+    pub fn open(places: &Arc<Places>) -> Result<Self, LinkTrouble> {
+        let mut placed = Self {
+            places: places.clone(),
+            workers: Vec::new(),
+            to_unit: Bodies::default(),
+            from_unit: Bodies::default(),
+            pulses: Default::default(),
+            wanted: Wanted::new(),
+            outputs: IoOutput::default(),
+            link: Link::new(End::Unit),
+        };
+        for (place, name) in (0..).zip(&places.safe) {
+            let entry = &places.instruments[name];
+            let timing = Timing {
+                poll: Duration::from_millis(entry.poll_ms),
+                uncertainty: Duration::from_millis(entry.uncertainty_ms),
+                place,
+            };
+            let instrument = open(places, name).map_err(|fault| trouble(name, fault))?;
+            placed
+                .workers
+                .push(Worker::start(name.clone(), timing, instrument));
+        }
+        for worker in &placed.workers {
+            let read = worker.has_read(SAFE_WITHIN);
+            read.map_err(|fault| trouble(&worker.name, fault))?;
+        }
+        Ok(placed)
+    }
+
+    /// Tries each instrument by itself, in so many rounds. A relay that proves itself is switched in each, and the round is over
+    /// when it is proved; the slowest round counts.
+    pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
+        let tried = |name: &String| {
+            let mut instrument = open(places, name)?;
+            let here = |point: &Point| point.place() == Place::Instrument(name);
+            let proved = |point: &Point| here(point) && point.proved_by.is_some();
+            let loops = places.stimuli.iter().filter(|(_, point)| proved(point));
+            let on = loops
+                .map(|(loop_, _)| (*loop_, Values::from([("on", 1.0)])))
+                .collect();
+            let mut slowest = Duration::ZERO;
+            for _ in 0..rounds {
+                let began = Clock::now();
+                instrument.off()?;
+                instrument.cycle(&on, &mut Default::default())?;
+                while !instrument.proved() {
+                    instrument.cycle(&on, &mut Default::default())?;
+                }
+                slowest = slowest.max(began.elapsed());
+            }
+            instrument.off()?;
+            Ok(slowest.as_secs_f64() * 1000.0)
+        };
+        let names = places.safe.iter();
+        names.map(|name| (name.clone(), tried(name))).collect()
+    }
+
+    /// What of the rig's bytes the unit gets as frames; the rest is wanted of the instruments.
+    pub fn take(&mut self, now: Instant, bytes: &[u8], out: &mut Vec<u8>) {
+        self.to_unit.0.extend_from_slice(bytes);
+        while let Some((header, message)) = self.to_unit.next(out) {
+            let placed = |name: &str| self.places.stimuli.contains_key(name);
+            match message {
+                Message::IoInput(input) => {
+                    let left = self.place(now, input);
+                    if !self.places.leaves_no_input() {
+                        send(&header, &left.into(), out);
+                    }
+                }
+                Message::Crosstalk(_) if placed("crosstalk") => {}
+                Message::CabEntries(_) | Message::WheelEntry(_) if placed("entries") => {}
+                _ if header.channel == Channel::Twc && placed("twc") => {}
+                other => send(&header, &other, out),
+            }
+        }
+        self.workers
+            .iter()
+            .for_each(|worker| worker.feed(&self.wanted));
+    }
+
+    /// Puts what instruments read into the bytes of the unit.
+    ///
+    /// # Errors
+    /// An instrument does not do its part; all outputs are off then.
+    pub fn give(
+        &mut self,
+        now: Instant,
+        bytes: &[u8],
+        out: &mut Vec<u8>,
+    ) -> Result<(), LinkTrouble> {
+        self.from_unit.0.extend_from_slice(bytes);
+        while let Some((header, message)) = self.from_unit.next(out) {
+            match message {
+                Message::IoOutput(_) if self.places.leaves_no_output() => {}
+                Message::IoOutput(output) => {
+                    self.outputs = output;
+                    send(&header, &self.read().into(), out);
+                }
+                other => send(&header, &other, out),
+            }
+        }
+        if self.places.leaves_no_output() {
+            let read = self.read().into();
+            self.link.send(now, &read, out);
+        }
+        let faulty = self.workers.iter().find_map(|worker| {
+            let fault = worker.readings(|_, _| {}).err()?;
+            Some(trouble(&worker.name, fault))
+        });
+        match faulty {
+            Some(faulty) => {
+                self.release();
+                Err(faulty)
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// How late the latest instrument was since this was last asked.
+    pub fn take_late(&mut self) -> protocol::Duration {
+        let late = self.workers.iter().map(Worker::take_late);
+        late.max().unwrap_or(protocol::Duration::ZERO)
+    }
+
+    /// Switches all outputs off, in the order of the bench file.
+    pub fn release(&mut self) {
+        // One that does not answer takes no time of the others.
+        let each = SAFE_WITHIN / (self.workers.len() as u32).max(1);
+        self.workers.iter_mut().for_each(|worker| worker.end(each));
+    }
+
+    /// Takes out of the inputs what has a place.
+    fn place(&mut self, now: Instant, mut input: IoInput) -> IoInput {
+        let placed = |name: &str| self.places.stimuli.contains_key(name);
+        let mut want = |name, values: &[(&'static str, f64)]| {
+            self.wanted
+                .insert(name, values.iter().copied().collect::<Values>());
+        };
+        for (name, line) in lines().filter(|(name, _)| placed(name)) {
+            want(
+                name,
+                &[("on", f64::from(u8::from(input.lines.contains(line))))],
+            );
+            input.lines.remove(line);
+        }
+        if placed("code") {
+            let (rate_hz, level_mv) = (
+                f64::from(input.code_rate_chz) / 100.0,
+                f64::from(input.level_mv),
+            );
+            let carrier_hz = f64::from(input.carrier_hz);
+            // Without a carrier there is none, whatever its level.
+            let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
+            want(
+                "code",
+                &[
+                    ("carrier_hz", carrier_hz),
+                    ("rate_hz", rate_hz),
+                    ("period_s", if rate_hz > 0.0 { 1.0 / rate_hz } else { 0.0 }),
+                    ("level_mv", level_mv),
+                    ("level_v", level_mv / 1000.0),
+                ],
+            );
+            (input.carrier_hz, input.code_rate_chz, input.level_mv) = (0, 0, 0);
+        }
+        let tachos = [
+            ("tacho1", &mut input.tacho1_count, &mut input.tacho1_edge_us),
+            ("tacho2", &mut input.tacho2_count, &mut input.tacho2_edge_us),
+        ];
+        for (channel, (name, count, age_us)) in tachos.into_iter().enumerate() {
+            if placed(name) {
+                let backward = input.tacho_backward >> channel & 1;
+                let hz = self.pulses[channel].step(now, *count, *age_us);
+                want(name, &[("hz", hz), ("backward", f64::from(backward))]);
+                input.tacho_backward &= !(1 << channel);
+                (*count, *age_us) = (0, 0);
+            }
+        }
+        if placed("marker") {
+            let (psm, count) = (f64::from(input.marker), f64::from(input.marker_edges));
+            want("marker", &[("psm", psm), ("count", count)]);
+            (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, 0);
+        }
+        if placed("mode_switch") {
+            want(
+                "mode_switch",
+                &[("position", f64::from(input.mode_switch.code()))],
+            );
+            input.mode_switch = ModeSwitch::Off;
+        }
+        if placed("controller") {
+            input.controller = 0;
+        }
+        input
+    }
+
+    /// Contacts and displays as they are read.
+    fn read(&self) -> IoOutput {
+        let mut output = self.outputs;
+        for (signal, point) in &self.places.readings {
+            if let Place::None | Place::Operator(_) = point.place() {
+                set(
+                    &mut output,
+                    *signal,
+                    f64::from(u8::from(*signal == Signal::Eb)),
+                );
+            }
+        }
+        for worker in &self.workers {
+            // A fault is told at the end of the scan.
+            let _ = worker.readings(|signal, value| set(&mut output, signal, value));
+        }
+        output
+    }
+}
+
+impl Drop for Placed {
+    fn drop(&mut self) {
+        self.release();
+    }
+}
+
+/// Bytes between flags.
+#[derive(Default)]
+struct Bodies(Vec<u8>);
+
+impl Bodies {
+    /// The next that is whole, stuffed as it came; what is no frame, as one that is damaged on purpose, goes on as it is.
+    fn next(&mut self, out: &mut Vec<u8>) -> Option<(Header, Message)> {
+        loop {
+            let end = self.0.iter().position(|byte| *byte == FLAG)?;
+            let body: Vec<u8> = self.0.drain(..=end).collect();
+            if body.len() == 1 {
+                continue;
+            }
+            let mut decoder = Decoder::new();
+            decoder.push(&[FLAG]);
+            decoder.push(&body);
+            let read = decoder.next_frame().and_then(Result::ok);
+            let read = read.and_then(|(header, payload)| {
+                Some((header, Message::decode(header.channel, payload).ok()?))
+            });
+            if read.is_some() {
+                return read;
+            }
+            out.push(FLAG);
+            out.extend_from_slice(&body);
+        }
+    }
+}
+
+fn send(header: &Header, message: &Message, out: &mut Vec<u8>) {
+    let mut payload = Vec::new();
+    message.encode(&mut payload);
+    encode(header, &payload, out);
+}
+
+fn set(output: &mut IoOutput, signal: Signal, value: f64) {
+    let cms = || Speed::from_kmh(value).to_cms();
+    match signal {
+        // A brake that is applied is a relay that is not energised.
+        Signal::Eb => output.outputs.set(Outputs::EB_RELAY, value == 0.0),
+        Signal::Limit => output.limit_cms = cms(),
+        Signal::Speed => output.speed_cms = cms(),
+        Signal::Marker => output.marker = value as u8,
+        Signal::MarkerCount => output.marker_count = value as u8,
+        _ => {
+            let row = READINGS.iter().find(|(known, _)| *known == signal);
+            let contact = row.map_or(Outputs::empty(), |(_, contact)| *contact);
+            output.outputs.set(contact, value == 1.0);
+        }
+    }
+}
+
+/// Frequency of pulses, from their count and the age of the last one.
+#[derive(Debug, Default)]
+pub(super) struct PulseRate {
+    last: Option<(u16, u64)>,
+    period_us: u64,
+    hz: f64,
+    told: f64,
+}
+
+impl PulseRate {
+    pub fn step(&mut self, now: Instant, count: u16, age_us: u16) -> f64 {
+        let now_us = now.as_us();
+        let edge_us = now_us.saturating_sub(u64::from(age_us));
+        match self.last {
+            Some((before, at_us)) if before == count => {
+                let since_us = now_us.saturating_sub(at_us);
+                // A pulse that does not come says that the next is not sooner than now; two, that the wheel stands.
+                self.hz = match since_us > STANDS_AFTER * self.period_us {
+                    true => 0.0,
+                    false => self.hz.min(1e6 / since_us.max(1) as f64),
+                };
+            }
+            Some((before, at_us)) => {
+                let pulses = u64::from(count.wrapping_sub(before));
+                self.period_us = (edge_us.saturating_sub(at_us) / pulses).max(1);
+                self.hz = 1e6 * pulses as f64 / edge_us.saturating_sub(at_us).max(1) as f64;
+                self.last = Some((count, edge_us));
+            }
+            None => self.last = Some((count, edge_us)),
+        }
+        if (self.hz - self.told).abs() > SAME_HZ * self.hz || self.hz == 0.0 {
+            self.told = self.hz;
+        }
+        self.told
+    }
+}

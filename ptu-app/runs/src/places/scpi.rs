@@ -1,0 +1,164 @@
+//! A SCPI instrument over TCP: lines out, lines in, its error queue after each command.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
+use std::sync::Arc;
+
+use btu_rig::rig::InstrumentFault;
+use protocol::signal::Signal;
+
+use super::file::{Place, Places, Point, act_of};
+use super::modbus::{connect, io_fault};
+use super::model::{Model, filled};
+use super::worker::{Instrument, Values, Wanted};
+
+/// Number of the error that says that its queue is full (SCPI-99 21.8.11).
+const QUEUE_OVERFLOW: i32 = -350;
+
+/// A connected instrument.
+pub(super) struct Scpi {
+    stream: BufReader<TcpStream>,
+    model: Arc<Model>,
+    stimuli: Vec<(&'static str, Point)>,
+    readings: Vec<(Signal, Point)>,
+    set: Wanted,
+}
+
+impl Scpi {
+    /// Connects and checks: the model, and an error queue that is empty.
+    pub fn open(places: &Places, name: &str, address: &str) -> Result<Self, InstrumentFault> {
+        let here = |point: &Point| point.place() == Place::Instrument(name);
+        let stimuli = places.stimuli.iter().filter(|(_, point)| here(point));
+        let readings = places.readings.iter().filter(|(_, point)| here(point));
+        let missing = || InstrumentFault::NotThere {
+            at: address.to_owned(),
+            why: "no driver".into(),
+        };
+        let mut scpi = Self {
+            stream: BufReader::new(connect(address)?),
+            model: places.models.get(name).cloned().ok_or_else(missing)?,
+            stimuli: stimuli.map(|(at, point)| (*at, point.clone())).collect(),
+            readings: readings.map(|(at, point)| (*at, point.clone())).collect(),
+            set: Wanted::new(),
+        };
+        let found = scpi.ask("*IDN?")?;
+        if !found.contains(&scpi.model.idn) {
+            return Err(InstrumentFault::OtherModel {
+                found,
+                expected: scpi.model.idn.clone(),
+            });
+        }
+        for command in scpi.model.clone().begin.iter() {
+            scpi.command(command)?;
+        }
+        scpi.off()?;
+        Ok(scpi)
+    }
+
+    fn say(&mut self, line: &str) -> Result<(), InstrumentFault> {
+        let sent = self
+            .stream
+            .get_mut()
+            .write_all(format!("{line}\n").as_bytes());
+        sent.map_err(|error| io_fault(&error))
+    }
+
+    fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
+        self.say(question)?;
+        let mut answer = String::new();
+        match self.stream.read_line(&mut answer) {
+            Ok(0) => Err(InstrumentFault::Disconnected(question.to_owned())),
+            Ok(_) => Ok(answer.trim().to_owned()),
+            Err(error) => Err(io_fault(&error)),
+        }
+    }
+
+    /// Sends a command, and asks whether it was taken.
+    fn command(&mut self, command: &str) -> Result<(), InstrumentFault> {
+        self.say(command)?;
+        let asked = self.model.error.clone();
+        let error = self.ask(&asked)?;
+        let number = error.split(',').next().unwrap_or_default().trim();
+        match number.parse::<i32>() {
+            Ok(0) => Ok(()),
+            Ok(QUEUE_OVERFLOW) => Err(InstrumentFault::QueueFull(error)),
+            Ok(_) => Err(InstrumentFault::Refused {
+                command: command.to_owned(),
+                error,
+            }),
+            Err(_) => Err(InstrumentFault::NoAnswer {
+                asked,
+                found: error,
+            }),
+        }
+    }
+
+    fn act(&mut self, stimulus: &str, channel: u8, values: &Values) -> Result<(), InstrumentFault> {
+        let model = self.model.clone();
+        let act = act_of(stimulus).and_then(|act| model.acts.get(act));
+        let Some(act) = act else {
+            return Ok(());
+        };
+        let value = |name| values.get(name).copied();
+        let is_off = value("level_mv") == Some(0.0) || value("hz") == Some(0.0);
+        let commands = match (is_off, value("rate_hz")) {
+            (true, _) => &act.off,
+            (false, Some(0.0)) => &act.unmodulated,
+            _ => &act.on,
+        };
+        let mut values = values.clone();
+        values.insert("channel", f64::from(channel));
+        if !is_off && let Some(fault) = model.out_of_range(&values) {
+            return Err(fault);
+        }
+        commands
+            .iter()
+            .try_for_each(|command| self.command(&filled(command, &values)))
+    }
+}
+
+impl Instrument for Scpi {
+    fn cycle(
+        &mut self,
+        wanted: &Wanted,
+        read: &mut BTreeMap<Signal, f64>,
+    ) -> Result<bool, InstrumentFault> {
+        let mut did = !self.readings.is_empty();
+        for (name, point) in self.stimuli.clone() {
+            let Some(values) = wanted
+                .get(name)
+                .filter(|values| self.set.get(name) != Some(values))
+            else {
+                continue;
+            };
+            self.act(name, point.channel, values)?;
+            self.set.insert(name, values.clone());
+            did = true;
+        }
+        for (signal, point) in self.readings.clone() {
+            let model = self.model.clone();
+            let Some(asked) = point.read.as_ref().and_then(|read| model.reads.get(read)) else {
+                continue;
+            };
+            let found = self.ask(&asked.ask)?;
+            let field = found.split(',').nth(asked.field).unwrap_or_default();
+            let Ok(value) = field.trim().parse::<f64>() else {
+                return Err(InstrumentFault::NoAnswer {
+                    asked: asked.ask.clone(),
+                    found,
+                });
+            };
+            read.insert(signal, value * point.scale.unwrap_or(1.0));
+        }
+        Ok(did)
+    }
+
+    fn off(&mut self) -> Result<(), InstrumentFault> {
+        self.set.clear();
+        let commands = self.model.off.clone();
+        commands
+            .iter()
+            .try_for_each(|command| self.command(command))
+    }
+}
