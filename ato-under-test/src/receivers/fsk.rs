@@ -31,14 +31,6 @@ pub struct Tones {
 }
 
 impl Tones {
-    /// 9 650 ± 150 Hz, as a public data sheet of a TWC has it (Alstom); the bit rate is a default: at 300 bit/s the tones
-    /// are orthogonal.
-    pub const DEFAULT: Self = Self {
-        middle_hz: 9_650.0,
-        apart_hz: 150.0,
-        bit_rate: 300.0,
-    };
-
     /// Those of a unit configuration.
     pub fn of(twc: &TwcConfig) -> Self {
         Self {

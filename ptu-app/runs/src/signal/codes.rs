@@ -4,7 +4,7 @@ use ato_under_test::receivers::{CodeReceiver, Heard, Reception};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::read::Source;
-use super::receive::{Clock, MOST};
+use super::receive::{ASKED_EVERY_S, Clock, MOST};
 
 /// A code that is not heard for so long has ended, s.
 const ENDS_AFTER_S: f64 = 0.3;
@@ -50,7 +50,7 @@ pub(super) struct Carrier<'a> {
     pub(super) under_way: Option<Source>,
     /// What is heard now, and since when without a break, s.
     now: Option<(String, f64)>,
-    /// How long another code is heard before it is listed, s: a jump of the phase passes meanwhile.
+    /// How long a code is heard before it is listed, s: noise and a jump of the phase pass meanwhile.
     patience_s: f64,
     /// Askings whose mean it tells.
     askings: f64,
@@ -64,7 +64,9 @@ impl<'a> Carrier<'a> {
         let detected_s = f64::from(unit.receiver.detect_ms) / 1_000.0;
         Self {
             carrier_hz: code.carrier_hz,
-            patience_s: detected_s - f64::from(receiver.window_s()),
+            // Two askings in a row at least, and else until the one that is nearest.
+            patience_s: (detected_s - f64::from(receiver.window_s())).max(ASKED_EVERY_S)
+                - 0.5 * ASKED_EVERY_S,
             receiver,
             now: None,
             codes: vec![code],
@@ -96,8 +98,8 @@ impl<'a> Carrier<'a> {
             self.now = Some((what.clone(), at_s));
         }
         let since_s = self.now.as_ref().map_or(at_s, |(_, since_s)| *since_s);
-        let is_other = (self.under_way.as_ref()).is_some_and(|source| source.what != what);
-        if is_other && at_s - since_s < self.patience_s {
+        let is_listed = (self.under_way.as_ref()).is_some_and(|source| source.what == what);
+        if !is_listed && at_s - since_s < self.patience_s {
             return true;
         }
         let began_s = (since_s - f64::from(self.receiver.window_s())).max(0.0);
@@ -130,6 +132,7 @@ impl<'a> Carrier<'a> {
                     level_mv: Some(f64::from(heard.level_mv)),
                     snr_db: heard.snr_db.map(f64::from),
                     bad_bytes: None,
+                    tacho: None,
                 };
                 done.extend(under_way.replace(source));
             }

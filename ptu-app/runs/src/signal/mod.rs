@@ -5,19 +5,27 @@ mod codes;
 mod coil_tests;
 mod make;
 mod markers;
+mod meter;
 mod picture;
 mod read;
+#[cfg(test)]
+mod reading_tests;
 mod receive;
+mod tacho;
 #[cfg(test)]
 mod tests;
 mod twc;
 mod wav;
 mod wav_head;
 
-pub use make::{Made, Samples, Strength, Wave, bytes_of, make, reference_hz, rest_hz, samples};
+pub use btu_rig::waveform::Teeth;
+pub use make::{
+    Made, Samples, Strength, Wave, bytes_of, make, make_tacho, reference_hz, rest_hz, samples,
+};
 pub use picture::{Columns, Picture, Span};
-pub use read::{NotUnderstood, Reading, Source, Why, read, read_and_picture};
+pub use read::{Level, NotUnderstood, Reading, Source, Why, read, read_and_picture};
 pub use receive::Receivers;
+pub use tacho::{Tacho, read_tacho};
 pub use wav::{End, Wav};
 
 /// Samples a second of what is made.
