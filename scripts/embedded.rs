@@ -79,4 +79,6 @@ pub static FILES: &[(&str, &[u8])] = files![
     "units/seoul34.toml",
     "units/sg100.toml",
     "units/structure.toml",
+    "units/us_cab.toml",
+    "units/zpw2000.toml",
 ];

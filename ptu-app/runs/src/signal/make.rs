@@ -106,7 +106,8 @@ pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Sam
                 rate_hz,
                 ..
             } = code(unit, name)?;
-            let wave = CodeWave::new(*carrier_hz, *rate_hz, level_mv, rate);
+            let wave = CodeWave::new(*carrier_hz, *rate_hz, level_mv, rate)
+                .shifted(unit.receiver.shift_hz, rate);
             let count = (seconds * rate).round() as usize;
             (Box::new(wave.take(count)), CODE_BAND_HZ)
         }

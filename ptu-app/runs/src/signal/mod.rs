@@ -1,8 +1,10 @@
 //! Signals as waveforms in files: made by the bench's generators, read by the unit's receivers.
 
+mod audible;
 mod codes;
 #[cfg(test)]
 mod coil_tests;
+mod fit;
 mod make;
 mod markers;
 mod meter;
@@ -15,9 +17,12 @@ mod tacho;
 #[cfg(test)]
 mod tests;
 mod twc;
+#[cfg(test)]
+mod types_tests;
 mod wav;
 mod wav_head;
 
+pub use audible::unheard;
 pub use btu_rig::waveform::Teeth;
 pub use make::{
     Made, Samples, Strength, Wave, bytes_of, make, make_tacho, reference_hz, rest_hz, samples,

@@ -219,14 +219,10 @@ impl<'a> Channel<'a> {
     fn new(number: usize, unit: &'a UnitConfig, sample_hz: f64) -> (Self, Vec<f64>) {
         let mut carriers: Vec<Carrier<'_>> = Vec::new();
         let mut too_high = Vec::new();
-        for code in &unit.codes {
-            if let Some(known) = (carriers.iter_mut()).find(|of| of.carrier_hz == code.carrier_hz) {
-                known.codes.push(code);
-                known.rates_hz.push(code.rate_hz as f32);
-            } else if sample_hz >= LEAST_RATE * code.carrier_hz {
-                carriers.push(Carrier::new(code, unit, sample_hz));
-            } else if !too_high.contains(&code.carrier_hz) {
-                too_high.push(code.carrier_hz);
+        for carrier_hz in unit.carriers_hz() {
+            match sample_hz >= LEAST_RATE * carrier_hz {
+                true => carriers.push(Carrier::new(carrier_hz, unit, sample_hz)),
+                false => too_high.push(carrier_hz),
             }
         }
         let highest = unit.twc.middle_hz + unit.twc.apart_hz;
@@ -279,13 +275,15 @@ impl<'a> Channel<'a> {
     fn tell(&self, reading: &mut Reading) {
         let twc = self.twc.iter();
         let of_twc = twc.flat_map(|twc| twc.done.iter().chain(&twc.under_way));
-        let under_way = (self.codes.carriers.iter()).flat_map(|of| of.under_way.as_ref());
+        let under_way: Vec<_> = (self.codes.carriers.iter())
+            .filter_map(Carrier::under_way)
+            .collect();
         let of_markers = self.markers.iter().flat_map(|markers| &markers.done);
         let all = self
             .codes
             .done
             .iter()
-            .chain(under_way)
+            .chain(&under_way)
             .chain(of_twc)
             .chain(of_markers);
         let room = MOST.saturating_sub(reading.sources.len());

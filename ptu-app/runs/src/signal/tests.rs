@@ -348,7 +348,7 @@ fn figures_of_the_receivers() {
     let mut noises = protocol::Random::new(2_026);
     let mut decide = |wave: &mut dyn Iterator<Item = f64>, snr_db: f64| {
         let noise = Noise::new(500.0, snr_db, 320.0, RATE, noises.bits());
-        let mut receiver = CodeReceiver::new(Reception::of(&unit().receiver, 3_000.0), RATE as f32);
+        let mut receiver = CodeReceiver::new(Reception::of(&unit(), 3_000.0), RATE as f32);
         for (signal, noise) in wave.zip(noise).take(28_800) {
             receiver.take((signal + noise) as f32);
         }
