@@ -40,6 +40,7 @@ pub static FILES: &[(&str, &[u8])] = files![
     "diagnosis.toml",
     "dictionary.zst",
     "dictionary_ptu.zst",
+    "departure/departure.star",
     "door/interlocks.star",
     "fleet.toml",
     "korean.toml",
