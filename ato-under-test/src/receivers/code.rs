@@ -443,19 +443,7 @@ impl CodeReceiver {
         let codes = [0, 1].map(|code| both[0][code].amplitude.max(both[1][code].amplitude));
         let weaker = both[0][usize::from(codes[1] < codes[0])];
         let level_mv = codes[0].min(codes[1]) * (PI / 2.0) / SQRT_2;
-        // The end of the code before is in the older half alone.
-        let half = self.window / 2;
-        let goes_on = [(0, half), (half, self.window)]
-            .into_iter()
-            .all(|(from, to)| {
-                let mean = mean_of(&on.values[from..to], |value| value);
-                [slow_hz, fast_hz].into_iter().all(|rate| {
-                    let of_half = self.tone(&on, mean, rate, from, to).amplitude;
-                    of_half > 0.5 * tone(&on, rate).amplitude
-                })
-            });
-        let is_code =
-            goes_on && unexplained > SECOND * power && level_mv >= self.reception.level_min_mv;
+        let is_code = unexplained > SECOND * power && level_mv >= self.reception.level_min_mv;
         is_code.then_some(Heard {
             carrier_hz,
             rate_hz: weaker.rate_hz,
