@@ -41,6 +41,7 @@ pub static FILES: &[(&str, &[u8])] = files![
     "diagnosis.toml",
     "dictionary.zst",
     "dictionary_ptu.zst",
+    "departure/departure.star",
     "door/interlocks.star",
     "fleet.toml",
     "instruments/generator.toml",
@@ -83,4 +84,6 @@ pub static FILES: &[(&str, &[u8])] = files![
     "units/seoul34.toml",
     "units/sg100.toml",
     "units/structure.toml",
+    "units/us_cab.toml",
+    "units/zpw2000.toml",
 ];

@@ -234,9 +234,7 @@ pub fn lookup(signal: AntennaSignal, config: &UnitConfig) -> Code {
     if !in_level(signal, receiver) {
         return Code::None;
     }
-    let on_carrier = |code: &&SpeedCode| {
-        libm::fabs(signal.carrier_hz - code.carrier_hz) <= receiver.carrier_tolerance_hz
-    };
+    let on_carrier = |code: &&SpeedCode| config.is_on_carrier(code, signal.carrier_hz);
     if signal.rate_hz == 0.0 {
         let heard = config.codes.iter().any(|code| on_carrier(&code));
         return if heard {

@@ -1,4 +1,5 @@
-//! The receiver of ATP speed codes: a carrier that is keyed on and off at the code rate.
+//! The receiver of ATP speed codes: a carrier that is keyed on and off at the code rate, or shifted up and down at it
+//! (`shifted.rs`).
 //!
 //! The last values of the envelope, a window, are brought to the phase of the carrier, so that two codes at once add up and
 //! noise has no mean. They are judged as a whole and in three halves that overlap: a rate counts only if each has it, with
@@ -6,26 +7,31 @@
 
 use core::f32::consts::{PI, SQRT_2, TAU};
 
-use protocol::config::ReceiverConfig;
+use protocol::config::UnitConfig;
 
 use super::downmix::{Downmix, Phasor};
 
 /// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
+/// Both are those of codes from this rate on, Hz; a table whose fastest code is slower has as much less.
+const FAST_HZ: f32 = 20.0;
 /// Most values of a window.
-const MOST: usize = 400;
+pub(super) const MOST: usize = 400;
 /// Share of the time until a code is decoded that the window holds. In the rest the code must stay what it is: longer than
 /// a jump of the phase takes from the window's one end to where its other end no longer feels it.
 const SHARE_OF_DETECTION: f32 = 0.75;
 /// Shortest and longest window, s.
 const SHORTEST_S: f32 = 0.2;
 const LONGEST_S: f32 = 0.62;
+/// Periods of the slowest code that a window holds at least, if that is within this share of the time of detection.
+const PERIODS: f32 = 1.98;
+const SHARE_OF_SLOW: f32 = 0.88;
 /// Of noise alone, the weaker half of all values has this share of the mean power.
 const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
 /// Least share of the keying's power that the rate's fundamental has, of the window and of each half. A square wave has
 /// 0.81; two codes spliced in the window, or noise, have less.
-const LEAST_SHARE: f32 = 0.55;
+pub(super) const LEAST_SHARE: f32 = 0.55;
 const LEAST_SHARE_OF_HALF: f32 = 0.4;
 /// Share of a square wave's power at its fundamental, and how near to it a code must come: less is another shape, as of a
 /// jump of the phase.
@@ -33,11 +39,15 @@ const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
 const NEARLY: f32 = 0.88;
 /// Share of what the stronger code leaves unexplained that a weaker one at another rate has, if that is what it is.
 const EXPLAINED: f32 = 0.7;
+/// Least share of the keying's power that a second code has which a receiver without selection hears.
+const SECOND: f32 = 0.05;
 /// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
 const WHOLE: f32 = 0.88;
 /// Periods of a rate in half a window with fewer of which its mean and its tone there are told apart step by step.
 const FEW_PERIODS: f32 = 1.4;
 const STEPS: usize = 3;
+/// Most that the phase of a code that shifts turns more from the middle of the window on than up to it, rad.
+const BENDS: f32 = 0.6;
 /// Least amplitude of a rate in the newest half of the window over that in the oldest, and most that it is off a code's, Hz:
 /// else it has just ended.
 const GOES_ON: f32 = 0.9;
@@ -71,17 +81,37 @@ pub struct Reception {
     pub apart_db: f32,
     /// Time for which a code must be there until it is decoded, s.
     pub detect_s: f32,
+    /// By how much the code shifts the carrier, Hz; 0 = it keys it.
+    pub shift_hz: f32,
+    /// Slowest and fastest rate of the table, Hz.
+    pub rates_hz: (f32, f32),
 }
 
 impl Reception {
     /// A carrier as a unit of this configuration receives it.
-    pub fn of(receiver: &ReceiverConfig, carrier_hz: f64) -> Self {
+    pub fn of(config: &UnitConfig, carrier_hz: f64) -> Self {
+        let receiver = &config.receiver;
+        let rates = config.codes.iter().map(|code| code.rate_hz as f32);
         Self {
             carrier_hz: carrier_hz as f32,
             level_min_mv: receiver.level_min_mv as f32,
             apart_db: receiver.apart_db as f32,
             detect_s: receiver.detect_ms as f32 / 1000.0,
+            shift_hz: receiver.shift_hz as f32,
+            rates_hz: rates.fold((f32::MAX, 0.0), |(low, high), rate| {
+                (low.min(rate), high.max(rate))
+            }),
         }
+    }
+
+    /// Longest window, s: with enough periods of the slowest code.
+    fn longest_s(&self) -> f32 {
+        LONGEST_S.max(PERIODS / self.rates_hz.0)
+    }
+
+    /// Shortest time of detection in which the window holds the slowest code, s.
+    pub fn least_detect_s(&self) -> f32 {
+        PERIODS / self.rates_hz.0 / SHARE_OF_SLOW
     }
 }
 
@@ -107,37 +137,39 @@ pub struct Heard {
 /// Receives the codes of one carrier.
 #[derive(Clone, Debug)]
 pub struct CodeReceiver {
-    downmix: Downmix,
-    reception: Reception,
+    pub(super) downmix: Downmix,
+    pub(super) reception: Reception,
     /// Ratio of the powers of two codes of which the stronger counts.
     apart: f32,
+    /// Share of the steps of rates that fit a usual window.
+    finer: f32,
     line: [Phasor; MOST],
-    window: usize,
+    pub(super) window: usize,
     place: usize,
     filled: usize,
 }
 
 /// The window on the carrier's phase.
-struct OnCarrier {
-    values: [f32; MOST],
+pub(super) struct OnCarrier {
+    pub(super) values: [f32; MOST],
     /// Power of the noise on either side of that phase, mV²: the least that quadrature and pauses tell, since a jump of the
     /// carrier's phase is in the quadrature, too.
-    noise: f32,
+    pub(super) noise: f32,
     /// Power in quadrature beyond that noise, mV²: of a jump of the carrier's phase, or of another code.
-    beside: f32,
-    offset_hz: f32,
+    pub(super) beside: f32,
+    pub(super) offset_hz: f32,
 }
 
 /// A rate in a part of the window.
 #[derive(Clone, Copy)]
-struct Tone {
-    rate_hz: f32,
-    amplitude: f32,
+pub(super) struct Tone {
+    pub(super) rate_hz: f32,
+    pub(super) amplitude: f32,
     angle: f32,
 }
 
 impl Tone {
-    fn power(self) -> f32 {
+    pub(super) fn power(self) -> f32 {
         self.amplitude * self.amplitude / 2.0
     }
 }
@@ -145,11 +177,18 @@ impl Tone {
 impl CodeReceiver {
     /// For samples of this rate, Hz.
     pub fn new(reception: Reception, sample_hz: f32) -> Self {
-        let downmix = Downmix::new(reception.carrier_hz, sample_hz, ENVELOPE_HZ, PASS_HZ);
-        let window_s = (SHARE_OF_DETECTION * reception.detect_s).clamp(SHORTEST_S, LONGEST_S);
+        let slow = (reception.rates_hz.1 / FAST_HZ).min(1.0);
+        let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
+        let downmix = Downmix::new(reception.carrier_hz, sample_hz, envelope_hz, pass_hz);
+        let longest_s = reception.longest_s();
+        let slowest_s = (PERIODS / reception.rates_hz.0).min(SHARE_OF_SLOW * reception.detect_s);
+        let window_s = (SHARE_OF_DETECTION * reception.detect_s).clamp(SHORTEST_S, longest_s);
+        let window_s = window_s.max(slowest_s);
         let window = libm::roundf(window_s * downmix.envelope_hz()) as usize / 4 * 4;
         Self {
             downmix,
+            // A longer window tells rates apart that are nearer to each other.
+            finer: LONGEST_S / longest_s,
             apart: libm::powf(10.0, reception.apart_db / 10.0),
             reception,
             line: [Phasor::default(); MOST],
@@ -177,6 +216,9 @@ impl CodeReceiver {
     pub fn heard(&self, rates_hz: &[f32]) -> Option<Heard> {
         if self.filled < self.window || self.loudest() < self.reception.level_min_mv {
             return None;
+        }
+        if self.reception.shift_hz > 0.0 {
+            return self.heard_shifted(rates_hz);
         }
         let all = 0..self.window;
         let on = self.on_carrier();
@@ -236,7 +278,7 @@ impl CodeReceiver {
     }
 
     /// Values of the window from the oldest on.
-    fn values(&self) -> impl Iterator<Item = Phasor> + '_ {
+    pub(super) fn values(&self) -> impl Iterator<Item = Phasor> + '_ {
         let (late, early) = self.line[..self.window].split_at(self.place);
         early.iter().chain(late).copied()
     }
@@ -296,19 +338,24 @@ impl CodeReceiver {
 
     /// The strongest rate, what it is exactly, and whether it goes on through the window without a break, and at its end: of
     /// the table, or of all others.
-    fn rate(&self, on: &OnCarrier, mean: f32, table_hz: &[f32]) -> Option<(Tone, f32, [bool; 2])> {
+    pub(super) fn rate(
+        &self,
+        on: &OnCarrier,
+        mean: f32,
+        table_hz: &[f32],
+    ) -> Option<(Tone, f32, [bool; 2])> {
         let strongest = |rates: &mut dyn Iterator<Item = f32>| {
             let tones = rates.map(|rate_hz| self.tone(on, mean, rate_hz, 0, self.window));
             tones.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
         };
         let nearest = strongest(&mut table_hz.iter().copied())?;
         if let Some((offset_hz, lasts)) = self.offset_of_rate(on, nearest)
-            && offset_hz.abs() < RATE_STEP_HZ / 2.0
+            && offset_hz.abs() < self.finer * RATE_STEP_HZ / 2.0
         {
             return Some((nearest, nearest.rate_hz + offset_hz, lasts));
         }
         let steps = ((RATES_HZ.1 - RATES_HZ.0) / RATE_STEP_HZ) as usize;
-        let others = (0..steps).map(|step| RATES_HZ.0 + step as f32 * RATE_STEP_HZ);
+        let others = (0..steps).map(|step| self.finer * (RATES_HZ.0 + step as f32 * RATE_STEP_HZ));
         let nearest = strongest(&mut others.chain(table_hz.iter().copied()))?;
         let (offset_hz, lasts) = self.offset_of_rate(on, nearest)?;
         let rate_hz = nearest.rate_hz + offset_hz;
@@ -343,8 +390,69 @@ impl CodeReceiver {
         let least = whole.amplitude.min(halves[1].amplitude);
         let is_whole = least >= WHOLE * halves[0].amplitude.max(halves[2].amplitude);
         let as_strong = halves[2].amplitude >= GOES_ON * halves[0].amplitude;
-        let goes_on = as_strong && offset_hz.abs() < GOES_ON_HZ;
+        // One rate that becomes another next to it has the rate between them on the whole.
+        let turns = [0, 1].map(|half| wrapped(halves[half + 1].angle - halves[half].angle));
+        let bends = self.reception.shift_hz > 0.0 && wrapped(turns[1] - turns[0]).abs() > BENDS;
+        let is_whole = is_whole && !bends;
+        let goes_on = as_strong && offset_hz.abs() < self.finer * GOES_ON_HZ;
         Some((offset_hz, [is_whole, goes_on]))
+    }
+
+    /// The weaker of two codes at rates of the table, which a receiver hears that has lost its selection.
+    pub fn weaker(&self, rates_hz: &[f32]) -> Option<Heard> {
+        if self.filled < self.window || self.reception.shift_hz > 0.0 {
+            return None;
+        }
+        let on = self.on_carrier();
+        // Whatever the phase between the two carriers, one of both shows the weaker code.
+        let mut envelope = OnCarrier { ..on };
+        for (slot, value) in envelope.values.iter_mut().zip(self.values()) {
+            *slot = value.abs();
+        }
+        let mean = |on: &OnCarrier| mean_of(&on.values[..self.window], |value| value);
+        let tone = |on: &OnCarrier, rate| self.tone(on, mean(on), rate, 0, self.window);
+        let strongest = |a: &Tone, b: &Tone| a.amplitude.total_cmp(&b.amplitude);
+        let rates = || rates_hz.iter().copied();
+        let one = rates().map(|rate| tone(&on, rate)).max_by(strongest)?;
+        let apart_hz = 2.0 / self.window_s();
+        let others = rates().filter(|rate| (rate - one.rate_hz).abs() > apart_hz);
+        let carrier_hz = self.reception.carrier_hz + on.offset_hz;
+        let power = power_around(&on.values[..self.window], mean(&on));
+        let unexplained = power - on.noise - one.power() / OF_SQUARE_WAVE + on.beside;
+        // The third harmonic of the slower one may lie near the faster one.
+        let step = TAU / self.downmix.envelope_hz();
+        let without_third = |of: &OnCarrier, rate: f32| {
+            let (mut rest, slow) = (OnCarrier { ..*of }, tone(of, rate));
+            for (place, value) in rest.values[..self.window].iter_mut().enumerate() {
+                let angle = 3.0 * (slow.angle + step * rate * place as f32);
+                *value += slow.amplitude / 3.0 * Phasor::at(angle).re;
+            }
+            rest
+        };
+        let rests = [&on, &envelope].map(|of| without_third(of, one.rate_hz));
+        let others = others.flat_map(|rate| [tone(&rests[0], rate), tone(&rests[1], rate)]);
+        let other = others.max_by(strongest)?;
+        let slow_hz = one.rate_hz.min(other.rate_hz);
+        let fast_hz = one.rate_hz.max(other.rate_hz);
+        let both = [&on, &envelope].map(|of| {
+            [
+                tone(of, slow_hz),
+                tone(&without_third(of, slow_hz), fast_hz),
+            ]
+        });
+        let codes = [0, 1].map(|code| both[0][code].amplitude.max(both[1][code].amplitude));
+        let weaker = both[0][usize::from(codes[1] < codes[0])];
+        let level_mv = codes[0].min(codes[1]) * (PI / 2.0) / SQRT_2;
+        let is_code = unexplained > SECOND * power && level_mv >= self.reception.level_min_mv;
+        is_code.then_some(Heard {
+            carrier_hz,
+            rate_hz: weaker.rate_hz,
+            level_mv,
+            validity: (weaker.power() / power).min(1.0),
+            snr_db: None,
+            goes_on: true,
+            is_clear: true,
+        })
     }
 
     /// Whether what a code does not explain of the window is a weaker one at another rate.
@@ -403,14 +511,14 @@ impl CodeReceiver {
 }
 
 /// Mean, over a Hann window, of what `of` makes of the values.
-fn mean_of(values: &[f32], of: impl Fn(f32) -> f32) -> f32 {
+pub(super) fn mean_of(values: &[f32], of: impl Fn(f32) -> f32) -> f32 {
     let weighted = values.iter().zip(hann(values.len()));
     let sum: f32 = weighted.map(|(value, w)| of(*value) * w).sum();
     sum * 2.0 / values.len() as f32
 }
 
 /// Power of what varies, mV².
-fn power_around(values: &[f32], mean: f32) -> f32 {
+pub(super) fn power_around(values: &[f32], mean: f32) -> f32 {
     mean_of(values, |value| (value - mean) * (value - mean))
 }
 

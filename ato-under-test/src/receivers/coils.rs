@@ -20,10 +20,14 @@ const COILS: usize = Coil::ALL.len();
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
 const HEARD_EARLY_MS: u64 = 150;
+/// The same of a slow code, and of one that shifts its carrier, as a share of the window, %.
+const HEARD_EARLY_PERCENT: u64 = 38;
 /// Time for which a code may be over when it is heard still: where noise may hide its end, ms; and where it does not go on
 /// through the window, a part of the window more.
 const HEARD_LATE_MS: u64 = 40;
 const HEARD_LATE_PART: u64 = 10;
+/// Window for which these hold, ms.
+const LONG_MS: u64 = 620;
 /// Scans for which the last code stands in for one that noise hides.
 const STANDS_IN: u8 = 3;
 /// Weakest level of TWC and of a marker, as a share of its configured one.
@@ -59,6 +63,10 @@ pub struct Coils {
     silent: [u8; COILS],
     /// What injected faults leave of the level between rail and ATP receiver.
     atp_gain: f32,
+    /// Codes shift their carrier.
+    shifts: bool,
+    /// An injected fault has the ATP receiver hear the weaker of two codes.
+    unselective: bool,
     /// The last code that was heard, and scans since.
     heard: Option<(Heard, u8)>,
 }
@@ -66,26 +74,17 @@ pub struct Coils {
 impl Coils {
     /// For a unit of this configuration; silent.
     pub fn new(config: &UnitConfig) -> Self {
-        let receiver = &config.receiver;
-        let mut codes: Vec<(CodeReceiver, Vec<f32>, f64)> = Vec::new();
-        for code in &config.codes {
-            let rate = code.rate_hz as f32;
-            if let Some(known) = codes.iter_mut().find(|known| known.2 == code.carrier_hz) {
-                known.1.push(rate);
-                continue;
-            }
-            let reception = Reception::of(receiver, code.carrier_hz);
-            let one = CodeReceiver::new(reception, SAMPLE_HZ);
-            codes.push((one, alloc::vec![rate], code.carrier_hz));
-        }
+        let codes = config.carriers_hz().into_iter().map(|carrier_hz| {
+            let reception = Reception::of(config, carrier_hz);
+            let on_it = (config.codes.iter()).filter(|code| config.is_on_carrier(code, carrier_hz));
+            let rates = on_it.map(|code| code.rate_hz as f32).collect();
+            (CodeReceiver::new(reception, SAMPLE_HZ), rates)
+        });
         let twc = &config.twc;
         let weakest = |level_mv: f64| (WEAKEST * level_mv) as f32;
         let marker = &config.marker;
         Self {
-            codes: codes
-                .into_iter()
-                .map(|(one, rates, _)| (one, rates))
-                .collect(),
+            codes: codes.collect(),
             twc: FskReceiver::new(Tones::of(twc), SAMPLE_HZ, weakest(twc.level_mv)),
             twc_bytes: Vec::new(),
             markers: MarkerReceiver::new(marker.tones_hz, SAMPLE_HZ, weakest(marker.level_mv)),
@@ -95,13 +94,17 @@ impl Coils {
             parts: [0; COILS],
             silent: [RESTS_AFTER; COILS],
             atp_gain: 1.0,
+            shifts: config.receiver.shift_hz > 0.0,
+            unselective: false,
             heard: None,
         }
     }
 
-    /// What injected faults leave of the level between rail and ATP receiver, from now on.
-    pub fn set_atp_gain(&mut self, gain: f32) {
+    /// What injected faults leave of the level between rail and ATP receiver from now on, and whether the weaker of two
+    /// codes is heard.
+    pub fn suffer(&mut self, gain: f32, unselective: bool) {
         self.atp_gain = gain;
+        self.unselective = unselective;
     }
 
     /// Takes samples of this scan; one that comes too late or twice is passed over.
@@ -143,11 +146,17 @@ impl Coils {
             input.level_mv = whole(heard.level_mv);
             let window_s = (self.codes.first()).map_or(0.0, |(receiver, _)| receiver.window_s());
             let window_ms = (window_s * 1000.0) as u64;
-            heard_for = Duration::from_ms(window_ms.saturating_sub(HEARD_EARLY_MS));
+            // The ends of a window that is longer still are longer, too.
+            let of_ends = |ms: u64| ms.max(ms * window_ms / LONG_MS);
+            let early_ms = match self.shifts || window_ms > LONG_MS {
+                true => window_ms * HEARD_EARLY_PERCENT / 100,
+                false => HEARD_EARLY_MS,
+            };
+            heard_for = Duration::from_ms(window_ms.saturating_sub(early_ms));
             let ends = stands_in > 0 || !heard.goes_on;
             lags = Duration::from_ms(match (ends, heard.is_clear) {
-                (true, _) => HEARD_LATE_MS + window_ms / HEARD_LATE_PART,
-                (false, false) => HEARD_LATE_MS,
+                (true, _) => of_ends(HEARD_LATE_MS) + window_ms / HEARD_LATE_PART,
+                (false, false) => of_ends(HEARD_LATE_MS),
                 (false, true) => 0,
             });
         }
@@ -171,7 +180,11 @@ impl Coils {
 
     /// The code in the antenna now, and for how many scans it has stood in.
     fn hear_code(&mut self) -> Option<(Heard, u8)> {
-        let now = (self.codes.iter()).find_map(|(receiver, rates)| receiver.heard(rates));
+        let unselective = self.unselective;
+        let now = (self.codes.iter()).find_map(|(receiver, rates)| {
+            let weaker = unselective.then(|| receiver.weaker(rates)).flatten();
+            weaker.or_else(|| receiver.heard(rates))
+        });
         self.heard = match (now, self.heard) {
             (Some(heard), _) => Some((heard, 0)),
             (None, Some((last, since))) if since < STANDS_IN => Some((last, since + 1)),

@@ -1,11 +1,13 @@
 //! From samples at the coil to the complex envelope of one carrier, at a rate that carries a code.
 
+use alloc::vec::Vec;
+
 use libm::{cosf, sinf};
 
 /// Length of the filter, in values that it gives.
 const LENGTH: usize = 8;
-/// Most taps of the filter: at 96 000 samples a second a code's envelope needs 1 280.
-const MOST_TAPS: usize = 1_536;
+/// Most taps of the filter: at 96 000 samples a second a slow code's envelope needs 5 688.
+const MOST_TAPS: usize = 8_192;
 
 /// A point of the complex envelope.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,27 +73,36 @@ pub struct Downmix {
     by: usize,
     /// Samples until the next value.
     left: usize,
-    line: [Phasor; MOST_TAPS],
+    line: Vec<Phasor>,
     place: usize,
-    taps: [f32; MOST_TAPS],
-    length: usize,
+    taps: Vec<f32>,
     envelope_hz: f32,
 }
 
 impl Downmix {
     /// For a carrier in samples of this rate: values at about `envelope_hz`, of what is within `pass_hz` of it.
     pub fn new(carrier_hz: f32, sample_hz: f32, envelope_hz: f32, pass_hz: f32) -> Self {
+        Self::of_length(carrier_hz, sample_hz, envelope_hz, pass_hz, LENGTH)
+    }
+
+    /// The same with a filter of so many values.
+    pub fn of_length(
+        carrier_hz: f32,
+        sample_hz: f32,
+        envelope_hz: f32,
+        pass_hz: f32,
+        values: usize,
+    ) -> Self {
         let by = (libm::roundf(sample_hz / envelope_hz) as usize).clamp(1, MOST_TAPS / LENGTH);
-        let length = LENGTH * by;
+        let length = values * by;
         Self {
             oscillator: Phasor { re: 1.0, im: 0.0 },
             turn: Phasor::at(-core::f32::consts::TAU * carrier_hz / sample_hz),
             by,
             left: by,
-            line: [Phasor::default(); MOST_TAPS],
+            line: alloc::vec![Phasor::default(); length],
             place: 0,
             taps: low_pass(pass_hz / sample_hz, length),
-            length,
             envelope_hz: sample_hz / by as f32,
         }
     }
@@ -109,7 +120,7 @@ impl Downmix {
         };
         // A division would be the dearest part.
         self.place += 1;
-        if self.place == self.length {
+        if self.place == self.line.len() {
             self.place = 0;
         }
         self.oscillator = self.oscillator.times(self.turn);
@@ -123,7 +134,7 @@ impl Downmix {
         self.oscillator.re /= length;
         self.oscillator.im /= length;
         let mut sum = Phasor::default();
-        let (late, early) = self.line[..self.length].split_at(self.place);
+        let (late, early) = self.line.split_at(self.place);
         for (value, tap) in early.iter().chain(late).zip(&self.taps) {
             sum.re += value.re * tap;
             sum.im += value.im * tap;
@@ -134,10 +145,10 @@ impl Downmix {
 
 /// A Hann-windowed low pass; its edge in cycles per sample. Its gain is 2: half of a real carrier is at the negative
 /// frequency.
-fn low_pass(edge: f32, length: usize) -> [f32; MOST_TAPS] {
-    let mut taps = [0.0; MOST_TAPS];
+fn low_pass(edge: f32, length: usize) -> Vec<f32> {
+    let mut taps = alloc::vec![0.0; length];
     let middle = (length - 1) as f32 / 2.0;
-    for (place, tap) in taps[..length].iter_mut().enumerate() {
+    for (place, tap) in taps.iter_mut().enumerate() {
         let from_middle = place as f32 - middle;
         let turn = core::f32::consts::TAU * (place as f32 + 0.5) / length as f32;
         let angle = core::f32::consts::TAU * edge * from_middle;

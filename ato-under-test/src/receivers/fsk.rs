@@ -10,10 +10,13 @@ use super::downmix::{Downmix, Phasor};
 const VALUES_PER_BIT: f32 = 20.0;
 /// Longest bit, values.
 const MOST: usize = 32;
-/// Values of a bit that the filter makes one independent value of.
-const VALUES_OF_ONE: f32 = 3.3;
-/// Where between the purity of noise and that of a signal at Eb/N0 of 10 dB the least mean purity of a byte's bits lies.
-const BETWEEN: f32 = 0.76;
+/// Length of the filter over that of a bit.
+const FILTER: f32 = 0.4;
+/// Least mean purity of a byte's bits: with that filter noise has 0.41, and its bytes differ by 0.057 (1 σ); a signal at Eb/N0
+/// of 8 dB has 0.74, and one byte of 14 less than this.
+const LEAST_PURITY: f32 = 0.68;
+/// Least level of a signal over that of silence: both tones are a little weaker behind the filter.
+const BEHIND_FILTER: f32 = 0.95;
 /// Bits of a byte, with start, parity and stop bit.
 const BITS: f32 = 11.0;
 /// Share of a timing error that a change between bits corrects.
@@ -31,14 +34,6 @@ pub struct Tones {
 }
 
 impl Tones {
-    /// 9 650 ± 150 Hz, as a public data sheet of a TWC has it (Alstom); the bit rate is a default: at 300 bit/s the tones
-    /// are orthogonal.
-    pub const DEFAULT: Self = Self {
-        middle_hz: 9_650.0,
-        apart_hz: 150.0,
-        bit_rate: 300.0,
-    };
-
     /// Those of a unit configuration.
     pub fn of(twc: &TwcConfig) -> Self {
         Self {
@@ -76,11 +71,14 @@ pub struct Demodulator {
 impl Demodulator {
     /// For samples of this rate, Hz.
     pub fn new(tones: Tones, sample_hz: f32) -> Self {
-        let downmix = Downmix::new(
+        let envelope_hz = (VALUES_PER_BIT * tones.bit_rate).min(sample_hz);
+        let values = libm::roundf(FILTER * envelope_hz / tones.bit_rate) as usize;
+        let downmix = Downmix::of_length(
             tones.middle_hz,
             sample_hz,
-            VALUES_PER_BIT * tones.bit_rate,
+            envelope_hz,
             2.0 * tones.apart_hz + tones.bit_rate,
+            values.max(3),
         );
         let value_hz = downmix.envelope_hz();
         let length = libm::roundf(value_hz / tones.bit_rate) as usize;
@@ -127,7 +125,7 @@ impl Demodulator {
         Some(BitHeard {
             lean: part(upper - lower, both),
             purity: part(both, all * self.length as f32),
-            amplitude_mv: libm::sqrtf(both) / self.length as f32,
+            amplitude_mv: libm::sqrtf(all / self.length as f32),
         })
     }
 }
@@ -137,9 +135,9 @@ impl Demodulator {
 pub struct BitHeard {
     /// By how much the upper tone was stronger, −1 to 1.
     pub lean: f32,
-    /// Share of the power within the band that the tones have: 1 of a tone, about 0.3 of noise.
+    /// Share of the power within the band that the tones have: 1 of a tone, about 0.4 of noise.
     pub purity: f32,
-    /// Amplitude of both tones, mV.
+    /// Amplitude of all within the band, mV: of the tones, also while one takes the other's place.
     pub amplitude_mv: f32,
 }
 
@@ -148,7 +146,6 @@ pub struct BitHeard {
 pub struct FskReceiver {
     demodulator: Demodulator,
     values_per_bit: f32,
-    least_purity: f32,
     level_min_mv: f32,
     last: f32,
     /// The bit that is received next, and the values until its end; none between bytes.
@@ -164,7 +161,6 @@ impl FskReceiver {
     pub fn new(tones: Tones, sample_hz: f32, level_min_mv: f32) -> Self {
         let demodulator = Demodulator::new(tones, sample_hz);
         Self {
-            least_purity: least_purity(demodulator.values_per_bit(tones.bit_rate)),
             values_per_bit: demodulator.values_per_bit(tones.bit_rate),
             demodulator,
             level_min_mv,
@@ -184,7 +180,7 @@ impl FskReceiver {
             amplitude_mv,
         } = self.demodulator.take(sample_mv)?;
         let last = core::mem::replace(&mut self.last, lean);
-        if amplitude_mv < self.level_min_mv * core::f32::consts::SQRT_2 {
+        if amplitude_mv < BEHIND_FILTER * self.level_min_mv * core::f32::consts::SQRT_2 {
             self.bit = None;
             self.last = 1.0;
             return None;
@@ -222,7 +218,7 @@ impl FskReceiver {
             9 => self.ones += u8::from(one),
             _ => {
                 self.bit = None;
-                if self.purity < self.least_purity * BITS {
+                if self.purity < LEAST_PURITY * BITS {
                     return None;
                 }
                 return Some(match (one, self.ones % 2) {
@@ -234,12 +230,4 @@ impl FskReceiver {
         }
         None
     }
-}
-
-/// Noise has power in each independent value of a bit, and the tones have two of these; a signal is in them whole.
-fn least_purity(values_per_bit: f32) -> f32 {
-    let values = (values_per_bit / VALUES_OF_ONE).max(2.0);
-    let of_noise = 2.0 / values;
-    let of_signal = (1.0 + 0.2) / (1.0 + 0.1 * values);
-    of_noise + BETWEEN * (of_signal - of_noise)
 }

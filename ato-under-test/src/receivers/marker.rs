@@ -3,7 +3,7 @@
 //! A marker is passed where its tone was strongest. Noise moves the strongest value, so the place is that of the top of a
 //! parabola through the logarithms of all values near it: a bell is one exactly.
 
-use super::downmix::Downmix;
+use super::downmix::{Downmix, Phasor};
 
 /// Rate of the envelope, about, Hz, and its pass band: a marker at 100 km/h swells within milliseconds.
 const ENVELOPE_HZ: f32 = 1_500.0;
@@ -12,11 +12,19 @@ const PASS_HZ: f32 = 220.0;
 const DELAY_VALUES: f32 = 4.0;
 /// Values that are kept of a passage; of a slow one each stands for several.
 const MOST: usize = 128;
-/// The tone has faded when it is below this share of its strongest value, and values above it tell the place.
-const FADED: f32 = 0.6;
+/// Values above this share of the strongest tell the place.
+const NEAR: f32 = 0.6;
+/// The tone has faded when it was below this share of its strongest value, or of the least level, for this part of the
+/// passage: noise on a slow one crosses any level more than once.
+const FADED: f32 = 0.35;
+const FADED_FOR: u32 = 8;
+/// By how much the logarithm falls from the top to where [`NEAR`] ends, over that of a bell.
+const OF_BELL: core::ops::RangeInclusive<f32> = 0.4..=2.5;
 /// Least level of a marker over the others' at the same time, and over all of its passage: noise is in each of them.
 const LEAST_RATIO: f32 = 2.0;
 const LEAST_RATIO_OF_ALL: f32 = 4.0;
+/// Most that a marker's tone is off its own, Hz.
+const OFF_HZ: f32 = 60.0;
 /// Fewest values of a passage: at 120 km/h a marker has nine.
 const FEWEST: u32 = 6;
 
@@ -36,6 +44,8 @@ pub struct Passed {
 pub struct MarkerReceiver {
     tones: [Downmix; 4],
     level_min_mv: f32,
+    /// The last value of each tone.
+    last: [Phasor; 4],
     passage: Option<Passage>,
     /// A marker was passed, and its tone is not silent yet.
     fading: bool,
@@ -55,6 +65,10 @@ struct Passage {
     own: f32,
     others: f32,
     count: u32,
+    /// Values since the tone was not faded.
+    faded: u32,
+    /// How far the tone's phase turns from value to value.
+    turned: Phasor,
 }
 
 impl MarkerReceiver {
@@ -63,6 +77,7 @@ impl MarkerReceiver {
         Self {
             tones: tones_hz.map(|tone| Downmix::new(tone as f32, sample_hz, ENVELOPE_HZ, PASS_HZ)),
             level_min_mv,
+            last: [Phasor::default(); 4],
             passage: None,
             fading: false,
         }
@@ -70,19 +85,20 @@ impl MarkerReceiver {
 
     /// Takes a sample, mV.
     pub fn take(&mut self, sample_mv: f32) -> Option<Passed> {
-        let mut levels = [None; 4];
-        for (level, tone) in levels.iter_mut().zip(&mut self.tones) {
-            *level = tone.take(sample_mv);
+        let mut values = [None; 4];
+        for (value, tone) in values.iter_mut().zip(&mut self.tones) {
+            *value = tone.take(sample_mv);
         }
-        let levels = levels.map(|value| value.map(|value| value.abs() / core::f32::consts::SQRT_2));
         // All are made of the same samples: either each has a value, or none.
-        let [Some(_), ..] = levels else {
+        let [Some(_), ..] = values else {
             return None;
         };
-        self.value(levels.map(Option::unwrap_or_default))
+        self.value(values.map(Option::unwrap_or_default))
     }
 
-    fn value(&mut self, levels: [f32; 4]) -> Option<Passed> {
+    fn value(&mut self, values: [Phasor; 4]) -> Option<Passed> {
+        let levels = values.map(|value| value.abs() / core::f32::consts::SQRT_2);
+        let last = core::mem::replace(&mut self.last, values);
         if let Some(passage) = &mut self.passage {
             let own = usize::from(passage.marker - 1);
             let level = levels[own];
@@ -91,23 +107,30 @@ impl MarkerReceiver {
             passage.own += level;
             passage.count += 1;
             passage.add(level);
-            if level >= FADED * passage.strongest && level >= self.level_min_mv {
+            passage.turned = passage.turned.plus(values[own].times_conj(last[own]));
+            let is_faded = level < FADED * passage.strongest.max(self.level_min_mv);
+            passage.faded = if is_faded { passage.faded + 1 } else { 0 };
+            if passage.faded * FADED_FOR <= passage.count {
+                // Noise, which is in each of them, never fades.
+                if passage.count > FEWEST && passage.own < LEAST_RATIO * passage.others {
+                    self.passage = None;
+                }
                 return None;
             }
-            let passed = passage.passed(1.0 / self.tones[0].envelope_hz());
-            let is_marker =
-                passage.count >= FEWEST && passage.own >= LEAST_RATIO_OF_ALL * passage.others;
+            let value_hz = self.tones[0].envelope_hz();
+            let (passed, is_bell) = passage.passed(1.0 / value_hz);
+            let off_hz = passage.turned.angle() / core::f32::consts::TAU * value_hz;
+            let is_marker = passage.count >= FEWEST
+                && passage.own >= LEAST_RATIO_OF_ALL * passage.others
+                && off_hz.abs() < OFF_HZ;
             self.passage = None;
-            if !is_marker {
-                return None;
-            }
-            self.fading = true;
-            return Some(passed);
+            self.fading = is_marker && is_bell;
+            return self.fading.then_some(passed);
         }
         let (place, level) = (levels.into_iter().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1))?;
         let others = (levels.into_iter().enumerate()).filter(|other| other.0 != place);
         let loudest_other = others.map(|other| other.1).fold(0.0, f32::max);
-        self.fading &= level >= self.level_min_mv;
+        self.fading &= level >= NEAR * self.level_min_mv;
         if !self.fading && level >= self.level_min_mv && level >= LEAST_RATIO * loudest_other {
             let mut passage = Passage {
                 marker: place as u8 + 1,
@@ -119,6 +142,8 @@ impl MarkerReceiver {
                 own: 0.0,
                 others: 0.0,
                 count: 0,
+                faded: 0,
+                turned: Phasor::default(),
             };
             passage.add(level);
             self.passage = Some(passage);
@@ -134,12 +159,13 @@ impl MarkerReceiver {
 
 impl Passage {
     fn add(&mut self, level: f32) {
-        self.strongest = self.strongest.max(level);
         self.sum = (self.sum.0 + level, self.sum.1 + 1);
         if self.sum.1 < self.each {
             return;
         }
-        self.values[self.length] = self.sum.0 / self.each as f32;
+        let level = self.sum.0 / self.each as f32;
+        self.strongest = self.strongest.max(level);
+        self.values[self.length] = level;
         self.sum = (0.0, 0);
         self.length += 1;
         if self.length == MOST {
@@ -148,13 +174,16 @@ impl Passage {
             }
             self.length = MOST / 2;
             self.each *= 2;
+            let values = self.values[..self.length].iter().copied();
+            self.strongest = values.fold(0.0, f32::max);
         }
     }
 
-    /// Where the top of the parabola lies, by weighted least squares around the middle of the values near the top.
-    fn passed(&self, value_s: f32) -> Passed {
+    /// Where the top of the parabola lies, by weighted least squares around the middle of the values near the top, and
+    /// whether it falls on either side as a bell does: a tone that begins and ends at once, or fades alone, is no marker.
+    fn passed(&self, value_s: f32) -> (Passed, bool) {
         let values = &self.values[..self.length];
-        let near = |level: &f32| *level >= FADED * self.strongest;
+        let near = |level: &f32| *level >= NEAR * self.strongest;
         let first = values.iter().position(near).unwrap_or(0);
         let last = values.iter().rposition(near).unwrap_or(0);
         let middle = (first + last) as f32 / 2.0;
@@ -174,23 +203,25 @@ impl Passage {
                 power *= x;
             }
         }
-        let top = top_of_parabola(sums, logs).unwrap_or(0.0);
+        let (top, curve) = top_of_parabola(sums, logs).unwrap_or_default();
         let half = (last - first) as f32 / 2.0;
+        let is_bell = OF_BELL.contains(&(curve * half * half / libm::logf(NEAR)));
         let top = middle + top.clamp(-half, half);
         // A value that stands for several is in their middle.
         let each = self.each as f32;
         let since =
             (self.length as f32 - top - 1.0) * each + (each - 1.0) / 2.0 + self.sum.1 as f32;
-        Passed {
+        let passed = Passed {
             marker: self.marker,
             ago_s: (since + DELAY_VALUES) * value_s,
             level_mv: self.strongest,
-        }
+        };
+        (passed, is_bell)
     }
 }
 
-/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c; a line has none.
-fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Option<f32> {
+/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c, and c; a line has none.
+fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Option<(f32, f32)> {
     let determinant = |m: [[f32; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
             - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
@@ -198,5 +229,6 @@ fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Op
     };
     let b = determinant([[s0, t0, s2], [s1, t1, s3], [s2, t2, s4]]);
     let c = determinant([[s0, s1, t0], [s1, s2, t1], [s2, s3, t2]]);
-    (c != 0.0).then(|| -b / (2.0 * c))
+    let whole = determinant([[s0, s1, s2], [s1, s2, s3], [s2, s3, s4]]);
+    (c != 0.0 && whole != 0.0).then(|| (-b / (2.0 * c), c / whole))
 }

@@ -1,6 +1,6 @@
 //! What the unit makes of the waveforms in its coils: speed codes, TWC bytes, markers and pulses, from samples in mV.
 //!
-//! No allocation, no clock: the caller passes one sample after the other at a known rate.
+//! No clock, and no allocation once they are made: the caller passes one sample after the other at a known rate.
 
 mod code;
 mod coils;
@@ -8,9 +8,11 @@ mod downmix;
 mod fsk;
 mod marker;
 mod sensor;
+mod shifted;
 
 pub use code::{CodeReceiver, Heard, Reception};
 pub use coils::{Coils, Sampled};
+pub use downmix::{Downmix, Phasor};
 pub use fsk::{BitHeard, Demodulator, FskReceiver, Received, Tones};
 pub use marker::{MarkerReceiver, Passed};
 pub use sensor::SensorInput;

@@ -64,6 +64,11 @@ impl SensorInput {
         self.since
     }
 
+    /// Which lines are high.
+    pub fn high(&self) -> [bool; 2] {
+        [self.a.high, self.b.high]
+    }
+
     /// B was high at the last pulse: the wheel turns backward.
     pub fn backward(&self) -> bool {
         self.backward

@@ -198,7 +198,8 @@ impl Unit {
         let now = self.power.own(now, clock_rate);
         self.image.set_clock_rate(clock_rate);
         if let Some(coils) = &mut self.coils {
-            coils.set_atp_gain(atp_gain(&self.faults));
+            let unselective = self.faults.dead(Place::CodeSeparation);
+            coils.suffer(atp_gain(&self.faults), unselective);
         }
         self.receive_frames(now, out);
         self.read_inputs(now);

@@ -1,4 +1,4 @@
-//! An ATP speed code: a carrier that is keyed on and off at the code rate.
+//! An ATP speed code: a carrier that is keyed on and off, or shifted up and down, at the code rate.
 
 use super::{Phase, cosine};
 
@@ -12,6 +12,8 @@ pub struct CodeWave {
     carrier_step: f64,
     keying: Phase,
     keying_step: f64,
+    /// Cycles of a sample by which the carrier is shifted up and down; 0 = it is keyed.
+    shift_step: f64,
     amplitude_mv: f64,
 }
 
@@ -23,7 +25,17 @@ impl CodeWave {
             carrier_step: carrier_hz / sample_hz,
             keying: Phase::default(),
             keying_step: rate_hz / sample_hz,
+            shift_step: 0.0,
             amplitude_mv: level_mv * std::f64::consts::SQRT_2,
+        }
+    }
+
+    /// The code shifts its carrier by so much up and down, with one phase; 0 keys it.
+    #[must_use]
+    pub fn shifted(self, shift_hz: f64, sample_hz: f64) -> Self {
+        Self {
+            shift_step: shift_hz / sample_hz,
+            ..self
         }
     }
 
@@ -51,10 +63,22 @@ impl Iterator for CodeWave {
         if self.amplitude_mv == 0.0 {
             return Some(0.0);
         }
-        let on = match self.keying_step > 0.0 {
-            true => Self::keyed(self.keying.step(self.keying_step)),
-            false => 1.0,
+        let (on, shift) = match self.keying_step > 0.0 {
+            true if self.shift_step > 0.0 => {
+                let up = self.keying.step(self.keying_step) < 0.5;
+                (
+                    1.0,
+                    if up {
+                        self.shift_step
+                    } else {
+                        -self.shift_step
+                    },
+                )
+            }
+            true => (Self::keyed(self.keying.step(self.keying_step)), 0.0),
+            false => (1.0, 0.0),
         };
-        Some(self.amplitude_mv * on * cosine(self.carrier.step(self.carrier_step)))
+        let carrier = self.carrier.step(self.carrier_step + shift);
+        Some(self.amplitude_mv * on * cosine(carrier))
     }
 }

@@ -9,6 +9,7 @@ mod fsk;
 mod marker;
 mod noise;
 mod sensor;
+mod toothed_wheel;
 
 pub use channel::{Channel, ChannelConfig};
 pub use code::CodeWave;
@@ -16,6 +17,7 @@ pub use fsk::FskWave;
 pub use marker::MarkerWave;
 pub use noise::Noise;
 pub use sensor::SensorWave;
+pub use toothed_wheel::{Teeth, ToothedWheel};
 
 /// A phase in cycles, 0 to 1.
 #[derive(Clone, Copy, Debug, Default)]

@@ -45,6 +45,17 @@ impl UnitConfig {
         if self.receiver.level_min_mv >= self.receiver.level_max_mv {
             return Err(conflict("receiver.level_min_mv must be below level_max_mv"));
         }
+        if self.receiver.shift_hz != 0.0 {
+            within("receiver.shift_hz", self.receiver.shift_hz, 5.0, 100.0)?;
+        }
+        for carrier_hz in &self.receiver.other_carriers_hz {
+            within("receiver.other_carriers_hz", *carrier_hz, 100.0, 20000.0)?;
+        }
+        if self.start.self_test_ms <= self.receiver.detect_ms {
+            return Err(conflict(
+                "start.self_test_ms must be above receiver.detect_ms",
+            ));
+        }
         // A wheel may spin faster than adhesion lets it roll, never the other way round.
         let rolls_mps2 = self.tacho.adhesion * 9.81;
         within(

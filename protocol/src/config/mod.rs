@@ -65,6 +65,12 @@ pub struct ReceiverConfig {
     /// A code is taken while no other in the antenna comes nearer to its level than this, dB.
     #[serde(default = "apart_db")]
     pub apart_db: f64,
+    /// By how much the code shifts the carrier up and down, Hz; 0 = it keys the carrier on and off.
+    #[serde(default)]
+    pub shift_hz: f64,
+    /// Carriers besides those of the code table on which each of its codes may come, Hz.
+    #[serde(default)]
+    pub other_carriers_hz: Vec<f64>,
     /// Time a code must be steady before it counts, ms.
     pub detect_ms: u32,
     /// Time the last code stays in force when none is decoded, ms.
@@ -308,6 +314,25 @@ impl UnitConfig {
         let config: Self = toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))?;
         config.check()?;
         Ok(config)
+    }
+
+    /// Carriers that the receiver listens on, Hz, each once.
+    pub fn carriers_hz(&self) -> Vec<f64> {
+        let mut carriers = Vec::new();
+        let of_codes = self.codes.iter().map(|code| code.carrier_hz);
+        for carrier_hz in of_codes.chain(self.receiver.other_carriers_hz.iter().copied()) {
+            if !carriers.contains(&carrier_hz) {
+                carriers.push(carrier_hz);
+            }
+        }
+        carriers
+    }
+
+    /// Whether a code may come on a carrier that is heard, Hz, within the tolerance.
+    pub fn is_on_carrier(&self, code: &SpeedCode, heard_hz: f64) -> bool {
+        let others = self.receiver.other_carriers_hz.iter().copied();
+        let mut carriers = core::iter::once(code.carrier_hz).chain(others);
+        carriers.any(|of| libm::fabs(heard_hz - of) <= self.receiver.carrier_tolerance_hz)
     }
 
     /// Distance one pulse stands for, m.

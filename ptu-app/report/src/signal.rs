@@ -1,6 +1,8 @@
 //! What was heard in a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside it.
 
-use ptu_runs::signal::{NotUnderstood, Picture, Reading, Receivers, Source, Span, Why};
+use ptu_runs::signal::{
+    Level, NotUnderstood, Picture, Reading, Receivers, Source, Span, Tacho, Why,
+};
 use ptu_runs::table::Table as TextTable;
 
 use crate::plot::{Place, Plot, Raster, Series, Style};
@@ -64,6 +66,10 @@ pub fn row(source: &Source, words: &Words) -> [String; 9] {
         (_, what, _) => what,
     };
     let what = match source.bad_bytes {
+        _ if source.tacho.is_some() => source
+            .tacho
+            .as_ref()
+            .map_or_else(String::new, |of| of_tacho(of, words)),
         Some(bad) if bad > 0 => fill(said.damaged_bytes, &[("bytes", &what), ("n", &bad)]),
         _ => what.to_owned(),
     };
@@ -74,15 +80,36 @@ pub fn row(source: &Source, words: &Words) -> [String; 9] {
         match source.kind {
             "code" => said.code,
             "marker" => said.marker,
+            "tacho" => said.tacho,
             _ => said.twc,
         }
         .to_owned(),
         what,
-        format!("{:.1}", source.carrier_hz),
+        number(Some(source.carrier_hz).filter(|hz| *hz > 0.0), 1),
         format!("{:.2}", source.rate_hz),
         number(source.level_mv, 0),
         number(source.snr_db, 1),
     ]
+}
+
+/// What the lines of a speed sensor tell, as a sentence.
+fn of_tacho(of: &Tacho, words: &Words) -> String {
+    let number = |value: f64| format!("{value:.1}");
+    let [low, high] = of.kmh.map(number);
+    let [a, b] = of.duty_percent.map(number);
+    let (mean, phase) = (number(of.mean_kmh), format!("{:.0}", of.phase_deg));
+    let values: [(&str, &dyn std::fmt::Display); 9] = [
+        ("forward", &of.forward),
+        ("backward", &of.backward),
+        ("mean", &mean),
+        ("low", &low),
+        ("high", &high),
+        ("phase", &phase),
+        ("a", &a),
+        ("b", &b),
+        ("missing", &of.missing_teeth),
+    ];
+    fill(words.signals.of_tacho, &values)
 }
 
 /// What was not understood, as a sentence.
@@ -97,6 +124,7 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
             let level = format!("{level_mv:.0}");
             fill(said.loud, &[("n", channel), ("level", &level)])
         }
+        Why::OneLine => said.one_line.to_owned(),
         Why::Channels(n) => {
             let most = Receivers::MOST_CHANNELS;
             fill(said.many_channels, &[("n", n), ("most", &most)])
@@ -105,6 +133,24 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
     };
     let [from, to] = [of.from_s, of.to_s].map(|at| format!("{at:.2}"));
     fill(said.at, &[("from", &from), ("to", &to), ("why", &why)])
+}
+
+/// How loud a channel is, as a sentence.
+pub fn level(of: &Level, words: &Words) -> String {
+    let said = &words.signals;
+    let strongest = of.strongest_hz.zip(of.strongest_mv);
+    let strongest = strongest.map_or_else(String::new, |(hz, mv)| {
+        let [hz, mv] = [hz, mv].map(|value| format!("{value:.0}"));
+        fill(said.strongest, &[("hz", &hz), ("mv", &mv)])
+    });
+    let [level, most] = [of.level_mv, of.most_mv].map(|mv| format!("{mv:.0}"));
+    let values: [(&str, &dyn std::fmt::Display); 4] = [
+        ("n", &of.channel),
+        ("level", &level),
+        ("most", &most),
+        ("strongest", &strongest),
+    ];
+    fill(said.meter, &values)
 }
 
 /// What was heard, for a terminal.
@@ -119,6 +165,7 @@ pub fn text(reading: &Reading, words: &Words) -> String {
         }
         lines.push(table.render());
     }
+    lines.extend(reading.levels.iter().map(|of| level(of, words)));
     lines.extend((reading.not_understood.iter()).map(|of| not_understood(of, words)));
     lines.join("\n")
 }
@@ -142,6 +189,8 @@ impl Printed for Recording {
             true => Block::Text(Tone::Plain, said.nothing.into()),
             false => Block::Table(table(&self.reading.sources, words)),
         });
+        let levels = self.reading.levels.iter();
+        blocks.extend(levels.map(|of| Block::Text(Tone::Plain, level(of, words))));
         if !self.reading.not_understood.is_empty() {
             blocks.push(Block::Heading(said.not_understood.into()));
             let of = self.reading.not_understood.iter();

@@ -19,6 +19,7 @@ use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
 use crate::places::{Model, Places};
+use crate::signal::unheard;
 
 /// Folder of unit configurations, the fault catalogue and the structure.
 const UNITS: &str = "units";
@@ -239,7 +240,16 @@ impl ScriptsDirectory {
             self.train_names(),
         );
         for name in &units {
-            self.unit_config(name)?;
+            let unit = self.unit_config(name)?.content;
+            if let Some((code, carrier_hz, why)) = unheard(&unit) {
+                return Err(Failure::usage(FileTrouble::Unheard(
+                    self.shown(&format!("{UNITS}/{name}.toml")),
+                    code.name.clone(),
+                    code.rate_hz.to_string(),
+                    carrier_hz.to_string(),
+                    why,
+                )));
+            }
         }
         for name in &lines {
             self.line(name)?;

@@ -362,6 +362,7 @@ impl RunArguments {
         let said = match self.show.json {
             true => Ok(()),
             false => print_out(&self.show.verdict(&detail))
+                .and_then(|_| conclusion::say_validity(&detail))
                 .and_then(|_| answer.map_or(Ok(()), |answer| self.say_diagnosis(answer)))
                 .and_then(|()| conclusion::say_proofs(&proofs?)),
         };

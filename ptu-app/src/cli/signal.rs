@@ -3,7 +3,7 @@
 mod calibrate;
 mod sound;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
@@ -16,10 +16,10 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::data::{check_writable, write};
 use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
-use ptu_runs::signal::{self, FULL_SCALE_MV, Strength, Wave};
+use ptu_runs::signal::{self, FULL_SCALE_MV, Made, Strength, Teeth, Wave};
 use serde_json::Value;
 
-/// Make the waveform of a speed code or of TWC, read what is in a recording, play and record
+/// Make the waveform of a speed code, of TWC, a marker or a speed sensor, read what is in a recording, play and record
 ///
 /// Examples:
 ///   ptu signal make code 55 --level 500 --snr 20 code55.wav
@@ -27,8 +27,8 @@ use serde_json::Value;
 ///   ptu signal read recording.wav --json
 ///   ptu signal read recording.wav --csv --report recording.html
 ///
-/// A recording is read by the receivers of the embedded unit: a code is what they decode. TWC has tones of
-/// 9650 Hz less and plus 150 Hz and 300 bit/s; the bit rate of the real equipment is not public.
+/// A recording is read by the receivers of the embedded unit: a code is what they decode. Codes, tones and bit
+/// rate are those of the unit configuration.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct SignalArguments {
@@ -76,6 +76,26 @@ enum WaveVerb {
         #[command(flatten)]
         common: CommonOfMake,
     },
+    /// The two lines of a speed sensor, one channel each
+    Tacho {
+        /// Speed, km/h; below 0 backward
+        #[arg(long, value_name = "KMH", default_value = "40", allow_negative_numbers = true, value_parser = rolling_kmh)]
+        kmh: f64,
+        /// Length, s
+        #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
+        seconds: f64,
+        /// Line B behind line A, degrees of a period
+        #[arg(long, value_name = "DEGREES", default_value_t = 90.0, value_parser = positive)]
+        phase: f64,
+        /// Share of a period for which a line is high, %
+        #[arg(long, value_name = "PERCENT", default_value_t = 50.0, value_parser = positive)]
+        duty: f64,
+        /// One tooth of the wheel is missing
+        #[arg(long)]
+        missing_tooth: bool,
+        #[command(flatten)]
+        common: CommonOfMake,
+    },
     /// A marker as a train passes it
     Marker {
         /// 1 to 4 for PSM1 to PSM4
@@ -89,6 +109,12 @@ enum WaveVerb {
     },
 }
 
+fn rolling_kmh(text: &str) -> Result<f64, String> {
+    let kmh: Option<f64> = text.parse().ok();
+    let kmh = kmh.filter(|kmh| (0.1..=200.0).contains(&kmh.abs()));
+    kmh.ok_or_else(|| "a speed is 0.1 to 200 km/h, or as much below 0".to_owned())
+}
+
 fn passing_kmh(text: &str) -> Result<f64, String> {
     let kmh = text.parse().ok().filter(|kmh| (1.0..=200.0).contains(kmh));
     kmh.ok_or_else(|| "a speed is 1 to 200 km/h".to_owned())
@@ -99,7 +125,7 @@ struct Bytes(Vec<u8>);
 
 #[derive(Debug, Args)]
 struct CommonOfMake {
-    /// WAV file to write: one channel of 16 bits, 48 000 samples a second
+    /// WAV file to write: a channel of 16 bits, 48 000 samples a second
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
@@ -169,6 +195,9 @@ struct ReadArguments {
     /// Write a page with spectrum, envelope and eye beside what was heard, .html; repeatable
     #[arg(long, value_name = "FILE", value_parser = page)]
     report: Vec<PathBuf>,
+    /// Two channels each are the lines A and B of a speed sensor
+    #[arg(long, conflicts_with = "report")]
+    tacho: bool,
     #[command(flatten)]
     scale: Scale,
 }
@@ -190,6 +219,27 @@ impl SignalArguments {
 impl MakeArguments {
     fn run(self) -> Result<Exit, Failure> {
         let (wave, common) = match self.wave {
+            WaveVerb::Tacho {
+                kmh,
+                seconds,
+                phase,
+                duty,
+                missing_tooth,
+                common,
+            } => {
+                let CommonOfMake { file, noisy, scale } = common;
+                let unit = scale.unit.find()?;
+                let teeth = Teeth {
+                    per_turn: unit.tacho.pulses_per_turn,
+                    lacks_one: missing_tooth,
+                    phase: phase / 360.0 * kmh.signum(),
+                    duty: duty / 100.0,
+                };
+                let to = (file.as_path(), scale.full_scale);
+                let run = (kmh.abs(), seconds);
+                let made = signal::make_tacho(teeth, run, &unit, noisy.strength(), to)?;
+                return told(&file, made);
+            }
             WaveVerb::Code {
                 name,
                 seconds,
@@ -206,17 +256,21 @@ impl MakeArguments {
         let unit = scale.unit.find()?;
         let to = (file.as_path(), scale.full_scale);
         let made = signal::make(&wave, &unit, noisy.strength(), to)?;
-        let words = &Words::shown().signals;
-        let clipped = match made.clipped {
-            0 => String::new(),
-            clipped => format!("; {}", fill(words.cut_off, &[("n", &clipped)])),
-        };
-        print_out(&format!(
-            "{}: {:.2} s{clipped}",
-            file.display(),
-            made.seconds
-        ))
+        told(&file, made)
     }
+}
+
+fn told(file: &Path, made: Made) -> Result<Exit, Failure> {
+    let words = &Words::shown().signals;
+    let clipped = match made.clipped {
+        0 => String::new(),
+        clipped => format!("; {}", fill(words.cut_off, &[("n", &clipped)])),
+    };
+    print_out(&format!(
+        "{}: {:.2} s{clipped}",
+        file.display(),
+        made.seconds
+    ))
 }
 
 impl ReadArguments {
@@ -227,6 +281,7 @@ impl ReadArguments {
             .try_for_each(|file| check_writable(file, kind::HTML))?;
         let full_scale_mv = self.scale.full_scale;
         let reading = match self.report.is_empty() {
+            _ if self.tacho => signal::read_tacho(&self.file, &unit, full_scale_mv)?,
             true => signal::read(&self.file, &unit, full_scale_mv)?,
             false => {
                 let (reading, pictures) =

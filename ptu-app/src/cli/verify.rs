@@ -17,6 +17,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Why};
 use ptu_runs::keys::KeyList;
+use ptu_runs::stored::valid_until_us;
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -86,6 +87,13 @@ impl VerifyArguments {
             ..Findings::of("run", words)
         };
         found.take_run(seen, keys);
+        if let Some(at_us) = valid_until_us(&store.run(id)?) {
+            let at: [(&str, &dyn std::fmt::Display); 1] = [("at", &clock::local_zoned(at_us))];
+            match clock::now_us() <= at_us {
+                true => (found.remarks).push(fill(words.verify.valid_until, &at)),
+                false => (found.doubts).push(fill(words.verify.was_valid_until, &at)),
+            }
+        }
         match is_same {
             Some(true) => (found.remarks).push(words.verify.of_sheet.into()),
             Some(false) => (found.changes).push(words.verify.not_of_sheet.into()),

@@ -39,6 +39,20 @@ fn a_good_unit_passes_every_step_and_leaves_no_fault() {
     assert!(list(&place.json("faults list --json")).is_empty());
 }
 
+/// Goal: units of other types of signalling, with slow codes and with codes that shift their carrier, pass the suite and the
+/// departure test by their configuration alone.
+#[test]
+fn units_with_other_codes_pass_by_their_configuration() {
+    let place = Place::new();
+    for name in ["us_cab", "zpw2000"] {
+        for what in ["", "departure "] {
+            let (said, report) = place.run(&format!("{what}--unit-config {name}"));
+            said.exits(0);
+            assert!(list(&report["faults"]).is_empty(), "{}", report["faults"]);
+        }
+    }
+}
+
 /// Goal: another type of unit passes all procedures by its configuration alone, and what its rules add is tested.
 #[test]
 fn a_unit_of_another_type_passes_every_step_by_its_configuration() {

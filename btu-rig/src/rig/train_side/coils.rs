@@ -46,7 +46,8 @@ impl Coils {
     /// Silent coils for a unit of this configuration; what disturbs them begins with the seed.
     pub fn new(config: &UnitConfig, channel: &ChannelConfig, random: &mut Random) -> Self {
         let (marker, twc) = (&config.marker, &config.twc);
-        let silent = CodeWave::new(0.0, 0.0, 0.0, SAMPLE_HZ);
+        let silent =
+            CodeWave::new(0.0, 0.0, 0.0, SAMPLE_HZ).shifted(config.receiver.shift_hz, SAMPLE_HZ);
         let tones = (twc.middle_hz, twc.apart_hz);
         Self {
             codes: [silent.clone(), silent],

@@ -51,9 +51,11 @@ pub(super) fn korean(text: &str) -> Cow<'_, str> {
 }
 
 fn said(text: &str) -> Option<String> {
-    let (key, numbers) = without_numbers(text);
-    if let Some(korean) = contents().find_map(|content| content.texts.get(&key)) {
-        return Some(with_numbers(korean, &numbers));
+    for name_length in [|_: &str| 0, code_name_length] {
+        let (key, numbers) = without(text, name_length);
+        if let Some(korean) = contents().find_map(|content| content.texts.get(&key)) {
+            return Some(with_numbers(korean, &numbers));
+        }
     }
     if let Some(event) = Event::from_name(text) {
         return Some(event.definition().text_ko.to_owned());
@@ -121,12 +123,29 @@ impl Content {
 
 /// The text with each number that stands alone as `#`, and the numbers.
 fn without_numbers(text: &str) -> (String, Vec<&str>) {
+    without(text, |_| 0)
+}
+
+/// How long the name of a code is that the text begins with, as `L5`: capital letters and digits.
+fn code_name_length(text: &str) -> usize {
+    let name = text.split([' ', ',', ':']).next().unwrap_or_default();
+    let is_name = name.starts_with(|c: char| c.is_ascii_uppercase() || c.is_ascii_digit())
+        && name.chars().all(|c| c.is_ascii_alphanumeric());
+    if is_name { name.len() } else { 0 }
+}
+
+/// The text with each number that stands alone, and what `name_length` takes for the name of a code, as `#`.
+fn without(text: &str, name_length: fn(&str) -> usize) -> (String, Vec<&str>) {
     let (mut key, mut numbers) = (String::with_capacity(text.len()), Vec::new());
     let mut rest = text;
     let mut before = ' ';
     while let Some(next) = rest.chars().next() {
         let alone = !(before.is_alphanumeric() || before == '_' || before == '.');
-        let length = if alone { number_length(rest) } else { 0 };
+        let length = match number_length(rest) {
+            _ if !alone => 0,
+            0 if key.ends_with("code ") => name_length(rest),
+            length => length,
+        };
         if length == 0 {
             key.push(next);
             before = next;

@@ -26,9 +26,14 @@ wordings! {
         code: "code", "속도 코드";
         twc: "TWC", "TWC";
         marker: "marker", "마커";
+        tacho: "speed sensor", "속도센서";
+        of_tacho: "{forward} pulses forward, {backward} backward; {mean} km/h ({low} to {high}); line B {phase}° behind; high {a}, {b} %; teeth missing: {missing}", "정방향 {forward}, 역방향 {backward} 펄스; {mean} km/h ({low} ~ {high}); B선 {phase}° 뒤; 듀티 {a}, {b} %; 빠진 이: {missing}";
+        one_line: "one channel: a speed sensor has two lines, A and B", "채널이 하나입니다. 속도센서는 A, B 두 선입니다";
         no_code: "carrier without a code", "코드 없는 반송파";
         unknown_code: "no code of this unit configuration", "이 장치 구성에 없는 코드";
         damaged_bytes: "{bytes} ({n} bytes damaged)", "{bytes} (손상 {n}바이트)";
+        meter: "channel {n}: {level} mV rms, at most {most} mV rms in 0.1 s{strongest}", "채널 {n}: {level} mV rms, 0.1 s 구간 최대 {most} mV rms{strongest}";
+        strongest: "; the strongest line is {hz} Hz with {mv} mV rms", "; 가장 강한 성분 {hz} Hz, {mv} mV rms";
         not_understood: "Not understood", "해석하지 못한 부분";
         at: "{from} to {to} s: {why}", "{from} ~ {to} s: {why}";
         too_slow: "{n} samples a second are too few for {hz} Hz; record with 48 000", "초당 표본 {n}개로는 {hz} Hz를 읽을 수 없습니다. 48 000으로 녹음하십시오";

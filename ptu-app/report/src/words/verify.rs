@@ -21,6 +21,8 @@ wordings! {
         no_run_signed: "no run in it is signed", "서명된 시험이 없음";
         some_unsigned: "{n} of {of} runs are not signed", "시험 {of}건 중 {n}건 서명 없음";
         dated_ahead: "a signature of {name} is dated in the future: {at}", "{name}의 서명 시각이 미래임: {at}";
+        valid_until: "departure test, valid until {at}", "출고 점검, {at}까지 유효";
+        was_valid_until: "departure test, no longer valid: until {at}", "출고 점검 유효 기한 지남: {at}";
         of_sheet: "the run in the database is the one of the sheet", "이력의 시험이 성적서의 시험과 같음";
         not_of_sheet: "the run in the database is not the one of the sheet", "이력의 시험이 성적서의 시험과 다름";
         wrong_certificate: "the certificate: {why}", "증명서: {why}";

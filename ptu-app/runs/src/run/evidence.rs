@@ -23,6 +23,9 @@ pub struct Evidence {
     /// Different steps that were due.
     #[serde(default)]
     pub planned: u32,
+    /// Some steps of its procedures were chosen, not all.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_part: bool,
 }
 
 /// An instrument that a run used.
@@ -72,6 +75,7 @@ impl Evidence {
             instruments: used.collect(),
             guard_banded: rules.guard_band,
             planned: planned as u32,
+            is_part: false,
         }
     }
 

@@ -120,9 +120,13 @@ pub fn run_on(
     let made = BenchContents::of(setup, connected.serial(), connection);
     let used = instruments::of_run(&store, setup, plan.measuring.uncalibrated)?;
     let planned = different_steps(&plan.tasks);
+    let evidence = Evidence {
+        is_part: plan.tasks.iter().any(|task| task.options.chosen.is_some()),
+        ..Evidence::now(made.clone(), used, plan.measuring, planned)
+    };
     let record = RunRecord {
         connection: Some(connection.word().into()),
-        evidence: Some(Evidence::now(made.clone(), used, plan.measuring, planned).text()),
+        evidence: Some(evidence.text()),
         ..run_record(plan, setup, connected.serial(), began.at_us)
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;

@@ -3,8 +3,9 @@
 use ato_under_test::receivers::{CodeReceiver, Heard, Reception};
 use protocol::config::{SpeedCode, UnitConfig};
 
+use super::fit::Envelope;
 use super::read::Source;
-use super::receive::{Clock, MOST};
+use super::receive::{ASKED_EVERY_S, Clock, MOST};
 
 /// A code that is not heard for so long has ended, s.
 const ENDS_AFTER_S: f64 = 0.3;
@@ -29,8 +30,7 @@ impl Codes<'_> {
             let mut understood = false;
             let at_s = clock.at_s((place + 1) * clock.asked_every - 1);
             for carrier in &mut self.carriers {
-                part.iter()
-                    .for_each(|sample| carrier.receiver.take(*sample));
+                part.iter().for_each(|sample| carrier.take(*sample));
                 if part.len() == clock.asked_every {
                     understood |= carrier.ask(unit, at_s, channel, &mut self.done);
                 }
@@ -43,14 +43,15 @@ impl Codes<'_> {
 
 /// The codes of one carrier.
 pub(super) struct Carrier<'a> {
-    pub(super) carrier_hz: f64,
     receiver: CodeReceiver,
-    pub(super) codes: Vec<&'a SpeedCode>,
-    pub(super) rates_hz: Vec<f32>,
-    pub(super) under_way: Option<Source>,
+    /// Of a carrier that is keyed.
+    envelope: Option<Envelope>,
+    codes: Vec<&'a SpeedCode>,
+    rates_hz: Vec<f32>,
+    under_way: Option<Source>,
     /// What is heard now, and since when without a break, s.
     now: Option<(String, f64)>,
-    /// How long another code is heard before it is listed, s: a jump of the phase passes meanwhile.
+    /// How long a code is heard before it is listed, s: noise and a jump of the phase pass meanwhile.
     patience_s: f64,
     /// Askings whose mean it tells.
     askings: f64,
@@ -58,21 +59,43 @@ pub(super) struct Carrier<'a> {
 }
 
 impl<'a> Carrier<'a> {
-    pub(super) fn new(code: &'a SpeedCode, unit: &UnitConfig, sample_hz: f64) -> Self {
-        let reception = Reception::of(&unit.receiver, code.carrier_hz);
+    pub(super) fn new(carrier_hz: f64, unit: &'a UnitConfig, sample_hz: f64) -> Self {
+        let reception = Reception::of(unit, carrier_hz);
+        let codes = (unit.codes.iter()).filter(|code| unit.is_on_carrier(code, carrier_hz));
+        let codes: Vec<_> = codes.collect();
         let receiver = CodeReceiver::new(reception, sample_hz as f32);
         let detected_s = f64::from(unit.receiver.detect_ms) / 1_000.0;
         Self {
-            carrier_hz: code.carrier_hz,
-            patience_s: detected_s - f64::from(receiver.window_s()),
+            // Two askings in a row at least, and else until the one that is nearest.
+            patience_s: (detected_s - f64::from(receiver.window_s())).max(ASKED_EVERY_S)
+                - 0.5 * ASKED_EVERY_S,
             receiver,
+            envelope: (unit.receiver.shift_hz == 0.0).then(|| Envelope::new(carrier_hz, sample_hz)),
             now: None,
-            codes: vec![code],
-            rates_hz: vec![code.rate_hz as f32],
+            rates_hz: codes.iter().map(|code| code.rate_hz as f32).collect(),
+            codes,
             under_way: None,
             askings: 0.0,
             heard_s: 0.0,
         }
+    }
+
+    fn take(&mut self, sample_mv: f32) {
+        self.receiver.take(sample_mv);
+        if let Some(envelope) = &mut self.envelope {
+            envelope.take(sample_mv);
+        }
+    }
+
+    /// The code that is heard, up to now; rate and level of all of it.
+    pub(super) fn under_way(&self) -> Option<Source> {
+        let mut source = self.under_way.clone()?;
+        let fit = (self.envelope.as_ref()).filter(|_| source.rate_hz > 0.0);
+        let times = [source.from_s, source.to_s];
+        if let Some((rate_hz, level_mv)) = fit.and_then(|of| of.fit(times, source.rate_hz)) {
+            (source.rate_hz, source.level_mv) = (rate_hz, Some(level_mv));
+        }
+        Some(source)
     }
 
     /// Whether something is heard now.
@@ -86,7 +109,8 @@ impl<'a> Carrier<'a> {
         let Some(heard) = self.receiver.heard(&self.rates_hz) else {
             self.now = None;
             if at_s - self.heard_s > ENDS_AFTER_S {
-                done.extend(self.under_way.take());
+                done.extend(self.under_way());
+                self.under_way = None;
             }
             return false;
         };
@@ -96,9 +120,12 @@ impl<'a> Carrier<'a> {
             self.now = Some((what.clone(), at_s));
         }
         let since_s = self.now.as_ref().map_or(at_s, |(_, since_s)| *since_s);
-        let is_other = (self.under_way.as_ref()).is_some_and(|source| source.what != what);
-        if is_other && at_s - since_s < self.patience_s {
+        let is_listed = (self.under_way.as_ref()).is_some_and(|source| source.what == what);
+        if !is_listed && at_s - since_s < self.patience_s {
             return true;
+        }
+        if !is_listed {
+            done.extend(self.under_way());
         }
         let began_s = (since_s - f64::from(self.receiver.window_s())).max(0.0);
         match &mut self.under_way {
@@ -130,8 +157,9 @@ impl<'a> Carrier<'a> {
                     level_mv: Some(f64::from(heard.level_mv)),
                     snr_db: heard.snr_db.map(f64::from),
                     bad_bytes: None,
+                    tacho: None,
                 };
-                done.extend(under_way.replace(source));
+                *under_way = Some(source);
             }
         }
         true
@@ -140,13 +168,11 @@ impl<'a> Carrier<'a> {
     /// The code's name, as the unit decodes it.
     fn name(&self, heard: &Heard, unit: &UnitConfig) -> String {
         let receiver = &unit.receiver;
-        let is_carrier =
-            (f64::from(heard.carrier_hz) - self.carrier_hz).abs() <= receiver.carrier_tolerance_hz;
         let code = self.codes.iter().find(|code| {
             (f64::from(heard.rate_hz) - code.rate_hz).abs() <= receiver.rate_tolerance_hz
         });
         match code {
-            Some(code) if is_carrier => code.name.clone(),
+            Some(code) if unit.is_on_carrier(code, heard.carrier_hz.into()) => code.name.clone(),
             _ => String::new(),
         }
     }

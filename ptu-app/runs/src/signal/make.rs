@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use btu_rig::waveform::{CodeWave, FskWave, MarkerWave, Noise};
+use btu_rig::waveform::{CodeWave, FskWave, MarkerWave, Noise, Teeth, ToothedWheel};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::{SAMPLE_HZ, wav};
@@ -106,7 +106,8 @@ pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Sam
                 rate_hz,
                 ..
             } = code(unit, name)?;
-            let wave = CodeWave::new(*carrier_hz, *rate_hz, level_mv, rate);
+            let wave = CodeWave::new(*carrier_hz, *rate_hz, level_mv, rate)
+                .shifted(unit.receiver.shift_hz, rate);
             let count = (seconds * rate).round() as usize;
             (Box::new(wave.take(count)), CODE_BAND_HZ)
         }
@@ -146,11 +147,42 @@ pub fn make(
 ) -> Result<Made, Failure> {
     let mut count = 0u64;
     let counted = samples(wave, unit, strength)?.inspect(|_| count += 1);
-    let clipped = wav::write(path, SAMPLE_HZ, full_scale_mv, counted)?;
+    let clipped = wav::write(path, (SAMPLE_HZ, 1), full_scale_mv, counted)?;
     Ok(Made {
         seconds: count as f64 / f64::from(SAMPLE_HZ),
         clipped,
     })
+}
+
+/// Writes both lines of a speed sensor to a WAV file of two channels, so many seconds at a speed in km/h.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn make_tacho(
+    teeth: Teeth,
+    (kmh, seconds): (f64, f64),
+    unit: &UnitConfig,
+    strength: Strength,
+    (path, full_scale_mv): (&Path, f64),
+) -> Result<Made, Failure> {
+    let rate = f64::from(SAMPLE_HZ);
+    let Strength {
+        level_mv,
+        snr_db,
+        seed,
+    } = strength;
+    let per_s = kmh / 3.6 / unit.metres_per_pulse();
+    let noise = |seed| snr_db.map(|db| Noise::new(level_mv, db, rate / 2.0, rate, seed));
+    let mut noise = [noise(seed), noise(seed.wrapping_add(1))];
+    let lines = ToothedWheel::new(teeth, per_s, level_mv, rate).take((seconds * rate) as usize);
+    let samples = lines.flat_map(|lines| {
+        let noisy = lines.into_iter().zip(&mut noise);
+        let noisy =
+            noisy.map(|(mv, noise)| mv + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0));
+        noisy.collect::<Vec<_>>()
+    });
+    let clipped = wav::write(path, (SAMPLE_HZ, 2), full_scale_mv, samples)?;
+    Ok(Made { seconds, clipped })
 }
 
 fn code<'a>(unit: &'a UnitConfig, name: &str) -> Result<&'a SpeedCode, Failure> {

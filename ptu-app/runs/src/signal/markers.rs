@@ -57,6 +57,7 @@ impl Markers {
             level_mv: Some(f64::from(passed.level_mv)),
             snr_db: None,
             bad_bytes: None,
+            tacho: None,
         });
     }
 }

@@ -1,23 +1,36 @@
 //! Signals as waveforms in files: made by the bench's generators, read by the unit's receivers.
 
+mod audible;
 mod codes;
 #[cfg(test)]
 mod coil_tests;
+mod fit;
 mod make;
 mod markers;
+mod meter;
 mod picture;
 mod read;
+#[cfg(test)]
+mod reading_tests;
 mod receive;
+mod tacho;
 #[cfg(test)]
 mod tests;
 mod twc;
+#[cfg(test)]
+mod types_tests;
 mod wav;
 mod wav_head;
 
-pub use make::{Made, Samples, Strength, Wave, bytes_of, make, reference_hz, rest_hz, samples};
+pub use audible::unheard;
+pub use btu_rig::waveform::Teeth;
+pub use make::{
+    Made, Samples, Strength, Wave, bytes_of, make, make_tacho, reference_hz, rest_hz, samples,
+};
 pub use picture::{Columns, Picture, Span};
-pub use read::{NotUnderstood, Reading, Source, Why, read, read_and_picture};
+pub use read::{Level, NotUnderstood, Reading, Source, Why, read, read_and_picture};
 pub use receive::Receivers;
+pub use tacho::{Tacho, read_tacho};
 pub use wav::{End, Wav};
 
 /// Samples a second of what is made.

@@ -14,6 +14,11 @@ const MOST_COLUMNS: usize = 1_024;
 const MOST_SPECTRA: usize = 512;
 /// Resolution of the spectrum, Hz, at least: the sidebands of the slowest code rates stand apart.
 const RESOLUTION_HZ: f64 = 12.0;
+/// Spectra that a sample is in.
+const OVERLAP: usize = 4;
+/// Lines that the window makes of one, on either side, and the sum of their powers over its own.
+const BESIDE: usize = 2;
+const OF_LINES: f64 = 1.5;
 /// Rows of the spectrum over time.
 const ROWS: usize = 512;
 /// Rate of the envelope, Hz.
@@ -138,7 +143,7 @@ impl Picture {
         Self {
             sample_hz,
             wave: Columns::new(MOST_COLUMNS),
-            spectrum: Spectrum::new(sample_hz),
+            spectrum: Spectrum::new(sample_hz, OVERLAP),
             envelope: Envelope::new(sample_hz, carrier_hz),
             eye: (sample_hz > 2.2 * highest).then(|| Eye::new(sample_hz, tones)),
         }
@@ -216,7 +221,7 @@ fn level_db(power: f64) -> f32 {
 
 /// Spectra over time.
 #[derive(Clone)]
-struct Spectrum {
+pub(super) struct Spectrum {
     fft: Arc<dyn Fft<f32>>,
     window: Vec<f32>,
     line: Vec<f32>,
@@ -230,10 +235,13 @@ struct Spectrum {
     count: u64,
     /// Factor from a squared value to mV².
     scale: f64,
+    /// Frequency of the first line beside 0 Hz.
+    line_hz: f64,
 }
 
 impl Spectrum {
-    fn new(sample_hz: f64) -> Self {
+    /// Of samples at this rate, each of which is in so many spectra.
+    pub(super) fn new(sample_hz: f64, overlap: usize) -> Self {
         let length = ((sample_hz / RESOLUTION_HZ) as usize)
             .next_power_of_two()
             .clamp(64, 1 << 16);
@@ -249,16 +257,28 @@ impl Spectrum {
             fft,
             line: Vec::with_capacity(length),
             work: Vec::with_capacity(length),
-            hop: length / 4,
+            hop: length / overlap,
             columns: Columns::new(MOST_SPECTRA),
             powers: vec![0.0; length / 2],
             count: 0,
             scale: 2.0 / (sum * sum),
+            line_hz: sample_hz / length as f64,
             window,
         }
     }
 
-    fn take(&mut self, sample_mv: f32) {
+    /// The strongest line, Hz, and its mean level, mV rms.
+    pub(super) fn strongest(&self) -> Option<(f64, f64)> {
+        let lines = self.powers.windows(2 * BESIDE + 1).enumerate().skip(1);
+        let (first, around) = lines.max_by(|a, b| a.1[BESIDE].total_cmp(&b.1[BESIDE]))?;
+        let sum: f64 = around.iter().sum();
+        let placed = (first..).zip(around).map(|(place, of)| place as f64 * of);
+        let at = placed.sum::<f64>() / sum;
+        let level_mv = (sum / OF_LINES / self.count as f64).sqrt();
+        (sum > 0.0).then_some((at * self.line_hz, level_mv))
+    }
+
+    pub(super) fn take(&mut self, sample_mv: f32) {
         self.line.push(sample_mv);
         let length = self.window.len();
         if self.line.len() < length {

@@ -6,8 +6,10 @@ use std::path::Path;
 use protocol::config::UnitConfig;
 use serde::{Serialize, Serializer};
 
+use super::meter::Meter;
 use super::picture::Picture;
 use super::receive::Receivers;
+use super::tacho::Tacho;
 use super::wav::{End, Wav};
 use crate::failure::Failure;
 
@@ -16,16 +18,47 @@ use crate::failure::Failure;
 pub struct Reading {
     /// Length, s.
     pub duration_s: f64,
+    /// How loud each channel is, whatever is in it.
+    pub levels: Vec<Level>,
     /// Signals, in order of their beginning.
     pub sources: Vec<Source>,
     /// What is in it and was not understood.
     pub not_understood: Vec<NotUnderstood>,
 }
 
+/// How loud a channel is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Level {
+    /// Channel of the file, from 1.
+    pub channel: usize,
+    /// Level of the whole, mV rms.
+    pub level_mv: f64,
+    /// The greatest level for 0.1 s, mV rms.
+    pub most_mv: f64,
+    /// The strongest line, Hz; none of silence and of less than a spectrum.
+    pub strongest_hz: Option<f64>,
+    /// Its mean level, mV rms.
+    pub strongest_mv: Option<f64>,
+}
+
+impl Level {
+    pub(super) fn of(meter: &Meter, channel: usize) -> Self {
+        let (level_mv, most_mv) = meter.levels_mv();
+        let strongest = meter.strongest();
+        Self {
+            channel,
+            level_mv,
+            most_mv,
+            strongest_hz: strongest.map(|of| of.0),
+            strongest_mv: strongest.map(|of| of.1),
+        }
+    }
+}
+
 /// A signal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Source {
-    /// `code` or `twc`.
+    /// `code`, `twc`, `marker` or `tacho`.
     pub kind: &'static str,
     /// Channel of the file, from 1.
     pub channel: usize,
@@ -46,6 +79,9 @@ pub struct Source {
     /// Of TWC: bytes with a wrong parity or without a stop bit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bad_bytes: Option<u32>,
+    /// Of a speed sensor: what its lines tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tacho: Option<Tacho>,
 }
 
 /// A part of a file that no receiver understood.
@@ -77,6 +113,8 @@ pub enum Why {
         /// How loud, mV rms.
         level_mv: f64,
     },
+    /// A speed sensor has two lines, and the file has one channel.
+    OneLine,
     /// The file has so many channels, and only the first are read.
     Channels(usize),
     /// The file is cut off or damaged, with the reader's words.
@@ -98,6 +136,7 @@ impl fmt::Display for Why {
                 out,
                 "channel {channel}: {level_mv:.0} mV rms that are no code of this unit configuration and no TWC"
             ),
+            Self::OneLine => write!(out, "one channel: a speed sensor has two lines"),
             Self::Channels(of) => write!(
                 out,
                 "{of} channels: only the first {} are read",
@@ -110,6 +149,17 @@ impl fmt::Display for Why {
 
 fn in_words<S: Serializer>(why: &Why, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(why)
+}
+
+impl Reading {
+    /// Something is not understood at this time.
+    pub(super) fn tell(&mut self, at_s: f64, why: Why) {
+        self.not_understood.push(NotUnderstood {
+            from_s: at_s,
+            to_s: at_s,
+            why,
+        });
+    }
 }
 
 /// Reads a WAV file for a unit of this configuration; full scale stands for `full_scale_mv`.

@@ -6,16 +6,22 @@ use protocol::config::UnitConfig;
 
 use super::codes::{Carrier, Codes};
 use super::markers::Markers;
+use super::meter::{Decimator, Meter};
 use super::picture::Picture;
-use super::read::{NotUnderstood, Reading, Why};
+use super::read::{Level, NotUnderstood, Reading, Why};
 use super::twc::Twc;
 
 /// How often the receivers of codes are asked, s: it is most of their work.
-const ASKED_EVERY_S: f64 = 0.1;
+pub(super) const ASKED_EVERY_S: f64 = 0.1;
 /// Askings in a block.
 const ASKED_IN_BLOCK: usize = 10;
 /// What is louder than the weakest level that is decoded, and understood by no receiver, is told from this length on, s.
 const LEAST_UNKNOWN_S: f64 = 1.0;
+/// Of two such parts with less between them one is told, s; of more than so many those that are nearest are joined.
+const JOINED_S: f64 = 1.0;
+const MOST_UNKNOWN: usize = 32;
+/// Highest rate at which the receivers work, Hz: of faster samples some are taken together.
+const MOST_HZ: f64 = 96_000.0;
 /// Least sample rate, times the highest frequency of a signal.
 const LEAST_RATE: f64 = 2.2;
 /// Most entries of each kind in an answer.
@@ -27,6 +33,8 @@ pub struct Receivers<'a> {
     /// Of each channel, if somebody looks at it.
     pictures: Vec<Picture>,
     sample_hz: f64,
+    /// Of each channel with faster samples.
+    slower: Vec<Decimator>,
     /// Samples between askings.
     asked_every: usize,
     /// Samples taken.
@@ -40,6 +48,8 @@ impl<'a> Receivers<'a> {
 
     /// For so many channels with samples of this rate; with pictures of them, if somebody looks.
     pub fn new(channels: usize, sample_hz: f64, unit: &'a UnitConfig, pictures: bool) -> Self {
+        let by = (sample_hz / MOST_HZ).ceil().max(1.0) as usize;
+        let sample_hz = sample_hz / by as f64;
         let mut not_understood = Vec::new();
         let mut said = |why| {
             not_understood.push(NotUnderstood {
@@ -69,6 +79,10 @@ impl<'a> Receivers<'a> {
             false => Vec::new(),
         };
         Self {
+            slower: match by {
+                1 => Vec::new(),
+                by => vec![Decimator::new(by); channels.len()],
+            },
             channels,
             pictures,
             sample_hz,
@@ -80,7 +94,7 @@ impl<'a> Receivers<'a> {
 
     /// Samples of a block; only the last may have less.
     pub fn block(&self) -> usize {
-        ASKED_IN_BLOCK * self.asked_every
+        ASKED_IN_BLOCK * self.asked_every * self.slower.first().map_or(1, Decimator::by)
     }
 
     /// Takes a block of samples, mV, of each channel.
@@ -90,6 +104,12 @@ impl<'a> Receivers<'a> {
 
     /// Takes a block while something else is done.
     pub fn take_while<T>(&mut self, block: &[Vec<f32>], meanwhile: impl FnOnce() -> T) -> T {
+        let slower = self.slower.iter_mut().zip(block);
+        let slower: Vec<_> = slower.map(|(of, samples)| of.take(samples)).collect();
+        let block = match slower.is_empty() {
+            true => block,
+            false => &slower,
+        };
         let clock = Clock {
             before: self.samples,
             sample_hz: self.sample_hz,
@@ -103,8 +123,10 @@ impl<'a> Receivers<'a> {
                     codes,
                     twc,
                     markers,
+                    meter,
                     ..
                 } = channel;
+                scope.spawn(move || meter.take(samples, clock.asked_every));
                 let number = *number;
                 if let Some(markers) = markers {
                     scope.spawn(move || markers.take_block(samples, clock, number));
@@ -130,6 +152,9 @@ impl<'a> Receivers<'a> {
     pub fn so_far(&self) -> (Reading, Vec<Picture>) {
         let mut reading = Reading {
             duration_s: self.samples as f64 / self.sample_hz,
+            levels: (self.channels.iter())
+                .map(|channel| Level::of(&channel.meter, channel.number))
+                .collect(),
             sources: Vec::new(),
             not_understood: self.not_understood.clone(),
         };
@@ -144,16 +169,12 @@ impl<'a> Receivers<'a> {
     pub fn end(mut self, broken: Option<String>) -> (Reading, Vec<Picture>) {
         let at_s = self.samples as f64 / self.sample_hz;
         for channel in &mut self.channels {
-            channel.loud.close(at_s);
+            channel.loud.close();
         }
         let (mut reading, _) = self.so_far();
-        reading
-            .not_understood
-            .extend(broken.map(|why| NotUnderstood {
-                from_s: at_s,
-                to_s: at_s,
-                why: Why::Broken(why),
-            }));
+        if let Some(why) = broken {
+            reading.tell(at_s, Why::Broken(why));
+        }
         (reading, self.pictures)
     }
 }
@@ -189,6 +210,7 @@ struct Channel<'a> {
     codes: Codes<'a>,
     twc: Option<Twc>,
     markers: Option<Markers>,
+    meter: Meter,
     loud: Loud,
 }
 
@@ -197,14 +219,10 @@ impl<'a> Channel<'a> {
     fn new(number: usize, unit: &'a UnitConfig, sample_hz: f64) -> (Self, Vec<f64>) {
         let mut carriers: Vec<Carrier<'_>> = Vec::new();
         let mut too_high = Vec::new();
-        for code in &unit.codes {
-            if let Some(known) = (carriers.iter_mut()).find(|of| of.carrier_hz == code.carrier_hz) {
-                known.codes.push(code);
-                known.rates_hz.push(code.rate_hz as f32);
-            } else if sample_hz >= LEAST_RATE * code.carrier_hz {
-                carriers.push(Carrier::new(code, unit, sample_hz));
-            } else if !too_high.contains(&code.carrier_hz) {
-                too_high.push(code.carrier_hz);
+        for carrier_hz in unit.carriers_hz() {
+            match sample_hz >= LEAST_RATE * carrier_hz {
+                true => carriers.push(Carrier::new(carrier_hz, unit, sample_hz)),
+                false => too_high.push(carrier_hz),
             }
         }
         let highest = unit.twc.middle_hz + unit.twc.apart_hz;
@@ -227,6 +245,7 @@ impl<'a> Channel<'a> {
             },
             twc,
             markers,
+            meter: Meter::new(sample_hz),
             loud: Loud::default(),
         };
         (channel, too_high)
@@ -256,24 +275,26 @@ impl<'a> Channel<'a> {
     fn tell(&self, reading: &mut Reading) {
         let twc = self.twc.iter();
         let of_twc = twc.flat_map(|twc| twc.done.iter().chain(&twc.under_way));
-        let under_way = (self.codes.carriers.iter()).flat_map(|of| of.under_way.as_ref());
+        let under_way: Vec<_> = (self.codes.carriers.iter())
+            .filter_map(Carrier::under_way)
+            .collect();
         let of_markers = self.markers.iter().flat_map(|markers| &markers.done);
         let all = self
             .codes
             .done
             .iter()
-            .chain(under_way)
+            .chain(&under_way)
             .chain(of_twc)
             .chain(of_markers);
         let room = MOST.saturating_sub(reading.sources.len());
         reading.sources.extend(all.take(room).cloned());
         let number = self.number;
-        let unknown = (self.loud.found.iter()).map(|&(from_s, to_s, level_mv)| NotUnderstood {
-            from_s,
-            to_s,
+        let unknown = (self.loud.found.iter()).map(|part| NotUnderstood {
+            from_s: part.from_s,
+            to_s: part.to_s,
             why: Why::Unknown {
                 channel: number,
-                level_mv,
+                level_mv: part.level_mv(),
             },
         });
         let room = MOST.saturating_sub(reading.not_understood.len());
@@ -284,28 +305,75 @@ impl<'a> Channel<'a> {
 /// What is loud and not understood.
 #[derive(Default)]
 struct Loud {
-    /// Since when, the sum of squared levels, and how many.
-    under_way: Option<(f64, f64, u32)>,
-    found: Vec<(f64, f64, f64)>,
+    under_way: Option<Part>,
+    found: Vec<Part>,
+    /// Parts with less between them are one, s.
+    joined_s: f64,
+}
+
+/// From when to when, the sum of squared levels, and how many.
+#[derive(Clone, Copy)]
+struct Part {
+    from_s: f64,
+    to_s: f64,
+    sum: f64,
+    count: u32,
+}
+
+impl Part {
+    fn join(&mut self, other: Self) {
+        self.to_s = other.to_s;
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+
+    fn level_mv(&self) -> f64 {
+        (self.sum / f64::from(self.count)).sqrt()
+    }
 }
 
 impl Loud {
     fn ask(&mut self, square: f64, is_understood: bool, at_s: f64, level_min_mv: f64) {
         if is_understood || square.sqrt() < level_min_mv {
-            return self.close(at_s);
+            if self
+                .under_way
+                .is_some_and(|part| at_s - part.to_s > JOINED_S)
+            {
+                self.close();
+            }
+            return;
         }
-        let (_, sum, count) = self.under_way.get_or_insert((at_s - ASKED_EVERY_S, 0.0, 0));
-        *sum += square;
-        *count += 1;
+        let now = Part {
+            from_s: (at_s - ASKED_EVERY_S).max(0.0),
+            to_s: at_s,
+            sum: square,
+            count: 1,
+        };
+        match &mut self.under_way {
+            Some(part) => part.join(now),
+            none => *none = Some(now),
+        }
     }
 
-    fn close(&mut self, at_s: f64) {
-        if let Some((from_s, sum, count)) = self.under_way.take()
-            && at_s - from_s >= LEAST_UNKNOWN_S
-            && self.found.len() < MOST
-        {
-            let level = (sum / f64::from(count)).sqrt();
-            self.found.push((from_s.max(0.0), at_s, level));
+    fn close(&mut self) {
+        let is_long = |part: &Part| f64::from(part.count) * ASKED_EVERY_S >= LEAST_UNKNOWN_S - 1e-9;
+        let Some(part) = self.under_way.take().filter(is_long) else {
+            return;
+        };
+        match self.found.last_mut() {
+            Some(last) if part.from_s - last.to_s < self.joined_s => last.join(part),
+            _ => self.found.push(part),
+        }
+        while self.found.len() > MOST_UNKNOWN {
+            self.joined_s = (2.0 * self.joined_s).max(JOINED_S);
+            let joined_s = self.joined_s;
+            self.found.dedup_by(|part, last| {
+                let is_near = part.from_s - last.to_s < joined_s;
+                if is_near {
+                    last.join(*part);
+                }
+                is_near
+            });
         }
     }
 }

@@ -13,8 +13,14 @@ use super::*;
 use crate::test_support::scripts;
 
 const RATE: f64 = 48_000.0;
+/// 9 650 ± 150 Hz, as a public data sheet of a TWC has it (Alstom); at 300 bit/s they are orthogonal.
+const TONES: Tones = Tones {
+    middle_hz: 9_650.0,
+    apart_hz: 150.0,
+    bit_rate: 300.0,
+};
 
-fn unit() -> UnitConfig {
+pub(super) fn unit() -> UnitConfig {
     let scripts = scripts();
     scripts.unit_config("sg100").expect("read").content
 }
@@ -72,7 +78,7 @@ fn a_jump_of_the_phase_is_no_other_code() {
         };
         let tenth = (RATE / code.rate_hz / 10.0) as usize;
         let mut samples = (0..10).flat_map(|jump| wave(jump * jump * tenth).take(48_000));
-        wav::write(&path, 48_000, FULL_SCALE_MV, &mut samples).expect("written");
+        wav::write(&path, (48_000, 1), FULL_SCALE_MV, &mut samples).expect("written");
         let reading = read(&path, &unit, FULL_SCALE_MV).expect("read");
         for source in &reading.sources {
             let is_known = unit.codes.iter().any(|code| code.name == source.what);
@@ -135,7 +141,7 @@ fn a_change_of_code_is_never_a_third_code() {
 /// Goal: bytes with a bit error are not taken for others. Method: noise at which one byte in ten has one.
 #[test]
 fn a_byte_with_a_wrong_bit_is_told() {
-    let tones = Tones::DEFAULT;
+    let tones = TONES;
     let mut receiver = FskReceiver::new(tones, RATE as f32, 60.0);
     let bytes: Vec<u8> = (0..400u32).map(|n| (n * 37) as u8).collect();
     let wave = FskWave::new(&bytes, (9_650.0, 150.0), 300.0, 500.0, RATE);
@@ -159,7 +165,7 @@ fn a_byte_with_a_wrong_bit_is_told() {
 /// bytes; then silence after them, until every reduction has taken place many times.
 #[test]
 fn a_picture_shows_what_is_there_and_stays_small() {
-    let mut picture = Picture::new(RATE, 3_000.0, Tones::DEFAULT);
+    let mut picture = Picture::new(RATE, 3_000.0, TONES);
     let code = CodeWave::new(3_000.0, 10.0, 500.0, RATE).take(96_000);
     let twc = FskWave::new(&[0x5a; 20], (9_650.0, 150.0), 300.0, 200.0, RATE);
     let samples: Vec<f32> = code
@@ -252,7 +258,7 @@ fn what_is_no_such_signal_is_said() {
     let path = dir.path().join("x.wav");
     let unit = unit();
     let write = |samples: &mut dyn Iterator<Item = f64>| {
-        wav::write(&path, 48_000, FULL_SCALE_MV, samples).expect("written");
+        wav::write(&path, (48_000, 1), FULL_SCALE_MV, samples).expect("written");
         read(&path, &unit, FULL_SCALE_MV).expect("read")
     };
     let silence = write(&mut std::iter::repeat_n(0.0, 96_000));
@@ -300,7 +306,7 @@ fn what_is_no_such_signal_is_said() {
 #[test]
 #[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_the_receivers -- --ignored --nocapture"]
 fn figures_of_the_receivers() {
-    let tones = Tones::DEFAULT;
+    let tones = TONES;
     let per_bit = RATE / f64::from(tones.bit_rate);
     for db in [4.0, 6.0, 8.0, 10.0, 12.0] {
         let mut random = protocol::Random::new(db as u64);
@@ -342,7 +348,7 @@ fn figures_of_the_receivers() {
     let mut noises = protocol::Random::new(2_026);
     let mut decide = |wave: &mut dyn Iterator<Item = f64>, snr_db: f64| {
         let noise = Noise::new(500.0, snr_db, 320.0, RATE, noises.bits());
-        let mut receiver = CodeReceiver::new(Reception::of(&unit().receiver, 3_000.0), RATE as f32);
+        let mut receiver = CodeReceiver::new(Reception::of(&unit(), 3_000.0), RATE as f32);
         for (signal, noise) in wave.zip(noise).take(28_800) {
             receiver.take((signal + noise) as f32);
         }

@@ -69,6 +69,7 @@ impl Twc {
             level_mv: None,
             snr_db: None,
             bad_bytes: Some(0),
+            tacho: None,
         });
         source.to_s = at_s;
         match received {

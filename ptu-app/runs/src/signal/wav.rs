@@ -114,13 +114,13 @@ impl Wav {
     }
 }
 
-/// Writes samples, mV, as 16 bits; how many were beyond full scale and are cut off there.
+/// Writes samples, mV, of so many channels by turns, as 16 bits; how many were beyond full scale and are cut off there.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write(
     path: &Path,
-    sample_hz: u32,
+    (sample_hz, channels): (u32, u16),
     full_scale_mv: f64,
     samples: impl Iterator<Item = f64>,
 ) -> Result<u64, Failure> {
@@ -131,7 +131,7 @@ pub fn write(
         ))
     };
     let spec = WavSpec {
-        channels: 1,
+        channels,
         sample_rate: sample_hz,
         bits_per_sample: 16,
         sample_format: SampleFormat::Int,

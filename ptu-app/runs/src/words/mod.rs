@@ -16,7 +16,7 @@ pub use link::korean as link_korean;
 pub use nouns::{event_kind, fault_state, noun};
 pub use refused::{
     BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
-    RecordTrouble, RunTrouble, Sought, Unknown, Why, WrongCell,
+    RecordTrouble, RunTrouble, Sought, Unheard, Unknown, Why, WrongCell,
 };
 pub use warned::{BenchNote, Differs, Warning};
 

@@ -71,6 +71,13 @@ sentences! {
         GoesBack(km: f64): "{km} does not fit the train's other readings: an odometer never goes back", "{km}은(는) 이 열차의 다른 값과 맞지 않습니다. 주행거리는 줄지 않습니다";
     }
 
+    /// Why a receiver does not hear a code of its own table.
+    Unheard {
+        Short(detect_ms: u32, least_ms: u32): "receiver.detect_ms = {detect_ms} is too short for the slowest code, {least_ms} or more are needed", "receiver.detect_ms = {detect_ms}은(는) 가장 느린 코드에 너무 짧습니다. {least_ms} 이상이어야 합니다";
+        As(heard_hz: String): "the receiver hears it as {heard_hz} Hz", "수신기가 {heard_hz} Hz로 수신합니다";
+        Nothing: "the receiver hears no code in it; its rate is too fast for the receiver, or its carrier too slow for the rate", "수신기가 코드를 수신하지 못합니다. 코드 주파수가 너무 빠르거나 반송파가 그에 비해 너무 느립니다";
+    }
+
     /// A file or a folder.
     FileTrouble {
         Unread(file: String, why: Why): "cannot read {file}: {why}", "읽을 수 없습니다: {file} ({why})";
@@ -101,6 +108,7 @@ sentences! {
         OfKeys(file: String): "{file} is no list of keys", "키 목록이 아닙니다: {file}";
         NoCatalogue: "there is no fault catalogue", "고장 목록이 없습니다";
         NoWav(file: String, why: String): "{file} is no WAV file that can be read ({why}); give a file of PCM or floating-point samples", "읽을 수 있는 WAV 파일이 아닙니다: {file} ({why}). PCM 또는 부동소수점 샘플 파일을 지정하십시오";
+        Unheard(file: String, code: String, rate: String, carrier: String, why: Unheard): "{file}: code {code} of {rate} Hz on {carrier} Hz: {why}", "{file}: 코드 {code}({rate} Hz, 반송파 {carrier} Hz): {why}";
         NoSamples(file: String, channels: u16, hz: u32): "{file} has {channels} channels at {hz} Hz: nothing that can be read", "{file}: 채널 {channels}개, {hz} Hz는 읽을 수 없습니다";
     }
 

@@ -1,17 +1,19 @@
 //! What a run comes to beyond its verdict: the diagnosis, and what it says of repairs.
 
-use fault_db::Store;
+use fault_db::{RunDetail, Store};
 
 use super::RunArguments;
 use crate::cli::print_out;
 use ptu_report::diagnosis::diagnosis_text;
 use ptu_report::proof_text;
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock::local_zoned;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::Outcome;
 use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run};
 use ptu_runs::stdio;
+use ptu_runs::stored::valid_until_us;
 
 impl RunArguments {
     /// The diagnosis of an adaptive run, and of any other that failed.
@@ -47,6 +49,14 @@ impl RunArguments {
         }
         Ok(())
     }
+}
+
+/// Until when a departure test that passed holds.
+pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
+    valid_until_us(run).map_or(Ok(()), |at_us| {
+        let said = Words::shown().report.valid_until;
+        print_out(&format!("{said} {}", local_zoned(at_us))).map(drop)
+    })
 }
 
 /// What a run that passed says of the repairs made before it.

@@ -59,6 +59,7 @@ sessions! {
     chosen_procedures,
     completions,
     defaults,
+    departure,
     diagnoses,
     drive_reports,
     drives,

@@ -103,6 +103,9 @@ impl View {
             if more > 0 {
                 ui.label(fill(said.more, &[("n", &more)]));
             }
+            for of in &reading.levels {
+                ui.label(report::level(of, words));
+            }
             for of in reading.not_understood.iter().take(MOST) {
                 let said = report::not_understood(of, words);
                 ui.label(RichText::new(said).color(Palette::of(ui).warn));

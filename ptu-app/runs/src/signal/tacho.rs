@@ -1,0 +1,181 @@
+//! The lines of speed sensors in a recording, two channels each: pulses, direction, speed, and how the wheel wears.
+
+use std::path::Path;
+
+use ato_under_test::receivers::SensorInput;
+use protocol::config::UnitConfig;
+use serde::Serialize;
+
+use super::meter::Meter;
+use super::read::{Level, Reading, Source, Why};
+use super::receive::{ASKED_EVERY_S, Receivers};
+use super::wav::{End, Wav};
+use crate::failure::Failure;
+
+/// A period that is so much longer than the one before it lacks a tooth, at a speed that changes gently.
+const GAP: std::ops::RangeInclusive<f64> = 1.6..=2.4;
+
+/// What the two lines of a speed sensor tell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Tacho {
+    /// Pulses, forward and backward.
+    pub forward: u64,
+    /// Backward.
+    pub backward: u64,
+    /// Mean speed between the first pulse and the last, km/h.
+    pub mean_kmh: f64,
+    /// Slowest and fastest of all periods, without the gaps, km/h.
+    pub kmh: [f64; 2],
+    /// Line B behind line A, degrees of a period.
+    pub phase_deg: f64,
+    /// Share of the time for which line A and line B are high, %.
+    pub duty_percent: [f64; 2],
+    /// Periods that lack a tooth.
+    pub missing_teeth: u64,
+}
+
+/// One sensor, sample by sample.
+#[derive(Default)]
+struct Sensor {
+    input: SensorInput,
+    was_high: [bool; 2],
+    samples: u64,
+    /// First pulse, the last one, and the one before it, samples from the beginning.
+    first: Option<f64>,
+    last: Option<f64>,
+    period: Option<f64>,
+    shortest: f64,
+    longest: f64,
+    /// Since the last pulse: samples for which each line was high, and when B rose.
+    high: [u64; 2],
+    b_rose: Option<u64>,
+    /// Sums over whole periods: their length, what was high of them, and the phase, as a sum of shares and how many.
+    length: f64,
+    sum_high: [u64; 2],
+    phases: (f64, u32),
+    told: Tacho,
+}
+
+impl Sensor {
+    fn take(&mut self, [a, b]: [f32; 2]) {
+        let before = self.input.count();
+        self.input.take(a, b);
+        self.samples += 1;
+        let high = self.input.high();
+        // A line that is high from the beginning on has not risen.
+        if self.input.count() != before && self.samples > 1 {
+            self.pulse(self.samples as f64 - f64::from(self.input.since()));
+        }
+        if high[1] && !self.was_high[1] {
+            self.b_rose = Some(self.samples);
+        }
+        for (sum, high) in self.high.iter_mut().zip(high) {
+            *sum += u64::from(high);
+        }
+        self.was_high = high;
+    }
+
+    fn pulse(&mut self, at: f64) {
+        match self.input.backward() {
+            true => self.told.backward += 1,
+            false => self.told.forward += 1,
+        }
+        let high = std::mem::take(&mut self.high);
+        let b_rose = self.b_rose.take();
+        self.first.get_or_insert(at);
+        let Some(last) = self.last.replace(at) else {
+            return;
+        };
+        let period = at - last;
+        let is_gap = (self.period).is_some_and(|before| GAP.contains(&(period / before)));
+        if is_gap {
+            self.told.missing_teeth += 1;
+            self.period = None;
+            return;
+        }
+        self.period = Some(period);
+        self.longest = self.longest.max(period);
+        self.shortest = match self.shortest {
+            0.0 => period,
+            shortest => shortest.min(period),
+        };
+        self.length += period;
+        for (sum, high) in self.sum_high.iter_mut().zip(high) {
+            *sum += high;
+        }
+        if let Some(rose) = b_rose {
+            let share = (rose as f64 - last) / period;
+            self.phases = (self.phases.0 + share, self.phases.1 + 1);
+        }
+    }
+
+    /// What it was, if there were two pulses.
+    fn told(mut self, sample_hz: f64, unit: &UnitConfig) -> Option<(Tacho, [f64; 2])> {
+        let (first, last) = (self.first?, self.last.filter(|_| self.length > 0.0)?);
+        let kmh = |samples: f64| 3.6 * unit.metres_per_pulse() * sample_hz / samples;
+        let pulses = self.told.forward + self.told.backward + self.told.missing_teeth - 1;
+        self.told.mean_kmh = kmh((last - first) / pulses as f64);
+        self.told.kmh = [kmh(self.longest), kmh(self.shortest)];
+        self.told.phase_deg = 360.0 * self.phases.0 / f64::from(self.phases.1.max(1));
+        self.told.duty_percent = self.sum_high.map(|high| 100.0 * high as f64 / self.length);
+        Some((self.told, [first, last].map(|at| at / sample_hz)))
+    }
+}
+
+/// Reads the speed sensors in a WAV file, of which two channels each are lines A and B.
+///
+/// # Errors
+/// It cannot be read or is no WAV file.
+pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<Reading, Failure> {
+    let mut wav = Wav::open(path)?;
+    let sample_hz = f64::from(wav.sample_hz());
+    let channels = wav.channels().min(Receivers::MOST_CHANNELS);
+    let part = ((ASKED_EVERY_S * sample_hz) as usize).max(1);
+    let mut meters: Vec<_> = (0..channels).map(|_| Meter::new(sample_hz)).collect();
+    let mut sensors: Vec<_> = (0..channels / 2).map(|_| Sensor::default()).collect();
+    let (mut reading, mut samples) = (Reading::default(), 0);
+    loop {
+        let (block, end) = wav.block(10 * part, channels, full_scale_mv);
+        for (meter, of) in meters.iter_mut().zip(&block) {
+            meter.take(of, part);
+        }
+        for (sensor, lines) in sensors.iter_mut().zip(block.chunks_exact(2)) {
+            let both = lines[0].iter().zip(&lines[1]);
+            both.for_each(|(a, b)| sensor.take([*a, *b]));
+        }
+        samples += block.first().map_or(0, Vec::len);
+        reading.duration_s = samples as f64 / sample_hz;
+        if let Some(End::Broken(why)) = &end {
+            reading.tell(reading.duration_s, Why::Broken(why.clone()));
+        }
+        if end.is_some() {
+            break;
+        }
+    }
+    let numbered = meters.iter().zip(1..);
+    reading.levels = numbered
+        .map(|(meter, number)| Level::of(meter, number))
+        .collect();
+    if channels < 2 {
+        reading.tell(0.0, Why::OneLine);
+    }
+    for (place, sensor) in sensors.into_iter().enumerate() {
+        if let Some((tacho, [from_s, to_s])) = sensor.told(sample_hz, unit) {
+            let pulses = tacho.forward + tacho.backward + tacho.missing_teeth - 1;
+            reading.sources.push(Source {
+                kind: "tacho",
+                channel: 2 * place + 1,
+                from_s,
+                to_s,
+                what: String::new(),
+                carrier_hz: 0.0,
+                rate_hz: pulses as f64 / (to_s - from_s),
+                level_mv: Some(meters[2 * place].levels_mv().0),
+                snr_db: None,
+                bad_bytes: None,
+                tacho: Some(tacho),
+            });
+        }
+    }
+    Ok(reading)
+}
