@@ -10,6 +10,7 @@ use core::f32::consts::{PI, SQRT_2, TAU};
 use protocol::config::UnitConfig;
 
 use super::downmix::{Downmix, Phasor};
+use super::window::{hann, mean_of, on_share, power_around, wrapped};
 
 /// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
 const ENVELOPE_HZ: f32 = 600.0;
@@ -35,12 +36,8 @@ pub(super) const LEAST_SHARE: f32 = 0.55;
 const LEAST_SHARE_OF_HALF: f32 = 0.4;
 /// Share of a square wave's power at its fundamental, and how near to it a code must come: less is another shape, as of a
 /// jump of the phase.
-const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
+pub(super) const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
 const NEARLY: f32 = 0.88;
-/// Share of what the stronger code leaves unexplained that a weaker one at another rate has, if that is what it is.
-const EXPLAINED: f32 = 0.7;
-/// Least share of the keying's power that a second code has which a receiver without selection hears.
-const SECOND: f32 = 0.05;
 /// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
 const WHOLE: f32 = 0.88;
 /// Periods of a rate in half a window with fewer of which its mean and its tone there are told apart step by step.
@@ -52,8 +49,6 @@ const BENDS: f32 = 0.6;
 /// else it has just ended.
 const GOES_ON: f32 = 0.9;
 const GOES_ON_HZ: f32 = 0.15;
-/// Power of a code's fundamental over its power on the carrier.
-const OF_CARRIER: f32 = 4.0 / (PI * PI);
 /// Most power in quadrature of one code alone, over that of the keying.
 const BESIDE: f32 = 0.12;
 /// With less noise than this, over the power of the keying, each break of a rate shows.
@@ -140,13 +135,13 @@ pub struct CodeReceiver {
     pub(super) downmix: Downmix,
     pub(super) reception: Reception,
     /// Ratio of the powers of two codes of which the stronger counts.
-    apart: f32,
+    pub(super) apart: f32,
     /// Share of the steps of rates that fit a usual window.
     finer: f32,
     line: [Phasor; MOST],
     pub(super) window: usize,
     place: usize,
-    filled: usize,
+    pub(super) filled: usize,
 }
 
 /// The window on the carrier's phase.
@@ -165,7 +160,7 @@ pub(super) struct OnCarrier {
 pub(super) struct Tone {
     pub(super) rate_hz: f32,
     pub(super) amplitude: f32,
-    angle: f32,
+    pub(super) angle: f32,
 }
 
 impl Tone {
@@ -284,7 +279,7 @@ impl CodeReceiver {
     }
 
     /// Brings the window to the frequency and the phase of its carrier.
-    fn on_carrier(&self) -> OnCarrier {
+    pub(super) fn on_carrier(&self) -> OnCarrier {
         let value_hz = self.downmix.envelope_hz();
         let mut turned = Phasor::default();
         for (before, value) in self.values().zip(self.values().skip(1)) {
@@ -398,84 +393,6 @@ impl CodeReceiver {
         Some((offset_hz, [is_whole, goes_on]))
     }
 
-    /// The weaker of two codes at rates of the table, which a receiver hears that has lost its selection.
-    pub fn weaker(&self, rates_hz: &[f32]) -> Option<Heard> {
-        if self.filled < self.window || self.reception.shift_hz > 0.0 {
-            return None;
-        }
-        let on = self.on_carrier();
-        // Whatever the phase between the two carriers, one of both shows the weaker code.
-        let mut envelope = OnCarrier { ..on };
-        for (slot, value) in envelope.values.iter_mut().zip(self.values()) {
-            *slot = value.abs();
-        }
-        let mean = |on: &OnCarrier| mean_of(&on.values[..self.window], |value| value);
-        let tone = |on: &OnCarrier, rate| self.tone(on, mean(on), rate, 0, self.window);
-        let strongest = |a: &Tone, b: &Tone| a.amplitude.total_cmp(&b.amplitude);
-        let rates = || rates_hz.iter().copied();
-        let one = rates().map(|rate| tone(&on, rate)).max_by(strongest)?;
-        let apart_hz = 2.0 / self.window_s();
-        let others = rates().filter(|rate| (rate - one.rate_hz).abs() > apart_hz);
-        let carrier_hz = self.reception.carrier_hz + on.offset_hz;
-        let power = power_around(&on.values[..self.window], mean(&on));
-        let unexplained = power - on.noise - one.power() / OF_SQUARE_WAVE + on.beside;
-        // The third harmonic of the slower one may lie near the faster one.
-        let step = TAU / self.downmix.envelope_hz();
-        let without_third = |of: &OnCarrier, rate: f32| {
-            let (mut rest, slow) = (OnCarrier { ..*of }, tone(of, rate));
-            for (place, value) in rest.values[..self.window].iter_mut().enumerate() {
-                let angle = 3.0 * (slow.angle + step * rate * place as f32);
-                *value += slow.amplitude / 3.0 * Phasor::at(angle).re;
-            }
-            rest
-        };
-        let rests = [&on, &envelope].map(|of| without_third(of, one.rate_hz));
-        let others = others.flat_map(|rate| [tone(&rests[0], rate), tone(&rests[1], rate)]);
-        let other = others.max_by(strongest)?;
-        let slow_hz = one.rate_hz.min(other.rate_hz);
-        let fast_hz = one.rate_hz.max(other.rate_hz);
-        let both = [&on, &envelope].map(|of| {
-            [
-                tone(of, slow_hz),
-                tone(&without_third(of, slow_hz), fast_hz),
-            ]
-        });
-        let codes = [0, 1].map(|code| both[0][code].amplitude.max(both[1][code].amplitude));
-        let weaker = both[0][usize::from(codes[1] < codes[0])];
-        let level_mv = codes[0].min(codes[1]) * (PI / 2.0) / SQRT_2;
-        let is_code = unexplained > SECOND * power && level_mv >= self.reception.level_min_mv;
-        is_code.then_some(Heard {
-            carrier_hz,
-            rate_hz: weaker.rate_hz,
-            level_mv,
-            validity: (weaker.power() / power).min(1.0),
-            snr_db: None,
-            goes_on: true,
-            is_clear: true,
-        })
-    }
-
-    /// Whether what a code does not explain of the window is a weaker one at another rate.
-    fn is_second_code(
-        &self,
-        on: &OnCarrier,
-        mean: f32,
-        tone: Tone,
-        power: f32,
-        table_hz: &[f32],
-    ) -> bool {
-        // Nearer than this the two are one peak.
-        let apart_hz = 2.0 / self.window_s();
-        let second = (table_hz.iter())
-            .filter(|rate| (*rate - tone.rate_hz).abs() > apart_hz)
-            .map(|rate_hz| self.tone(on, mean, *rate_hz, 0, self.window).power())
-            .fold(0.0, f32::max);
-        let unexplained = power - on.noise - tone.power() / OF_SQUARE_WAVE;
-        // Its carrier may be in quadrature.
-        (second + OF_CARRIER * on.beside) * self.apart <= tone.power()
-            && second / OF_SQUARE_WAVE >= EXPLAINED * unexplained
-    }
-
     /// Mean of a part of the window beside a tone.
     fn mean_beside(&self, on: &OnCarrier, tone: Tone, from: usize, to: usize) -> f32 {
         let step = TAU * tone.rate_hz / self.downmix.envelope_hz();
@@ -492,7 +409,14 @@ impl CodeReceiver {
     }
 
     /// Amplitude and phase of a rate in a part of the window.
-    fn tone(&self, on: &OnCarrier, mean: f32, rate_hz: f32, from: usize, to: usize) -> Tone {
+    pub(super) fn tone(
+        &self,
+        on: &OnCarrier,
+        mean: f32,
+        rate_hz: f32,
+        from: usize,
+        to: usize,
+    ) -> Tone {
         let step = TAU * rate_hz / self.downmix.envelope_hz();
         let (mut at, turn) = (Phasor::at(-step * from as f32), Phasor::at(-step));
         let mut sum = Phasor::default();
@@ -508,44 +432,4 @@ impl CodeReceiver {
             angle: sum.angle(),
         }
     }
-}
-
-/// Mean, over a Hann window, of what `of` makes of the values.
-pub(super) fn mean_of(values: &[f32], of: impl Fn(f32) -> f32) -> f32 {
-    let weighted = values.iter().zip(hann(values.len()));
-    let sum: f32 = weighted.map(|(value, w)| of(*value) * w).sum();
-    sum * 2.0 / values.len() as f32
-}
-
-/// Power of what varies, mV².
-pub(super) fn power_around(values: &[f32], mean: f32) -> f32 {
-    mean_of(values, |value| (value - mean) * (value - mean))
-}
-
-/// The share of the time that a keyed carrier is on, from the amplitude of the fundamental over the mean: that is
-/// 2 sin(πd) / πd, which falls from 2 to 0. The mean and the fundamental pass the filter whole, the edges do not.
-fn on_share(fundamental: f32) -> f32 {
-    let (mut low, mut high) = (0.05, 0.95);
-    for _ in 0..16 {
-        let middle = 0.5 * (low + high);
-        match 2.0 * libm::sinf(PI * middle) / (PI * middle) > fundamental {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
-    low
-}
-
-fn hann(length: usize) -> impl Iterator<Item = f32> {
-    let turn = Phasor::at(TAU / length as f32);
-    let mut at = Phasor::at(PI / length as f32);
-    (0..length).map(move |_| {
-        let value = 0.5 - 0.5 * at.re;
-        at = at.times(turn);
-        value
-    })
-}
-
-fn wrapped(angle: f32) -> f32 {
-    angle - TAU * libm::roundf(angle / TAU)
 }

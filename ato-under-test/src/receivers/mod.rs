@@ -7,8 +7,10 @@ mod coils;
 mod downmix;
 mod fsk;
 mod marker;
+mod second_code;
 mod sensor;
 mod shifted;
+mod window;
 
 pub use code::{CodeReceiver, Heard, Reception};
 pub use coils::{Coils, Sampled};

@@ -3,8 +3,9 @@
 
 use core::f32::consts::{PI, TAU};
 
-use super::code::{CodeReceiver, Heard, LEAST_SHARE, MOST, OnCarrier, mean_of, power_around};
+use super::code::{CodeReceiver, Heard, LEAST_SHARE, MOST, OnCarrier};
 use super::downmix::Phasor;
+use super::window::{mean_of, power_around};
 
 /// Values from one to the other of which the phase turns: over fewer noise turns it, over more a fast code is lost.
 const TURNS_OVER: usize = 6;

@@ -1,17 +1,15 @@
 //! What a bench makes of procedures: steps that it cannot do are skipped with the reason, a person is asked for what a
 //! person does, and limits are as much wider as its instruments are uncertain; each says so.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use btu_rig::procedure::plan::{
-    Action, Expectation, Measure, Operand, Procedure, Step, TimeFrom, What,
-};
+use btu_rig::procedure::plan::{Action, Expectation, Procedure, Step};
 use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{InstrumentEntry, Place, Places, Point};
+use super::widen::READ_ANY;
 use super::worker::Values;
 use crate::words::BenchNote;
 
@@ -56,7 +54,7 @@ fn needs(stimulus: &Stimulus) -> &'static [&'static str] {
 }
 
 /// The action itself, wherever it is done.
-fn inner(action: &Action) -> &Action {
+pub(super) fn inner(action: &Action) -> &Action {
     match action {
         Action::OnBench(action) | Action::OnTrain(action) => action,
         action => action,
@@ -279,169 +277,9 @@ impl Places {
             .flat_map(asked)
             .collect();
     }
-
-    fn late(&self, point: &Point) -> Duration {
-        match point.place() {
-            Place::Instrument(name) => Duration::from_ms(self.instruments[name].uncertainty_ms),
-            _ => Duration::ZERO,
-        }
-    }
-
-    /// How late the latest of its instruments acts.
-    fn acts_late(&self) -> Duration {
-        let all = self.stimuli.values().map(|point| self.late(point));
-        all.max().unwrap_or(Duration::ZERO)
-    }
-
-    /// How late the latest of these signals is read.
-    fn reads_late(&self, of: &dyn Fn(Signal) -> bool) -> Duration {
-        let read = self.readings.iter().filter(|(signal, _)| of(**signal));
-        let late = read.map(|(_, point)| self.late(point));
-        late.max().unwrap_or(Duration::ZERO)
-    }
-
-    fn widen(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
-        let acts = self.acts_late();
-        let mut motion = (0.0f64, 0.0f64);
-        for action in &step.actions {
-            if let Action::Stimulus(
-                Stimulus::Speed {
-                    to: speed,
-                    accel_mps2,
-                }
-                | Stimulus::Travel {
-                    speed, accel_mps2, ..
-                },
-            ) = inner(action)
-            {
-                motion = (motion.0.max(speed.mps()), motion.1.max(*accel_mps2));
-            }
-        }
-        for measure in &mut step.measures {
-            let signals = signals_of(measure);
-            let late = acts + self.reads_late(&|signal| signals.contains(&signal));
-            let of_value = |signal: &Signal| {
-                self.readings
-                    .get(signal)
-                    .map_or(0.0, |point| point.uncertainty)
-            };
-            let by = match &measure.what {
-                What::Time { .. } => late.as_secs() * 1000.0,
-                What::At { signal, .. } => {
-                    let moves = match signal.definition().unit {
-                        "km/h" => motion.1 * 3.6,
-                        "m" => motion.0,
-                        _ => 0.0,
-                    };
-                    of_value(signal) + moves * late.as_secs()
-                }
-                What::Value(signal) | What::Maximum(signal) | What::Minimum(signal) => {
-                    of_value(signal)
-                }
-                What::Change(signal) => 2.0 * of_value(signal),
-                What::SelfTest { .. } => 0.0,
-            };
-            let used = self.used_for(&signals, acts);
-            if by > 0.0 && !used.is_empty() {
-                measure.low.iter_mut().for_each(|low| shift(low, -by));
-                measure.high.iter_mut().for_each(|high| shift(high, by));
-                measure.within += late;
-                let by = format!("{:.1} {}", by, measure.unit());
-                measure
-                    .origin
-                    .add(say(BenchNote::Wider(self.name.clone(), used, by)));
-            }
-        }
-        let late = acts + self.reads_late(&READ_ANY);
-        if late == Duration::ZERO {
-            return;
-        }
-        let mut wider = false;
-        for expected in &mut step.expectations {
-            if let Expectation::Becomes { within, .. } | Expectation::Logs { within, .. } = expected
-            {
-                *within += late;
-                wider = true;
-            }
-        }
-        for action in &mut step.actions {
-            if let Action::Until { within, .. } = action {
-                *within += late;
-                wider = true;
-            }
-        }
-        // Until all instruments have acted, the unit shows what was before; until all have read, some of them do.
-        let holds = |expected: &Expectation| matches!(expected, Expectation::Holds { .. });
-        let acted = matches!(step.actions.last().map(inner), Some(Action::Stimulus(_)));
-        match step.expectations.iter().any(holds) {
-            true => step.actions.push(Action::Wait(late)),
-            false if acted => step.actions.push(Action::Wait(acts)),
-            false => {}
-        }
-        if wider {
-            let used = self.safe.join(" ");
-            let by = format!("{:.0} ms", late.as_secs() * 1000.0);
-            step.origin
-                .add(say(BenchNote::Wider(self.name.clone(), used, by)));
-        }
-    }
-
-    /// Instruments behind signals, and those that act, with their serial numbers.
-    fn used_for(&self, signals: &BTreeSet<Signal>, acts: Duration) -> String {
-        let read = signals
-            .iter()
-            .filter_map(|signal| self.readings.get(signal));
-        let act = self.stimuli.values().filter(|_| acts > Duration::ZERO);
-        let names = read.chain(act).filter_map(|point| match point.place() {
-            Place::Instrument(name) => Some(name),
-            _ => None,
-        });
-        let names: BTreeSet<_> = names.collect();
-        let told = names
-            .into_iter()
-            .map(|name| format!("{name} {}", self.instruments[name].serial));
-        told.collect::<Vec<_>>().join(", ")
-    }
 }
-
-/// Whatever is read.
-const READ_ANY: fn(Signal) -> bool = |_| true;
 
 fn worst_case(actions: &[Action]) -> Duration {
     let add = |sum: Duration, action: &Action| sum + action.worst_case();
     actions.iter().fold(Duration::ZERO, add)
-}
-
-fn signals_of(measure: &Measure) -> BTreeSet<Signal> {
-    let mut signals = BTreeSet::new();
-    let mut note = |signal| {
-        signals.insert(signal);
-    };
-    match &measure.what {
-        What::Time { from, to } => {
-            if let TimeFrom::Condition(from) = from {
-                from.for_each_signal(&mut note);
-            }
-            to.for_each_signal(&mut note);
-        }
-        What::At { signal, when } => {
-            note(*signal);
-            when.for_each_signal(&mut note);
-        }
-        What::Value(signal)
-        | What::Maximum(signal)
-        | What::Minimum(signal)
-        | What::Change(signal) => {
-            note(*signal);
-        }
-        What::SelfTest { .. } => {}
-    }
-    signals
-}
-
-fn shift(limit: &mut Operand, by: f64) {
-    match limit {
-        Operand::Literal(number) => *number += by,
-        Operand::Measured { offset, .. } => *offset += by,
-    }
 }

@@ -15,6 +15,7 @@ mod placed;
 mod scpi;
 #[cfg(test)]
 mod tests;
+mod widen;
 mod worker;
 
 pub use file::{At, InstrumentEntry, Place, Places, PlacesError, Point};
