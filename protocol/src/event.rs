@@ -134,7 +134,7 @@ events! {
     NoPulses = 234 "no_pulses" Major "-" "No pulses although power is asked for: powering cut" "역행 중 속도 신호 없음: 역행 차단" "time, ms";
     SpeedContradicted = 235 "speed_contradicted" Critical "io_board" "TCMS says that the train moves, or is much faster than both tachometers" "TCMS 속도와 속도센서 불일치" "speed that TCMS tells, cm/s";
     EbIneffective = 236 "eb_ineffective" Critical "-" "Emergency brake asked for, and it does not act: full service brake" "비상제동 불발: 상용전제동 체결" "1 = only TCMS tells it";
-    ClockContradicted = 237 "clock_contradicted" Major "atp_cpu" "Clock and TCMS's alive counter differ: speeds are raised where the clock is fast" "시계와 TCMS 동작 계수 불일치: 시계가 빠르면 속도 상향" "difference, 0.01 %";
+    ClockContradicted = 237 "clock_contradicted" Major "atp_cpu" "Clock ahead of TCMS's alive counter: speeds are raised by as much" "시계가 TCMS 동작 계수보다 빠름: 속도를 그만큼 상향" "difference, 0.01 %";
     DoorOpenMoving = 240 "door_open_moving" Critical "io_board" "Doors open while moving" "주행 중 출입문 열림" "speed, cm/s";
     DoorEnableRefused = 241 "door_enable_refused" Info "-" "Doors not enabled at standstill" "출입문 열림 불허" "";
     DoorNotEnabled = 242 "door_not_enabled" Critical "io_board" "Door open on a side that is not enabled" "허용되지 않은 쪽 출입문 열림" "sides";

@@ -28,8 +28,8 @@ const BACK: Duration = Duration::from_ms(1_000);
 pub struct Witness {
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
-    /// Share by which the unit's clock is faster than TCMS's, slower negative.
-    pub clock_gains: f64,
+    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
+    pub clock_ahead: f64,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
     /// The start of the train is awaited again: a person acknowledges.
@@ -127,14 +127,14 @@ impl Belief {
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
-        let gains = witness.clock_gains;
-        let off = libm::fabs(gains) > config.clock_share && !witness.unguarded;
-        self.clock_fast = if off { gains.max(0.0) } else { 0.0 };
+        let ahead = witness.clock_ahead;
+        let off = ahead > config.clock_share && !witness.unguarded;
+        self.clock_fast = if off { ahead } else { 0.0 };
         if self.clock_told.rises(off) {
             log.push(
                 now,
                 Event::ClockContradicted,
-                libm::round(gains * 1e4) as i32,
+                libm::round(ahead * 1e4) as i32,
             );
         }
     }

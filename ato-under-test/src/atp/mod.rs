@@ -77,8 +77,8 @@ pub struct ScanContext {
     pub runs_farther: f64,
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
-    /// Share by which the unit's clock is faster than TCMS's, slower negative.
-    pub clock_gains: f64,
+    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
+    pub clock_ahead: f64,
     /// Others have opened the brake line, as it is read back or TCMS tells it.
     pub line_open: bool,
     /// Others have opened the line that had followed the relay.
@@ -363,7 +363,7 @@ impl Atp {
         let held = self.power_cut() || context.tcms_holds;
         Witness {
             tcms_speed: context.tcms_speed,
-            clock_gains: context.clock_gains,
+            clock_ahead: context.clock_ahead,
             powers: notch && !held,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
             tested: false,

@@ -123,9 +123,9 @@ impl TcmsLink {
         tells.then(|| Speed::from_cms(self.last.speed_cms))
     }
 
-    /// Share by which the unit's clock is faster than TCMS's, slower negative.
-    pub fn clock_gains(&self) -> f64 {
-        self.pace.clock_gains()
+    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
+    pub fn clock_ahead(&self) -> f64 {
+        self.pace.clock_ahead()
     }
 
     /// TCMS reads the head control relay of the unit's cab as dropped.

@@ -264,7 +264,7 @@ impl CodeReceiver {
         heard(rate_hz, level_mv, share.min(1.0), snr_db, goes_on, is_clear)
     }
 
-    /// Level of the louder half of the window, mV rms.
+    /// Level of a carrier that is on for half of the window, mV rms.
     fn loudest(&self) -> f32 {
         let values = &self.line[..self.window];
         let mean = values.iter().map(|value| value.power()).sum::<f32>() / self.window as f32;

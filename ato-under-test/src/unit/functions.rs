@@ -148,7 +148,7 @@ impl Functions {
                 false => 0.0,
             },
             tcms_speed: around.tcms.speed(),
-            clock_gains: around.tcms.clock_gains(),
+            clock_ahead: around.tcms.clock_ahead(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,

@@ -332,6 +332,16 @@ impl Finding {
             _ => false,
         }
     }
+
+    /// An instrument of the bench failed, or the tester stood still: it tells nothing of the unit.
+    pub fn is_of_the_bench(&self) -> bool {
+        match self {
+            Self::LinkLost { why } => matches!(why, LinkTrouble::Instrument { .. }),
+            Self::StoodStill { .. } | Self::BeforeStandstill(_) => true,
+            Self::NotRun(why) | Self::InSetUp(why) | Self::InCleanUp(why) => why.is_of_the_bench(),
+            _ => false,
+        }
+    }
 }
 
 impl LoggedEvent {

@@ -48,7 +48,7 @@ pub struct TachoConfig {
     /// believed.
     #[serde(default = "TachoConfig::default_tcms_difference_kmh")]
     pub tcms_difference_kmh: f64,
-    /// Share by which the unit's clock may differ from the pace of TCMS's alive counter.
+    /// Share by which the unit's clock may be faster than the pace of TCMS's alive counter.
     #[serde(default = "TachoConfig::default_clock_share")]
     pub clock_share: f64,
     /// Share of the way by which the tachometers may differ from each other, and each from the track's way.

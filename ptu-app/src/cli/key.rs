@@ -25,7 +25,7 @@ const YEARS: u32 = 2;
 ///
 /// Examples:
 ///   ptu key new --who Kim                       a technician's key, protected by a PIN
-///   ptu key new --who "bench 3" --bench --pin-file pin.txt
+///   ptu key new --who "bench 3" --for-bench --pin-file pin.txt
 ///   ptu key trust kim.pub                       puts a public key into this computer's list
 ///   ptu key revoke Kim --note "laptop lost"     from today on it signs nothing more
 ///   ptu key list                                their files, too
@@ -50,7 +50,7 @@ enum Verb {
         who: String,
         /// It is the key of a bench, not of a technician
         #[arg(long)]
-        bench: bool,
+        for_bench: bool,
         /// The private key's file [default: in the folder `keys` of the user's data directory]
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
@@ -142,11 +142,11 @@ impl KeyArguments {
         match self.verb {
             Verb::New {
                 who,
-                bench,
+                for_bench,
                 out,
                 until,
                 pin,
-            } => new(&who, bench, out, until, &pin),
+            } => new(&who, for_bench, out, until, &pin),
             Verb::List { keys, json } => list(&keys, json),
             Verb::Trust { file, keys } => trust(&file, &keys),
             Verb::Revoke { key, note, keys } => revoke(&key, note.trim(), &keys),

@@ -85,10 +85,10 @@ enum WaveVerb {
         #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
         seconds: f64,
         /// Line B behind line A, degrees of a period
-        #[arg(long, value_name = "DEGREES", default_value_t = 90.0, value_parser = positive)]
+        #[arg(long, value_name = "DEGREES", default_value_t = 90.0, value_parser = angle)]
         phase: f64,
         /// Share of a period for which a line is high, %
-        #[arg(long, value_name = "PERCENT", default_value_t = 50.0, value_parser = positive)]
+        #[arg(long, value_name = "PERCENT", default_value_t = 50.0, value_parser = percent)]
         duty: f64,
         /// One tooth of the wheel is missing
         #[arg(long)]
@@ -140,7 +140,7 @@ struct Noisy {
     #[arg(long, value_name = "MV", default_value_t = 500.0, value_parser = positive)]
     level: f64,
     /// Noise so many dB below the level, in the receiver's band; without it there is none
-    #[arg(long, value_name = "DB", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DB", allow_negative_numbers = true, value_parser = decibels)]
     snr: Option<f64>,
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
@@ -339,6 +339,29 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && number < 1e6 => Ok(number),
         _ => Err("a number above 0 and below 1 000 000 is needed".to_owned()),
+    }
+}
+
+fn decibels(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (-60.0..=120.0).contains(&number) => Ok(number),
+        _ => Err("a ratio from -60 to 120 is needed".to_owned()),
+    }
+}
+
+/// An angle within a period, degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..360.0).contains(&number) => Ok(number),
+        _ => Err("an angle from 0 to below 360 is needed".to_owned()),
+    }
+}
+
+/// A share that is neither nothing nor all.
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (1.0..=99.0).contains(&number) => Ok(number),
+        _ => Err("a share from 1 to 99 is needed".to_owned()),
     }
 }
 

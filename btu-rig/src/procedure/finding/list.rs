@@ -55,6 +55,11 @@ impl Findings {
         self.iter().any(|found| found.finding.needs_harness())
     }
 
+    /// One of them is of the bench, and tells nothing of the unit.
+    pub fn of_the_bench(&self) -> bool {
+        self.iter().any(|found| found.finding.is_of_the_bench())
+    }
+
     /// Adds one that came so often.
     pub fn add(&mut self, finding: Finding, times: u32) {
         if let Some(known) = self.0.iter_mut().find(|found| found.finding == finding) {

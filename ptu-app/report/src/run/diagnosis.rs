@@ -4,6 +4,8 @@ use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::diagnosis::{MOST_PARTS, Possible, ranked, shown_reasons};
 use crate::words::{Language, Words, fill};
+use diagnosis::Conclusion;
+use fault_db::Verdict;
 use protocol::lru::from_stored;
 use ptu_runs::run_diagnosis::Answer;
 
@@ -13,6 +15,16 @@ const LEAST_NAMED: f64 = 0.01;
 /// The blocks of the diagnosis, or why there is none.
 pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;
+    // A run that passed by steps of no dictionary, as before service, has no question open.
+    if let Ok(answer) = &sheet.diagnosis
+        && answer.run.run.verdict == Some(Verdict::Passed)
+        && matches!(
+            answer.diagnosis.conclusion,
+            Conclusion::NothingSeen { made: 0, .. }
+        )
+    {
+        return Vec::new();
+    }
     let mut blocks = vec![Block::Heading(report.diagnosis.into())];
     match &sheet.diagnosis {
         Err(why) => {

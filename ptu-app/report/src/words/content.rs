@@ -126,7 +126,7 @@ fn without_numbers(text: &str) -> (String, Vec<&str>) {
     without(text, |_| 0)
 }
 
-/// How long the name of a code is that the text begins with, as `L5`: capital letters and digits.
+/// How long the name of a code is that the text begins with, as `L5`: letters and digits that begin with a capital or a digit.
 fn code_name_length(text: &str) -> usize {
     let name = text.split([' ', ',', ':']).next().unwrap_or_default();
     let is_name = name.starts_with(|c: char| c.is_ascii_uppercase() || c.is_ascii_digit())

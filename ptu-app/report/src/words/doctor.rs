@@ -57,7 +57,7 @@ wordings! {
         instrument_ok: "{name} {serial}: acts and reads within {took} ms, {stated} ms stated; registered", "{name} {serial}: 작동과 판독 {took} ms (명시 {stated} ms). 등록함";
         instrument_late: "{name} {serial}: acts and reads within {took} ms, and the bench file states {stated} ms", "{name} {serial}: 작동과 판독 {took} ms, 시험대 파일에는 {stated} ms";
         state_more: "state more in uncertainty_ms: limits become as much wider", "uncertainty_ms를 늘리십시오. 한계가 그만큼 넓어집니다";
-        instrument_wrong: "{name} {serial}: {why}", "{name} {serial}: {why}";
+        instrument_wrong: "{name} {serial}: {why}", "{name} (일련번호 {serial}): {why}";
         check_instrument: "check power, network and address of the instrument; docs/bench.md says more", "계측기의 전원, 네트워크, 주소를 확인하십시오. 자세한 내용: docs/bench.md";
         answers: "{server} answers", "{server} 응답함";
         recorded_here: "runs are recorded here all the same; sync them when it answers", "시험은 이 컴퓨터에 기록됨. 서버가 응답하면 동기화하십시오";

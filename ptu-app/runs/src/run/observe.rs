@@ -6,11 +6,11 @@ use std::collections::BTreeSet;
 use btu_rig::procedure::{RunEvent, StepResult};
 use diagnosis::{CheckName, Observation, ObservedStep, Sign, is_observed};
 use fault_db::{RunDetail, RunOccurrence, StepRecord};
-use protocol::lru;
+use protocol::{Verdict, lru};
 
 use super::event::SessionEvent;
 use super::fault_watch::{CHECK_FAILED, FaultSeen};
-use crate::stored::{from_stored, outside_of};
+use crate::stored::{findings, from_stored, outside_of};
 
 /// Gathers the steps of a procedure, each with the signs that showed since the one before.
 #[derive(Debug)]
@@ -43,7 +43,8 @@ impl ObservationBuilder {
     }
 
     fn step(&mut self, result: &StepResult) -> Option<&ObservedStep> {
-        if !is_observed(result.verdict) {
+        let spoilt = result.verdict == Verdict::Error && result.findings.of_the_bench();
+        if !is_observed(result.verdict) || spoilt {
             return None;
         }
         let values = result.measurements.iter();
@@ -110,7 +111,9 @@ pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
 
 fn of_step(step: &StepRecord) -> Option<ObservedStep> {
     let result = Some(from_stored(step.verdict)).filter(|verdict| is_observed(*verdict))?;
-    if outside_of(step).is_some() {
+    // A step that the bench spoilt shows nothing of the unit.
+    let spoilt = result == Verdict::Error && findings(&step.findings).of_the_bench();
+    if outside_of(step).is_some() || spoilt {
         return None;
     }
     let values = step.measurements.iter();
@@ -124,4 +127,38 @@ fn of_step(step: &StepRecord) -> Option<ObservedStep> {
         values: values.map(|m| (m.name.clone(), m.value)).collect(),
         signs: BTreeSet::new(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use btu_rig::procedure::{Finding, Findings};
+    use protocol::Duration;
+
+    use super::*;
+
+    /// Goal: what the bench or the tester's computer did is no evidence of the unit. Method: a step that ended in an error,
+    /// for a time limit and for a tester that stood still.
+    #[test]
+    fn a_step_that_the_bench_spoilt_is_no_evidence() {
+        let by = Duration::from_ms(400);
+        let limit = Finding::TimeLimit {
+            limit: by,
+            waiting: None,
+        };
+        let stood_still = Finding::StoodStill { by, attempt: 3 };
+        for (why, counts) in [
+            (limit.clone(), true),
+            (stood_still.clone(), false),
+            (Finding::NotRun(Box::new(stood_still)), false),
+            (Finding::InSetUp(Box::new(limit)), true),
+        ] {
+            let findings = Findings::from(why.clone());
+            let step = StepRecord {
+                verdict: fault_db::Verdict::Error,
+                findings: findings.to_json(),
+                ..StepRecord::passed(0, "a/b", "c")
+            };
+            assert_eq!(of_step(&step).is_some(), counts, "{why:?}");
+        }
+    }
 }

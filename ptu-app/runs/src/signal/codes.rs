@@ -70,7 +70,8 @@ impl<'a> Carrier<'a> {
             patience_s: (detected_s - f64::from(receiver.window_s())).max(ASKED_EVERY_S)
                 - 0.5 * ASKED_EVERY_S,
             receiver,
-            envelope: (unit.receiver.shift_hz == 0.0).then(|| Envelope::new(carrier_hz, sample_hz)),
+            envelope: (unit.receiver.shift_hz == 0.0)
+                .then(|| Envelope::new(carrier_hz, f64::from(reception.rates_hz.1), sample_hz)),
             now: None,
             rates_hz: codes.iter().map(|code| code.rate_hz as f32).collect(),
             codes,

@@ -6,9 +6,11 @@ use std::f64::consts::{FRAC_PI_4, PI, SQRT_2, TAU};
 
 use ato_under_test::receivers::Downmix;
 
-/// Rate of the envelope, Hz, and its pass band.
+/// Rate of the envelope, Hz, and its pass band, of codes from [`FAST_HZ`] on; slower ones have as much less, so that the
+/// image of a low carrier stays outside.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
+const FAST_HZ: f64 = 20.0;
 /// Longest part that is fitted, s: its end.
 const LONGEST_S: f64 = 8.0;
 /// Time that the filter takes to show a beginning, s.
@@ -25,15 +27,20 @@ const HALVINGS: usize = 12;
 /// The amplitude of a carrier, as far back as it is fitted.
 pub(super) struct Envelope {
     downmix: Downmix,
+    pass_hz: f32,
     values: VecDeque<f64>,
     taken: u64,
     sample_hz: f64,
 }
 
 impl Envelope {
-    pub(super) fn new(carrier_hz: f64, sample_hz: f64) -> Self {
+    /// Of a carrier with codes up to this rate, Hz.
+    pub(super) fn new(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> Self {
+        let slow = (fastest_hz / FAST_HZ).min(1.0) as f32;
+        let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
         Self {
-            downmix: Downmix::new(carrier_hz as f32, sample_hz as f32, ENVELOPE_HZ, PASS_HZ),
+            downmix: Downmix::new(carrier_hz as f32, sample_hz as f32, envelope_hz, pass_hz),
+            pass_hz,
             values: VecDeque::new(),
             taken: 0,
             sample_hz,
@@ -50,6 +57,12 @@ impl Envelope {
         }
     }
 
+    /// Harmonics of a rate that the pass band has.
+    fn harmonics(&self, rate_hz: f64) -> usize {
+        let within = |of: &&f64| **of * rate_hz < f64::from(self.pass_hz);
+        HARMONICS.iter().filter(within).count()
+    }
+
     /// Rate, Hz, and level, mV rms, of the code that was there from when to when, s, at about this rate.
     pub(super) fn fit(&self, [from_s, to_s]: [f64; 2], about_hz: f64) -> Option<(f64, f64)> {
         let value_hz = f64::from(self.downmix.envelope_hz());
@@ -62,7 +75,8 @@ impl Envelope {
         if length_s * about_hz < 2.0 {
             return None;
         }
-        let explained = |hz: f64| fitted(&values, hz / value_hz, hz).map_or(0.0, |fit| fit.0);
+        let explained =
+            |hz: f64| fitted(&values, hz / value_hz, self.harmonics(hz)).map_or(0.0, |fit| fit.0);
         let mut step = 1.0 / STEPS / length_s;
         let most = (AROUND_HZ / step) as i32;
         let coarse = (-most..=most).map(|place| about_hz + f64::from(place) * step);
@@ -78,7 +92,7 @@ impl Envelope {
                 }
             }
         }
-        let (_, [_, cos, sin]) = fitted(&values, best.0 / value_hz, best.0)?;
+        let (_, [_, cos, sin]) = fitted(&values, best.0 / value_hz, self.harmonics(best.0))?;
         let middle = sin.atan2(cos);
         // Noise is in the pauses alone, and in the rest as much.
         let mean_square = |phase: f64| {
@@ -96,12 +110,9 @@ impl Envelope {
     }
 }
 
-/// What harmonics of a rate, in cycles a value, explain of the values, and the first parameters: mean, cosine, sine.
-fn fitted(values: &[f64], rate: f64, rate_hz: f64) -> Option<(f64, [f64; 3])> {
-    let within = HARMONICS
-        .iter()
-        .filter(|of| *of * rate_hz < f64::from(PASS_HZ));
-    let size = 1 + 2 * within.count();
+/// What so many harmonics of a rate, in cycles a value, explain of the values, and the first parameters: mean, cosine, sine.
+fn fitted(values: &[f64], rate: f64, harmonics: usize) -> Option<(f64, [f64; 3])> {
+    let size = 1 + 2 * harmonics;
     let mut matrix = [[0.0; PARAMETERS + 1]; PARAMETERS];
     for (place, value) in values.iter().enumerate() {
         let mut row = [1.0; PARAMETERS];
