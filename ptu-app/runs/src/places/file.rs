@@ -135,10 +135,37 @@ impl Point {
             name => Place::Instrument(name),
         }
     }
+
+    /// No number of it is beyond reason.
+    fn check(&self) -> Result<(), String> {
+        let terminals = self.coils.iter().copied();
+        let terminals = terminals.chain(self.proved_by).chain(self.input);
+        if terminals.max() > Some(LAST_TERMINAL) {
+            return Err(format!("coils and inputs are 0 to {LAST_TERMINAL}"));
+        }
+        if self.pulse_ms > MOST_MS {
+            return Err(format!("pulse_ms is at most {MOST_MS}"));
+        }
+        if !(1..=MOST_S).contains(&self.within_s.unwrap_or(OPERATOR_S)) {
+            return Err(format!("within_s is 1 to {MOST_S}"));
+        }
+        if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
+            return Err("uncertainty is a number, and not negative".into());
+        }
+        match self.scale.is_none_or(|scale| scale.is_normal()) {
+            true => Ok(()),
+            false => Err("scale is a number, and not 0".into()),
+        }
+    }
 }
 
 /// Time a person has, s [default].
 const OPERATOR_S: u64 = 60;
+/// Greatest times that a bench file may state.
+const MOST_MS: u64 = 60_000;
+const MOST_S: u64 = 3_600;
+/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
+const LAST_TERMINAL: u16 = 1967;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -250,6 +277,7 @@ impl Places {
             let known = stimuli().find(|known| known == name);
             let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
             let place = point.get_ref().place();
+            point.get_ref().check().map_err(refuse)?;
             check_stimulus(known, point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
             if place != Place::Frames {
                 stimuli_at.insert(known, point.get_ref().clone());
@@ -261,6 +289,7 @@ impl Places {
             let mut known = READINGS.into_iter().map(|(signal, _)| signal);
             let known = known.find(|known| known.name() == name);
             let known = known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
+            point.get_ref().check().map_err(refuse)?;
             check_reading(point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
             if point.get_ref().place() != Place::Frames {
                 readings_at.insert(known, point.get_ref().clone());
@@ -315,6 +344,14 @@ impl InstrumentEntry {
         }
         if self.poll_ms == 0 || self.uncertainty_ms < self.poll_ms {
             return Err("uncertainty_ms is at least poll_ms, and that at least 1".into());
+        }
+        if self.uncertainty_ms > MOST_MS {
+            return Err(format!("uncertainty_ms is at most {MOST_MS}"));
+        }
+        if let Some(watchdog) = self.watchdog
+            && u64::from(watchdog.ms) <= self.poll_ms
+        {
+            return Err("the watchdog waits longer than poll_ms".into());
         }
         if switches && self.watchdog.is_none() && self.by_hand.is_none() {
             return Err("it drives outputs: give its watchdog, or say in by_hand what is to be switched off if the program is killed".into());

@@ -77,6 +77,10 @@ impl Scpi {
     /// Sends a command, and asks whether it was taken.
     fn command(&mut self, command: &str) -> Result<(), InstrumentFault> {
         self.say(command)?;
+        self.taken(command)
+    }
+
+    fn taken(&mut self, command: &str) -> Result<(), InstrumentFault> {
         let asked = self.model.error.clone();
         let error = self.ask(&asked)?;
         let number = error.split(',').next().unwrap_or_default().trim();
@@ -157,8 +161,11 @@ impl Instrument for Scpi {
     fn off(&mut self) -> Result<(), InstrumentFault> {
         self.set.clear();
         let commands = self.model.off.clone();
-        commands
-            .iter()
-            .try_for_each(|command| self.command(command))
+        // All are sent before one is asked for, so that no old error and no late answer keeps an output on.
+        commands.iter().try_for_each(|command| self.say(command))?;
+        match commands.is_empty() {
+            true => Ok(()),
+            false => self.taken(&commands.join(", ")),
+        }
     }
 }

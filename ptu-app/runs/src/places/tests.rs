@@ -48,6 +48,20 @@ fn served(act: impl Fn(TcpStream) + Send + 'static) -> u16 {
     port
 }
 
+/// A module alone, which nothing is read of.
+const RELAYS: &str = r#"
+safe = ["io"]
+stimuli = { hcr = { at = "io", coils = [1] } }
+instruments.io = { at = "modbus:127.0.0.1:MODULE", serial = "R-1", uncertainty_ms = 150, watchdog = { register = 7, ms = 800 } }
+"#;
+
+/// A pulse generator alone.
+const PULSES: &str = r#"
+safe = ["pulses"]
+stimuli = { tacho1 = { at = "pulses", channel = 1 } }
+instruments.pulses = { at = "scpi:127.0.0.1:GENERATOR", model = "pulses", serial = "P-1", uncertainty_ms = 150, by_hand = "it" }
+"#;
+
 fn waits(wrong: Wrong, slow_ms: u64) {
     match wrong {
         "slow" => std::thread::sleep(Duration::from_millis(slow_ms)),
@@ -109,6 +123,11 @@ fn generator(wrong: Wrong, log: Log) -> u16 {
                 waits(wrong, 40);
             }
             let answer = match (line.as_str(), wrong) {
+                ("*IDN?", "pulses") => "ACME,PULSES,1,1",
+                ("SYST:ERR?", "pulses") if asked > 5 => {
+                    std::thread::sleep(Duration::from_secs(2));
+                    continue;
+                }
                 ("*IDN?", "model") => "ACME,SCALE,1,1",
                 ("*IDN?", _) => "ACME,GENERATOR,1,1",
                 ("SYST:ERR?", error) if asked > 6 && error.starts_with('-') => error,
@@ -197,7 +216,18 @@ by_hand|by_foot|15|by_foot
 by_hand = "switch off the generator"||10|killed
 ["gen", "io"]|["gen"]|2|see io
 model = "generator"|model = "oscillator"|10|oscillator
-modbus:127|modem:127|4|modbus:HOST:PORT"#;
+modbus:127|modem:127|4|modbus:HOST:PORT
+ms = 800|ms = 10|4|longer than poll_ms
+uncertainty_ms = 150|uncertainty_ms = 18446744073709551|4|at most 60000
+coils = [2]|coils = [1968]|21|0 to 1967
+input = 16|input = 65535|27|0 to 1967
+proved_by = 1|proved_by = 2000|20|0 to 1967
+within_s = 20|within_s = 18446744073709552|23|within_s is 1 to 3600
+within_s = 20|within_s = 0|23|within_s is 1 to 3600
+pulse_ms = 2000|pulse_ms = 9223372036854775807|24|at most 60000
+inverted = true|uncertainty = -0.1|27|not negative
+inverted = true|uncertainty = nan|27|not negative
+inverted = true|scale = nan|27|scale is a number"#;
     for row in table.trim().lines() {
         let [right, wrong, line, word] = row.split('|').collect::<Vec<_>>()[..] else {
             panic!("{row}")
@@ -377,6 +407,50 @@ fn outputs_are_off_in_their_order_on_every_end() {
         );
         drop(kept.take());
     }
+}
+
+/// Goal: a relay that is stuck leaves no other closed where a bench is tried. Method: its contact stays open.
+#[test]
+fn a_check_that_fails_switches_outputs_off() {
+    let log = Log::default();
+    let text = BENCH.replace("MODULE", &module("stuck", log.clone()).to_string());
+    let text = text.replace("GENERATOR", &generator("", log.clone()).to_string());
+    let checked = Placed::check(&bench(&text).expect("a bench"), 2);
+    let said: Vec<_> = checked
+        .iter()
+        .map(|(name, how)| (&name[..], how.is_ok()))
+        .collect();
+    assert_eq!(said, [("gen", true), ("io", false)]);
+    let told = log.take();
+    let closed = told.iter().any(|said| said == "coils 0002");
+    let relays = told.iter().rfind(|said| said.starts_with("coils"));
+    assert!(
+        closed && relays.is_some_and(|said| said == "coils 0000"),
+        "{told:?}"
+    );
+}
+
+/// Goal: an instrument that does not answer has all its outputs off. Method: a pulse generator of two channels is mute.
+#[test]
+fn a_mute_instrument_is_told_every_command_that_switches_off() {
+    let log = Log::default();
+    let text = PULSES.replace("GENERATOR", &generator("pulses", log.clone()).to_string());
+    let placed = Placed::open(&Arc::new(bench(&text).expect("a bench"))).expect("it answers");
+    log.take();
+    drop(placed);
+    assert_eq!(log.take(), ["PULS1:FREQ 0", "PULS2:FREQ 0"]);
+}
+
+/// Goal: a module that nothing is read of keeps its relays, and is seen to be there.
+#[test]
+fn relays_without_inputs_are_ordered_again() {
+    let log = Log::default();
+    let text = RELAYS.replace("MODULE", &module("", log.clone()).to_string());
+    let placed = Placed::open(&Arc::new(bench(&text).expect("a bench"))).expect("it answers");
+    std::thread::sleep(Duration::from_millis(200));
+    let told = log.take();
+    assert!(told.len() > 4, "{told:?}");
+    drop(placed);
 }
 
 #[test]
