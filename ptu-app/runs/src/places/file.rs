@@ -1,6 +1,6 @@
 //! The bench file, `benches/NAME.toml`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use thiserror::Error;
 use toml::Spanned;
 
 use super::model::Model;
+use super::placed::SAFE_WITHIN;
 
 /// Why a bench file or a driver is refused.
 #[derive(Debug, Error)]
@@ -255,7 +256,9 @@ impl Places {
         for (name, entry) in &read.instruments {
             let refuse = |why| wrong(&entry.span(), format!("instrument {name}: {why}"));
             let entry = entry.get_ref();
-            entry.check(switches(name)).map_err(refuse)?;
+            entry
+                .check(switches(name), read.instruments.len())
+                .map_err(refuse)?;
             if let Some(driver) = &entry.model {
                 models.insert(name.clone(), Arc::new(model(driver).map_err(refuse)?));
             }
@@ -272,6 +275,7 @@ impl Places {
         }
         let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
         let mut stimuli_at = BTreeMap::new();
+        let mut taken = BTreeSet::new();
         for (name, point) in &read.stimuli {
             let refuse = |why| wrong(&point.span(), format!("stimulus {name}: {why}"));
             let known = stimuli().find(|known| known == name);
@@ -279,6 +283,13 @@ impl Places {
             let place = point.get_ref().place();
             point.get_ref().check().map_err(refuse)?;
             check_stimulus(known, point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            if let Place::Instrument(instrument) = place {
+                let coils = point.get_ref().coils.iter();
+                let mut twice = coils.filter(|coil| !taken.insert((instrument, **coil)));
+                if let Some(coil) = twice.next() {
+                    return Err(refuse(format!("coil {coil} has another use")));
+                }
+            }
             if place != Place::Frames {
                 stimuli_at.insert(known, point.get_ref().clone());
             }
@@ -286,11 +297,16 @@ impl Places {
         let mut readings_at = BTreeMap::new();
         for (name, point) in &read.readings {
             let refuse = |why| wrong(&point.span(), format!("reading {name}: {why}"));
-            let mut known = READINGS.into_iter().map(|(signal, _)| signal);
-            let known = known.find(|known| known.name() == name);
-            let known = known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
+            let known = READINGS.iter().find(|(known, _)| known.name() == name);
+            let (known, contact) =
+                *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
             point.get_ref().check().map_err(refuse)?;
-            check_reading(point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            check_reading(
+                !contact.is_empty(),
+                point.get_ref(),
+                of(&point.get_ref().at),
+            )
+            .map_err(refuse)?;
             if point.get_ref().place() != Place::Frames {
                 readings_at.insert(known, point.get_ref().clone());
             }
@@ -304,6 +320,14 @@ impl Places {
             stimuli: stimuli_at,
             readings: readings_at,
         })
+    }
+
+    /// The instrument proves a relay or reads, so that its check times more than that it switches off.
+    pub fn times_more_than_off(&self, instrument: &str) -> bool {
+        let here = |point: &Point| point.place() == Place::Instrument(instrument);
+        let mut stimuli = self.stimuli.values();
+        stimuli.any(|point| here(point) && point.proved_by.is_some())
+            || self.readings.values().any(here)
     }
 
     /// Everything that frames to the unit's inputs carry has another place.
@@ -328,7 +352,7 @@ impl InstrumentEntry {
         }
     }
 
-    fn check(&self, switches: bool) -> Result<(), String> {
+    fn check(&self, switches: bool, instruments: usize) -> Result<(), String> {
         let (kind, address) = self.at.split_once(':').unwrap_or_default();
         let port = address
             .rsplit_once(':')
@@ -345,8 +369,11 @@ impl InstrumentEntry {
         if self.poll_ms == 0 || self.uncertainty_ms < self.poll_ms {
             return Err("uncertainty_ms is at least poll_ms, and that at least 1".into());
         }
-        if self.uncertainty_ms > MOST_MS {
-            return Err(format!("uncertainty_ms is at most {MOST_MS}"));
+        let most_ms = SAFE_WITHIN.as_millis() as u64 / instruments as u64;
+        if self.uncertainty_ms > most_ms {
+            return Err(format!(
+                "uncertainty_ms is at most {most_ms}: all {instruments} are off within 1 s"
+            ));
         }
         if let Some(watchdog) = self.watchdog
             && u64::from(watchdog.ms) <= self.poll_ms
@@ -366,6 +393,9 @@ fn check_stimulus(name: &str, point: &Point, (entry, model): Named<'_>) -> Resul
     let Place::Instrument(instrument) = point.place() else {
         let cab = !["code", "crosstalk", "tacho1", "tacho2", "marker", "twc"].contains(&name);
         return match point.place() {
+            Place::Operator(_) if name.starts_with("eb_loop") => {
+                Err("no step moves it, so no person is asked for it".into())
+            }
             Place::Operator(_) if !cab => Err("no person is quick enough for it".into()),
             _ => Ok(()),
         };
@@ -386,6 +416,12 @@ fn check_stimulus(name: &str, point: &Point, (entry, model): Named<'_>) -> Resul
                 "controller" | "entries" | "twc" | "crosstalk" => 0,
                 _ => 1,
             };
+            if coils != 1 && point.proved_by.is_some() {
+                return Err("proved_by is for a stimulus of one relay".into());
+            }
+            if name == "marker" && point.pulse_ms == 0 {
+                return Err("pulse_ms is at least 1".into());
+            }
             match point.coils.len() {
                 n if n == coils && n > 0 => Ok(()),
                 _ if coils == 0 => Err("a module has no contacts for it".into()),
@@ -405,12 +441,14 @@ pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
     }
 }
 
-fn check_reading(point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
+fn check_reading(is_contact: bool, point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
     let Place::Instrument(instrument) = point.place() else {
         return Ok(());
     };
     match entry.map(InstrumentEntry::at) {
         None => Err(format!("no instrument {instrument}")),
+        Some(At::Modbus(..)) if !is_contact => Err("an input is no display".into()),
+        Some(At::Scpi(_)) if is_contact => Err("a contact is read by an input".into()),
         Some(At::Modbus(..)) if point.input.is_some() => Ok(()),
         Some(At::Modbus(..)) => Err("which input?".into()),
         Some(At::Scpi(_)) => {

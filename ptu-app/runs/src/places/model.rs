@@ -6,6 +6,7 @@ use btu_rig::rig::InstrumentFault;
 use serde::Deserialize;
 
 use super::file::PlacesError;
+use super::worker::Values;
 
 /// A driver.
 #[derive(Clone, Debug, Deserialize)]
@@ -118,7 +119,9 @@ impl Model {
     /// The value that is out of range, if one is.
     pub fn out_of_range(&self, values: &BTreeMap<&'static str, f64>) -> Option<InstrumentFault> {
         // A carrier that is not modulated has no rate.
-        let given = |(what, value): &(&&str, &f64)| **what != "rate_hz" || **value > 0.0;
+        let given = |(what, value): &(&&str, &f64)| {
+            !["rate_hz", "period_s"].contains(what) || **value > 0.0
+        };
         values.iter().filter(given).find_map(|(what, value)| {
             let [low, high] = self.ranges.get(*what)?;
             (!(*low..=*high).contains(value)).then(|| InstrumentFault::OutOfRange {
@@ -129,6 +132,19 @@ impl Model {
             })
         })
     }
+}
+
+/// Values of an antenna signal.
+pub(super) fn code_values(carrier_hz: f64, rate_hz: f64, level_mv: f64) -> Values {
+    // Without a carrier there is none, whatever its level.
+    let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
+    Values::from([
+        ("carrier_hz", carrier_hz),
+        ("rate_hz", rate_hz),
+        ("period_s", if rate_hz > 0.0 { 1.0 / rate_hz } else { 0.0 }),
+        ("level_mv", level_mv),
+        ("level_v", level_mv / 1000.0),
+    ])
 }
 
 /// A command with its values.

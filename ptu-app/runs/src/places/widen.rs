@@ -8,7 +8,7 @@ use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{Place, Places, Point};
-use super::fit::inner;
+use super::fit::{inner, inner_mut};
 use crate::words::BenchNote;
 
 /// Whatever is read.
@@ -99,12 +99,7 @@ impl Places {
                 wider = true;
             }
         }
-        for action in &mut step.actions {
-            if let Action::Until { within, .. } = action {
-                *within += late;
-                wider = true;
-            }
-        }
+        wider |= self.wait_longer(&mut step.actions);
         // Until all instruments have acted, the unit shows what was before; until all have read, some of them do.
         let holds = |expected: &Expectation| matches!(expected, Expectation::Holds { .. });
         let acted = matches!(step.actions.last().map(inner), Some(Action::Stimulus(_)));
@@ -119,6 +114,19 @@ impl Places {
             step.origin
                 .add(say(BenchNote::Wider(self.name.clone(), used, by)));
         }
+    }
+
+    /// Gives what is waited for as much more time as instruments act and read late; whether there is any.
+    pub(super) fn wait_longer(&self, actions: &mut [Action]) -> bool {
+        let late = self.acts_late() + self.reads_late(&READ_ANY);
+        let mut longer = false;
+        for action in actions.iter_mut().map(inner_mut) {
+            if let Action::Until { within, .. } = action {
+                *within += late;
+                longer = true;
+            }
+        }
+        longer
     }
 
     /// Instruments behind signals, and those that act, with their serial numbers.

@@ -136,7 +136,10 @@ impl Worker {
     /// Switches its outputs off and waits for that, no longer than this.
     pub fn end(&mut self, within: Duration) {
         let mut state = lock(&self.shared.0);
-        state.ends = true;
+        // It was waited for once.
+        if std::mem::replace(&mut state.ends, true) {
+            return;
+        }
         self.shared.1.notify_all();
         let waits = |state: &mut State| !state.ended;
         let waited = self.shared.1.wait_timeout_while(state, within, waits);
